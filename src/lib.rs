@@ -1,0 +1,23 @@
+//! Finds the compliant finger that makes a connector insertion most robust.
+//!
+//! Data flows one way, and no module reaches back up the flow:
+//!
+//! ```text
+//! space -> design -> stiffness surrogate -> finger -> scene -> engine -> trial
+//!       -> tolerance -> objective -> optimizer -> study -> report
+//! ```
+//!
+//! Inside the library every quantity is in SI units; millimetres, newtons per
+//! millimetre and degrees appear only in names that say so (see [`units`]).
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+pub mod evaluation;
+pub mod finger;
+pub mod optimizer;
+pub mod space;
+pub mod stream;
+pub mod surrogate;
+pub mod tolerance;
+pub mod trial;
+pub mod units;

@@ -1,0 +1,204 @@
+//! Search spaces: named, bounded, stepped parameters, and the designs in them.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Key of the infill density, percent.
+pub const DENSITY_KEY: &str = "infill_density_percent";
+/// Key of the infill direction, degrees.
+pub const DIRECTION_KEY: &str = "infill_direction_deg";
+
+/// One parameter of a space; values are `low + k * step`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parameter {
+    /// What it sets; carries its unit (`infill_density_percent`).
+    pub key: String,
+    /// Smallest value, in the unit of the key.
+    pub low: f64,
+    /// Largest value, in the unit of the key.
+    pub high: f64,
+    /// Smallest difference that can be made (printed, set), same unit.
+    pub step: f64,
+    /// Where the bounds come from.
+    pub source: String,
+}
+
+impl Parameter {
+    /// Number of distinct values.
+    pub fn levels(&self) -> u32 {
+        ((self.high - self.low) / self.step).round() as u32 + 1
+    }
+
+    /// The value of level `k`, rounded so that it prints as it was written.
+    pub fn value(&self, level: u32) -> f64 {
+        let value = self.low + f64::from(level) * self.step;
+        (value * 1e9).round() / 1e9
+    }
+}
+
+/// A checked search space.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Space {
+    name: String,
+    description: String,
+    #[serde(rename = "parameter")]
+    parameters: Vec<Parameter>,
+}
+
+/// One point of a space's grid: a level per parameter, in the space's order.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct GridPoint(pub Vec<u32>);
+
+/// A design: values by key, in the units the keys carry.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Design(pub BTreeMap<String, f64>);
+
+impl Design {
+    /// A design of infill density (percent) and direction (degrees).
+    pub fn infill(density_percent: f64, direction_deg: f64) -> Self {
+        Design(BTreeMap::from([
+            (DENSITY_KEY.to_owned(), density_percent),
+            (DIRECTION_KEY.to_owned(), direction_deg),
+        ]))
+    }
+
+    /// The value of a key, in the unit of the key.
+    pub fn get(&self, key: &str) -> Option<f64> {
+        self.0.get(key).copied()
+    }
+}
+
+/// What is wrong with a space file.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum SpaceError {
+    /// Not TOML, an unknown key or a missing field; the text names the line.
+    #[error("{file}: {message}")]
+    Syntax {
+        /// The file as given.
+        file: String,
+        /// The parser's message, with line and column.
+        message: String,
+    },
+    /// A field with a value that cannot be used.
+    #[error("{file}: {key}: {problem}")]
+    Value {
+        /// The file as given.
+        file: String,
+        /// The field.
+        key: String,
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSpace {
+    name: String,
+    description: String,
+    parameter: Vec<Parameter>,
+}
+
+impl Space {
+    /// Reads and checks a space; `file` is named in errors.
+    pub fn parse(text: &str, file: &str) -> Result<Self, SpaceError> {
+        let raw: RawSpace = toml::from_str(text).map_err(|error| SpaceError::Syntax {
+            file: file.to_owned(),
+            message: error.to_string().trim_end().to_owned(),
+        })?;
+        let fail = |key: &str, problem: &str| {
+            Err(SpaceError::Value {
+                file: file.to_owned(),
+                key: key.to_owned(),
+                problem: problem.to_owned(),
+            })
+        };
+        if raw.parameter.is_empty() {
+            return fail("parameter", "a space needs at least one [[parameter]]");
+        }
+        for (i, p) in raw.parameter.iter().enumerate() {
+            if raw.parameter[..i].iter().any(|other| other.key == p.key) {
+                return fail(&p.key, "is given twice; each key may stand once");
+            }
+            if ![p.low, p.high, p.step].iter().all(|v| v.is_finite()) {
+                return fail(&p.key, "low, high and step must be finite numbers");
+            }
+            if p.low > p.high {
+                return fail(&p.key, "low must not be above high");
+            }
+            if p.step <= 0.0 {
+                return fail(&p.key, "step must be above 0");
+            }
+            let levels = (p.high - p.low) / p.step;
+            if (levels - levels.round()).abs() > 1e-6 || levels > 1e6 {
+                return fail(&p.key, "high - low must be a whole number of steps, at most 1e6");
+            }
+        }
+        Ok(Space { name: raw.name, description: raw.description, parameters: raw.parameter })
+    }
+
+    /// Name, as used in study folders.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// One line for lists.
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    /// The parameters in file order: the order of the unit cube's axes.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// Levels per axis: what an optimizer may know of the space.
+    pub fn levels(&self) -> Vec<u32> {
+        self.parameters.iter().map(Parameter::levels).collect()
+    }
+
+    /// The design at a grid point (one level per parameter, each below its count).
+    pub fn design(&self, point: &GridPoint) -> Design {
+        let values = self.parameters.iter().zip(&point.0);
+        Design(values.map(|(p, &level)| (p.key.clone(), p.value(level))).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = r#"
+name = "s"
+description = "d"
+[[parameter]]
+key = "infill_density_percent"
+low = 10.0
+high = 30.0
+step = 1.0
+source = "paper"
+"#;
+
+    #[test]
+    fn the_last_level_is_the_upper_bound() {
+        let space = Space::parse(GOOD, "s.toml").unwrap();
+        assert_eq!(space.levels(), vec![21]);
+        assert_eq!(space.design(&GridPoint(vec![20])).get(DENSITY_KEY), Some(30.0));
+    }
+
+    #[test]
+    fn each_bad_field_is_named() {
+        for (from, to, word) in [
+            ("low = 10.0", "low = nan", "finite"),
+            ("low = 10.0", "low = 40.0", "above high"),
+            ("step = 1.0", "step = -1.0", "above 0"),
+            ("step = 1.0", "step = 3.0", "whole number"),
+            ("step = 1.0", "stepp = 1.0", "stepp"),
+        ] {
+            let error = Space::parse(&GOOD.replace(from, to), "s.toml").unwrap_err().to_string();
+            assert!(error.contains(word) && error.contains("s.toml"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! A rig with a closed-form window, for tests of everything above the trial.
+//!
+//! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50]` mm, with `k` and
+//! `a` the compliance and assembly stiffness in N/mm; it jams below and misses above.
+
+use super::{Grasped, Rig, Trial};
+use crate::evaluation::{FailureClass, Outcome};
+use crate::finger::Finger;
+use crate::units::{MM, N_PER_MM};
+
+/// The rig with the closed-form window.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FakeRig {
+    /// Real time each trial takes, for tests that interrupt a study.
+    pub delay: std::time::Duration,
+}
+
+impl Rig for FakeRig {
+    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
+        let (low, high) = window_mm(finger);
+        Box::new(FakeGrasp { low, high, delay: self.delay })
+    }
+}
+
+/// The window's ends in mm: `(most negative, most positive)` inserting offset.
+pub fn window_mm(finger: &Finger) -> (f64, f64) {
+    let compliance = finger.compliance / N_PER_MM;
+    let assembly = finger.assembly / N_PER_MM;
+    let nanometres = |mm: f64| (mm * 1e6).round() / 1e6;
+    (nanometres(-(2.0 + 4.0 / compliance)), nanometres(1.0 + assembly / 50.0))
+}
+
+struct FakeGrasp {
+    low: f64,
+    high: f64,
+    delay: std::time::Duration,
+}
+
+impl Grasped for FakeGrasp {
+    fn trial(&self, offset: f64) -> Trial {
+        std::thread::sleep(self.delay);
+        // Whole nanometres: a shift of 14 steps is 1.4 mm, not 1.4000000000000001.
+        let offset_mm = (offset / MM * 1e6).round() / 1e6;
+        let outcome = if offset_mm < self.low {
+            Outcome::Failed(FailureClass::Jammed)
+        } else if offset_mm > self.high {
+            Outcome::Failed(FailureClass::PlugMissed)
+        } else {
+            Outcome::Inserted
+        };
+        Trial {
+            outcome,
+            depth_mm: if outcome == Outcome::Inserted { 12.0 } else { 0.0 },
+            tilt_deg: 0.0,
+            peak_force_n: 5.0 + offset_mm.abs(),
+            slip_mm: 0.1,
+            phases: Vec::new(),
+            simulated_s: 1.0,
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! One simulated insertion attempt, and where attempts are made.
+
+use crate::evaluation::Outcome;
+use crate::finger::Finger;
+use serde::Serialize;
+
+pub mod fake;
+
+/// State at the end of one phase of a trial.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PhaseEnd {
+    /// Phase name as in the task file.
+    pub name: String,
+    /// Simulated time since the trial began, s.
+    pub time_s: f64,
+    /// Tip of the plug in the task frame (x, y, z), mm.
+    pub tip_mm: [f64; 3],
+    /// Angle between the plug's axis and z, degrees.
+    pub tilt_deg: f64,
+    /// Slip of the part in the grasp since the grasp, mm.
+    pub slip_mm: f64,
+    /// Largest contact force plug-socket during the phase, N.
+    pub peak_force_n: f64,
+}
+
+/// What one trial measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trial {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Depth of the plug's tip below the socket's top at the end, mm.
+    pub depth_mm: f64,
+    /// Angle between the plug's axis and z at the end, degrees.
+    pub tilt_deg: f64,
+    /// Largest contact force between plug and socket, N.
+    pub peak_force_n: f64,
+    /// Slip of the part in the grasp since the grasp, at the end, mm.
+    pub slip_mm: f64,
+    /// State at the end of each phase that was begun.
+    pub phases: Vec<PhaseEnd>,
+    /// Simulated time, s.
+    pub simulated_s: f64,
+}
+
+/// A place where trials are run: one task, one robot, one engine.
+pub trait Rig: Send + Sync {
+    /// Grasps the part with a pair of such fingers; what follows does not
+    /// depend on the offset until the approach, so it is done once.
+    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_>;
+}
+
+/// A part held and tilted, ready for a trial at any offset.
+pub trait Grasped: Sync {
+    /// One trial with the start shifted by `offset` metres along y.
+    fn trial(&self, offset: f64) -> Trial;
+}

@@ -1,0 +1,13 @@
+//! The edge between SI (inside) and the units of files, headers and plots.
+//!
+//! A constant is the SI value of one such unit: `3.0 * MM` reads "3 mm" and is
+//! in metres; `x / MM` is the number of millimetres in `x` metres.
+
+/// One millimetre, in metres.
+pub const MM: f64 = 1e-3;
+/// One newton per millimetre, in N/m.
+pub const N_PER_MM: f64 = 1e3;
+/// One degree, in radians.
+pub const DEG: f64 = std::f64::consts::PI / 180.0;
+/// One gram, in kilograms.
+pub const GRAM: f64 = 1e-3;

@@ -12,12 +12,16 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod engine;
 pub mod evaluation;
 pub mod finger;
 pub mod optimizer;
+pub mod robot;
+pub mod scene;
 pub mod space;
 pub mod stream;
 pub mod surrogate;
+pub mod task;
 pub mod tolerance;
 pub mod trial;
 pub mod units;

@@ -2,9 +2,15 @@
 
 use crate::evaluation::Outcome;
 use crate::finger::Finger;
+use crate::scene::Pose;
 use serde::Serialize;
 
+pub mod cell;
+pub mod classify;
 pub mod fake;
+pub mod motion;
+pub mod picture;
+pub mod run;
 
 /// State at the end of one phase of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -21,6 +27,18 @@ pub struct PhaseEnd {
     pub slip_mm: f64,
     /// Largest contact force plug-socket during the phase, N.
     pub peak_force_n: f64,
+    /// Where the bodies are, task frame, m; for pictures.
+    #[serde(skip)]
+    pub poses: Poses,
+}
+
+/// Where plug and fingers are, task frame, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Poses {
+    /// The plug.
+    pub plug: Pose,
+    /// The finger at -y and the finger at +y.
+    pub fingers: [Pose; 2],
 }
 
 /// What one trial measured.

@@ -1,0 +1,56 @@
+//! Contact engines behind one trait; they know scenes, not studies.
+
+use crate::scene::{BodyId, JointId, Pose, Scene, Spring};
+use nalgebra::Vector3;
+
+pub mod rapier;
+
+/// Builds worlds from scenes.
+pub trait Engine: Send + Sync {
+    /// Name and version, as recorded in a study.
+    fn version(&self) -> String;
+
+    /// A world at time zero.
+    fn world(&self, scene: &Scene) -> Box<dyn World>;
+}
+
+/// The state left the finite numbers; the trial says nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the simulation diverged: a body's state is no longer finite")]
+pub struct Diverged;
+
+/// Contact between two bodies over the last step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// Net force on the second body, N.
+    pub net: Vector3<f64>,
+    /// Sum of the magnitudes of the normal forces of all contact points, N.
+    pub normal_sum: f64,
+}
+
+/// A scene that is being simulated.
+pub trait World: Send + Sync {
+    /// Advances by one step; every step is checked for divergence.
+    fn step(&mut self) -> Result<(), Diverged>;
+
+    /// Length of one step, s.
+    fn step_s(&self) -> f64;
+
+    /// Body frame in the world.
+    fn pose(&self, body: BodyId) -> Pose;
+
+    /// Commands where a driven body is at the end of the next step.
+    fn drive(&mut self, body: BodyId, pose: Pose);
+
+    /// Puts a fixed body elsewhere; it must touch nothing before and after.
+    fn place(&mut self, body: BodyId, pose: Pose);
+
+    /// Replaces the spring of a sprung axis (0..6) of a joint.
+    fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring);
+
+    /// Contact between two bodies over the last step.
+    fn contact(&self, first: BodyId, second: BodyId) -> ContactForce;
+
+    /// An independent copy that continues bit for bit alike.
+    fn snapshot(&self) -> Box<dyn World>;
+}

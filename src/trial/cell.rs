@@ -1,0 +1,212 @@
+//! The scene of a trial: robot flange, jaws, fingers, plug, socket.
+//!
+//! Frames: the world is the task frame. The flange frame is the TCP. The plug
+//! stands upright at its pick-up place, straight above the start of the search.
+
+use crate::finger::{self, Finger};
+use crate::robot::{Flange, Robot};
+use crate::scene::{Axis, Body, BodyId, Inertia, Joint, JointId, Motion, Pose, Scene, Spring};
+use crate::task::{Task, geometry};
+use crate::units::MM;
+use nalgebra::{Point3, Translation3, Vector3};
+
+/// Height of the pick-up pose above the start pose, m.
+const PICK_UP_HEIGHT: f64 = 10.0 * MM;
+/// Gap between each pad and the plug before the grasp, m.
+const OPENING: f64 = 0.5 * MM;
+/// Mass of a jaw, kg.
+const JAW_MASS: f64 = 0.05;
+/// Gain of the jaw's position servo, N/m (paper, Table "Simulation Inputs").
+const JAW_GAIN: f64 = 1000.0;
+/// Damping of the jaw's servo, N s/m: two jaws of 50 g close without a bounce.
+const JAW_DAMPING: f64 = 30.0;
+/// Speed at which a jaw's target closes, m/s.
+const CLOSING_SPEED: f64 = 0.1;
+/// Farthest target, m: the softest finger's deflection and the servo's own.
+const CLOSING_STROKE: f64 = 0.02;
+/// A held jaw does not give: a non-backdrivable gear, N/m.
+const HOLD_GAIN: f64 = 1e7;
+
+/// A scene and the handles that a trial needs.
+#[derive(Debug, Clone)]
+pub struct Cell {
+    /// The scene.
+    pub scene: Scene,
+    /// The body that is commanded: the flange itself, or its servo's target.
+    pub command: BodyId,
+    /// The flange.
+    pub flange: BodyId,
+    /// The hand at -y and the hand at +y.
+    pub hands: [Hand; 2],
+    /// The plug.
+    pub plug: BodyId,
+    /// The socket.
+    pub socket: BodyId,
+    /// What the plug stands on until it is grasped.
+    pub stand: BodyId,
+}
+
+/// One jaw with its finger.
+#[derive(Debug, Clone, Copy)]
+pub struct Hand {
+    /// The jaw.
+    pub jaw: BodyId,
+    /// The finger.
+    pub finger: BodyId,
+    /// The jaw's slide; axis 1 (y) is the servo.
+    pub slide: JointId,
+    /// Position of the slide's zero on the flange, m.
+    pub zero_y: f64,
+}
+
+/// Builds the scene for one pair of fingers; the jaws are open.
+pub fn build(task: &Task, robot: &Robot, finger: &Finger) -> Cell {
+    let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -9.81), ..Scene::default() };
+    let [x, y, z] = task.strategy.start;
+    let tcp = Pose::translation(x, y, z + PICK_UP_HEIGHT);
+    let plug_pose = tcp * Pose::translation(0.0, 0.0, -task.grip.tcp_z);
+    let (command, flange) = flange(&mut scene, robot, tcp);
+    let plug = scene.body(plug_body(task, plug_pose));
+    let socket = scene.body(Body {
+        name: "socket".into(),
+        motion: Motion::Fixed,
+        pose: Pose::identity(),
+        geoms: task.socket.iter().map(|part| part.geom(task.friction.plug_socket)).collect(),
+    });
+    let stand = scene.body(stand_body(task, plug_pose));
+    let hands = [-1.0, 1.0].map(|side| hand(&mut scene, task, finger, flange, tcp, side));
+    scene.contacts.extend([(plug, socket), (plug, stand)]);
+    scene.contacts.extend(hands.iter().map(|hand| (hand.finger, plug)));
+    Cell { command, flange, hands, plug, socket, stand, scene }
+}
+
+/// The servo setting of a jaw that has been closing for `time` seconds; `side`
+/// is 0 for the jaw at -y. The target runs ahead into the part until the servo
+/// is at its limit; a jump there would let the jaw run into its stop.
+pub fn closing(side: usize, force: f64, time: f64) -> Spring {
+    let inward = if side == 0 { 1.0 } else { -1.0 };
+    let target = inward * (time * CLOSING_SPEED).min(CLOSING_STROKE);
+    Spring { stiffness: JAW_GAIN, damping: JAW_DAMPING, target, limit: force }
+}
+
+/// The servo setting that holds a jaw where it is.
+pub fn holding(position: f64) -> Spring {
+    Spring { stiffness: HOLD_GAIN, damping: 1e4, target: position, limit: f64::INFINITY }
+}
+
+fn flange(scene: &mut Scene, robot: &Robot, tcp: Pose) -> (BodyId, BodyId) {
+    let command = scene.body(Body {
+        name: "command".into(),
+        motion: Motion::Driven,
+        pose: tcp,
+        geoms: Vec::new(),
+    });
+    let Flange::Servo(servo) = robot.flange else { return (command, command) };
+    let inertia = Inertia {
+        mass: servo.mass,
+        centre: Point3::origin(),
+        moments: Vector3::repeat(servo.inertia),
+    };
+    let flange = scene.body(Body {
+        name: "flange".into(),
+        motion: Motion::Carried(inertia),
+        pose: tcp,
+        geoms: Vec::new(),
+    });
+    let critical = |k: f64, m: f64| 2.0 * servo.damping_ratio * (k * m).sqrt();
+    let axis = |i: usize| {
+        let (k, m) = if i < 3 {
+            (servo.stiffness[i], servo.mass)
+        } else {
+            (servo.rotational_stiffness[i - 3], servo.inertia)
+        };
+        Axis::Sprung(Spring::new(k, critical(k, m)))
+    };
+    scene.joint(Joint {
+        name: "servo".into(),
+        parent: command,
+        child: flange,
+        in_parent: Pose::identity(),
+        in_child: Pose::identity(),
+        axes: std::array::from_fn(axis),
+    });
+    (command, flange)
+}
+
+fn plug_body(task: &Task, pose: Pose) -> Body {
+    // The finger's coefficient is the larger one; a pair takes the smaller of
+    // its two, so the plug's own never decides.
+    let friction = task.friction.finger_plug.max(task.friction.plug_socket);
+    Body {
+        name: "plug".into(),
+        motion: Motion::Free(geometry::inertia(&task.plug.parts, task.plug.mass)),
+        pose,
+        geoms: task.plug.parts.iter().map(|part| part.geom(friction)).collect(),
+    }
+}
+
+fn stand_body(task: &Task, plug: Pose) -> Body {
+    let corners = task.plug.parts.iter().flat_map(|part| part.solid.corners());
+    let bottom = corners.map(|p| p.z).fold(f64::INFINITY, f64::min);
+    let half = Vector3::new(20.0, 20.0, 1.0) * MM;
+    let pose = plug * Pose::translation(0.0, 0.0, bottom - half.z);
+    let geom = crate::scene::Geom {
+        name: "stand".into(),
+        shape: crate::scene::Shape::Box { half },
+        pose: Pose::identity(),
+        friction: task.friction.plug_socket,
+    };
+    Body { name: "stand".into(), motion: Motion::Fixed, pose, geoms: vec![geom] }
+}
+
+/// A jaw on its slide and a finger on its six springs; `side` is -1 or +1.
+fn hand(
+    scene: &mut Scene,
+    task: &Task,
+    finger: &Finger,
+    flange: BodyId,
+    tcp: Pose,
+    side: f64,
+) -> Hand {
+    let label = if side < 0.0 { "-y" } else { "+y" };
+    let face = if side < 0.0 { task.grip.faces_y[0] } else { task.grip.faces_y[1] };
+    // Jaw and finger frames lie on the pad's surface at the height of the TCP.
+    let zero_y = face + side * OPENING;
+    let in_flange = Pose::translation(0.0, zero_y, 0.0);
+    let jaw = scene.body(Body {
+        name: format!("jaw {label}"),
+        motion: Motion::Carried(Inertia {
+            mass: JAW_MASS,
+            centre: Point3::origin(),
+            moments: Vector3::repeat(1e-4),
+        }),
+        pose: tcp * in_flange,
+        geoms: Vec::new(),
+    });
+    let mut axes = [Axis::Locked; 6];
+    axes[1] = Axis::Sprung(Spring { limit: task.grip.force, ..Spring::new(JAW_GAIN, JAW_DAMPING) });
+    let slide = scene.joint(Joint {
+        name: format!("slide {label}"),
+        parent: flange,
+        child: jaw,
+        in_parent: in_flange,
+        in_child: Pose::identity(),
+        axes,
+    });
+    let body = scene.body(Body {
+        name: format!("finger {label}"),
+        motion: Motion::Free(finger::inertia(finger)),
+        pose: tcp * in_flange,
+        geoms: finger::tip(task.grip.shoulder_z - task.grip.tcp_z, side, task.friction.finger_plug),
+    });
+    let rcc = Pose::from_parts(Translation3::new(0.0, 0.0, -finger.rcc), nalgebra::one());
+    scene.joint(Joint {
+        name: format!("springs {label}"),
+        parent: jaw,
+        child: body,
+        in_parent: rcc,
+        in_child: rcc,
+        axes: finger.springs().map(Axis::Sprung),
+    });
+    Hand { jaw, finger: body, slide, zero_y }
+}

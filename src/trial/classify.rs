@@ -1,0 +1,55 @@
+//! The rules that turn what happened into an outcome, in one place.
+//!
+//! 1. The part is seated (deep and upright enough): inserted.
+//! 2. The part left the grasp (both fingers off, or slipped beyond the task's
+//!    limit) before the search began: class 1; later: class 4.
+//! 3. Its leading edge never entered the opening before the assembly push: class 2.
+//! 4. Otherwise it entered, is not seated and is still held: class 3.
+
+use crate::evaluation::{FailureClass, Outcome};
+use crate::task::Stage;
+
+/// What the rules look at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Facts {
+    /// Deep and upright enough.
+    pub seated: bool,
+    /// The stage in which the part left the grasp.
+    pub lost_in: Option<Stage>,
+    /// The leading edge was inside the opening at some time before assembly.
+    pub entered: bool,
+}
+
+/// The outcome of a trial that did not diverge.
+pub fn classify(facts: Facts) -> Outcome {
+    match facts {
+        Facts { seated: true, .. } => Outcome::Inserted,
+        Facts { lost_in: Some(Stage::Approach), .. } => {
+            Outcome::Failed(FailureClass::ContactLossBeforeSearch)
+        }
+        Facts { lost_in: Some(_), .. } => Outcome::Failed(FailureClass::ContactLossInInsertion),
+        Facts { entered: false, .. } => Outcome::Failed(FailureClass::PlugMissed),
+        Facts { entered: true, .. } => Outcome::Failed(FailureClass::Jammed),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use FailureClass::*;
+
+    #[test]
+    fn every_rule_decides_in_its_order() {
+        let facts = |seated, lost_in, entered| Facts { seated, lost_in, entered };
+        for (given, outcome) in [
+            (facts(true, Some(Stage::Assembly), true), Outcome::Inserted),
+            (facts(false, Some(Stage::Approach), false), Outcome::Failed(ContactLossBeforeSearch)),
+            (facts(false, Some(Stage::Search), false), Outcome::Failed(ContactLossInInsertion)),
+            (facts(false, Some(Stage::Assembly), true), Outcome::Failed(ContactLossInInsertion)),
+            (facts(false, None, false), Outcome::Failed(PlugMissed)),
+            (facts(false, None, true), Outcome::Failed(Jammed)),
+        ] {
+            assert_eq!(classify(given), outcome, "{given:?}");
+        }
+    }
+}

@@ -1,0 +1,384 @@
+//! A trial in a contact engine: grasp, approach, touch, search, assembly.
+
+use super::cell::{self, Cell};
+use super::classify::{Facts, classify};
+use super::motion::{Move, Tcp};
+use super::{Grasped, PhaseEnd, Poses, Rig, Trial};
+use crate::engine::{Diverged, Engine, World};
+use crate::evaluation::Outcome;
+use crate::finger::Finger;
+use crate::robot::Robot;
+use crate::scene::{BodyId, Pose};
+use crate::task::{Ending, Hold, Phase, Stage, Task};
+use crate::units::{DEG, MM};
+use nalgebra::{Point3, Vector3};
+
+/// Time for the jaws to close and the fingers to come to rest, s.
+const GRASP_TIME: f64 = 0.3;
+/// Time to lift, tilt and carry the part to the start, s.
+const CARRY_TIME: f64 = 0.2;
+/// Both fingers off for this long is contact lost, s: longer than a bounce.
+const LOSS_TIME: f64 = 0.02;
+/// A finger that presses with less is off, N.
+const LOSS_FORCE: f64 = 0.01;
+/// Time constant of the force filter, s, as of a wrist sensor: a single step's
+/// impact is numerics, not a force that a part feels.
+const FORCE_FILTER: f64 = 0.005;
+/// A tolerance-based move that is not there by then is stuck, s after its command ended.
+const TOLERANCE_TIMEOUT: f64 = 1.0;
+/// The leading edge is inside when it is this far below the socket's top, m:
+/// more than contacts sink, less than any preload.
+const ENTERED_DEPTH: f64 = 0.15 * MM;
+/// First contact, N.
+const TOUCH_FORCE: f64 = 0.05;
+
+/// A task, a robot and an engine.
+pub struct EngineRig {
+    /// The task.
+    pub task: Task,
+    /// The robot.
+    pub robot: Robot,
+    /// The engine.
+    pub engine: Box<dyn Engine>,
+}
+
+impl Rig for EngineRig {
+    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
+        let cell = cell::build(&self.task, &self.robot, finger);
+        let world = self.engine.world(&cell.scene);
+        let mut run = Run::new(self, cell, world);
+        let lost = run.prepare();
+        Box::new(Ready { run, lost })
+    }
+}
+
+/// A run stopped right before the search; every offset starts from a copy.
+struct Ready<'a> {
+    run: Run<'a>,
+    lost: Result<(), Stop>,
+}
+
+impl Grasped for Ready<'_> {
+    fn trial(&self, offset: f64) -> Trial {
+        let mut run = self.run.copy();
+        // Shifting the start by y is shifting the socket by -y: the part has
+        // touched nothing of it yet. So all offsets share grasp and approach.
+        run.offset = offset;
+        run.world.place(run.cell.socket, Pose::translation(0.0, -offset, 0.0));
+        let end = match self.lost {
+            Ok(()) => run.search_and_assemble(),
+            Err(stop) => Err(stop),
+        };
+        run.result(end)
+    }
+}
+
+/// Why a run ends early.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Stop {
+    Seated,
+    Lost,
+    ForceLimit,
+    Diverged,
+}
+
+impl From<Diverged> for Stop {
+    fn from(_: Diverged) -> Self {
+        Stop::Diverged
+    }
+}
+
+struct Run<'a> {
+    rig: &'a EngineRig,
+    cell: Cell,
+    world: Box<dyn World>,
+    target: Tcp,
+    stage: Stage,
+    offset: f64,
+    time: f64,
+    /// Grasp point in each finger's frame right after the grasp.
+    grasp: [Vector3<f64>; 2],
+    /// Filtered net force plug-socket, N.
+    force: Vector3<f64>,
+    peak_force: f64,
+    phase_peak: f64,
+    loose_for: f64,
+    entered: bool,
+    corners: Vec<Point3<f64>>,
+    phases: Vec<PhaseEnd>,
+}
+
+impl<'a> Run<'a> {
+    fn new(rig: &'a EngineRig, cell: Cell, world: Box<dyn World>) -> Self {
+        let pose = world.pose(cell.command);
+        let corners = rig.task.plug.parts.iter().flat_map(|part| part.solid.corners()).collect();
+        Run {
+            rig,
+            cell,
+            world,
+            target: Tcp { position: pose.translation.vector, tilt: 0.0 },
+            stage: Stage::Approach,
+            offset: 0.0,
+            time: 0.0,
+            grasp: [Vector3::zeros(); 2],
+            force: Vector3::zeros(),
+            peak_force: 0.0,
+            phase_peak: 0.0,
+            loose_for: 0.0,
+            entered: false,
+            corners,
+            phases: Vec::new(),
+        }
+    }
+
+    fn copy(&self) -> Run<'a> {
+        Run {
+            rig: self.rig,
+            cell: self.cell.clone(),
+            world: self.world.snapshot(),
+            corners: self.corners.clone(),
+            phases: self.phases.clone(),
+            ..*self
+        }
+    }
+
+    /// Grasp, lift, tilt, carry to the start, and the approach through the air.
+    fn prepare(&mut self) -> Result<(), Stop> {
+        let task = &self.rig.task;
+        for i in 1..=self.steps(GRASP_TIME) {
+            let time = i as f64 * self.world.step_s();
+            for (side, hand) in self.cell.hands.iter().enumerate() {
+                self.world.set_spring(hand.slide, 1, cell::closing(side, task.grip.force, time));
+            }
+            self.step()?;
+        }
+        self.grasp = self.grasp_points();
+        if task.grip.hold == Hold::Always {
+            self.hold();
+        }
+        self.end_phase("grasp");
+        self.world.place(self.cell.stand, Pose::translation(0.0, 0.0, -1.0));
+        let [x, y, z] = task.strategy.start;
+        let start = Tcp { position: Vector3::new(x, y, z), tilt: task.strategy.tilt };
+        self.follow(Move::lasting(self.target, start, CARRY_TIME), self.rig.settle())?;
+        self.end_phase("carry");
+        for phase in task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach) {
+            self.phase(phase)?;
+        }
+        Ok(())
+    }
+
+    fn search_and_assemble(&mut self) -> Result<(), Stop> {
+        let rig = self.rig;
+        for phase in rig.task.strategy.phases.iter().filter(|p| p.stage != Stage::Approach) {
+            self.phase(phase)?;
+        }
+        Ok(())
+    }
+
+    fn phase(&mut self, phase: &Phase) -> Result<(), Stop> {
+        if phase.stage == Stage::Assembly
+            && self.stage != Stage::Assembly
+            && self.rig.task.grip.hold == Hold::Assembly
+        {
+            self.hold();
+        }
+        self.stage = phase.stage;
+        let to = self.target.moved(Vector3::from(phase.displacement));
+        let motion = Move::new(self.target, to, phase.speed);
+        let end = match phase.ending {
+            Ending::Duration(settle) => self.follow(motion, settle),
+            Ending::Tolerance(within) => self.reach(motion, within),
+            Ending::Touch { preload } => self.touch(motion, preload),
+        };
+        self.end_phase(&phase.name);
+        end
+    }
+
+    /// The jaws stay where they are from now on.
+    fn hold(&mut self) {
+        let flange = self.world.pose(self.cell.flange);
+        for hand in self.cell.hands {
+            let y = (flange.inverse() * self.world.pose(hand.jaw)).translation.y;
+            self.world.set_spring(hand.slide, 1, cell::holding(y - hand.zero_y));
+        }
+    }
+
+    /// Commands a move and then waits.
+    fn follow(&mut self, motion: Move, settle: f64) -> Result<(), Stop> {
+        let steps = self.steps(motion.duration() + settle);
+        for i in 1..=steps {
+            self.target = motion.at(i as f64 * self.world.step_s());
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    /// Commands a move and waits until the TCP is there, as near as asked.
+    fn reach(&mut self, motion: Move, within: f64) -> Result<(), Stop> {
+        self.follow(motion, 0.0)?;
+        for _ in 0..self.steps(TOLERANCE_TIMEOUT) {
+            let tcp = self.world.pose(self.cell.flange).translation.vector;
+            if (tcp - self.target.position).amax() < within {
+                break;
+            }
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    /// Moves until the plug touches the socket, then on by the preload.
+    fn touch(&mut self, motion: Move, preload: f64) -> Result<(), Stop> {
+        let (start, end) = (motion.at(0.0), motion.at(f64::INFINITY));
+        let steps = self.steps(motion.duration());
+        for i in 1..=steps {
+            self.target = motion.at(i as f64 * self.world.step_s());
+            self.step()?;
+            if self.contact_force() > TOUCH_FORCE {
+                break;
+            }
+        }
+        let along = (end.position - start.position).normalize();
+        let speed = (end.position - start.position).norm() / motion.duration();
+        let further = Move::new(self.target, self.target.moved(along * preload), speed);
+        self.follow(further, self.rig.settle())
+    }
+
+    /// One step of the command, the engine and the monitors.
+    fn step(&mut self) -> Result<(), Stop> {
+        self.world.drive(self.cell.command, self.target.pose());
+        self.world.step()?;
+        let dt = self.world.step_s();
+        self.time += dt;
+        let contact = self.world.contact(self.cell.socket, self.cell.plug);
+        self.force += (contact.net - self.force) * (dt / FORCE_FILTER);
+        let force = self.force.norm();
+        self.peak_force = self.peak_force.max(force);
+        self.phase_peak = self.phase_peak.max(force);
+        self.watch_grasp(dt)?;
+        self.watch_depth()?;
+        if force > self.rig.robot.stop_force { Err(Stop::ForceLimit) } else { Ok(()) }
+    }
+
+    fn contact_force(&self) -> f64 {
+        self.world.contact(self.cell.socket, self.cell.plug).normal_sum
+    }
+
+    fn watch_grasp(&mut self, dt: f64) -> Result<(), Stop> {
+        if self.time < GRASP_TIME {
+            return Ok(());
+        }
+        let off = |hand: &cell::Hand| {
+            self.world.contact(hand.finger, self.cell.plug).normal_sum < LOSS_FORCE
+        };
+        let loose = self.cell.hands.iter().all(off);
+        self.loose_for = if loose { self.loose_for + dt } else { 0.0 };
+        let slipped = !self.phases.is_empty() && self.slip() > self.rig.task.grip.slip_limit;
+        if self.loose_for > LOSS_TIME || slipped { Err(Stop::Lost) } else { Ok(()) }
+    }
+
+    fn watch_depth(&mut self) -> Result<(), Stop> {
+        match self.stage {
+            Stage::Approach => Ok(()),
+            Stage::Search => {
+                self.entered = self.entered || self.leading_edge_inside();
+                Ok(())
+            }
+            Stage::Assembly => {
+                let success = self.rig.task.success;
+                let seated = -self.tip().z >= success.depth && self.tilt() <= success.tilt;
+                if seated { Err(Stop::Seated) } else { Ok(()) }
+            }
+        }
+    }
+
+    /// A body in the task frame: as if the start, not the socket, were shifted.
+    fn pose(&self, body: BodyId) -> Pose {
+        Pose::translation(0.0, self.offset, 0.0) * self.world.pose(body)
+    }
+
+    fn plug(&self) -> Pose {
+        self.pose(self.cell.plug)
+    }
+
+    fn poses(&self) -> Poses {
+        let fingers = self.cell.hands.map(|hand| self.pose(hand.finger));
+        Poses { plug: self.plug(), fingers }
+    }
+
+    fn tip(&self) -> Vector3<f64> {
+        self.plug().translation.vector
+    }
+
+    fn tilt(&self) -> f64 {
+        (self.plug() * Vector3::z()).z.clamp(-1.0, 1.0).acos()
+    }
+
+    fn leading_edge_inside(&self) -> bool {
+        let plug = self.plug();
+        let lowest = self.corners.iter().map(|p| plug * p).min_by(|a, b| a.z.total_cmp(&b.z));
+        let within = |v: f64, [from, to]: [f64; 2]| from <= v && v <= to;
+        let [x, y] = self.rig.task.opening;
+        lowest.is_some_and(|p| p.z < -ENTERED_DEPTH && within(p.x, x) && within(p.y, y))
+    }
+
+    fn grasp_points(&self) -> [Vector3<f64>; 2] {
+        let point =
+            self.world.pose(self.cell.plug) * Point3::new(0.0, 0.0, self.rig.task.grip.tcp_z);
+        self.cell.hands.map(|hand| (self.world.pose(hand.finger).inverse() * point).coords)
+    }
+
+    /// How far the part has moved along the pads since the grasp, m: along the
+    /// pad of the finger it moved less on, since a finger that is off says nothing.
+    fn slip(&self) -> f64 {
+        let now = self.grasp_points();
+        let along = |i: usize| {
+            let moved = now[i] - self.grasp[i];
+            moved.x.hypot(moved.z)
+        };
+        along(0).min(along(1))
+    }
+
+    fn steps(&self, time: f64) -> usize {
+        (time / self.world.step_s()).round() as usize
+    }
+
+    fn end_phase(&mut self, name: &str) {
+        let end = PhaseEnd {
+            name: name.to_owned(),
+            time_s: self.time,
+            tip_mm: (self.tip() / MM).into(),
+            tilt_deg: self.tilt() / DEG,
+            slip_mm: self.slip() / MM,
+            peak_force_n: self.phase_peak,
+            poses: self.poses(),
+        };
+        self.phase_peak = 0.0;
+        self.phases.push(end);
+    }
+
+    fn result(self, end: Result<(), Stop>) -> Trial {
+        let facts = Facts {
+            seated: end == Err(Stop::Seated),
+            lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
+            entered: self.entered,
+        };
+        let diverged = end == Err(Stop::Diverged);
+        Trial {
+            outcome: if diverged { Outcome::Diverged } else { classify(facts) },
+            depth_mm: -self.tip().z / MM,
+            tilt_deg: self.tilt() / DEG,
+            peak_force_n: self.peak_force,
+            slip_mm: self.slip() / MM,
+            simulated_s: self.time,
+            phases: self.phases,
+        }
+    }
+}
+
+impl EngineRig {
+    /// Rest after a move that has no settling time of its own, s.
+    fn settle(&self) -> f64 {
+        0.03
+    }
+}

@@ -17,6 +17,7 @@ pub mod finger;
 pub mod optimizer;
 pub mod space;
 pub mod stream;
+pub mod study;
 pub mod surrogate;
 pub mod tolerance;
 pub mod trial;

@@ -14,7 +14,9 @@
 
 pub mod evaluation;
 pub mod finger;
+pub mod objective;
 pub mod optimizer;
+pub mod shipped;
 pub mod space;
 pub mod stream;
 pub mod study;

@@ -71,6 +71,14 @@ impl Design {
     }
 }
 
+impl std::fmt::Display for Design {
+    /// `infill_density_percent = 20, infill_direction_deg = 10`
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let values: Vec<String> = self.0.iter().map(|(k, v)| format!("{k} = {v}")).collect();
+        f.write_str(&values.join(", "))
+    }
+}
+
 /// What is wrong with a space file.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum SpaceError {

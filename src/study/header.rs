@@ -25,7 +25,13 @@ struct StudyAttributes {
     op_code: u8,
     worker_id: String,
     study_id: u64,
-    user_attr: Identity,
+    user_attr: UserAttribute,
+}
+
+/// Optuna takes one attribute a line, so all of ours is one.
+#[derive(Serialize, Deserialize)]
+struct UserAttribute {
+    finger_opt: Identity,
 }
 
 /// The configuration without what may change while the journal stays the same.
@@ -74,7 +80,7 @@ pub fn encode(config: &StudyConfig) -> Result<String, serde_json::Error> {
         op_code: STUDY_USER_ATTRIBUTE,
         worker_id: WORKER.to_owned(),
         study_id: 0,
-        user_attr: Identity::from(config),
+        user_attr: UserAttribute { finger_opt: Identity::from(config) },
     };
     Ok(seal(&create, NO_TIMES)? + &seal(&attributes, NO_TIMES)?)
 }
@@ -91,7 +97,7 @@ pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), Stri
     let (attributes, _) = unseal(second).map_err(|error| error.to_string())?;
     let version = serde_json::from_str::<serde_json::Value>(&attributes)
         .ok()
-        .and_then(|value| value["user_attr"]["schema_version"].as_u64());
+        .and_then(|value| value["user_attr"]["finger_opt"]["schema_version"].as_u64());
     match version {
         Some(1..=SCHEMA_VERSION) => {}
         Some(newer) => {
@@ -103,7 +109,11 @@ pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), Stri
     }
     let found: StudyAttributes =
         serde_json::from_str(&attributes).map_err(|error| format!("line 2: {error}"))?;
-    match differences(&found.user_attr, &Identity::from(config), ["the journal", "study.toml"]) {
+    match differences(
+        &found.user_attr.finger_opt,
+        &Identity::from(config),
+        ["the journal", "study.toml"],
+    ) {
         Some(differences) => Err(format!("it was made with another configuration:\n{differences}")),
         None => Ok(()),
     }

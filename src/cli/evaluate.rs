@@ -28,7 +28,12 @@ pub struct Arguments {
 #[derive(Debug, Clone, Args)]
 pub struct FingerArguments {
     /// Infill density, percent
-    #[arg(long, value_name = "PERCENT", required_unless_present = "stiffness_compliance")]
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        required_unless_present = "stiffness_compliance",
+        allow_negative_numbers = true
+    )]
     density: Option<f64>,
     /// Infill direction, degrees
     #[arg(
@@ -39,10 +44,12 @@ pub struct FingerArguments {
     )]
     direction: Option<f64>,
     /// Stiffness in the compliance direction, N/mm: bypasses the surrogate
-    #[arg(long, value_name = "K", requires = "stiffness_assembly", value_parser = stiffness)]
+    #[arg(long, value_name = "K", requires = "stiffness_assembly", value_parser = stiffness,
+          allow_negative_numbers = true)]
     stiffness_compliance: Option<f64>,
     /// Stiffness in the direction of assembly, N/mm: bypasses the surrogate
-    #[arg(long, value_name = "K", requires = "stiffness_compliance", value_parser = stiffness)]
+    #[arg(long, value_name = "K", requires = "stiffness_compliance", value_parser = stiffness,
+          allow_negative_numbers = true)]
     stiffness_assembly: Option<f64>,
 }
 

@@ -34,10 +34,11 @@ use std::io::{self, Write};
     args_conflicts_with_subcommands = true
 )]
 pub struct Cli {
-    #[command(subcommand)]
-    pub command: Option<Command>,
+    // First: reading the subcommand takes it out of the matches.
     #[command(flatten)]
     pub study: StudyOrNone,
+    #[command(subcommand)]
+    pub command: Option<Command>,
 }
 
 /// The arguments of a study, if no subcommand took its place. (clap's own

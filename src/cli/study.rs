@@ -17,7 +17,7 @@ pub struct Arguments {
     #[command(flatten)]
     setup: SetupArguments,
     /// Evaluations in all; run the same command with a larger one to go on
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     budget: u64,
     /// Optimizer: gp, cma-es, random, sobol or grid
     #[arg(long, value_name = "NAME", default_value = "gp")]
@@ -26,11 +26,11 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", default_value = "range")]
     objective: Objective,
     /// Seed; the same seed gives the same study
-    #[arg(long, value_name = "N", default_value_t = 0,
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
           value_parser = clap::value_parser!(u64).range(..=LARGEST_SEED))]
     seed: u64,
     /// Designs proposed and evaluated at a time; part of the study, unlike --threads
-    #[arg(long, value_name = "N", default_value_t = 4,
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 4,
           value_parser = clap::value_parser!(u64).range(1..=10_000))]
     batch: u64,
     /// Folder of the study [default: results/<task>-<optimizer>-seed<seed>]

@@ -13,7 +13,7 @@ use super::config::StudyConfig;
 use super::error::StudyError;
 use super::journal::{self, Journal};
 use super::record::{Recorded, StudyRecord};
-use super::store::FileStore;
+use super::store::{FileStore, Store};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -81,21 +81,26 @@ impl Study {
             // Last, so that a folder with a configuration is complete.
             write_config(dir, config)?;
         }
-        Study::open_locked(dir, lock)
+        Study::open_locked(dir, lock, journal_file(dir)?)
     }
 
     /// Opens the study in `dir` to continue it.
     pub fn resume(dir: &Path) -> Result<Study, StudyError> {
         // Before the lock: nothing is to be created in a folder that holds no study.
         read_config(dir)?;
-        Study::open_locked(dir, lock(dir)?)
+        let lock = lock(dir)?;
+        Study::open_locked(dir, lock, journal_file(dir)?)
     }
 
-    fn open_locked(dir: &Path, lock: File) -> Result<Study, StudyError> {
+    /// The same with the journal in another store than its file.
+    pub fn resume_with(dir: &Path, store: Box<dyn Store>) -> Result<Study, StudyError> {
+        read_config(dir)?;
+        Study::open_locked(dir, lock(dir)?, store)
+    }
+
+    fn open_locked(dir: &Path, lock: File, store: Box<dyn Store>) -> Result<Study, StudyError> {
         let config = read_config(dir)?;
-        let path = dir.join(JOURNAL_FILE);
-        let store = FileStore::open(&path).map_err(StudyError::io("open", &path))?;
-        let (journal, evaluations) = Journal::open(Box::new(store), &path, &config)?;
+        let (journal, evaluations) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
         sync_folder(dir)?;
         Ok(Study { config, evaluations, journal, dir: dir.to_owned(), _lock: lock })
     }
@@ -118,6 +123,11 @@ impl StudyRecord {
         let evaluations = journal::read(&dir.join(JOURNAL_FILE), &config)?;
         Ok(StudyRecord { config, evaluations })
     }
+}
+
+fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
+    let path = dir.join(JOURNAL_FILE);
+    Ok(Box::new(FileStore::open(&path).map_err(StudyError::io("open", &path))?))
 }
 
 /// The configuration of the study in `dir`.

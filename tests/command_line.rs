@@ -93,6 +93,17 @@ fn a_study_prints_its_best_design_and_leaves_a_table() {
 }
 
 #[test]
+fn progress_goes_to_standard_error_unless_quiet() {
+    let studies = Studies::new();
+    let dir = studies.dir("s").to_str().unwrap().to_owned();
+    let study = ["--task", "usb", "--budget", "8", "--out", &dir, "--json"];
+    let loud = fake(&study);
+    assert!(loud.stderr.contains("4/8 evaluations, best "), "{}", loud.stderr);
+    assert_eq!(loud.json()["evaluations"], 8);
+    assert_eq!(studies.study("quiet", 8, &[]).stderr, "");
+}
+
+#[test]
 fn bad_usage_is_answered_with_2_and_what_would_be_right() {
     for (arguments, parts) in [
         (&["--budget", "5"][..], &["--task"][..]),

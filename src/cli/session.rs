@@ -27,8 +27,8 @@ pub struct SessionArguments {
 /// Runs a study until its budget is spent, and reports.
 pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Result<(), Failure> {
     let config = study.config.clone();
-    let kind: OptimizerKind = config.optimizer.parse().map_err(Failure::usage)?;
-    let objective: Objective = config.objective.parse().map_err(Failure::usage)?;
+    let kind: OptimizerKind = config.optimizer.parse().map_err(bad_config)?;
+    let objective: Objective = config.objective.parse().map_err(bad_config)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(usize::from(arguments.threads.unwrap_or(0)))
         .build()
@@ -44,10 +44,9 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     let ended =
         runner.run(&mut study, &mut *optimizer, &mut |recorded| progress.measured(recorded));
     progress.finish();
-    let ending = ended.map_err(|error| {
-        let failure = Failure::from(error);
-        eprintln!("{}", resume_hint(&study));
-        failure
+    let ending = ended.map_err(|error| match Failure::from(error) {
+        Failure::Run(error) => Failure::running(format!("{error}\n{}", resume_hint(&study))),
+        bad_input => bad_input,
     })?;
     write_reports(&study)?;
     match ending {
@@ -56,6 +55,10 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         }
         ending => summary::show(&study, ending, arguments.json),
     }
+}
+
+fn bad_config(error: impl std::fmt::Display) -> Failure {
+    Failure::usage(format!("study.toml: {error}"))
 }
 
 /// SEAM: everything that is made from a study's record.

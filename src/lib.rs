@@ -14,9 +14,12 @@
 
 pub mod evaluation;
 pub mod finger;
+pub mod objective;
 pub mod optimizer;
+pub mod shipped;
 pub mod space;
 pub mod stream;
+pub mod study;
 pub mod surrogate;
 pub mod tolerance;
 pub mod trial;

@@ -1,0 +1,184 @@
+//! From names on the command line to things that can be run: the one place
+//! where tasks, robots, engines, surrogate and optimizers are put together.
+
+use super::Failure;
+use super::placeholder::{self, Head};
+use clap::ValueEnum;
+use finger_opt::optimizer::{Grid, Optimizer};
+use finger_opt::shipped::{self, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
+use finger_opt::space::{Design, Space};
+use finger_opt::study::{Inputs, Versions};
+use finger_opt::surrogate::Prediction;
+use finger_opt::trial::Rig;
+use finger_opt::trial::fake::FakeRig;
+use std::time::Duration;
+
+pub use super::placeholder::OptimizerKind;
+
+/// Robot used unless another is named.
+pub const DEFAULT_ROBOT: &str = "rigid";
+/// Search space used unless another is named.
+pub const DEFAULT_SPACE: &str = "infill";
+/// The contact engine's version, as pinned in Cargo.toml.
+const RAPIER_VERSION: &str = "0.36.1";
+/// Microseconds each trial of the fake engine takes, for tests that interrupt studies.
+const FAKE_DELAY: &str = "FINGER_OPT_FAKE_DELAY_US";
+
+/// What computes the contacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EngineKind {
+    /// Contact simulation in rapier3d
+    Rapier,
+    /// A closed formula, for tests
+    #[value(hide = true)]
+    Fake,
+}
+
+impl EngineKind {
+    /// Its name on the command line and in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            EngineKind::Rapier => "rapier",
+            EngineKind::Fake => "fake",
+        }
+    }
+
+    /// What computes with this engine.
+    pub fn versions(self) -> Versions {
+        let engine = match self {
+            EngineKind::Rapier => RAPIER_VERSION,
+            EngineKind::Fake => "1",
+        };
+        Versions { program: env!("CARGO_PKG_VERSION").to_owned(), engine: engine.to_owned() }
+    }
+}
+
+/// What a trial, an evaluation and a study have in common on the command line.
+#[derive(Debug, Clone, clap::Args)]
+pub struct SetupArguments {
+    /// Task: ket8, ket12, rj45, usb, or the path of a task file
+    #[arg(long, value_name = "NAME")]
+    pub task: String,
+    /// Search space: infill, or the path of a space file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]
+    pub space: String,
+    /// Robot: see `optimize tasks`, or the path of a robot file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
+    pub robot: String,
+    /// Your own stiffness measurements in place of the shipped ones
+    #[arg(long, value_name = "FILE.csv")]
+    pub stiffness_data: Option<String>,
+    /// Contact engine
+    #[arg(long, value_enum, default_value = "rapier")]
+    pub engine: EngineKind,
+}
+
+/// Everything that is needed to measure a design.
+pub struct Setup {
+    pub task: Head,
+    pub robot: Head,
+    pub space: Space,
+    pub engine: EngineKind,
+    pub surrogate: Surrogate,
+    /// The texts all this was read from.
+    pub inputs: Inputs,
+}
+
+impl Setup {
+    /// Reads and checks the files the arguments name.
+    pub fn from_arguments(arguments: &SetupArguments) -> Result<Self, Failure> {
+        let task = find("task", TASKS, &arguments.task)?;
+        let space = find("space", SPACES, &arguments.space)?;
+        let robot = find("robot", ROBOTS, &arguments.robot)?;
+        let stiffness = stiffness_data(arguments.stiffness_data.as_deref())?;
+        Setup::parse([task, space, robot, stiffness], arguments.engine)
+    }
+
+    /// The same from the copies kept in a study's folder.
+    pub fn from_inputs(inputs: &Inputs, engine: &str) -> Result<Self, Failure> {
+        let engine = EngineKind::from_str(engine, false)
+            .map_err(|_| Failure::usage(format!("study.toml: no engine is called `{engine}`")))?;
+        let source = |role: &str| match inputs.get(role) {
+            Some(text) => Ok(Source { file: format!("inputs/{role}"), text: text.clone() }),
+            None => Err(Failure::usage(format!("study.toml: input_sha256 has no `{role}`"))),
+        };
+        let [task, space, robot, stiffness] = ["task", "space", "robot", "stiffness"].map(source);
+        Setup::parse([task?, space?, robot?, stiffness?], engine)
+    }
+
+    fn parse(sources: [Source; 4], engine: EngineKind) -> Result<Self, Failure> {
+        let [task, space, robot, stiffness] = &sources;
+        Ok(Setup {
+            task: Head::parse(&task.text, &task.file).map_err(Failure::usage)?,
+            space: Space::parse(&space.text, &space.file).map_err(Failure::input)?,
+            robot: Head::parse(&robot.text, &robot.file).map_err(Failure::usage)?,
+            surrogate: surrogate(stiffness)?,
+            engine,
+            inputs: ["task", "space", "robot", "stiffness"]
+                .map(str::to_owned)
+                .into_iter()
+                .zip(sources.iter().map(|source| source.text.clone()))
+                .collect(),
+        })
+    }
+
+    /// Where the trials of this setup are run.
+    pub fn rig(&self) -> Result<Box<dyn Rig>, Failure> {
+        rig(self.engine, &self.task, &self.robot)
+    }
+}
+
+/// The measurements the surrogate is fitted to.
+pub fn stiffness_data(path: Option<&str>) -> Result<Source, Failure> {
+    find("stiffness data", STIFFNESS, path.unwrap_or("measured"))
+}
+
+fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Source, Failure> {
+    shipped::resolve(kind, shipped, name).map_err(Failure::input)
+}
+
+/// SEAM: one engine, one task, one robot. The simulation goes in here.
+pub fn rig(engine: EngineKind, _task: &Head, _robot: &Head) -> Result<Box<dyn Rig>, Failure> {
+    match engine {
+        EngineKind::Rapier => Err(Failure::running("the rapier engine is not built in yet")),
+        EngineKind::Fake => {
+            let delay = std::env::var(FAKE_DELAY).ok().and_then(|text| text.parse().ok());
+            Ok(Box::new(FakeRig { delay: Duration::from_micros(delay.unwrap_or(0)) }))
+        }
+    }
+}
+
+/// SEAM: the stiffness model. The fitted surrogate goes in here.
+pub struct Surrogate;
+
+impl Surrogate {
+    /// Stiffness predicted for a design.
+    pub fn predict(&self, design: &Design) -> Prediction {
+        placeholder::predict(design)
+    }
+}
+
+/// SEAM: fits the stiffness model to a CSV of measurements.
+pub fn surrogate(data: &Source) -> Result<Surrogate, Failure> {
+    let mut rows = csv::Reader::from_reader(data.text.as_bytes());
+    for row in rows.records() {
+        row.map_err(|error| Failure::usage(format!("{}: {error}", data.file)))?;
+    }
+    Ok(Surrogate)
+}
+
+/// SEAM: the optimizer of a study.
+pub fn optimizer(kind: OptimizerKind, space: &Space, seed: u64) -> Box<dyn Optimizer + Send> {
+    placeholder::build(kind, Grid::new(space.levels()), seed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_engine_version_is_the_pinned_one() {
+        let pin = format!("rapier3d-f64 = {{ version = \"={RAPIER_VERSION}\"");
+        assert!(include_str!("../../Cargo.toml").contains(&pin));
+    }
+}

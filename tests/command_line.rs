@@ -151,6 +151,14 @@ fn a_design_outside_the_space_is_answered_with_its_bounds() {
     fake(&[&trial[..], &["--offset-mm", "nan"]].concat()).fails(2, &["--offset-mm"]);
 }
 
+const EXTRA: &str = "[[parameter]]
+key = 'speed_mm_per_s'
+low = 1.0
+high = 2.0
+step = 1.0
+source = ''
+[[parameter]]";
+
 #[test]
 fn a_bad_file_is_named_with_its_key() {
     let studies = Studies::new();
@@ -164,6 +172,8 @@ fn a_bad_file_is_named_with_its_key() {
         ("low = 10.0", "low = 50.0", "low must not be above high"),
         ("step = 1.0", "stop = 1.0", "stop"),
         ("low = 10.0", "low = ", "line"),
+        ("infill_direction_deg", "infill_direction", "infill_direction_deg: is missing"),
+        ("[[parameter]]", EXTRA, "speed_mm_per_s: has no effect"),
     ] {
         let path = write("space.toml", &space.replacen(from, to, 1));
         studies.study("s", 4, &["--space", &path]).fails(2, &["space.toml", part]);

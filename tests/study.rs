@@ -67,8 +67,8 @@ fn a_raised_budget_goes_on_as_if_it_had_been_so_from_the_start() {
 fn a_study_of_every_design_ends_when_there_are_no_more() {
     let studies = Studies::new();
     let space = studies.dir("small.toml");
-    let text = "name = 'small'\ndescription = ''\n[[parameter]]\n\
-                key = 'infill_density_percent'\nlow = 10.0\nhigh = 15.0\nstep = 1.0\nsource = ''\n";
+    let infill = include_str!("../spaces/infill.toml");
+    let text = infill.replace("high = 30.0", "high = 15.0").replace("high = 40.0", "high = 0.0");
     fs::write(&space, text).unwrap();
     let space = space.to_str().unwrap();
     let result = studies.study("small", 50, &["--json", "--space", space]).json();

@@ -6,7 +6,7 @@ use super::placeholder::{self, Head};
 use clap::ValueEnum;
 use finger_opt::optimizer::{Grid, Optimizer};
 use finger_opt::shipped::{self, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
-use finger_opt::space::{Design, Space};
+use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use finger_opt::study::{Inputs, Versions};
 use finger_opt::surrogate::Prediction;
 use finger_opt::trial::Rig;
@@ -108,9 +108,12 @@ impl Setup {
 
     fn parse(sources: [Source; 4], engine: EngineKind) -> Result<Self, Failure> {
         let [task, space, robot, stiffness] = &sources;
+        let file = &space.file;
+        let space = Space::parse(&space.text, file).map_err(Failure::input)?;
+        check_keys(&space, file)?;
         Ok(Setup {
             task: Head::parse(&task.text, &task.file).map_err(Failure::usage)?,
-            space: Space::parse(&space.text, &space.file).map_err(Failure::input)?,
+            space,
             robot: Head::parse(&robot.text, &robot.file).map_err(Failure::usage)?,
             surrogate: surrogate(stiffness)?,
             engine,
@@ -125,6 +128,23 @@ impl Setup {
     /// Where the trials of this setup are run.
     pub fn rig(&self) -> Result<Box<dyn Rig>, Failure> {
         rig(self.engine, &self.task, &self.robot)
+    }
+}
+
+/// A space must name what the surrogate needs, and nothing that would have no effect.
+fn check_keys(space: &Space, file: &str) -> Result<(), Failure> {
+    let known = [DENSITY_KEY, DIRECTION_KEY];
+    let keys: Vec<&str> = space.parameters().iter().map(|p| p.key.as_str()).collect();
+    if let Some(missing) = known.iter().find(|key| !keys.contains(key)) {
+        let problem = "is missing: a space must have it; to hold it fixed let low equal high";
+        return Err(Failure::usage(format!("{file}: {missing}: {problem}")));
+    }
+    match keys.iter().find(|key| !known.contains(key)) {
+        None => Ok(()),
+        Some(key) => Err(Failure::usage(format!(
+            "{file}: {key}: has no effect on a finger; a space has {}",
+            known.join(" and ")
+        ))),
     }
 }
 

@@ -2,18 +2,18 @@
 //! where tasks, robots, engines, surrogate and optimizers are put together.
 
 use super::Failure;
-use super::placeholder::{self, Head};
+use super::placeholder::Head;
 use clap::ValueEnum;
-use finger_opt::optimizer::{Grid, Optimizer};
+use finger_opt::optimizer::{self, Grid, Optimizer};
 use finger_opt::shipped::{self, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
 use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use finger_opt::study::{Inputs, Versions};
-use finger_opt::surrogate::Prediction;
+use finger_opt::surrogate::{self, Model, Prediction};
 use finger_opt::trial::Rig;
 use finger_opt::trial::fake::FakeRig;
 use std::time::Duration;
 
-pub use super::placeholder::OptimizerKind;
+pub use finger_opt::optimizer::OptimizerKind;
 
 /// Robot used unless another is named.
 pub const DEFAULT_ROBOT: &str = "rigid";
@@ -168,28 +168,28 @@ pub fn rig(engine: EngineKind, _task: &Head, _robot: &Head) -> Result<Box<dyn Ri
     }
 }
 
-/// SEAM: the stiffness model. The fitted surrogate goes in here.
-pub struct Surrogate;
+/// The stiffness model.
+pub struct Surrogate(pub Model);
 
 impl Surrogate {
-    /// Stiffness predicted for a design.
+    /// Stiffness predicted for a design of a space that [`check_keys`] passed.
     pub fn predict(&self, design: &Design) -> Prediction {
-        placeholder::predict(design)
+        let value = |key| design.get(key).unwrap_or(f64::NAN);
+        self.0.predict(value(DENSITY_KEY), value(DIRECTION_KEY))
     }
 }
 
-/// SEAM: fits the stiffness model to a CSV of measurements.
+/// Fits the stiffness model to a CSV of measurements.
 pub fn surrogate(data: &Source) -> Result<Surrogate, Failure> {
-    let mut rows = csv::Reader::from_reader(data.text.as_bytes());
-    for row in rows.records() {
-        row.map_err(|error| Failure::usage(format!("{}: {error}", data.file)))?;
-    }
-    Ok(Surrogate)
+    let measurements = surrogate::parse(&data.text, &data.file).map_err(Failure::input)?;
+    let fitted = surrogate::fit(&measurements)
+        .map_err(|error| Failure::usage(format!("{}: {error}", data.file)))?;
+    Ok(Surrogate(fitted))
 }
 
-/// SEAM: the optimizer of a study.
+/// The optimizer of a study.
 pub fn optimizer(kind: OptimizerKind, space: &Space, seed: u64) -> Box<dyn Optimizer + Send> {
-    placeholder::build(kind, Grid::new(space.levels()), seed)
+    optimizer::build(kind, Grid::new(space.levels()), seed)
 }
 
 #[cfg(test)]

@@ -64,9 +64,8 @@ pub struct Chosen {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
-    let rig = setup.rig()?;
     let clock = Instant::now();
-    let evaluation = tolerance::evaluate(&*rig, &chosen.finger);
+    let evaluation = tolerance::evaluate(&*setup.rig, &chosen.finger);
     let wall_s = clock.elapsed().as_secs_f64();
     if arguments.json {
         let mut fields = chosen.json(&setup, &arguments.finger);

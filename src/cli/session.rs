@@ -34,8 +34,7 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         .build()
         .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))?;
     let stop = stop_on_interrupt(study.dir())?;
-    let rig = setup.rig()?;
-    let rig = Stoppable { rig: &*rig, stop: &stop };
+    let rig = Stoppable { rig: &*setup.rig, stop: &stop };
     let predict = |design: &_| setup.surrogate.predict(design);
     let evaluator = Simulated { predict, rig: &rig };
     let runner = Runner { evaluator: &evaluator, objective, pool: &pool, stop: &stop };

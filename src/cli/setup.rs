@@ -80,6 +80,8 @@ pub struct Setup {
     pub space: Space,
     pub engine: EngineKind,
     pub surrogate: Surrogate,
+    /// Where trials are run.
+    pub rig: Box<dyn Rig>,
     /// The texts all this was read from.
     pub inputs: Inputs,
 }
@@ -111,10 +113,13 @@ impl Setup {
         let file = &space.file;
         let space = Space::parse(&space.text, file).map_err(Failure::input)?;
         check_keys(&space, file)?;
+        let task = Head::parse(&task.text, &task.file).map_err(Failure::usage)?;
+        let robot = Head::parse(&robot.text, &robot.file).map_err(Failure::usage)?;
         Ok(Setup {
-            task: Head::parse(&task.text, &task.file).map_err(Failure::usage)?,
+            rig: rig(engine, &task, &robot)?,
+            task,
+            robot,
             space,
-            robot: Head::parse(&robot.text, &robot.file).map_err(Failure::usage)?,
             surrogate: surrogate(stiffness)?,
             engine,
             inputs: ["task", "space", "robot", "stiffness"]
@@ -123,11 +128,6 @@ impl Setup {
                 .zip(sources.iter().map(|source| source.text.clone()))
                 .collect(),
         })
-    }
-
-    /// Where the trials of this setup are run.
-    pub fn rig(&self) -> Result<Box<dyn Rig>, Failure> {
-        rig(self.engine, &self.task, &self.robot)
     }
 }
 

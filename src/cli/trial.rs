@@ -33,8 +33,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
-    let rig = setup.rig()?;
-    let trial = rig.grasp(&chosen.finger).trial(arguments.offset_mm * MM);
+    let trial = setup.rig.grasp(&chosen.finger).trial(arguments.offset_mm * MM);
     if arguments.json {
         let mut fields = chosen.json(&setup, &arguments.finger);
         merge(

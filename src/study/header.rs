@@ -1,7 +1,8 @@
 //! The first two lines of a journal: whose it is.
 
 use super::config::{StudyConfig, Versions, differences};
-use super::line::{WORKER, seal, unseal};
+use super::line::WORKER;
+use super::seal::{seal, unseal};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,6 +1,7 @@
 //! Studies: seeded runs of one optimizer on one task and space, in a folder
 //! that survives whatever happens to the process.
 
+mod attributes;
 mod config;
 mod error;
 mod evaluator;
@@ -10,6 +11,7 @@ mod journal;
 mod line;
 mod record;
 mod runner;
+mod seal;
 mod store;
 mod table;
 mod time;
@@ -20,8 +22,9 @@ pub use evaluator::{Evaluate, Measured, Simulated, Stoppable};
 pub use folder::{CONFIG_FILE, Inputs, JOURNAL_FILE, Study, read_config, read_inputs, sha256};
 pub use header::SCHEMA_VERSION;
 pub use journal::Journal;
-pub use line::{LineError, decode, encode, strip_times};
+pub use line::{LineError, decode, encode};
 pub use record::{Recorded, StudyRecord, Timing, best};
 pub use runner::{Ending, Runner};
+pub use seal::strip_times;
 pub use store::{FileStore, Store};
 pub use table::write_evaluations_csv;

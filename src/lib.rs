@@ -16,6 +16,7 @@ pub mod evaluation;
 pub mod finger;
 pub mod objective;
 pub mod optimizer;
+pub mod report;
 pub mod shipped;
 pub mod space;
 pub mod stream;

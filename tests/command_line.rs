@@ -71,6 +71,7 @@ fn everything_prints_as_text_too() {
         assert!(optimize(&["tasks"]).succeeds().contains(name), "{name}");
     }
     assert!(optimize(&["stiffness"]).succeeds().contains("N/mm"));
+    assert!(optimize(&["stiffness", "--json"]).json()["models"].is_array());
     assert!(optimize(&["--help"]).succeeds().contains("--budget"));
     assert!(!optimize(&["--help"]).succeeds().contains("fake"));
 }
@@ -87,7 +88,9 @@ fn a_study_prints_its_best_design_and_leaves_a_table() {
     for part in ["best design", "range", "window", "stiffness", "study"] {
         assert!(text.succeeds().contains(part), "{part} is not in {}", text.stdout);
     }
-    fs::remove_file(studies.dir("s").join("evaluations.csv")).unwrap();
+    for file in ["evaluations.csv", "convergence.svg", "report.html"] {
+        fs::remove_file(studies.dir("s").join(file)).expect(file);
+    }
     optimize(&["report", studies.dir("s").to_str().unwrap()]).succeeds();
     assert_eq!(common::read(&studies.dir("s").join("evaluations.csv")), table);
 }
@@ -178,6 +181,11 @@ fn a_bad_file_is_named_with_its_key() {
         let path = write("space.toml", &space.replacen(from, to, 1));
         studies.study("s", 4, &["--space", &path]).fails(2, &["space.toml", part]);
     }
+    let data = write("data.csv", "density,stiffness\n1,2\n");
+    studies.study("s", 4, &["--stiffness-data", &data]).fails(2, &["data.csv", "header"]);
+    let plot = studies.dir("none/of.svg");
+    optimize(&["stiffness", "--svg", plot.to_str().unwrap()]).succeeds();
+    assert!(common::read(&plot).contains("<svg"));
     let task = write("task.toml", "nonsense");
     optimize(&["--task", &task, "--budget", "4", "--engine", "fake"]).fails(2, &["task.toml"]);
     assert!(!studies.dir("s").exists(), "bad input leaves no folder behind");

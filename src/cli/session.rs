@@ -2,10 +2,10 @@
 
 use super::progress::Progress;
 use super::setup::{self, OptimizerKind, Setup};
-use super::{Failure, summary};
+use super::{Failure, report, summary};
 use clap::Args;
 use finger_opt::objective::Objective;
-use finger_opt::study::{Ending, Runner, Simulated, Stoppable, Study, write_evaluations_csv};
+use finger_opt::study::{Ending, Runner, Simulated, Stoppable, Study};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -47,7 +47,7 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         Failure::Run(error) => Failure::running(format!("{error}\n{}", resume_hint(&study))),
         bad_input => bad_input,
     })?;
-    write_reports(&study)?;
+    report::write(study.dir(), &study.record(), setup.surrogate.0.measurements())?;
     match ending {
         Ending::Interrupted => {
             Err(Failure::running(format!("interrupted; {}", resume_hint(&study))))
@@ -58,11 +58,6 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
 
 fn bad_config(error: impl std::fmt::Display) -> Failure {
     Failure::usage(format!("study.toml: {error}"))
-}
-
-/// SEAM: everything that is made from a study's record.
-fn write_reports(study: &Study) -> Result<(), Failure> {
-    Ok(write_evaluations_csv(study.dir(), &study.record())?)
 }
 
 fn resume_hint(study: &Study) -> String {

@@ -100,11 +100,8 @@ impl Setup {
     pub fn from_inputs(inputs: &Inputs, engine: &str) -> Result<Self, Failure> {
         let engine = EngineKind::from_str(engine, false)
             .map_err(|_| Failure::usage(format!("study.toml: no engine is called `{engine}`")))?;
-        let source = |role: &str| match inputs.get(role) {
-            Some(text) => Ok(Source { file: format!("inputs/{role}"), text: text.clone() }),
-            None => Err(Failure::usage(format!("study.toml: input_sha256 has no `{role}`"))),
-        };
-        let [task, space, robot, stiffness] = ["task", "space", "robot", "stiffness"].map(source);
+        let [task, space, robot, stiffness] =
+            ["task", "space", "robot", "stiffness"].map(|role| input(inputs, role));
         Setup::parse([task?, space?, robot?, stiffness?], engine)
     }
 
@@ -145,6 +142,14 @@ fn check_keys(space: &Space, file: &str) -> Result<(), Failure> {
             "{file}: {key}: has no effect on a finger; a space has {}",
             known.join(" and ")
         ))),
+    }
+}
+
+/// One of the inputs kept in a study's folder.
+pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
+    match inputs.get(role) {
+        Some(text) => Ok(Source { file: format!("inputs/{role}"), text: text.clone() }),
+        None => Err(Failure::usage(format!("study.toml: input_sha256 has no `{role}`"))),
     }
 }
 

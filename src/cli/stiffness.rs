@@ -1,11 +1,11 @@
 //! `optimize stiffness`: the stiffness model and how well it fits.
 
 use super::setup::{stiffness_data, surrogate};
-use super::summary::{self, stiffness_json};
 use super::{Failure, print, print_json};
 use clap::Args;
-use finger_opt::space::Design;
-use serde_json::json;
+use finger_opt::report::stiffness;
+use finger_opt::study::write_file;
+use std::path::PathBuf;
 
 /// Show the stiffness model.
 #[derive(Debug, Args)]
@@ -13,29 +13,25 @@ pub struct Arguments {
     /// Your own stiffness measurements in place of the shipped ones
     #[arg(long, value_name = "FILE.csv")]
     stiffness_data: Option<String>,
+    /// Also write a plot of the data, the model and its uncertainty
+    #[arg(long, value_name = "FILE.svg")]
+    svg: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
 }
 
-/// Runs the command. SEAM: the leave-one-out table and the plot go in here.
+/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let data = stiffness_data(arguments.stiffness_data.as_deref())?;
-    let surrogate = surrogate(&data)?;
-    let designs = [(10.0, 0.0), (20.0, 20.0), (30.0, 40.0)];
-    let predictions = designs.map(|(density, direction)| {
-        let design = Design::infill(density, direction);
-        let prediction = surrogate.predict(&design);
-        (design, prediction)
-    });
-    if arguments.json {
-        let of = predictions
-            .iter()
-            .map(|(design, p)| json!({"design": design, "stiffness": stiffness_json(p)}));
-        return print_json(&json!({"predictions": of.collect::<Vec<_>>()}));
+    let model = surrogate(&data)?.0;
+    if let Some(path) = &arguments.svg {
+        let svg = stiffness::svg(&model).map_err(|error| Failure::running(error.to_string()))?;
+        write_file(path, &svg)?;
     }
-    let lines = predictions
-        .iter()
-        .map(|(design, prediction)| format!("{design}\n{}\n", summary::stiffness(prediction)));
-    print(&lines.collect::<String>())
+    if arguments.json {
+        print_json(&stiffness::json(&model))
+    } else {
+        print(&stiffness::table(&model))
+    }
 }

@@ -33,8 +33,12 @@ pub struct Arguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 4,
           value_parser = clap::value_parser!(u64).range(1..=10_000))]
     batch: u64,
-    /// Folder of the study [default: results/<task>-<optimizer>-seed<seed>]
-    #[arg(long, value_name = "DIR")]
+    /// Folder of the study.
+    #[arg(
+        long,
+        value_name = "DIR",
+        help = "Folder of the study [default: results/<task>-<optimizer>-seed<seed>]"
+    )]
     out: Option<PathBuf>,
     #[command(flatten)]
     session: SessionArguments,

@@ -36,7 +36,8 @@ fn print_text(study: &Study, ending: Ending) -> Result<(), Failure> {
             line(stiffness(&best.stiffness));
         }
     }
-    line(format!("study         {}", study.dir().display()));
+    let page = study.dir().join(super::report::PAGE);
+    line(format!("study         {} (see {})", study.dir().display(), page.display()));
     print(&text)
 }
 

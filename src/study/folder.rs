@@ -5,7 +5,7 @@
 //! inputs/          copies of the input files, so that a study can be resumed
 //!                  when the originals have changed or gone
 //! journal.jsonl    what was measured
-//! evaluations.csv  the same as a table
+//! evaluations.csv  the same as a table; convergence.svg and report.html beside it
 //! .lock            held by the process that writes
 //! ```
 
@@ -179,7 +179,7 @@ fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
 }
 
 /// Writes a whole file or, if that fails or the process dies, none of it.
-pub(super) fn write_file(path: &Path, text: &str) -> Result<(), StudyError> {
+pub fn write_file(path: &Path, text: &str) -> Result<(), StudyError> {
     if let Some(parent) = path.parent() {
         fs::create_dir_all(parent).map_err(StudyError::io("create the folder", parent))?;
     }

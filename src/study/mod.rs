@@ -19,7 +19,9 @@ mod time;
 pub use config::{StudyConfig, Versions, study_name};
 pub use error::StudyError;
 pub use evaluator::{Evaluate, Measured, Simulated, Stoppable};
-pub use folder::{CONFIG_FILE, Inputs, JOURNAL_FILE, Study, read_config, read_inputs, sha256};
+pub use folder::{
+    CONFIG_FILE, Inputs, JOURNAL_FILE, Study, read_config, read_inputs, sha256, write_file,
+};
 pub use header::SCHEMA_VERSION;
 pub use journal::Journal;
 pub use line::{LineError, decode, encode};

@@ -64,6 +64,20 @@ fn a_raised_budget_goes_on_as_if_it_had_been_so_from_the_start() {
 }
 
 #[test]
+fn every_optimizer_goes_on_as_if_it_had_not_stopped() {
+    let studies = Studies::new();
+    for optimizer in ["gp", "cma-es", "random", "sobol", "grid"] {
+        let more = ["--optimizer", optimizer];
+        studies.study(&format!("{optimizer}-once"), 40, &more).succeeds();
+        for budget in [9, 31, 40] {
+            studies.study(&format!("{optimizer}-thrice"), budget, &more).succeeds();
+        }
+        let journal = |times| studies.journal(&format!("{optimizer}-{times}"));
+        assert_eq!(journal("once"), journal("thrice"), "{optimizer}");
+    }
+}
+
+#[test]
 fn a_study_of_every_design_ends_when_there_are_no_more() {
     let studies = Studies::new();
     let space = studies.dir("small.toml");

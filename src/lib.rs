@@ -15,11 +15,15 @@
 pub mod engine;
 pub mod evaluation;
 pub mod finger;
+pub mod objective;
 pub mod optimizer;
+pub mod report;
 pub mod robot;
 pub mod scene;
+pub mod shipped;
 pub mod space;
 pub mod stream;
+pub mod study;
 pub mod surrogate;
 pub mod task;
 pub mod tolerance;

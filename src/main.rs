@@ -1,1 +1,35 @@
-fn main() {}
+//! `optimize`: finds the most robust compliant finger for a connector task.
+#![forbid(unsafe_code)]
+
+mod cli;
+
+use clap::Parser;
+use cli::{Cli, Command, Failure};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match dispatch(Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// A study searches a space for the design with the best objective; the other
+/// commands look at one step of that way each.
+fn dispatch(cli: Cli) -> Result<(), Failure> {
+    match cli.command {
+        None => match cli.study.0 {
+            Some(arguments) => cli::study::run(&arguments),
+            None => Err(Failure::no_task()),
+        },
+        Some(Command::Resume(arguments)) => cli::resume::run(&arguments),
+        Some(Command::Report(arguments)) => cli::report::run(&arguments),
+        Some(Command::Evaluate(arguments)) => cli::evaluate::run(&arguments),
+        Some(Command::Trial(arguments)) => cli::trial::run(&arguments),
+        Some(Command::Stiffness(arguments)) => cli::stiffness::run(&arguments),
+        Some(Command::Tasks(arguments)) => cli::tasks::run(&arguments),
+    }
+}

@@ -38,7 +38,8 @@ impl Parameter {
 }
 
 /// A checked search space.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "RawSpace")]
 pub struct Space {
     name: String,
     description: String,
@@ -67,6 +68,14 @@ impl Design {
     /// The value of a key, in the unit of the key.
     pub fn get(&self, key: &str) -> Option<f64> {
         self.0.get(key).copied()
+    }
+}
+
+impl std::fmt::Display for Design {
+    /// `infill_density_percent = 20, infill_direction_deg = 10`
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let values: Vec<String> = self.0.iter().map(|(k, v)| format!("{k} = {v}")).collect();
+        f.write_str(&values.join(", "))
     }
 }
 
@@ -101,6 +110,14 @@ struct RawSpace {
     parameter: Vec<Parameter>,
 }
 
+/// A space inside another file, which is named by whoever reads that.
+impl TryFrom<RawSpace> for Space {
+    type Error = SpaceError;
+    fn try_from(raw: RawSpace) -> Result<Self, SpaceError> {
+        Space::check(raw, "[space]")
+    }
+}
+
 impl Space {
     /// Reads and checks a space; `file` is named in errors.
     pub fn parse(text: &str, file: &str) -> Result<Self, SpaceError> {
@@ -108,6 +125,10 @@ impl Space {
             file: file.to_owned(),
             message: error.to_string().trim_end().to_owned(),
         })?;
+        Self::check(raw, file)
+    }
+
+    fn check(raw: RawSpace, file: &str) -> Result<Self, SpaceError> {
         let fail = |key: &str, problem: &str| {
             Err(SpaceError::Value {
                 file: file.to_owned(),

@@ -1,0 +1,43 @@
+//! `optimize report DIR`: makes the tables and plots of a study again.
+
+use super::{Failure, print, setup};
+use clap::Args;
+use finger_opt::report;
+use finger_opt::study::{StudyRecord, read_inputs, write_evaluations_csv, write_file};
+use finger_opt::surrogate::Measurement;
+use std::path::{Path, PathBuf};
+
+/// Report on a study.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Folder of the study
+    dir: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let dir = &arguments.dir;
+    let record = StudyRecord::load(dir)?;
+    let inputs = read_inputs(dir, &record.config)?;
+    let surrogate = setup::surrogate(&setup::input(&inputs, "stiffness")?)?;
+    write(dir, &record, surrogate.0.measurements())?;
+    let count = record.evaluations.len();
+    let page = dir.join(PAGE);
+    print(&format!("wrote the report of {count} evaluations: {}\n", page.display()))
+}
+
+/// The page among a report's files.
+pub const PAGE: &str = "report.html";
+
+/// Writes all that is made of a study into its folder: table, plot and page.
+pub fn write(
+    dir: &Path,
+    record: &StudyRecord,
+    measurements: &[Measurement],
+) -> Result<(), Failure> {
+    let drawn = |error: report::ReportError| Failure::running(error.to_string());
+    write_evaluations_csv(dir, record)?;
+    write_file(&dir.join("convergence.svg"), &report::convergence_svg(record).map_err(drawn)?)?;
+    write_file(&dir.join(PAGE), &report::html(record, measurements).map_err(drawn)?)?;
+    Ok(())
+}

@@ -1,0 +1,83 @@
+//! Runs an open study to its end: threads, Ctrl-C, progress, summary.
+
+use super::progress::Progress;
+use super::setup::{self, OptimizerKind, Setup};
+use super::{Failure, report, summary};
+use clap::Args;
+use finger_opt::objective::Objective;
+use finger_opt::study::{Ending, Runner, Simulated, Stoppable, Study};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How a study is run, as opposed to what it measures.
+#[derive(Debug, Args)]
+pub struct SessionArguments {
+    /// Threads [default: one per processor]; changes no result
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+    /// Show no progress
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Runs a study until its budget is spent, and reports.
+pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Result<(), Failure> {
+    let config = study.config.clone();
+    let kind: OptimizerKind = config.optimizer.parse().map_err(bad_config)?;
+    let objective: Objective = config.objective.parse().map_err(bad_config)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(usize::from(arguments.threads.unwrap_or(0)))
+        .build()
+        .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))?;
+    let stop = stop_on_interrupt(study.dir())?;
+    let rig = Stoppable { rig: &*setup.rig, stop: &stop };
+    let predict = |design: &_| setup.surrogate.predict(design);
+    let evaluator = Simulated { predict, rig: &rig };
+    let runner = Runner { evaluator: &evaluator, objective, pool: &pool, stop: &stop };
+    let mut optimizer = setup::optimizer(kind, &setup.space, config.seed);
+    let mut progress = Progress::new(&study, arguments.quiet);
+    let ended =
+        runner.run(&mut study, &mut *optimizer, &mut |recorded| progress.measured(recorded));
+    progress.finish();
+    let ending = ended.map_err(|error| match Failure::from(error) {
+        Failure::Run(error) => Failure::running(format!("{error}\n{}", resume_hint(&study))),
+        bad_input => bad_input,
+    })?;
+    report::write(study.dir(), &study.record(), setup.surrogate.0.measurements())?;
+    match ending {
+        Ending::Interrupted => {
+            Err(Failure::running(format!("interrupted; {}", resume_hint(&study))))
+        }
+        ending => summary::show(&study, ending, arguments.json),
+    }
+}
+
+fn bad_config(error: impl std::fmt::Display) -> Failure {
+    Failure::usage(format!("study.toml: {error}"))
+}
+
+fn resume_hint(study: &Study) -> String {
+    let (done, budget, dir) = (study.evaluations.len(), study.config.budget, study.dir().display());
+    format!("{done} of {budget} evaluations are safe; continue with: optimize resume {dir}")
+}
+
+/// A flag that Ctrl-C (or a polite kill) sets; a second one ends the process
+/// at once, which the journal survives as well.
+fn stop_on_interrupt(dir: &Path) -> Result<Arc<AtomicBool>, Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let (flag, dir) = (Arc::clone(&stop), dir.display().to_string());
+    let handler = move || {
+        if flag.swap(true, Ordering::SeqCst) {
+            eprintln!("stopped; continue with: optimize resume {dir}");
+            std::process::exit(1);
+        }
+        eprintln!("stopping after the running trials; once more to stop at once");
+    };
+    ctrlc::set_handler(handler)
+        .map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;
+    Ok(stop)
+}

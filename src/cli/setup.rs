@@ -1,0 +1,216 @@
+//! From names on the command line to things that can be run: the one place
+//! where tasks, robots, engines, surrogate and optimizers are put together.
+
+use super::Failure;
+use clap::ValueEnum;
+use finger_opt::engine::rapier::Rapier;
+use finger_opt::optimizer::{self, Grid, Optimizer};
+use finger_opt::robot::Robot;
+use finger_opt::shipped::{self, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
+use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use finger_opt::study::{Inputs, Versions};
+use finger_opt::surrogate::{self, Model, Prediction};
+use finger_opt::task::Task;
+use finger_opt::trial::Rig;
+use finger_opt::trial::fake::FakeRig;
+use finger_opt::trial::run::EngineRig;
+use std::time::Duration;
+
+pub use finger_opt::optimizer::OptimizerKind;
+
+/// Robot used unless another is named.
+pub const DEFAULT_ROBOT: &str = "servo";
+/// Search space used unless another is named.
+pub const DEFAULT_SPACE: &str = "infill";
+/// The contact engine's version, as pinned in Cargo.toml.
+const RAPIER_VERSION: &str = "0.36.1";
+/// Microseconds each trial of the fake engine takes, for tests that interrupt studies.
+const FAKE_DELAY: &str = "FINGER_OPT_FAKE_DELAY_US";
+
+/// What computes the contacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EngineKind {
+    /// Contact simulation in rapier3d
+    Rapier,
+    /// A closed formula, for tests
+    #[value(hide = true)]
+    Fake,
+}
+
+impl EngineKind {
+    /// Its name on the command line and in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            EngineKind::Rapier => "rapier",
+            EngineKind::Fake => "fake",
+        }
+    }
+
+    /// What computes with this engine.
+    pub fn versions(self) -> Versions {
+        let engine = match self {
+            EngineKind::Rapier => RAPIER_VERSION,
+            EngineKind::Fake => "1",
+        };
+        Versions { program: env!("CARGO_PKG_VERSION").to_owned(), engine: engine.to_owned() }
+    }
+}
+
+/// What a trial, an evaluation and a study have in common on the command line.
+#[derive(Debug, Clone, clap::Args)]
+pub struct SetupArguments {
+    /// Task: ket8, ket12, rj45, usb, or the path of a task file
+    #[arg(long, value_name = "NAME")]
+    pub task: String,
+    /// Search space: infill, or the path of a space file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]
+    pub space: String,
+    /// Robot: see `optimize tasks`, or the path of a robot file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
+    pub robot: String,
+    /// Your own stiffness measurements in place of the shipped ones
+    #[arg(long, value_name = "FILE.csv")]
+    pub stiffness_data: Option<String>,
+    /// Contact engine
+    #[arg(long, value_enum, default_value = "rapier")]
+    pub engine: EngineKind,
+}
+
+/// Everything that is needed to measure a design.
+pub struct Setup {
+    pub task: Task,
+    pub robot: Robot,
+    pub space: Space,
+    pub engine: EngineKind,
+    pub surrogate: Surrogate,
+    /// Where trials are run.
+    pub rig: Box<dyn Rig>,
+    /// The texts all this was read from.
+    pub inputs: Inputs,
+}
+
+impl Setup {
+    /// Reads and checks the files the arguments name.
+    pub fn from_arguments(arguments: &SetupArguments) -> Result<Self, Failure> {
+        let task = find("task", TASKS, &arguments.task)?;
+        let space = find("space", SPACES, &arguments.space)?;
+        let robot = find("robot", ROBOTS, &arguments.robot)?;
+        let stiffness = stiffness_data(arguments.stiffness_data.as_deref())?;
+        Setup::parse([task, space, robot, stiffness], arguments.engine)
+    }
+
+    /// The same from the copies kept in a study's folder.
+    pub fn from_inputs(inputs: &Inputs, engine: &str) -> Result<Self, Failure> {
+        let engine = EngineKind::from_str(engine, false)
+            .map_err(|_| Failure::usage(format!("study.toml: no engine is called `{engine}`")))?;
+        let [task, space, robot, stiffness] =
+            ["task", "space", "robot", "stiffness"].map(|role| input(inputs, role));
+        Setup::parse([task?, space?, robot?, stiffness?], engine)
+    }
+
+    fn parse(sources: [Source; 4], engine: EngineKind) -> Result<Self, Failure> {
+        let [task, space, robot, stiffness] = &sources;
+        let file = &space.file;
+        let space = Space::parse(&space.text, file).map_err(Failure::input)?;
+        check_keys(&space, file)?;
+        let task = Task::parse(&task.text, &task.file).map_err(Failure::input)?;
+        let robot = Robot::parse(&robot.text, &robot.file).map_err(Failure::input)?;
+        Ok(Setup {
+            rig: rig(engine, &task, &robot),
+            task,
+            robot,
+            space,
+            surrogate: surrogate(stiffness)?,
+            engine,
+            inputs: ["task", "space", "robot", "stiffness"]
+                .map(str::to_owned)
+                .into_iter()
+                .zip(sources.iter().map(|source| source.text.clone()))
+                .collect(),
+        })
+    }
+}
+
+/// A space must name what the surrogate needs, and nothing that would have no effect.
+fn check_keys(space: &Space, file: &str) -> Result<(), Failure> {
+    let known = [DENSITY_KEY, DIRECTION_KEY];
+    let keys: Vec<&str> = space.parameters().iter().map(|p| p.key.as_str()).collect();
+    if let Some(missing) = known.iter().find(|key| !keys.contains(key)) {
+        let problem = "is missing: a space must have it; to hold it fixed let low equal high";
+        return Err(Failure::usage(format!("{file}: {missing}: {problem}")));
+    }
+    match keys.iter().find(|key| !known.contains(key)) {
+        None => Ok(()),
+        Some(key) => Err(Failure::usage(format!(
+            "{file}: {key}: has no effect on a finger; a space has {}",
+            known.join(" and ")
+        ))),
+    }
+}
+
+/// One of the inputs kept in a study's folder.
+pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
+    match inputs.get(role) {
+        Some(text) => Ok(Source { file: format!("inputs/{role}"), text: text.clone() }),
+        None => Err(Failure::usage(format!("study.toml: input_sha256 has no `{role}`"))),
+    }
+}
+
+/// The measurements the surrogate is fitted to.
+pub fn stiffness_data(path: Option<&str>) -> Result<Source, Failure> {
+    find("stiffness data", STIFFNESS, path.unwrap_or("measured"))
+}
+
+fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Source, Failure> {
+    shipped::resolve(kind, shipped, name).map_err(Failure::input)
+}
+
+/// Where trials of one task with one robot are run.
+pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Box<dyn Rig> {
+    match engine {
+        EngineKind::Rapier => Box::new(EngineRig {
+            task: task.clone(),
+            robot: robot.clone(),
+            engine: Box::new(Rapier::default()),
+        }),
+        EngineKind::Fake => {
+            let delay = std::env::var(FAKE_DELAY).ok().and_then(|text| text.parse().ok());
+            Box::new(FakeRig { delay: Duration::from_micros(delay.unwrap_or(0)) })
+        }
+    }
+}
+
+/// The stiffness model.
+pub struct Surrogate(pub Model);
+
+impl Surrogate {
+    /// Stiffness predicted for a design of a space that [`check_keys`] passed.
+    pub fn predict(&self, design: &Design) -> Prediction {
+        let value = |key| design.get(key).unwrap_or(f64::NAN);
+        self.0.predict(value(DENSITY_KEY), value(DIRECTION_KEY))
+    }
+}
+
+/// Fits the stiffness model to a CSV of measurements.
+pub fn surrogate(data: &Source) -> Result<Surrogate, Failure> {
+    let measurements = surrogate::parse(&data.text, &data.file).map_err(Failure::input)?;
+    let fitted = surrogate::fit(&measurements)
+        .map_err(|error| Failure::usage(format!("{}: {error}", data.file)))?;
+    Ok(Surrogate(fitted))
+}
+
+/// The optimizer of a study.
+pub fn optimizer(kind: OptimizerKind, space: &Space, seed: u64) -> Box<dyn Optimizer + Send> {
+    optimizer::build(kind, Grid::new(space.levels()), seed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_engine_version_is_the_pinned_one() {
+        let pin = format!("rapier3d-f64 = {{ version = \"={RAPIER_VERSION}\"");
+        assert!(include_str!("../../Cargo.toml").contains(&pin));
+    }
+}

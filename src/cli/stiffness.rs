@@ -1,0 +1,37 @@
+//! `optimize stiffness`: the stiffness model and how well it fits.
+
+use super::setup::{stiffness_data, surrogate};
+use super::{Failure, print, print_json};
+use clap::Args;
+use finger_opt::report::stiffness;
+use finger_opt::study::write_file;
+use std::path::PathBuf;
+
+/// Show the stiffness model.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Your own stiffness measurements in place of the shipped ones
+    #[arg(long, value_name = "FILE.csv")]
+    stiffness_data: Option<String>,
+    /// Also write a plot of the data, the model and its uncertainty
+    #[arg(long, value_name = "FILE.svg")]
+    svg: Option<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let data = stiffness_data(arguments.stiffness_data.as_deref())?;
+    let model = surrogate(&data)?.0;
+    if let Some(path) = &arguments.svg {
+        let svg = stiffness::svg(&model).map_err(|error| Failure::running(error.to_string()))?;
+        write_file(path, &svg)?;
+    }
+    if arguments.json {
+        print_json(&stiffness::json(&model))
+    } else {
+        print(&stiffness::table(&model))
+    }
+}

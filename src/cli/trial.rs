@@ -1,0 +1,88 @@
+//! `optimize trial`: one simulated insertion.
+
+use super::evaluate::FingerArguments;
+use super::setup::{Setup, SetupArguments};
+use super::summary::{failure, merge, outcome_word};
+use super::{Failure, print, print_json};
+use clap::Args;
+use finger_opt::evaluation::Outcome;
+use finger_opt::trial::Trial;
+use finger_opt::units::MM;
+use serde_json::json;
+
+/// Largest offset accepted, mm: far outside any socket.
+const LARGEST_OFFSET_MM: f64 = 1000.0;
+
+/// Simulate one insertion.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    setup: SetupArguments,
+    #[command(flatten)]
+    finger: FingerArguments,
+    /// Shift of the start along y, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0,
+          value_parser = offset)]
+    offset_mm: f64,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let setup = Setup::from_arguments(&arguments.setup)?;
+    let chosen = arguments.finger.choose(&setup)?;
+    let trial = setup.rig.grasp(&chosen.finger).trial(arguments.offset_mm * MM);
+    if arguments.json {
+        let mut fields = chosen.json(&setup, &arguments.finger);
+        merge(
+            &mut fields,
+            json!({
+                "offset_mm": arguments.offset_mm,
+                "outcome": outcome_word(trial.outcome),
+                "failure": failure(Some(trial.outcome)),
+                "depth_mm": trial.depth_mm,
+                "tilt_deg": trial.tilt_deg,
+                "peak_force_n": trial.peak_force_n,
+                "slip_mm": trial.slip_mm,
+                "simulated_s": trial.simulated_s,
+                "phases": trial.phases,
+            }),
+        );
+        return print_json(&fields);
+    }
+    print(&format!("{}\n{}", chosen.stiffness_line(), text(&trial)))
+}
+
+fn text(trial: &Trial) -> String {
+    let reason = match trial.outcome {
+        Outcome::Failed(class) => format!(": {} (class {})", class.label(), class.number()),
+        Outcome::Inserted | Outcome::Diverged => String::new(),
+    };
+    let mut text = format!(
+        "outcome       {}{reason}\ndepth         {:.2} mm\ntilt          {:.2} deg\npeak force    {:.1} N\n\
+         slip          {:.2} mm\n",
+        outcome_word(trial.outcome),
+        trial.depth_mm,
+        trial.tilt_deg,
+        trial.peak_force_n,
+        trial.slip_mm,
+    );
+    for phase in &trial.phases {
+        let [x, y, z] = phase.tip_mm;
+        text.push_str(&format!(
+            "  {:<12} ends at {:6.2} s, tip {x:7.2} {y:7.2} {z:7.2} mm, tilt {:5.2} deg, peak {:5.1} N\n",
+            phase.name, phase.time_s, phase.tilt_deg, phase.peak_force_n
+        ));
+    }
+    text
+}
+
+fn offset(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        // Written so that a NaN is outside.
+        Ok(value) if value.abs() <= LARGEST_OFFSET_MM => Ok(value),
+        _ => Err(format!("an offset is a number of mm between ±{LARGEST_OFFSET_MM}")),
+    }
+}

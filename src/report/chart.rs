@@ -1,0 +1,120 @@
+//! What all plots have in common: size, axes, fonts.
+
+use super::ReportError;
+use super::theme::{Colour, INK, LINES, MUTED, PAPER};
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::FontTransform;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::ops::Range;
+
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Chart<'a, 'b> =
+    ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub(super) type Drawn = Result<(), String>;
+
+/// Draws on a fresh sheet of `size` pixels and returns the SVG.
+pub(super) fn sheet(
+    plot: &'static str,
+    size: (u32, u32),
+    draw: impl FnOnce(&Area<'_>) -> Drawn,
+) -> Result<String, ReportError> {
+    let mut svg = String::new();
+    let drawn = {
+        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        area.fill(&PAPER.rgb())
+            .map_err(message)
+            .and_then(|()| draw(&area))
+            .and_then(|()| area.present().map_err(message))
+    };
+    drawn.map_err(|problem| ReportError::Draw { plot, problem })?;
+    Ok(svg)
+}
+
+/// Any error of the drawing library as text.
+pub(super) fn message(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+/// One axis: label with unit, and range.
+pub(super) struct AxisOf<'a> {
+    pub label: &'a str,
+    pub range: Range<f64>,
+}
+
+/// Axes with a grid; `title` may be empty.
+pub(super) fn axes<'a, 'b>(
+    area: &'a Area<'b>,
+    title: &str,
+    x: AxisOf<'_>,
+    y: AxisOf<'_>,
+) -> Result<Chart<'a, 'b>, String> {
+    let mut builder = ChartBuilder::on(area);
+    builder.margin(10).margin_right(18).x_label_area_size(48).y_label_area_size(62);
+    if !title.is_empty() {
+        builder.caption(title, font(19).color(&INK.rgb()));
+    }
+    let mut chart = builder.build_cartesian_2d(x.range, y.range).map_err(message)?;
+    chart
+        .configure_mesh()
+        .x_desc(x.label)
+        .y_desc(y.label)
+        .x_labels(7)
+        .y_labels(7)
+        .x_label_formatter(&|v| tick(*v))
+        .y_label_formatter(&|v| tick(*v))
+        .axis_style(MUTED.rgb())
+        .bold_line_style(LINES.rgb())
+        .light_line_style(TRANSPARENT)
+        .label_style(font(15).color(&INK.rgb()))
+        .axis_desc_style(font(16).color(&INK.rgb()))
+        .draw()
+        .map_err(message)?;
+    Ok(chart)
+}
+
+/// A legend in a corner, from the series' labels.
+pub(super) fn legend<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>, corner: SeriesLabelPosition) -> Drawn {
+    chart
+        .configure_series_labels()
+        .position(corner)
+        .margin(8)
+        .legend_area_size(26)
+        .label_font(font(15).color(&INK.rgb()))
+        .background_style(PAPER.rgb().mix(0.85))
+        .border_style(LINES.rgb())
+        .draw()
+        .map_err(message)
+}
+
+/// A sans-serif font of whatever system shows it.
+pub(super) fn font(size: u32) -> FontDesc<'static> {
+    ("sans-serif", size).into_font().transform(FontTransform::None)
+}
+
+/// Text style with an anchor.
+pub(super) fn words(size: u32, colour: Colour, h: HPos, v: VPos) -> TextStyle<'static> {
+    font(size).color(&colour.rgb()).pos(Pos::new(h, v))
+}
+
+/// A tick as few digits as it needs: 0.30000000000000004 is 0.3.
+pub(super) fn tick(value: f64) -> String {
+    let rounded = (value * 1e3).round() / 1e3;
+    // Adding 0 turns -0 into 0.
+    format!("{}", rounded + 0.0)
+}
+
+/// A range about values with some room; something sensible for none.
+pub(super) fn around(values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in values.filter(|v| v.is_finite()) {
+        low = low.min(value);
+        high = high.max(value);
+    }
+    if low > high {
+        return 0.0..1.0;
+    }
+    let room = if high > low { (high - low) * room } else { 0.5 };
+    low - room..high + room
+}

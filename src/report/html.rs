@@ -1,0 +1,100 @@
+//! `report.html`: one file, no scripts, nothing fetched.
+
+use super::text::escape;
+use super::theme::{inline, variables};
+use super::{ReportError, best, convergence, map, scatter, sections, windows};
+use crate::study::StudyRecord;
+use crate::surrogate::Measurement;
+
+/// Pixels of a plot in the page: narrow, so that its text stays readable when
+/// a phone shrinks it to fit.
+const PLOT: (u32, u32) = (560, 400);
+
+/// The report of a study as a page that opens offline. `measurements` are the
+/// designs that the study's stiffness model was fitted to; the map marks them.
+///
+/// # Errors
+/// If the drawing library refuses.
+pub fn html(record: &StudyRecord, measurements: &[Measurement]) -> Result<String, ReportError> {
+    let config = &record.config;
+    let title = format!("{} with {}, seed {}", config.task, config.optimizer, config.seed);
+    let body = [
+        section("best", "Best design", &best::section(record)),
+        section("convergence", "Convergence", &convergence_part(record)?),
+        section("map", "Range over density and direction", &map_part(record, measurements)?),
+        section("windows", "Tolerance windows of the best designs", &windows_part(record)?),
+        section("published", "Published ranges beside ours", &published_part(record)?),
+        section("failures", "How the trials ended", &sections::failures(record)),
+        section("limits", "What this does not say", &sections::limits(record)),
+        section("provenance", "Provenance", &sections::provenance(record)),
+    ];
+    let title = escape(&title);
+    Ok(format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <title>{title}</title>\n<style>\n{}</style>\n</head>\n<body>\n<main>\n\
+         <header><h1>{title}</h1>\n<p class=\"muted\">Robustness of a compliant finger in a \
+         connector insertion, by contact simulation: {} of {} evaluations.</p></header>\n\
+         {}</main>\n</body>\n</html>\n",
+        style(),
+        record.evaluations.len(),
+        config.budget,
+        body.concat(),
+    ))
+}
+
+fn section(id: &str, title: &str, body: &str) -> String {
+    format!("<section id=\"{id}\">\n<h2>{title}</h2>\n{body}</section>\n")
+}
+
+fn figure(svg: &str, label: &str, caption: &str) -> String {
+    let caption = escape(caption);
+    format!("<figure>\n{}\n<figcaption>{caption}</figcaption>\n</figure>\n", inline(svg, label))
+}
+
+fn convergence_part(record: &StudyRecord) -> Result<String, ReportError> {
+    let svg = convergence::svg(record, PLOT)?;
+    let caption = "Value of each evaluation, and the best so far, against the number of \
+                   evaluations. Values are multiples of the 0.1 mm grid.";
+    Ok(figure(&svg, "best value against evaluations", caption))
+}
+
+fn map_part(record: &StudyRecord, measurements: &[Measurement]) -> Result<String, ReportError> {
+    let caption = "Coloured cells: evaluated designs, by range. Rings: designs whose stiffness \
+                   was measured. Cross in a frame: the best design. Red outline: no value. \
+                   Outside the rings' hull the stiffness is extrapolated.";
+    Ok(match map::svg(record, measurements, (560, 500))? {
+        Some(svg) => figure(&svg, "map of the range over infill density and direction", caption),
+        None => "<p>The space of this study has no infill density and direction.</p>\n".to_owned(),
+    })
+}
+
+fn windows_part(record: &StudyRecord) -> Result<String, ReportError> {
+    let caption = "Offsets that insert, about the nominal start (line at 0 mm), each end to \
+                   within 0.1 mm. At each end the failure met there: 1 contact loss before the \
+                   search, 2 plug missed, 3 jammed, 4 contact loss in insertion.";
+    Ok(match windows::svg(record, PLOT.0)? {
+        Some(svg) => {
+            figure(&svg, "tolerance windows of the best designs", caption)
+                + &sections::best_ten(record)
+        }
+        None => "<p>No evaluation has a value.</p>\n".to_owned(),
+    })
+}
+
+fn published_part(record: &StudyRecord) -> Result<String, ReportError> {
+    let caption = "Range against the compliance stiffness of one finger: predicted for our \
+                   designs, measured for the published ones.";
+    let plot = scatter::svg(record, PLOT)?
+        .map_or(String::new(), |svg| figure(&svg, "range against compliance stiffness", caption));
+    Ok(sections::published(record) + &plot)
+}
+
+fn style() -> String {
+    let (light, dark) = (variables(false), variables(true));
+    format!(
+        ":root{{{light}}}\n@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{}",
+        include_str!("style.css")
+    )
+}

@@ -1,0 +1,138 @@
+//! Map of the range over infill density and direction.
+
+use super::ReportError;
+use super::chart::{Area, AxisOf, Drawn, axes, message, sheet, words};
+use super::theme::{Colour, INK, LINES, MUTED, ORANGE, RED, SCALE};
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Space};
+use crate::study::StudyRecord;
+use crate::surrogate::Measurement;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+use std::ops::Range;
+
+/// The map, `size` pixels; `None` if the space has no density and direction.
+pub(super) fn svg(
+    record: &StudyRecord,
+    measurements: &[Measurement],
+    size: (u32, u32),
+) -> Result<Option<String>, ReportError> {
+    let space = &record.config.space;
+    let (Some(x), Some(y)) = (Side::of(space, DENSITY_KEY), Side::of(space, DIRECTION_KEY)) else {
+        return Ok(None);
+    };
+    let drawn = sheet("the map", size, |area| {
+        let (plot, key) = area.split_vertically(size.1.saturating_sub(54));
+        draw(&plot, [&x, &y], record, measurements)?;
+        draw_key(&key, &Scale::of(record))
+    });
+    drawn.map(Some)
+}
+
+/// One side of the map: bounds and step of its parameter.
+struct Side {
+    low: f64,
+    high: f64,
+    step: f64,
+}
+
+impl Side {
+    fn of(space: &Space, key: &str) -> Option<Self> {
+        let found = space.parameters().iter().find(|p| p.key == key)?;
+        Some(Side { low: found.low, high: found.high, step: found.step })
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.low - self.step..self.high + self.step
+    }
+}
+
+/// Ranges (mm) and the colours between them.
+struct Scale {
+    low: f64,
+    high: f64,
+}
+
+impl Scale {
+    fn of(record: &StudyRecord) -> Self {
+        let ranges = || record.evaluations.iter().map(|r| r.evaluation.window.range_mm());
+        let low = ranges().fold(f64::INFINITY, f64::min);
+        let high = ranges().fold(f64::NEG_INFINITY, f64::max);
+        match (low < high, high.is_finite()) {
+            (true, _) => Scale { low, high },
+            // All alike, or none at all: a scale that ends with what there is.
+            (false, true) => Scale { low: high - 1.0, high: high.max(0.1) },
+            (false, false) => Scale { low: 0.0, high: 1.0 },
+        }
+    }
+
+    fn colour(&self, range: f64) -> Colour {
+        let share = (range - self.low) / (self.high - self.low);
+        SCALE[((share * SCALE.len() as f64) as usize).min(SCALE.len() - 1)]
+    }
+}
+
+fn draw(
+    area: &Area<'_>,
+    [x, y]: [&Side; 2],
+    record: &StudyRecord,
+    measurements: &[Measurement],
+) -> Drawn {
+    let scale = Scale::of(record);
+    let mut chart = axes(
+        area,
+        "",
+        AxisOf { label: "infill density (%)", range: x.range() },
+        AxisOf { label: "infill direction (°)", range: y.range() },
+    )?;
+    // At least as large as can be seen, however fine the steps are.
+    let half = |side: &Side| (side.step / 2.0).max((side.high - side.low) / 90.0);
+    let (dx, dy) = (half(x), half(y));
+    let cell = |density: f64, direction: f64, style: ShapeStyle| {
+        Rectangle::new([(density - dx, direction - dy), (density + dx, direction + dy)], style)
+    };
+    for recorded in &record.evaluations {
+        let (Some(density), Some(direction)) =
+            (recorded.design.get(DENSITY_KEY), recorded.design.get(DIRECTION_KEY))
+        else {
+            continue;
+        };
+        let style = match recorded.value {
+            Some(_) => scale.colour(recorded.evaluation.window.range_mm()).rgb().filled(),
+            None => RED.rgb().stroke_width(1),
+        };
+        chart.draw_series([cell(density, direction, style)]).map_err(message)?;
+    }
+    let rings = measurements.iter().map(|m| {
+        Circle::new((m.density_percent, m.direction_deg), 6, ORANGE.rgb().stroke_width(2))
+    });
+    chart.draw_series(rings).map_err(message)?;
+    if let Some((density, direction)) = record
+        .best()
+        .and_then(|best| Some((best.design.get(DENSITY_KEY)?, best.design.get(DIRECTION_KEY)?)))
+    {
+        let frame = cell(density, direction, INK.rgb().stroke_width(3));
+        let cross = Cross::new((density, direction), 9, INK.rgb().stroke_width(2));
+        chart.draw_series([frame]).map_err(message)?;
+        chart.draw_series([cross]).map_err(message)?;
+    }
+    Ok(())
+}
+
+/// The colour scale with its values, below the map.
+fn draw_key(area: &Area<'_>, scale: &Scale) -> Drawn {
+    let (width, _) = area.dim_in_pixel();
+    let (left, right) = (72, width as i32 - 22);
+    let at = |i: usize| left + (right - left) * i as i32 / SCALE.len() as i32;
+    for (i, colour) in SCALE.iter().enumerate() {
+        let corners = [(at(i), 4), (at(i + 1), 18)];
+        area.draw(&Rectangle::new(corners, colour.rgb().filled())).map_err(message)?;
+        area.draw(&Rectangle::new(corners, LINES.rgb())).map_err(message)?;
+    }
+    let style = |h| words(15, INK, h, VPos::Top);
+    let low = format!("{:.1} mm", scale.low.max(0.0));
+    let high = format!("{:.1} mm", scale.high);
+    area.draw_text(&low, &style(HPos::Left), (left, 24)).map_err(message)?;
+    area.draw_text(&high, &style(HPos::Right), (right, 24)).map_err(message)?;
+    let middle = words(15, MUTED, HPos::Center, VPos::Top);
+    area.draw_text("tolerable range", &middle, ((left + right) / 2, 24)).map_err(message)
+}

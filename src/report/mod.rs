@@ -1,0 +1,43 @@
+//! Plots and pages of a study and of the stiffness model: pure functions of
+//! what was measured. Nothing here simulates, and nothing reads or writes files.
+
+mod best;
+mod chart;
+mod convergence;
+mod html;
+mod map;
+mod published;
+mod scatter;
+mod sections;
+pub mod stiffness;
+#[cfg(test)]
+mod tests;
+mod text;
+mod theme;
+mod windows;
+
+use crate::study::StudyRecord;
+
+pub use html::html;
+
+/// Why a plot could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ReportError {
+    /// The drawing library refused.
+    #[error("cannot draw {plot}: {problem}")]
+    Draw {
+        /// The plot.
+        plot: &'static str,
+        /// The library's message.
+        problem: String,
+    },
+}
+
+/// `convergence.svg`: value of each evaluation and best so far (mm) against the
+/// number of evaluations, on a white ground.
+///
+/// # Errors
+/// If the drawing library refuses.
+pub fn convergence_svg(record: &StudyRecord) -> Result<String, ReportError> {
+    convergence::svg(record, (880, 480))
+}

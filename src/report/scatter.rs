@@ -1,0 +1,92 @@
+//! Range against compliance stiffness: ours and the published points.
+
+use super::ReportError;
+use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet};
+use super::published::{Origin, designs, of_task};
+use super::theme::{BLUE, GREEN, ORANGE};
+use crate::study::StudyRecord;
+use crate::units::N_PER_MM;
+use plotters::prelude::*;
+
+/// The plot, `size` pixels; `None` if there is nothing to show.
+pub(super) fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
+    let points = Points::of(record);
+    if points.all().next().is_none() {
+        return Ok(None);
+    }
+    sheet("the comparison", size, |area| draw(area, &points)).map(Some)
+}
+
+/// `(compliance stiffness in N/mm, range in mm)` of each kind.
+struct Points {
+    ours: Vec<(f64, f64)>,
+    simulation: Vec<(f64, f64)>,
+    in_situ: Vec<(f64, f64)>,
+}
+
+impl Points {
+    fn of(record: &StudyRecord) -> Self {
+        let ours = record
+            .evaluations
+            .iter()
+            .filter(|r| r.value.is_some())
+            .map(|r| (r.stiffness.compliance.mean / N_PER_MM, r.evaluation.window.range_mm()));
+        let measured = designs();
+        let published = |origin| {
+            let rows = of_task(&record.config.task, origin);
+            let point = |row: &super::published::Published| {
+                let design = measured.iter().find(|m| m.design == row.design)?;
+                Some((design.compliance / N_PER_MM, row.tolerable_range_mm?))
+            };
+            rows.iter().filter_map(point).collect()
+        };
+        Points {
+            ours: ours.collect(),
+            simulation: published(Origin::Simulation),
+            in_situ: published(Origin::InSitu),
+        }
+    }
+
+    fn all(&self) -> impl Iterator<Item = &(f64, f64)> {
+        self.ours.iter().chain(&self.simulation).chain(&self.in_situ)
+    }
+}
+
+fn draw(area: &Area<'_>, points: &Points) -> Drawn {
+    let mut range = around(points.all().map(|p| p.1).chain([0.0]), 0.1);
+    range.start = 0.0;
+    // Room for the legend above the points.
+    range.end *= 1.3;
+    let mut chart = axes(
+        area,
+        "",
+        AxisOf {
+            label: "compliance stiffness of one finger (N/mm)",
+            range: around(points.all().map(|p| p.0), 0.08),
+        },
+        AxisOf { label: "tolerable range (mm)", range },
+    )?;
+    let ours = BLUE.rgb().mix(0.6).filled();
+    chart
+        .draw_series(points.ours.iter().map(|&p| Circle::new(p, 3, ours)))
+        .map_err(message)?
+        .label("this study (predicted stiffness)")
+        .legend(move |(x, y)| Circle::new((x + 10, y), 4, ours));
+    if !points.simulation.is_empty() {
+        let style = ORANGE.rgb().stroke_width(2);
+        chart
+            .draw_series(points.simulation.iter().map(|&p| TriangleMarker::new(p, 6, style)))
+            .map_err(message)?
+            .label("published simulation")
+            .legend(move |(x, y)| TriangleMarker::new((x + 10, y), 6, style));
+    }
+    if !points.in_situ.is_empty() {
+        let style = GREEN.rgb().stroke_width(2);
+        chart
+            .draw_series(points.in_situ.iter().map(|&p| Cross::new(p, 5, style)))
+            .map_err(message)?
+            .label("published in-situ")
+            .legend(move |(x, y)| Cross::new((x + 10, y), 5, style));
+    }
+    legend(&mut chart, SeriesLabelPosition::UpperLeft)
+}

@@ -1,0 +1,202 @@
+//! The page's tables and texts.
+
+use super::published::{Origin, Published, designs, of_task, rank_correlation};
+use super::text::{design, escape, outcome_words};
+use super::windows;
+use crate::evaluation::{FailureClass, Outcome, Window};
+use crate::space::{DENSITY_KEY, DIRECTION_KEY};
+use crate::study::{Recorded, StudyRecord};
+use crate::surrogate::Measurement;
+
+/// A list of names and values; both are escaped.
+pub(super) fn definitions(rows: &[(String, String)]) -> String {
+    let row = |(name, value): &(String, String)| {
+        format!("<dt>{}</dt><dd>{}</dd>\n", escape(name), escape(value))
+    };
+    format!("<dl>\n{}</dl>\n", rows.iter().map(row).collect::<String>())
+}
+
+/// A table; cells are escaped.
+fn table(head: &[&str], rows: &[Vec<String>]) -> String {
+    let cells = |tag: &str, cells: &mut dyn Iterator<Item = String>| -> String {
+        cells.map(|cell| format!("<{tag}>{}</{tag}>", escape(&cell))).collect()
+    };
+    let head = cells("th", &mut head.iter().map(|&h| h.to_owned()));
+    let body: String = rows
+        .iter()
+        .map(|row| format!("<tr>{}</tr>\n", cells("td", &mut row.iter().cloned())))
+        .collect();
+    format!("<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table>\n")
+}
+
+/// Range and failure classes at both ends, as in the published columns.
+fn ours(window: &Window) -> String {
+    if window.nominal != Outcome::Inserted {
+        return format!("0.0 mm ({} at the nominal start)", outcome_words(window.nominal));
+    }
+    let class = |end: Option<Outcome>| match end {
+        Some(Outcome::Failed(class)) => class.number().to_string(),
+        Some(Outcome::Diverged) => "diverged".to_owned(),
+        _ => "–".to_owned(),
+    };
+    let ends = [class(window.end_negative), class(window.end_positive)];
+    format!("{:.1} mm ({} | {})", window.range_mm(), ends[0], ends[1])
+}
+
+/// The evaluation of a measured design, if the study has one.
+fn of_design<'a>(record: &'a StudyRecord, m: &Measurement) -> Option<&'a Recorded> {
+    record.evaluations.iter().find(|r| {
+        r.design.get(DENSITY_KEY) == Some(m.density_percent)
+            && r.design.get(DIRECTION_KEY) == Some(m.direction_deg)
+    })
+}
+
+/// Published ranges of the task beside ours.
+pub(super) fn published(record: &StudyRecord) -> String {
+    let task = &record.config.task;
+    let simulation = of_task(task, Origin::Simulation);
+    let in_situ = of_task(task, Origin::InSitu);
+    if simulation.is_empty() && in_situ.is_empty() {
+        return format!("<p>No ranges are published for the task {}.</p>\n", escape(task));
+    }
+    let cell = |rows: &[Published], design| {
+        rows.iter().find(|row| row.design == design).map_or(String::new(), Published::words)
+    };
+    let rows: Vec<Vec<String>> = designs()
+        .iter()
+        .map(|m| {
+            vec![
+                m.design.to_string(),
+                format!("{} %, {}°", m.density_percent, m.direction_deg),
+                of_design(record, m).map_or(String::new(), |found| ours(&found.evaluation.window)),
+                cell(&simulation, m.design),
+                cell(&in_situ, m.design),
+            ]
+        })
+        .collect();
+    let head = ["design", "infill", "this study", "published simulation", "published in-situ"];
+    format!(
+        "<p>Tolerable range, and in brackets the failure class beyond the negative | positive \
+         end. Blank: this study did not evaluate the design. Published ranges come without an \
+         error; ours are known to within +0.2 mm of the model.</p>\n{}",
+        table(&head, &rows)
+    )
+}
+
+/// Windows of the best designs as a table, for those who cannot see the bars.
+pub(super) fn best_ten(record: &StudyRecord) -> String {
+    let rows: Vec<Vec<String>> = windows::best(record)
+        .iter()
+        .map(|(r, value)| {
+            let window = &r.evaluation.window;
+            vec![
+                design(&r.design),
+                format!("{value:.1} mm"),
+                format!("{:+.1} to {:+.1} mm", window.negative_mm(), window.positive_mm()),
+                super::text::stiffness(r.stiffness.compliance),
+                if r.stiffness.inside_hull() { "inside" } else { "outside" }.to_owned(),
+            ]
+        })
+        .collect();
+    let head = ["design", "objective", "window", "compliance stiffness", "measured hull"];
+    format!("<details><summary>The same as a table</summary>\n{}</details>\n", table(&head, &rows))
+}
+
+/// How the trials of the study ended.
+pub(super) fn failures(record: &StudyRecord) -> String {
+    let sum = |of: &dyn Fn(&Recorded) -> u32| -> u64 {
+        record.evaluations.iter().map(|r| u64::from(of(r))).sum()
+    };
+    let trials = sum(&|r| r.evaluation.trials);
+    let share = |count: u64| {
+        if trials == 0 {
+            "–".to_owned()
+        } else {
+            format!("{:.1} %", 100.0 * count as f64 / trials as f64)
+        }
+    };
+    let mut rows: Vec<Vec<String>> = FailureClass::ALL
+        .into_iter()
+        .map(|class| {
+            let count = sum(&|r| r.evaluation.failure_counts[class as usize]);
+            let name = format!("{} {}", class.number(), class.label());
+            vec![name, count.to_string(), share(count)]
+        })
+        .collect();
+    let diverged = sum(&|r| r.evaluation.diverged);
+    rows.push(vec!["simulation diverged".to_owned(), diverged.to_string(), share(diverged)]);
+    let failed: u64 = diverged
+        + record
+            .evaluations
+            .iter()
+            .flat_map(|r| r.evaluation.failure_counts)
+            .map(u64::from)
+            .sum::<u64>();
+    let inserted = trials.saturating_sub(failed);
+    rows.push(vec!["inserted".to_owned(), inserted.to_string(), share(inserted)]);
+    let at_nominal =
+        record.evaluations.iter().filter(|r| r.evaluation.window.nominal != Outcome::Inserted);
+    format!(
+        "<p>{trials} trials in {} evaluations. {} of them do not insert at the nominal \
+         start. A window search stops at the first failure on each side, so failures count \
+         window ends, not how likely a failure is.</p>\n{}",
+        record.evaluations.len(),
+        at_nominal.count(),
+        table(&["how the trial ended", "trials", "share"], &rows)
+    )
+}
+
+/// What decided the results.
+pub(super) fn provenance(record: &StudyRecord) -> String {
+    let config = &record.config;
+    let mut rows: Vec<(String, String)> = [
+        ("study", config.name()),
+        ("task", config.task.clone()),
+        ("robot", config.robot.clone()),
+        ("optimizer", config.optimizer.clone()),
+        ("objective", config.objective.clone()),
+        ("seed", config.seed.to_string()),
+        ("evaluations", format!("{} of {}", record.evaluations.len(), config.budget)),
+        ("designs proposed at a time", config.batch.to_string()),
+        ("contact engine", format!("{} {}", config.engine, config.versions.engine)),
+        ("finger-opt", config.versions.program.clone()),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into();
+    for p in config.space.parameters() {
+        let value = format!("{} to {} in steps of {}", p.low, p.high, p.step);
+        rows.push((format!("{}: {}", config.space.name(), p.key), value));
+    }
+    let simulated: f64 = record.evaluations.iter().map(|r| r.evaluation.simulated_s).sum();
+    let wall: f64 = record.evaluations.iter().map(|r| r.timing.wall_s).sum();
+    rows.push(("simulated time".to_owned(), format!("{simulated:.0} s")));
+    rows.push(("wall-clock time, summed over evaluations".to_owned(), format!("{wall:.0} s")));
+    for (role, hash) in &config.input_sha256 {
+        rows.push((format!("SHA-256 of the {role} file"), hash.clone()));
+    }
+    definitions(&rows)
+}
+
+/// What the numbers do not say.
+pub(super) fn limits(record: &StudyRecord) -> String {
+    let task = &record.config.task;
+    let here = rank_correlation(task).map_or(String::new(), |(r, n)| {
+        format!(
+            " On this task the rank correlation between published simulated and in-situ \
+             ranges is {r:+.2} over {n} designs (+1: same order, −1: opposite order)."
+        )
+    });
+    format!(
+        "<ul>\n\
+         <li>These are results of a contact simulation. No finger was printed for this study.</li>\n\
+         <li>In the published simulation of these tasks, ranges rank the designs in the opposite \
+         order to the robot on two of four tasks.{here} Confirm the best design, and a very \
+         different one, on the robot.</li>\n\
+         <li>The range is that of a finger of exactly the predicted stiffness. The stiffness \
+         error above is not carried into the range.</li>\n\
+         <li>The centre of rotation of the finger is fixed in the model. In truth it moves with \
+         the infill direction, which matters for long, slender plugs.</li>\n\
+         <li>Differences of 0.2 mm between designs are at the resolution of the window search.</li>\n\
+         </ul>\n"
+    )
+}

@@ -1,0 +1,257 @@
+use super::*;
+use crate::evaluation::{Evaluation, FailureClass, Outcome, Window};
+use crate::finger::Finger;
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use crate::study::{Recorded, StudyConfig, Timing, Versions};
+use crate::surrogate::{Measurement, Model, SHIPPED_CSV, SHIPPED_FILE, fit, parse};
+use crate::tolerance::evaluate;
+use crate::trial::fake::FakeRig;
+use std::collections::BTreeMap;
+
+fn measured() -> Vec<Measurement> {
+    parse(SHIPPED_CSV, SHIPPED_FILE).unwrap()
+}
+
+fn model() -> Model {
+    fit(&measured()).unwrap()
+}
+
+fn config(task: &str) -> StudyConfig {
+    StudyConfig {
+        task: task.to_owned(),
+        robot: "rigid".to_owned(),
+        engine: "fake".to_owned(),
+        optimizer: "gp".to_owned(),
+        objective: "range".to_owned(),
+        seed: 7,
+        budget: 200,
+        batch: 4,
+        versions: Versions { program: "0.1.0".to_owned(), engine: "1".to_owned() },
+        input_sha256: BTreeMap::from([("task".to_owned(), "9f86d081884c7d65".repeat(4))]),
+        space: Space::parse(include_str!("../../spaces/infill.toml"), "infill.toml").unwrap(),
+    }
+}
+
+fn record(task: &str, evaluations: Vec<Recorded>) -> StudyRecord {
+    StudyRecord { config: config(task), evaluations }
+}
+
+/// A study of the closed-form rig over a coarse grid in a scattered order.
+fn study() -> StudyRecord {
+    let model = model();
+    let evaluations = (0..60u64).map(|index| {
+        let density = 10.0 + (index * 13 % 21) as f64;
+        let direction = (index * 29 % 41) as f64;
+        let stiffness = model.predict(density, direction);
+        let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
+        let evaluation = evaluate(&FakeRig::default(), &finger);
+        recorded(index, [density, direction], stiffness, evaluation)
+    });
+    record("usb", evaluations.collect())
+}
+
+fn recorded(
+    index: u64,
+    infill: [f64; 2],
+    stiffness: crate::surrogate::Prediction,
+    evaluation: Evaluation,
+) -> Recorded {
+    let value = match evaluation.window.nominal {
+        Outcome::Diverged => None,
+        _ => Some(evaluation.window.range_mm()),
+    };
+    let design = Design::infill(infill[0], infill[1]);
+    Recorded { index, design, value, stiffness, evaluation, timing: Timing::default() }
+}
+
+/// An evaluation whose nominal start already ends so.
+fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
+    let mut failure_counts = [0; 4];
+    if let Outcome::Failed(class) = nominal {
+        failure_counts[class as usize] = 1;
+    }
+    let window = Window {
+        nominal,
+        negative_steps: 0,
+        positive_steps: 0,
+        end_negative: None,
+        end_positive: None,
+    };
+    let evaluation = Evaluation {
+        window,
+        failure_counts,
+        diverged: u32::from(nominal == Outcome::Diverged),
+        trials: 1,
+        peak_force_n: 0.0,
+        slip_mm: 0.0,
+        simulated_s: 3.0,
+    };
+    recorded(index, infill, model().predict(infill[0], infill[1]), evaluation)
+}
+
+const SECTIONS: [&str; 8] =
+    ["best", "convergence", "map", "windows", "published", "failures", "limits", "provenance"];
+
+fn check_page(page: &str) {
+    for id in SECTIONS {
+        assert_eq!(page.matches(&format!("<section id=\"{id}\">")).count(), 1, "{id}");
+    }
+    for word in ["http:", "https:", "//", "<script", "@import", "url(", "src=", "NaN", "inf "] {
+        assert!(!page.contains(word), "{word}");
+    }
+    assert_eq!(page.matches("<svg ").count(), page.matches("</svg>").count());
+    for tag in ["section", "table", "dl", "figure", "details", "p"] {
+        let opened =
+            page.matches(&format!("<{tag}>")).count() + page.matches(&format!("<{tag} ")).count();
+        assert_eq!(opened, page.matches(&format!("</{tag}>")).count(), "{tag}");
+    }
+    assert!(!page.contains("fill=\"#") && !page.contains("stroke=\"#"), "a fixed colour");
+}
+
+#[test]
+fn the_page_is_whole_and_its_numbers_are_the_records() {
+    let study = study();
+    let page = html(&study, &measured()).unwrap();
+    check_page(&page);
+    let best = study.best().unwrap();
+    let window = &best.evaluation.window;
+    for number in [
+        format!("<b>{:.1} mm</b>", window.range_mm()),
+        format!("{:+.1} mm to {:+.1} mm", window.negative_mm(), window.positive_mm()),
+        text::stiffness(best.stiffness.compliance),
+        text::stiffness(best.stiffness.assembly),
+        text::design(&best.design),
+        "3 jammed".to_owned(),
+        "2 plug missed".to_owned(),
+        "9f86d081884c7d65".repeat(4),
+    ] {
+        assert!(page.contains(&number), "{number}");
+    }
+    let trials: u32 = study.evaluations.iter().map(|r| r.evaluation.trials).sum();
+    assert!(page.contains(&format!("{trials} trials in 60 evaluations")));
+    assert!(page.contains("9.0 mm (4 | 3)") && page.contains("4.7 mm (4 | 4)"));
+    assert_eq!(page.matches("<svg ").count(), 4);
+}
+
+#[test]
+fn a_measured_design_shows_our_value_beside_the_published_ones() {
+    let model = model();
+    let stiffness = model.predict(20.0, 20.0);
+    let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
+    let evaluation = evaluate(&FakeRig::default(), &finger);
+    let ours = format!("<td>{:.1} mm (3 | 2)</td>", evaluation.window.range_mm());
+    let one = record("usb", vec![recorded(0, [20.0, 20.0], stiffness, evaluation)]);
+    let page = html(&one, &measured()).unwrap();
+    check_page(&page);
+    assert!(page.contains(&format!("<td>5</td><td>20 %, 20°</td>{ours}")), "{ours}");
+    assert!(page.contains("<td>6</td><td>20 %, 40°</td><td></td>"));
+}
+
+#[test]
+fn a_best_design_outside_the_hull_is_warned_of() {
+    let model = model();
+    let stiffness = model.predict(10.0, 40.0);
+    let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
+    let evaluation = evaluate(&FakeRig::default(), &finger);
+    let page =
+        html(&record("usb", vec![recorded(0, [10.0, 40.0], stiffness, evaluation)]), &measured());
+    let distance = format!("by {:.2} of the measured span", stiffness.hull_distance);
+    assert!(page.unwrap().contains(&distance), "{distance}");
+}
+
+#[test]
+fn empty_failed_and_diverged_studies_still_have_a_page() {
+    let jammed = Outcome::Failed(FailureClass::Jammed);
+    for (evaluations, words) in [
+        (vec![], "of 0 evaluations none gave one"),
+        (vec![at_nominal(0, [10.0, 0.0], Outcome::Diverged)], "of 1 evaluations none gave one"),
+        (vec![at_nominal(0, [10.0, 0.0], jammed)], "fails at the nominal start (3 jammed)"),
+        (
+            (0..5).map(|i| at_nominal(i, [10.0 + i as f64, 5.0], jammed)).collect(),
+            "fails at the nominal start (3 jammed)",
+        ),
+    ] {
+        let study = record("usb", evaluations);
+        let page = html(&study, &measured()).unwrap();
+        check_page(&page);
+        assert!(page.contains(words), "{words}");
+        assert!(convergence_svg(&study).unwrap().contains("evaluations"));
+        check_page(&html(&study, &[]).unwrap());
+    }
+}
+
+#[test]
+fn what_comes_from_files_is_escaped_and_unknown_tasks_are_told() {
+    let mut study = study();
+    study.config.task = "<img onerror=x>&\"'".to_owned();
+    study.config.objective = "<b>range".to_owned();
+    study.evaluations[0].design.0.insert("<i>key".to_owned(), 1.0);
+    study.config.input_sha256.insert("<u>".to_owned(), "<s>".to_owned());
+    let page = html(&study, &measured()).unwrap();
+    check_page(&page);
+    for raw in ["<img", "<b>range", "<i>", "<u>", "<s>"] {
+        assert!(!page.contains(raw), "{raw}");
+    }
+    assert!(page.contains("No ranges are published for the task &lt;img"));
+}
+
+#[test]
+fn convergence_never_falls_and_ends_at_the_best() {
+    let study = study();
+    let steps = convergence::best_so_far(&study);
+    assert!(steps.windows(2).all(|pair| pair[0].1 <= pair[1].1));
+    assert_eq!(steps.last().map(|s| s.1), study.best().and_then(|r| r.value));
+    let svg = convergence_svg(&study).unwrap();
+    for word in ["best so far", "range (mm)", "each evaluation"] {
+        assert!(svg.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn the_stiffness_report_has_every_model_and_both_axes() {
+    let model = model();
+    let table = stiffness::table(&model);
+    for word in ["1.64", "10.00", "<- used", "RMSE N/mm", "assembly (z)", "compliance (y)"] {
+        assert!(table.contains(word), "{word}: {table}");
+    }
+    let json = stiffness::json(&model);
+    assert_eq!(json["models"].as_array().map(Vec::len), Some(8));
+    let percent = json["models"][0]["loo_mean_absolute_percent"].as_f64().unwrap();
+    assert!((percent - 1.64).abs() < 0.01);
+    let svg = stiffness::svg(&model).unwrap();
+    for word in ["stiffness in compliance (y) (N/mm)", "density 20 %", "direction 40°"] {
+        assert!(svg.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn other_spaces_have_no_map_but_a_page() {
+    let mut study = study();
+    let text = include_str!("../../spaces/infill.toml").replace(DENSITY_KEY, "wall_mm");
+    study.config.space = Space::parse(&text, "s.toml").unwrap();
+    for recorded in &mut study.evaluations {
+        let direction = recorded.design.get(DIRECTION_KEY).unwrap();
+        recorded.design = Design(BTreeMap::from([
+            ("wall_mm".to_owned(), 1.2),
+            (DIRECTION_KEY.to_owned(), direction),
+        ]));
+    }
+    let page = html(&study, &measured()).unwrap();
+    check_page(&page);
+    assert!(page.contains("has no infill density and direction"));
+}
+
+/// Writes the pages to `$FINGER_OPT_LOOK`, to be looked at.
+#[test]
+#[ignore = "for the eye: set FINGER_OPT_LOOK to a folder"]
+fn write_everything() {
+    let dir = std::path::PathBuf::from(std::env::var("FINGER_OPT_LOOK").unwrap());
+    let write = |name: &str, text: String| std::fs::write(dir.join(name), text).unwrap();
+    let jammed = Outcome::Failed(FailureClass::Jammed);
+    let failed = record("usb", vec![at_nominal(0, [10.0, 0.0], jammed)]);
+    write("report.html", html(&study(), &measured()).unwrap());
+    write("failed.html", html(&failed, &measured()).unwrap());
+    write("convergence.svg", convergence_svg(&study()).unwrap());
+    write("stiffness.svg", stiffness::svg(&model()).unwrap());
+    println!("{}", stiffness::table(&model()));
+}

@@ -1,0 +1,76 @@
+//! Words and numbers of reports; every number with its unit.
+
+use crate::evaluation::{FailureClass, Outcome};
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::surrogate::Estimate;
+use crate::units::N_PER_MM;
+
+/// Text that is safe within HTML, in elements and in quoted attributes.
+pub(super) fn escape(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\'' => safe.push_str("&#39;"),
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
+/// A stiffness with its standard deviation, N/mm.
+pub(super) fn stiffness(estimate: Estimate) -> String {
+    let (mean, sd) = (estimate.mean / N_PER_MM, estimate.sd / N_PER_MM);
+    let digits = if mean >= 10.0 { 1 } else { 2 };
+    format!("{mean:.digits$} ± {sd:.digits$} N/mm")
+}
+
+/// What ended a window at one side.
+pub(super) fn end(outcome: Option<Outcome>) -> String {
+    match outcome {
+        None => "no failure up to the search limit".to_owned(),
+        Some(outcome) => outcome_words(outcome),
+    }
+}
+
+/// An outcome in words, a failure with its class number.
+pub(super) fn outcome_words(outcome: Outcome) -> String {
+    match outcome {
+        Outcome::Inserted => "inserted".to_owned(),
+        Outcome::Failed(class) => format!("{} {}", class.number(), class.label()),
+        Outcome::Diverged => "simulation diverged".to_owned(),
+    }
+}
+
+/// The same, short enough for a plot.
+pub(super) fn end_short(outcome: Option<Outcome>) -> &'static str {
+    match outcome {
+        None => "no failure",
+        Some(Outcome::Inserted) => "inserted",
+        Some(Outcome::Diverged) => "diverged",
+        Some(Outcome::Failed(class)) => match class {
+            FailureClass::ContactLossBeforeSearch => "1 lost early",
+            FailureClass::PlugMissed => "2 missed",
+            FailureClass::Jammed => "3 jammed",
+            FailureClass::ContactLossInInsertion => "4 lost",
+        },
+    }
+}
+
+/// A design in words: infill first, then whatever else the space names.
+pub(super) fn design(design: &Design) -> String {
+    let mut parts = Vec::new();
+    if let Some(density) = design.get(DENSITY_KEY) {
+        parts.push(format!("{density} %"));
+    }
+    if let Some(direction) = design.get(DIRECTION_KEY) {
+        parts.push(format!("{direction}°"));
+    }
+    let other = |key: &str| key != DENSITY_KEY && key != DIRECTION_KEY;
+    let others = design.0.iter().filter(|(key, _)| other(key));
+    parts.extend(others.map(|(key, value)| format!("{key} {value}")));
+    parts.join(", ")
+}

@@ -1,0 +1,92 @@
+//! Colours: fixed in SVG files, variables in the page, so that both light and
+//! dark readers see them.
+
+use plotters::style::RGBColor;
+
+/// A colour by the name of its CSS variable, for light and for dark pages.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Colour {
+    name: &'static str,
+    light: (u8, u8, u8),
+    dark: &'static str,
+}
+
+macro_rules! colours {
+    ($($(#[$doc:meta])* $id:ident = $name:literal, $light:expr, $dark:literal;)*) => {
+        $($(#[$doc])* pub(super) const $id: Colour =
+            Colour { name: $name, light: $light, dark: $dark };)*
+        const ALL: &[Colour] = &[$($id),*];
+    };
+}
+
+colours! {
+    /// Background.
+    PAPER = "paper", (254, 254, 253), "#15181c";
+    /// Text and axes.
+    INK = "ink", (31, 35, 40), "#e6e8eb";
+    /// Less important text.
+    MUTED = "muted", (96, 103, 112), "#9aa3ad";
+    /// Grid lines.
+    LINES = "lines", (222, 225, 230), "#30363d";
+    /// Series.
+    BLUE = "blue", (24, 103, 178), "#6cb2f2";
+    /// Series.
+    ORANGE = "orange", (196, 88, 16), "#f0a060";
+    /// Series.
+    GREEN = "green", (38, 132, 82), "#62c894";
+    /// Series; failures.
+    RED = "red", (190, 50, 44), "#f2837b";
+    /// Map, smallest to largest.
+    MAP0 = "map0", (218, 232, 245), "#1d3145";
+    /// Map.
+    MAP1 = "map1", (170, 207, 233), "#1c4a70";
+    /// Map.
+    MAP2 = "map2", (109, 174, 213), "#21679c";
+    /// Map.
+    MAP3 = "map3", (58, 133, 188), "#3a8cc6";
+    /// Map.
+    MAP4 = "map4", (24, 92, 156), "#78b8e3";
+    /// Map.
+    MAP5 = "map5", (8, 50, 104), "#c4e2f6";
+}
+
+/// The map's scale, smallest to largest.
+pub(super) const SCALE: [Colour; 6] = [MAP0, MAP1, MAP2, MAP3, MAP4, MAP5];
+
+impl Colour {
+    /// For drawing; in a file this is what is seen.
+    pub fn rgb(self) -> RGBColor {
+        RGBColor(self.light.0, self.light.1, self.light.2)
+    }
+
+    /// As the drawing library writes it, and as CSS takes it.
+    pub fn hex(self) -> String {
+        format!("#{:02X}{:02X}{:02X}", self.light.0, self.light.1, self.light.2)
+    }
+}
+
+/// The variables, light or dark, as the body of a CSS rule.
+pub(super) fn variables(dark: bool) -> String {
+    let value = |c: &Colour| if dark { c.dark.to_owned() } else { c.hex() };
+    ALL.iter().map(|c| format!("--{}:{};", c.name, value(c))).collect()
+}
+
+/// Makes a drawn SVG fit for the page: colours become variables, the size
+/// becomes that of its place, and a reader that cannot see it gets `label`.
+pub(super) fn inline(svg: &str, label: &str) -> String {
+    let mut svg = svg.to_owned();
+    for colour in ALL {
+        svg = svg.replace(&colour.hex(), &format!("var(--{})", colour.name));
+    }
+    let label = super::text::escape(label);
+    let view_box = svg.find("viewBox").unwrap_or(0);
+    match svg.find("<svg ") {
+        Some(start) if start < view_box => {
+            let head = format!("<svg role=\"img\" aria-label=\"{label}\" ");
+            // The namespace is implied in HTML, and would look like an address.
+            let rest = svg[view_box..].replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+            head + &rest
+        }
+        _ => svg,
+    }
+}

@@ -1,0 +1,110 @@
+//! What a journal line says of an evaluation beyond what Optuna has fields for.
+
+use crate::evaluation::{Evaluation, Outcome, Window, grid_mm};
+use crate::surrogate::{Estimate, Prediction};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// User attributes of a trial.
+#[derive(Serialize, Deserialize)]
+pub struct Attributes {
+    window: WindowLine,
+    failure_counts: [u32; 4],
+    diverged: u32,
+    trials: u32,
+    #[serde(deserialize_with = "null_is_nan")]
+    peak_force_n: f64,
+    #[serde(deserialize_with = "null_is_nan")]
+    slip_mm: f64,
+    #[serde(deserialize_with = "null_is_nan")]
+    simulated_s: f64,
+    stiffness: StiffnessLine,
+    #[serde(deserialize_with = "null_is_nan")]
+    hull_distance: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct WindowLine {
+    nominal: Outcome,
+    negative_mm: f64,
+    positive_mm: f64,
+    end_negative: Option<Outcome>,
+    end_positive: Option<Outcome>,
+}
+
+/// In N/m, as the program computes: N/mm would not read back as the same bits.
+#[derive(Serialize, Deserialize)]
+struct StiffnessLine {
+    #[serde(deserialize_with = "null_is_nan")]
+    compliance_n_per_m: f64,
+    #[serde(deserialize_with = "null_is_nan")]
+    compliance_sd_n_per_m: f64,
+    #[serde(deserialize_with = "null_is_nan")]
+    assembly_n_per_m: f64,
+    #[serde(deserialize_with = "null_is_nan")]
+    assembly_sd_n_per_m: f64,
+}
+
+/// JSON has no NaN: it is written as null.
+fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
+}
+
+impl Attributes {
+    /// Of an evaluation and the stiffness it was made with.
+    pub fn new(evaluation: &Evaluation, stiffness: &Prediction) -> Self {
+        let window = &evaluation.window;
+        Attributes {
+            window: WindowLine {
+                nominal: window.nominal,
+                negative_mm: window.negative_mm(),
+                positive_mm: window.positive_mm(),
+                end_negative: window.end_negative,
+                end_positive: window.end_positive,
+            },
+            failure_counts: evaluation.failure_counts,
+            diverged: evaluation.diverged,
+            trials: evaluation.trials,
+            peak_force_n: evaluation.peak_force_n,
+            slip_mm: evaluation.slip_mm,
+            simulated_s: evaluation.simulated_s,
+            stiffness: StiffnessLine {
+                compliance_n_per_m: stiffness.compliance.mean,
+                compliance_sd_n_per_m: stiffness.compliance.sd,
+                assembly_n_per_m: stiffness.assembly.mean,
+                assembly_sd_n_per_m: stiffness.assembly.sd,
+            },
+            hull_distance: stiffness.hull_distance,
+        }
+    }
+
+    /// The evaluation.
+    pub fn evaluation(&self) -> Evaluation {
+        let window = &self.window;
+        let steps = |mm: f64| (mm / grid_mm(1)).round() as i32;
+        Evaluation {
+            window: Window {
+                nominal: window.nominal,
+                negative_steps: steps(window.negative_mm),
+                positive_steps: steps(window.positive_mm),
+                end_negative: window.end_negative,
+                end_positive: window.end_positive,
+            },
+            failure_counts: self.failure_counts,
+            diverged: self.diverged,
+            trials: self.trials,
+            peak_force_n: self.peak_force_n,
+            slip_mm: self.slip_mm,
+            simulated_s: self.simulated_s,
+        }
+    }
+
+    /// The stiffness.
+    pub fn prediction(&self) -> Prediction {
+        let k = &self.stiffness;
+        Prediction {
+            compliance: Estimate { mean: k.compliance_n_per_m, sd: k.compliance_sd_n_per_m },
+            assembly: Estimate { mean: k.assembly_n_per_m, sd: k.assembly_sd_n_per_m },
+            hull_distance: self.hull_distance,
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The resolved configuration of a study, as `study.toml` keeps it.
+
+use crate::space::Space;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Everything that decides what a study measures. The number of threads is not
+/// part of it: it changes no result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudyConfig {
+    /// Name of the task.
+    pub task: String,
+    /// Name of the robot.
+    pub robot: String,
+    /// Name of the contact engine.
+    pub engine: String,
+    /// Name of the optimizer.
+    pub optimizer: String,
+    /// Name of the objective.
+    pub objective: String,
+    /// Seed of every random stream of the study.
+    pub seed: u64,
+    /// Evaluations in all; the one field that may be raised later.
+    pub budget: u64,
+    /// Designs the optimizer proposes at a time.
+    pub batch: u64,
+    /// Versions of what computed the results.
+    pub versions: Versions,
+    /// SHA-256 of each input file by its role (`task`, `space`, `robot`, `stiffness`), in hexadecimal.
+    pub input_sha256: BTreeMap<String, String>,
+    /// The search space in full.
+    pub space: Space,
+}
+
+/// Versions of what computed the results.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Versions {
+    /// This program.
+    pub program: String,
+    /// The contact engine.
+    pub engine: String,
+}
+
+impl StudyConfig {
+    /// The study's name: its default folder under `results/`, and its name in Optuna.
+    pub fn name(&self) -> String {
+        study_name(&self.task, &self.optimizer, self.seed)
+    }
+
+    /// The fields in which a study on disk differs from what is asked for now,
+    /// one line each; a budget that was raised does not count.
+    pub fn differences(&self, asked: &StudyConfig) -> Option<String> {
+        let budget = if asked.budget > self.budget { asked.budget } else { self.budget };
+        let raised = StudyConfig { budget, ..self.clone() };
+        differences(&raised, asked, ["the study", "now"])
+    }
+}
+
+/// `<task>-<optimizer>-seed<seed>`.
+pub fn study_name(task: &str, optimizer: &str, seed: u64) -> String {
+    format!("{task}-{optimizer}-seed{seed}")
+}
+
+/// The fields in which two values differ, one line each, `None` if there is no such field.
+pub(super) fn differences<T: Serialize>(ours: &T, theirs: &T, who: [&str; 2]) -> Option<String> {
+    let (ours, theirs) = (flat(ours), flat(theirs));
+    let keys: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
+    let show = |value: Option<&String>| value.map_or("nothing".to_owned(), Clone::clone);
+    let lines: Vec<String> = keys
+        .into_iter()
+        .filter(|key| ours.get(*key) != theirs.get(*key))
+        .map(|key| {
+            let (a, b) = (show(ours.get(key)), show(theirs.get(key)));
+            format!("  {key}: {} has {a}, {} has {b}", who[0], who[1])
+        })
+        .collect();
+    (!lines.is_empty()).then(|| lines.join("\n"))
+}
+
+/// Every leaf of a value as text, by its path (`space.parameter.0.low`).
+fn flat(value: &impl Serialize) -> BTreeMap<String, String> {
+    fn walk(value: &serde_json::Value, path: &str, leaves: &mut BTreeMap<String, String>) {
+        let join =
+            |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+        match value {
+            serde_json::Value::Object(fields) => {
+                fields.iter().for_each(|(key, value)| walk(value, &join(key), leaves));
+            }
+            serde_json::Value::Array(items) => {
+                let items = items.iter().enumerate();
+                items.for_each(|(i, value)| walk(value, &join(&i.to_string()), leaves));
+            }
+            leaf => {
+                leaves.insert(path.to_owned(), leaf.to_string());
+            }
+        }
+    }
+    let mut leaves = BTreeMap::new();
+    // A value that is not JSON has no leaves; configurations always are.
+    walk(&serde_json::to_value(value).unwrap_or_default(), "", &mut leaves);
+    leaves
+}

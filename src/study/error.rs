@@ -1,0 +1,108 @@
+//! What can go wrong with a study's folder, said so that it can be mended.
+
+use super::line::LineError;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What went wrong with a study.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// The file system refused something.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    Io {
+        /// What was tried, after "cannot".
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// Another process writes to this study.
+    #[error(
+        "{}: another process ({owner}) is running this study; wait for it, or give another --out",
+        dir.display()
+    )]
+    Locked {
+        /// The study's folder.
+        dir: PathBuf,
+        /// Who, as far as it is known.
+        owner: String,
+    },
+    /// The folder holds no study.
+    #[error("{}: not a study: it has no study.toml", dir.display())]
+    NotAStudy {
+        /// The folder.
+        dir: PathBuf,
+    },
+    /// `study.toml` or an input file kept in the folder cannot be used.
+    #[error("{}: {problem}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+    /// The folder holds a study of another configuration.
+    #[error(
+        "{}: holds a study of another configuration; give another --out, or the same \
+         configuration (only the budget may be raised):\n{differences}",
+        dir.display()
+    )]
+    Different {
+        /// The folder.
+        dir: PathBuf,
+        /// One line for each differing field, with both values.
+        differences: String,
+    },
+    /// One line of the journal is damaged.
+    #[error(
+        "{}: line {line}: {source}; restore the file from a copy, or delete line {line} and \
+         all below it to measure them again",
+        path.display()
+    )]
+    Line {
+        /// The journal.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        source: LineError,
+    },
+    /// The journal is not this study's.
+    #[error("{}: not the journal of this study: {problem}", path.display())]
+    Foreign {
+        /// The journal.
+        path: PathBuf,
+        /// How that shows.
+        problem: String,
+    },
+    /// The optimizer, started again, proposes other designs than the journal holds.
+    #[error(
+        "{}: evaluation {index} is of {found}, but this version of the program proposes {proposed}: \
+         the journal was written by another version; continue it with that one, or start a new study",
+        path.display()
+    )]
+    Replay {
+        /// The journal.
+        path: PathBuf,
+        /// The evaluation, counted from 0.
+        index: u64,
+        /// The design in the journal.
+        found: String,
+        /// The design proposed now.
+        proposed: String,
+    },
+}
+
+impl StudyError {
+    /// Whether the input is at fault (exit code 2) rather than the run (exit code 1).
+    pub fn is_bad_input(&self) -> bool {
+        !matches!(self, StudyError::Io { .. } | StudyError::Locked { .. })
+    }
+
+    /// For `map_err`: the file system's answer to `action` on `path`.
+    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> StudyError {
+        let path = path.to_owned();
+        move |source| StudyError::Io { action, path, source }
+    }
+}

@@ -1,0 +1,231 @@
+//! A study's folder.
+//!
+//! ```text
+//! study.toml       the resolved configuration
+//! inputs/          copies of the input files, so that a study can be resumed
+//!                  when the originals have changed or gone
+//! journal.jsonl    what was measured
+//! evaluations.csv  the same as a table; convergence.svg and report.html beside it
+//! .lock            held by the process that writes
+//! ```
+
+use super::config::StudyConfig;
+use super::error::StudyError;
+use super::journal::{self, Journal};
+use super::record::{Recorded, StudyRecord};
+use super::store::{FileStore, Store};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+/// Name of the configuration's file.
+pub const CONFIG_FILE: &str = "study.toml";
+/// Name of the journal's file.
+pub const JOURNAL_FILE: &str = "journal.jsonl";
+const INPUTS: &str = "inputs";
+const LOCK_FILE: &str = ".lock";
+
+/// Texts of a study's input files by role (`task`, `space`, `robot`, `stiffness`).
+pub type Inputs = BTreeMap<String, String>;
+
+/// SHA-256 of each input, in hexadecimal: a study's `input_sha256`.
+pub fn sha256(inputs: &Inputs) -> BTreeMap<String, String> {
+    let hash = |text: &String| {
+        Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    };
+    inputs.iter().map(|(role, text)| (role.clone(), hash(text))).collect()
+}
+
+/// A study open for writing; no other process can open it meanwhile.
+pub struct Study {
+    /// What was asked for.
+    pub config: StudyConfig,
+    /// What has been measured, by index.
+    pub evaluations: Vec<Recorded>,
+    pub(super) journal: Journal,
+    dir: PathBuf,
+    // Dropping the file, or the end of the process, releases the lock.
+    _lock: File,
+}
+
+impl Study {
+    /// Begins a study in `dir`, or continues the one that is there if its
+    /// configuration is the same or has a smaller budget.
+    pub fn create_or_continue(
+        dir: &Path,
+        config: &StudyConfig,
+        inputs: &Inputs,
+    ) -> Result<Study, StudyError> {
+        fs::create_dir_all(dir).map_err(StudyError::io("create the folder", dir))?;
+        let lock = lock(dir)?;
+        let file = dir.join(CONFIG_FILE);
+        if file.try_exists().map_err(StudyError::io("look for", &file))? {
+            let found = read_config(dir)?;
+            if let Some(differences) = found.differences(config) {
+                return Err(StudyError::Different { dir: dir.to_owned(), differences });
+            }
+            if found.budget < config.budget {
+                write_config(dir, config)?;
+            }
+        } else {
+            let journal = dir.join(JOURNAL_FILE);
+            if journal.exists() {
+                let problem = "there is no study.toml beside it; give another --out".to_owned();
+                return Err(StudyError::Foreign { path: journal, problem });
+            }
+            for (role, text) in inputs {
+                write_file(&input_path(dir, role), text)?;
+            }
+            // Last, so that a folder with a configuration is complete.
+            write_config(dir, config)?;
+        }
+        Study::open_locked(dir, lock, journal_file(dir)?)
+    }
+
+    /// Opens the study in `dir` to continue it.
+    pub fn resume(dir: &Path) -> Result<Study, StudyError> {
+        // Before the lock: nothing is to be created in a folder that holds no study.
+        read_config(dir)?;
+        let lock = lock(dir)?;
+        Study::open_locked(dir, lock, journal_file(dir)?)
+    }
+
+    /// The same with the journal in another store than its file.
+    pub fn resume_with(dir: &Path, store: Box<dyn Store>) -> Result<Study, StudyError> {
+        read_config(dir)?;
+        Study::open_locked(dir, lock(dir)?, store)
+    }
+
+    fn open_locked(dir: &Path, lock: File, store: Box<dyn Store>) -> Result<Study, StudyError> {
+        let config = read_config(dir)?;
+        let (journal, evaluations) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
+        sync_folder(dir)?;
+        Ok(Study { config, evaluations, journal, dir: dir.to_owned(), _lock: lock })
+    }
+
+    /// The folder.
+    pub fn dir(&self) -> &Path {
+        &self.dir
+    }
+
+    /// A copy that needs no open study.
+    pub fn record(&self) -> StudyRecord {
+        StudyRecord { config: self.config.clone(), evaluations: self.evaluations.clone() }
+    }
+}
+
+impl StudyRecord {
+    /// Reads the study in `dir`, running or not, and writes nothing.
+    pub fn load(dir: &Path) -> Result<StudyRecord, StudyError> {
+        let config = read_config(dir)?;
+        let evaluations = journal::read(&dir.join(JOURNAL_FILE), &config)?;
+        Ok(StudyRecord { config, evaluations })
+    }
+}
+
+fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
+    let path = dir.join(JOURNAL_FILE);
+    Ok(Box::new(FileStore::open(&path).map_err(StudyError::io("open", &path))?))
+}
+
+/// The configuration of the study in `dir`.
+pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
+    let path = dir.join(CONFIG_FILE);
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            return Err(StudyError::NotAStudy { dir: dir.to_owned() });
+        }
+        Err(error) => return Err(StudyError::io("read", &path)(error)),
+    };
+    toml::from_str(&text).map_err(|error| StudyError::File {
+        path,
+        problem: format!("{}; restore the file from a copy", error.to_string().trim_end()),
+    })
+}
+
+/// The copies of the input files in the study's folder, checked against its configuration.
+pub fn read_inputs(dir: &Path, config: &StudyConfig) -> Result<Inputs, StudyError> {
+    let mut inputs = Inputs::new();
+    for role in config.input_sha256.keys() {
+        let path = input_path(dir, role);
+        let text = fs::read_to_string(&path).map_err(StudyError::io("read", &path))?;
+        inputs.insert(role.clone(), text);
+    }
+    let found = sha256(&inputs);
+    for (role, hash) in &config.input_sha256 {
+        if found.get(role) != Some(hash) {
+            return Err(StudyError::File {
+                path: input_path(dir, role),
+                problem: format!("was changed: its SHA-256 is not the {hash} of study.toml"),
+            });
+        }
+    }
+    Ok(inputs)
+}
+
+fn input_path(dir: &Path, role: &str) -> PathBuf {
+    let extension = if role == "stiffness" { "csv" } else { "toml" };
+    dir.join(INPUTS).join(format!("{role}.{extension}"))
+}
+
+fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
+    let path = dir.join(CONFIG_FILE);
+    let text = toml::to_string(config)
+        .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
+    write_file(&path, &text)
+}
+
+/// Writes a whole file or, if that fails or the process dies, none of it.
+pub fn write_file(path: &Path, text: &str) -> Result<(), StudyError> {
+    if let Some(parent) = path.parent() {
+        fs::create_dir_all(parent).map_err(StudyError::io("create the folder", parent))?;
+    }
+    let mut temporary = path.as_os_str().to_owned();
+    temporary.push(".new");
+    let temporary = PathBuf::from(temporary);
+    let write = || {
+        let mut file = File::create(&temporary)?;
+        file.write_all(text.as_bytes())?;
+        file.sync_all()?;
+        fs::rename(&temporary, path)
+    };
+    write().map_err(StudyError::io("write", path))
+}
+
+/// Makes the names of new files survive a power failure; not every system can.
+fn sync_folder(dir: &Path) -> Result<(), StudyError> {
+    if cfg!(unix) {
+        let sync = || File::open(dir)?.sync_all();
+        sync().map_err(StudyError::io("sync the folder", dir))?;
+    }
+    Ok(())
+}
+
+/// The folder's lock. The system drops it when its process ends, however it ends.
+fn lock(dir: &Path) -> Result<File, StudyError> {
+    let path = dir.join(LOCK_FILE);
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create(true).truncate(false);
+    let mut file = options.open(&path).map_err(StudyError::io("open", &path))?;
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock) => {
+            let mut owner = String::new();
+            // Only for the message: some systems let nobody read a locked file.
+            let _ = file.read_to_string(&mut owner);
+            let owner = if owner.is_empty() { "of unknown number".to_owned() } else { owner };
+            return Err(StudyError::Locked { dir: dir.to_owned(), owner });
+        }
+        Err(TryLockError::Error(error)) => return Err(StudyError::io("lock", &path)(error)),
+    }
+    let sign = |file: &mut File| {
+        file.set_len(0)?;
+        file.rewind()?;
+        write!(file, "number {}", std::process::id())
+    };
+    sign(&mut file).map_err(StudyError::io("write", &path))?;
+    Ok(file)
+}

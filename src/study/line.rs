@@ -1,0 +1,147 @@
+//! The lines of a journal: Optuna's JournalStorage records, with a check.
+//!
+//! A journal begins with a "create study" line and a "study attribute" line;
+//! every further line is one finished evaluation, a whole Optuna trial. Three
+//! fields are ours beside Optuna's: `evaluation` (the index), `check`, and `wall_s`.
+//!
+//! `check` is the beginning (16 hexadecimal digits) of the SHA-256 of the
+//! line's bytes before `,"check"`. After it stand `datetime_start`,
+//! `datetime_complete` and `wall_s`, the only fields that differ between two
+//! runs of the same study; [`super::strip_times`] (or `sed 's/,"datetime_start".*//'`) removes them.
+
+use super::attributes::Attributes;
+use super::record::{Recorded, Timing};
+use super::seal::{seal, unseal};
+use super::time::is_timestamp;
+use crate::space::{Design, Parameter, Space};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Optuna's code of a whole trial.
+const CREATE_TRIAL: u8 = 4;
+/// Optuna's states of a finished trial.
+const COMPLETE: u8 = 1;
+const FAIL: u8 = 3;
+/// Optuna wants to know who wrote a line.
+pub(super) const WORKER: &str = "finger-opt";
+
+/// What is wrong with one line; the journal adds the file and the line number.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum LineError {
+    /// No check, or one that does not fit.
+    #[error("damaged: its contents do not fit its `check`")]
+    Check,
+    /// The check fits, the contents do not.
+    #[error("not a line of this program's journals: {0}")]
+    Format(String),
+    /// Lines are missing, doubled or in the wrong order.
+    #[error("evaluation {found} stands where evaluation {expected} belongs")]
+    Order {
+        /// What the line says.
+        found: u64,
+        /// What its place in the file says.
+        expected: u64,
+    },
+}
+
+#[derive(Serialize, Deserialize)]
+struct TrialLine {
+    op_code: u8,
+    worker_id: String,
+    study_id: u64,
+    evaluation: u64,
+    state: u8,
+    values: Option<Vec<f64>>,
+    params: BTreeMap<String, f64>,
+    distributions: BTreeMap<String, String>,
+    user_attrs: Attributes,
+    system_attrs: Empty,
+    intermediate_values: Empty,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Empty {}
+
+#[derive(Serialize)]
+struct Distribution {
+    name: &'static str,
+    attributes: Bounds,
+}
+
+#[derive(Serialize)]
+struct Bounds {
+    low: f64,
+    high: f64,
+    log: bool,
+    step: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Times {
+    datetime_start: String,
+    datetime_complete: String,
+    wall_s: f64,
+}
+
+/// The line of one evaluation, with its newline.
+pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::Error> {
+    let value = recorded.value.filter(|value| value.is_finite());
+    let content = TrialLine {
+        op_code: CREATE_TRIAL,
+        worker_id: WORKER.to_owned(),
+        study_id: 0,
+        evaluation: recorded.index,
+        state: if value.is_some() { COMPLETE } else { FAIL },
+        values: value.map(|value| vec![value]),
+        params: recorded.design.0.clone(),
+        distributions: space.parameters().iter().map(distribution).collect::<Result<_, _>>()?,
+        user_attrs: Attributes::new(&recorded.evaluation, &recorded.stiffness),
+        system_attrs: Empty {},
+        intermediate_values: Empty {},
+    };
+    let times = Times {
+        datetime_start: recorded.timing.datetime_start.clone(),
+        datetime_complete: recorded.timing.datetime_complete.clone(),
+        wall_s: recorded.timing.wall_s,
+    };
+    seal(&content, Some(&times))
+}
+
+/// The evaluation of a line without its newline; `expected` is the index its place gives it.
+pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
+    let (content, rest) = unseal(line)?;
+    let format = |error: serde_json::Error| LineError::Format(error.to_string());
+    let trial: TrialLine = serde_json::from_str(&content).map_err(format)?;
+    if trial.op_code != CREATE_TRIAL {
+        return Err(LineError::Format(format!("op_code {} is not 4", trial.op_code)));
+    }
+    if trial.evaluation != expected {
+        return Err(LineError::Order { found: trial.evaluation, expected });
+    }
+    let times: Times = serde_json::from_str(&rest).map_err(format)?;
+    for stamp in [&times.datetime_start, &times.datetime_complete] {
+        if !is_timestamp(stamp) {
+            return Err(LineError::Format(format!("`{stamp}` is not a time stamp")));
+        }
+    }
+    Ok(Recorded {
+        index: trial.evaluation,
+        value: trial.values.and_then(|values| values.first().copied()),
+        design: Design(trial.params),
+        stiffness: trial.user_attrs.prediction(),
+        evaluation: trial.user_attrs.evaluation(),
+        timing: Timing {
+            datetime_start: times.datetime_start,
+            datetime_complete: times.datetime_complete,
+            wall_s: times.wall_s,
+        },
+    })
+}
+
+/// A parameter as Optuna describes it: a JSON text within the JSON line.
+fn distribution(parameter: &Parameter) -> Result<(String, String), serde_json::Error> {
+    let Parameter { key, low, high, step, .. } = parameter;
+    let attributes = Bounds { low: *low, high: *high, log: false, step: *step };
+    let text = serde_json::to_string(&Distribution { name: "FloatDistribution", attributes })?;
+    Ok((key.clone(), text))
+}

@@ -1,0 +1,170 @@
+//! Ridge polynomials: the baseline that knows no physics.
+//!
+//! Terms and target are standardised, then fitted by `linfa-elasticnet` with an
+//! L1 share of 0. The penalty is the one with the smallest leave-one-out error
+//! among the designs given, so an outer leave-one-out stays honest.
+
+use super::link::Link;
+use super::{Estimate, Fitted, Infill};
+use linfa::prelude::{Dataset, Fit};
+use linfa_elasticnet::ElasticNet;
+use nalgebra::{DMatrix, DVector};
+use ndarray::{Array1, Array2};
+
+/// Penalties tried, in units of the standardised terms.
+pub(super) const PENALTIES: [f64; 4] = [1e-6, 1e-4, 1e-3, 1e-2];
+
+/// Sweeps of coordinate descent; along principal axes the first one is exact.
+const SWEEPS: u32 = 3;
+
+/// A fitted polynomial in (density, direction) on the scale of its link.
+#[derive(Debug)]
+pub(super) struct Ridge {
+    link: Link,
+    degree: u8,
+    terms: Vec<Standard>,
+    target: Standard,
+    coefficients: Vec<f64>,
+    /// Residual standard deviation, in units of the standardised target.
+    residual_sd: f64,
+    /// Pseudo-inverse of the Gram matrix of the terms, with the constant first.
+    spread: DMatrix<f64>,
+    penalty: f64,
+}
+
+/// Shift and scale that bring values to mean 0 and standard deviation 1.
+#[derive(Debug, Clone, Copy)]
+struct Standard {
+    mean: f64,
+    sd: f64,
+}
+
+impl Standard {
+    fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
+        Standard { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }
+    }
+
+    fn apply(self, value: f64) -> f64 {
+        (value - self.mean) / self.sd
+    }
+}
+
+/// The terms of a polynomial without its constant.
+fn terms(infill: Infill, degree: u8) -> Vec<f64> {
+    // About the middle of the printable range, so that terms are less alike.
+    let (u, v) = (infill[0] / 20.0 - 1.0, infill[1] / 20.0 - 1.0);
+    match degree {
+        1 => vec![u, v],
+        _ => vec![u, v, u * v, u * u, v * v],
+    }
+}
+
+/// Fits with the best of `penalties`; `None` if nothing can be fitted.
+pub(super) fn fit(
+    infills: &[Infill],
+    stiffness: &[f64],
+    degree: u8,
+    link: Link,
+    penalties: &[f64],
+) -> Option<Ridge> {
+    let with = |penalty: f64| {
+        let error = if penalties.len() > 1 {
+            inner_error(infills, stiffness, degree, link, penalty)?
+        } else {
+            0.0
+        };
+        Some((penalty, error))
+    };
+    let (penalty, _) =
+        penalties.iter().filter_map(|&p| with(p)).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    fit_one(infills, stiffness, degree, link, penalty)
+}
+
+/// Mean absolute relative error when each design is left out in turn.
+fn inner_error(
+    infills: &[Infill],
+    stiffness: &[f64],
+    degree: u8,
+    link: Link,
+    penalty: f64,
+) -> Option<f64> {
+    let mut sum = 0.0;
+    for out in 0..infills.len() {
+        let keep = |i: &usize| *i != out;
+        let x: Vec<Infill> = (0..infills.len()).filter(keep).map(|i| infills[i]).collect();
+        let k: Vec<f64> = (0..infills.len()).filter(keep).map(|i| stiffness[i]).collect();
+        let mean = fit_one(&x, &k, degree, link, penalty)?.predict(infills[out]).mean;
+        sum += (mean / stiffness[out] - 1.0).abs();
+    }
+    Some(sum)
+}
+
+fn fit_one(
+    infills: &[Infill],
+    stiffness: &[f64],
+    degree: u8,
+    link: Link,
+    penalty: f64,
+) -> Option<Ridge> {
+    let n = infills.len();
+    let rows: Vec<Vec<f64>> = infills.iter().map(|&p| terms(p, degree)).collect();
+    let count = rows.first()?.len();
+    let scales: Vec<Standard> = (0..count)
+        .map(|j| Standard::of(&rows.iter().map(|row| row[j]).collect::<Vec<_>>()))
+        .collect();
+    let raw: Vec<f64> = stiffness.iter().map(|&k| link.forward(k)).collect();
+    let target = Standard::of(&raw);
+    let x = Array2::from_shape_fn((n, count), |(i, j)| scales[j].apply(rows[i][j]));
+    let y: Array1<f64> = raw.iter().map(|&g| target.apply(g)).collect();
+    let rotation = principal_axes(&x)?;
+    let net = ElasticNet::params()
+        .l1_ratio(0.0)
+        .penalty(penalty)
+        .with_intercept(false)
+        .max_iterations(SWEEPS)
+        .fit(&Dataset::new(x.dot(&rotation), y.clone()))
+        .ok()?;
+    let slopes = rotation.dot(net.hyperplane());
+    let coefficients = slopes.to_vec();
+    let residual = &y - &x.dot(&slopes);
+    let freedom = n.saturating_sub(count + 1).max(1) as f64;
+    let design = DMatrix::from_fn(n, count + 1, |i, j| if j == 0 { 1.0 } else { x[[i, j - 1]] });
+    let spread = (design.transpose() * &design).pseudo_inverse(1e-9).ok()?;
+    let residual_sd = (residual.dot(&residual) / freedom).sqrt();
+    Some(Ridge { link, degree, terms: scales, target, coefficients, residual_sd, spread, penalty })
+}
+
+/// Axes along which the terms are uncorrelated, as columns. The ridge penalty
+/// is the same in any rotated basis, and coordinate descent is quick in this one.
+fn principal_axes(x: &Array2<f64>) -> Option<Array2<f64>> {
+    let (n, count) = x.dim();
+    let svd = DMatrix::from_fn(n, count, |i, j| x[[i, j]]).svd(false, true);
+    let rows = svd.v_t?;
+    Some(Array2::from_shape_fn((count, rows.nrows()), |(i, j)| rows[(j, i)]))
+}
+
+impl Fitted for Ridge {
+    fn predict(&self, infill: Infill) -> Estimate {
+        let scaled: Vec<f64> = terms(infill, self.degree)
+            .iter()
+            .zip(&self.terms)
+            .map(|(&term, standard)| standard.apply(term))
+            .collect();
+        let g: f64 = scaled.iter().zip(&self.coefficients).map(|(x, b)| x * b).sum();
+        let row = DVector::from_iterator(
+            scaled.len() + 1,
+            std::iter::once(1.0).chain(scaled.iter().copied()),
+        );
+        let leverage = row.dot(&(&self.spread * &row));
+        let (mean, slope) = self.link.backward(self.target.mean + self.target.sd * g);
+        let link_sd = self.target.sd * self.residual_sd * (1.0 + leverage).sqrt();
+        Estimate { mean, sd: (slope * link_sd).hypot(super::gp::READING_SD * mean) }
+    }
+
+    fn describe(&self) -> String {
+        format!("polynomial of degree {}, ridge penalty {}", self.degree, self.penalty)
+    }
+}

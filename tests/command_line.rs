@@ -1,0 +1,192 @@
+//! The command line: output, exit codes, and what is said of bad input.
+
+mod common;
+
+use common::{Studies, optimize};
+use std::fs;
+
+const FAKE: [&str; 2] = ["--engine", "fake"];
+
+fn fake(arguments: &[&str]) -> common::Ran {
+    optimize(&[arguments, &FAKE].concat())
+}
+
+#[test]
+fn an_evaluation_prints_the_promised_keys() {
+    let result =
+        fake(&["evaluate", "--task", "usb", "--density", "20", "--direction", "10", "--json"])
+            .json();
+    for key in [
+        "task",
+        "density_percent",
+        "direction_deg",
+        "range_mm",
+        "negative_mm",
+        "positive_mm",
+        "failure_negative",
+        "failure_positive",
+        "failure_counts",
+        "peak_force_n",
+        "trials",
+        "wall_s",
+    ] {
+        assert!(result.get(key).is_some(), "{key} is not in {result}");
+    }
+    assert!(result["stiffness"]["compliance_n_per_mm"].is_f64());
+    assert!(result["stiffness"]["assembly_n_per_mm"].is_f64());
+}
+
+#[test]
+fn a_given_stiffness_bypasses_the_surrogate() {
+    let stiffness = ["--stiffness-compliance", "3", "--stiffness-assembly", "20"];
+    let evaluate = ["evaluate", "--task", "usb", "--json"];
+    let result = fake(&[&evaluate[..], &stiffness].concat()).json();
+    assert_eq!(result["range_mm"], 4.7);
+    assert_eq!(result["failure_negative"], 3);
+    assert_eq!(result["failure_counts"], serde_json::json!([0, 1, 1, 0]));
+    assert_eq!(result["stiffness"]["compliance_n_per_mm"], 3.0);
+}
+
+#[test]
+fn a_trial_prints_the_promised_keys() {
+    let trial = ["trial", "--task", "ket12", "--density", "10", "--direction", "0", "--json"];
+    let inserted = fake(&[&trial[..], &["--offset-mm", "0.5"]].concat()).json();
+    assert_eq!(inserted["outcome"], "inserted");
+    assert!(inserted["failure"].is_null() && inserted["phases"].is_array());
+    for key in ["depth_mm", "tilt_deg", "peak_force_n", "slip_mm"] {
+        assert!(inserted[key].is_f64(), "{key}");
+    }
+    let failed = fake(&[&trial[..], &["--offset-mm", "-9"]].concat()).json();
+    assert_eq!((&failed["outcome"], &failed["failure"]), (&"failed".into(), &3.into()));
+}
+
+#[test]
+fn everything_prints_as_text_too() {
+    let finger = ["--task", "usb", "--density", "20", "--direction", "10"];
+    let window = fake(&[&["evaluate"], &finger[..]].concat());
+    assert!(window.succeeds().contains("window"), "{}", window.stdout);
+    let trial = fake(&[&["trial"], &finger[..]].concat());
+    assert!(trial.succeeds().contains("inserted"), "{}", trial.stdout);
+    for name in ["ket8", "ket12", "rj45", "usb", "infill", "rigid"] {
+        assert!(optimize(&["tasks"]).succeeds().contains(name), "{name}");
+    }
+    assert!(optimize(&["stiffness"]).succeeds().contains("N/mm"));
+    assert!(optimize(&["stiffness", "--json"]).json()["models"].is_array());
+    assert!(optimize(&["--help"]).succeeds().contains("--budget"));
+    assert!(!optimize(&["--help"]).succeeds().contains("fake"));
+}
+
+#[test]
+fn a_study_prints_its_best_design_and_leaves_a_table() {
+    let studies = Studies::new();
+    let result = studies.study("s", 8, &["--json"]).json();
+    assert_eq!(result["evaluations"], 8);
+    assert!(result["best"]["range_mm"].as_f64() > Some(3.0), "{result}");
+    let table = common::read(&studies.dir("s").join("evaluations.csv"));
+    assert_eq!(table.lines().count(), 1 + 8);
+    let text = studies.study("s", 8, &[]);
+    for part in ["best design", "range", "window", "stiffness", "study"] {
+        assert!(text.succeeds().contains(part), "{part} is not in {}", text.stdout);
+    }
+    for file in ["evaluations.csv", "convergence.svg", "report.html"] {
+        fs::remove_file(studies.dir("s").join(file)).expect(file);
+    }
+    optimize(&["report", studies.dir("s").to_str().unwrap()]).succeeds();
+    assert_eq!(common::read(&studies.dir("s").join("evaluations.csv")), table);
+}
+
+#[test]
+fn progress_goes_to_standard_error_unless_quiet() {
+    let studies = Studies::new();
+    let dir = studies.dir("s").to_str().unwrap().to_owned();
+    let study = ["--task", "usb", "--budget", "8", "--out", &dir, "--json"];
+    let loud = fake(&study);
+    assert!(loud.stderr.contains("4/8 evaluations, best "), "{}", loud.stderr);
+    assert_eq!(loud.json()["evaluations"], 8);
+    assert_eq!(studies.study("quiet", 8, &[]).stderr, "");
+}
+
+#[test]
+fn bad_usage_is_answered_with_2_and_what_would_be_right() {
+    for (arguments, parts) in [
+        (&["--budget", "5"][..], &["--task"][..]),
+        (&["--task", "usb"], &["--budget"]),
+        (&[], &["--task", "--budget"]),
+        (&["--task", "usb", "--budget", "0"], &["--budget", "1.."]),
+        (&["--task", "usb", "--budget", "5", "--batch", "0"], &["--batch"]),
+        (&["--task", "usb", "--budget", "5", "--threads", "0"], &["--threads"]),
+        (&["--task", "usb", "--budget", "5", "--seed", "-1"], &["--seed"]),
+        (&["--task", "usb", "--budget", "5", "--optimizer", "pg"], &["gp, cma-es, random"]),
+        (&["--task", "usb", "--budget", "5", "--objective", "x"], &["range, centred-range"]),
+        (&["--task", "usbb", "--budget", "5"], &["usbb", "`usb`", "ket8, ket12, rj45, usb"]),
+        (&["--task", "usb", "--budget", "5", "--robot", "rigit"], &["did you mean `rigid`"]),
+        (&["--task", "usb", "--budget", "5", "--space", "x.toml"], &["x.toml", "space"]),
+        (&["resume", "/nowhere"], &["/nowhere", "not a study"]),
+        (&["report", "/nowhere"], &["/nowhere", "not a study"]),
+        (&["reprot", "x"], &["report"]),
+    ] {
+        optimize(arguments).fails(2, parts);
+    }
+}
+
+#[test]
+fn a_design_outside_the_space_is_answered_with_its_bounds() {
+    for (density, direction, parts) in [
+        ("31", "10", ["--density 31", "infill_density_percent must lie between 10 and 30"]),
+        ("20", "-1", ["--direction -1", "infill_direction_deg must lie between 0 and 40"]),
+        ("nan", "10", ["--density NaN", "infill_density_percent must lie between 10 and 30"]),
+        ("inf", "10", ["--density inf", "between 10 and 30"]),
+    ] {
+        let finger = ["--task", "usb", "--density", density, "--direction", direction];
+        for command in ["evaluate", "trial"] {
+            fake(&[&[command], &finger[..]].concat()).fails(2, &parts);
+        }
+    }
+    let evaluate = ["evaluate", "--task", "usb"];
+    fake(&evaluate).fails(2, &["--density"]);
+    fake(&[&evaluate[..], &["--stiffness-compliance", "3"]].concat())
+        .fails(2, &["--stiffness-assembly"]);
+    for bad in ["0", "-3", "nan", "inf", "soft"] {
+        let stiffness = ["--stiffness-assembly", "20", "--stiffness-compliance", bad];
+        fake(&[&evaluate[..], &stiffness].concat()).fails(2, &["above 0"]);
+    }
+    let trial = ["trial", "--task", "usb", "--density", "20", "--direction", "10"];
+    fake(&[&trial[..], &["--offset-mm", "nan"]].concat()).fails(2, &["--offset-mm"]);
+}
+
+const EXTRA: &str = "[[parameter]]
+key = 'speed_mm_per_s'
+low = 1.0
+high = 2.0
+step = 1.0
+source = ''
+[[parameter]]";
+
+#[test]
+fn a_bad_file_is_named_with_its_key() {
+    let studies = Studies::new();
+    let write = |name: &str, text: &str| {
+        fs::write(studies.dir(name), text).unwrap();
+        studies.dir(name).to_str().unwrap().to_owned()
+    };
+    let space = include_str!("../spaces/infill.toml");
+    for (from, to, part) in [
+        ("low = 10.0", "low = nan", "infill_density_percent"),
+        ("low = 10.0", "low = 50.0", "low must not be above high"),
+        ("step = 1.0", "stop = 1.0", "stop"),
+        ("low = 10.0", "low = ", "line"),
+        ("infill_direction_deg", "infill_direction", "infill_direction_deg: is missing"),
+        ("[[parameter]]", EXTRA, "speed_mm_per_s: has no effect"),
+    ] {
+        let path = write("space.toml", &space.replacen(from, to, 1));
+        studies.study("s", 4, &["--space", &path]).fails(2, &["space.toml", part]);
+    }
+    let data = write("data.csv", "density,stiffness\n1,2\n");
+    studies.study("s", 4, &["--stiffness-data", &data]).fails(2, &["data.csv", "header"]);
+    let plot = studies.dir("none/of.svg");
+    optimize(&["stiffness", "--svg", plot.to_str().unwrap()]).succeeds();
+    assert!(common::read(&plot).contains("<svg"));
+    let task = write("task.toml", "nonsense");
+    optimize(&["--task", &task, "--budget", "4", "--engine", "fake"]).fails(2, &["task.toml"]);
+    assert!(!studies.dir("s").exists(), "bad input leaves no folder behind");
+}

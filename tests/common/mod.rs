@@ -1,0 +1,97 @@
+//! Runs the real binary on the fake engine.
+#![allow(dead_code, reason = "each test file uses its own part of this")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// What a finished command left.
+pub struct Ran {
+    pub code: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Ran {
+    /// Fails unless the exit code is this and standard error holds all of `parts`.
+    pub fn fails(&self, code: i32, parts: &[&str]) {
+        assert_eq!(self.code, Some(code), "{}{}", self.stdout, self.stderr);
+        for part in parts {
+            assert!(self.stderr.contains(part), "`{part}` is not in: {}", self.stderr);
+        }
+    }
+
+    /// Fails unless the command succeeded; gives its standard output.
+    pub fn succeeds(&self) -> &str {
+        assert_eq!(self.code, Some(0), "{}{}", self.stdout, self.stderr);
+        &self.stdout
+    }
+
+    /// Standard output as JSON.
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::from_str(self.succeeds()).expect("JSON on standard output")
+    }
+}
+
+/// The binary with these arguments, not yet started.
+pub fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_optimize"));
+    command.args(arguments).stdin(Stdio::null());
+    command
+}
+
+/// Runs a command to its end.
+pub fn run(command: &mut Command) -> Ran {
+    let Output { status, stdout, stderr } = command.output().expect("the command starts");
+    Ran {
+        code: status.code(),
+        stdout: String::from_utf8(stdout).expect("UTF-8"),
+        stderr: String::from_utf8(stderr).expect("UTF-8"),
+    }
+}
+
+/// Runs the binary to its end.
+pub fn optimize(arguments: &[&str]) -> Ran {
+    run(&mut command(arguments))
+}
+
+/// A folder for one test's studies.
+pub struct Studies(pub TempDir);
+
+impl Studies {
+    pub fn new() -> Self {
+        Studies(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    pub fn dir(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// A quiet study on the fake engine, not yet started; `more` comes last.
+    pub fn command(&self, name: &str, budget: u32, more: &[&str]) -> Command {
+        let (budget, dir) = (budget.to_string(), self.dir(name));
+        let mut command = command(&["--task", "usb", "--engine", "fake", "--quiet"]);
+        command.args(["--budget", &budget]).arg("--out").arg(dir).args(more);
+        command
+    }
+
+    /// Runs a study to its end.
+    pub fn study(&self, name: &str, budget: u32, more: &[&str]) -> Ran {
+        run(&mut self.command(name, budget, more))
+    }
+
+    /// Resumes a study to its end.
+    pub fn resume(&self, name: &str) -> Ran {
+        run(command(&["resume", "--quiet"]).arg(self.dir(name)))
+    }
+
+    /// A study's journal without its times.
+    pub fn journal(&self, name: &str) -> String {
+        finger_opt::study::strip_times(&read(&self.dir(name).join("journal.jsonl")))
+    }
+}
+
+/// A text file that must be there.
+pub fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}

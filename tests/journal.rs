@@ -1,0 +1,286 @@
+//! The journal's lines and files: round trips, damage, failing writes, old versions.
+
+mod common;
+
+use common::{Studies, read};
+use finger_opt::evaluation::{Evaluation, FailureClass, Outcome, Window};
+use finger_opt::objective::Objective;
+use finger_opt::optimizer::{Grid, Observation, Optimizer, StopReason};
+use finger_opt::space::{Design, GridPoint, Space};
+use finger_opt::study::{
+    Ending, Recorded, Runner, Simulated, Store, Study, StudyError, StudyRecord, Timing, decode,
+    encode, strip_times,
+};
+use finger_opt::surrogate::{Estimate, Prediction};
+use finger_opt::trial::fake::FakeRig;
+use proptest::prelude::*;
+use std::io;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+
+const FIXTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/study-v1");
+
+fn space() -> Space {
+    Space::parse(include_str!("../spaces/infill.toml"), "infill.toml").unwrap()
+}
+
+fn outcome() -> impl Strategy<Value = Outcome> {
+    prop_oneof![
+        Just(Outcome::Inserted),
+        Just(Outcome::Diverged),
+        prop::sample::select(FailureClass::ALL.to_vec()).prop_map(Outcome::Failed),
+    ]
+}
+
+fn finite() -> impl Strategy<Value = f64> {
+    any::<f64>().prop_filter("finite", |value| value.is_finite())
+}
+
+fn evaluation() -> impl Strategy<Value = Evaluation> {
+    let ends = (prop::option::of(outcome()), prop::option::of(outcome()));
+    let window = (outcome(), -150..=0i32, 0..=150i32, ends);
+    let counts = (any::<[u32; 4]>(), any::<u32>(), any::<u32>());
+    (window, counts, [finite(), finite(), finite()]).prop_map(|(window, counts, measured)| {
+        let (nominal, negative_steps, positive_steps, (end_negative, end_positive)) = window;
+        let (failure_counts, diverged, trials) = counts;
+        let [peak_force_n, slip_mm, simulated_s] = measured;
+        Evaluation {
+            window: Window { nominal, negative_steps, positive_steps, end_negative, end_positive },
+            failure_counts,
+            diverged,
+            trials,
+            peak_force_n,
+            slip_mm,
+            simulated_s,
+        }
+    })
+}
+
+fn recorded() -> impl Strategy<Value = Recorded> {
+    let design = [finite(), finite()];
+    let stiffness = [finite(), finite(), finite(), finite(), finite()];
+    (any::<u64>(), design, prop::option::of(finite()), stiffness, evaluation(), 0.0..1e9f64)
+        .prop_map(|(index, [density, direction], value, k, evaluation, wall_s)| Recorded {
+            index,
+            design: Design::infill(density, direction),
+            value,
+            stiffness: Prediction {
+                compliance: Estimate { mean: k[0], sd: k[1] },
+                assembly: Estimate { mean: k[2], sd: k[3] },
+                hull_distance: k[4],
+            },
+            evaluation,
+            timing: Timing {
+                datetime_start: "2026-01-02T03:04:05.678901".to_owned(),
+                datetime_complete: "2026-01-02T03:04:06.000000".to_owned(),
+                wall_s,
+            },
+        })
+}
+
+proptest! {
+    #[test]
+    fn a_line_reads_back_to_the_bit(recorded in recorded()) {
+        let line = encode(&recorded, &space()).unwrap();
+        prop_assert!(line.ends_with('\n') && line.lines().count() == 1);
+        prop_assert_eq!(decode(line.trim_end(), recorded.index), Ok(recorded));
+    }
+
+    #[test]
+    fn a_changed_byte_is_noticed_or_concerns_only_the_times(
+        recorded in recorded(),
+        at in any::<prop::sample::Index>(),
+        to in 0x20u8..0x7f,
+    ) {
+        let line = encode(&recorded, &space()).unwrap();
+        let mut bytes = line.trim_end().as_bytes().to_vec();
+        let at = at.index(bytes.len());
+        prop_assume!(bytes[at] != to);
+        bytes[at] = to;
+        let damaged = String::from_utf8(bytes).unwrap();
+        if let Ok(read) = decode(&damaged, recorded.index) {
+            prop_assert_eq!(strip_times(&damaged), strip_times(&line));
+            prop_assert_eq!(Recorded { timing: recorded.timing.clone(), ..read }, recorded);
+        }
+    }
+
+    #[test]
+    fn nothing_makes_a_reader_panic(line in "\\PC*", index in any::<u64>()) {
+        let _ = decode(&line, index);
+    }
+}
+
+/// Walks the grid by strides that depend on what it was told.
+struct Walk {
+    grid: Grid,
+    at: u32,
+    stride: u32,
+}
+
+impl Optimizer for Walk {
+    fn ask(&mut self, n: usize) -> Vec<GridPoint> {
+        let (columns, rows) = (self.grid.levels()[0], self.grid.levels()[1]);
+        let mut next = || {
+            self.at = (self.at + self.stride) % (columns * rows);
+            GridPoint(vec![self.at % columns, self.at / columns])
+        };
+        (0..n).map(|_| next()).collect()
+    }
+
+    fn tell(&mut self, observations: &[Observation]) {
+        let values = observations.iter().filter_map(|observation| observation.value);
+        self.stride = 1 + (values.sum::<f64>() * 10.0) as u32 % 7;
+    }
+
+    fn stop(&self) -> Option<StopReason> {
+        None
+    }
+}
+
+/// Memory whose operations fail from a given one on, as a full disk's do.
+#[derive(Clone)]
+struct Failing {
+    bytes: Arc<Mutex<Vec<u8>>>,
+    /// Operations left before the failures.
+    left: u32,
+    /// Whether cutting back fails as well.
+    truncate_fails: bool,
+}
+
+impl Store for Failing {
+    fn read(&mut self) -> io::Result<Vec<u8>> {
+        Ok(self.bytes.lock().unwrap().clone())
+    }
+
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let fails = self.left == 0;
+        let written = if fails { &bytes[..bytes.len() / 2] } else { bytes };
+        self.bytes.lock().unwrap().extend_from_slice(written);
+        if fails {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.left -= 1;
+        Ok(())
+    }
+
+    fn truncate(&mut self, len: u64) -> io::Result<()> {
+        if self.left == 0 && self.truncate_fails {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.bytes.lock().unwrap().truncate(len as usize);
+        Ok(())
+    }
+}
+
+/// Runs the fixture's configuration with its journal in `store`.
+fn run(dir: &Path, store: Failing) -> Result<Ending, StudyError> {
+    let mut study = Study::resume_with(dir, Box::new(store))?;
+    let grid = Grid::new(study.config.space.levels());
+    let mut optimizer = Walk { grid, at: 0, stride: 1 };
+    let predict = |design: &Design| {
+        let of = |key| Estimate { mean: 1e3 * design.get(key).unwrap_or(0.0) + 1e3, sd: 1.0 };
+        let [compliance, assembly] = ["infill_direction_deg", "infill_density_percent"].map(of);
+        Prediction { compliance, assembly, hull_distance: 0.0 }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    let runner = Runner {
+        evaluator: &Simulated { predict, rig: &FakeRig::default() },
+        objective: Objective::Range,
+        pool: &pool,
+        stop: &AtomicBool::new(false),
+    };
+    runner.run(&mut study, &mut optimizer, &mut |_| ())
+}
+
+#[test]
+fn whichever_write_fails_the_journal_stays_whole_and_the_study_goes_on() {
+    let studies = Studies::new();
+    let dir = studies.dir("s");
+    std::fs::create_dir(&dir).unwrap();
+    std::fs::copy(format!("{FIXTURE}/study.toml"), dir.join("study.toml")).unwrap();
+    let store = |bytes: &[u8], left, truncate_fails| Failing {
+        bytes: Arc::new(Mutex::new(bytes.to_vec())),
+        left,
+        truncate_fails,
+    };
+    let text =
+        |store: &Failing| strip_times(std::str::from_utf8(&store.bytes.lock().unwrap()).unwrap());
+    let undisturbed = store(&[], u32::MAX, false);
+    assert_eq!(run(&dir, undisturbed.clone()).unwrap(), Ending::BudgetSpent);
+    let expected = text(&undisturbed);
+    // The header is one write, each evaluation is one.
+    for writes in 0..11 {
+        for truncate_fails in [false, true] {
+            let failing = store(&[], writes, truncate_fails);
+            let error = run(&dir, failing.clone()).unwrap_err().to_string();
+            assert!(error.contains("journal.jsonl: cannot write"), "{error}");
+            let left = failing.bytes.lock().unwrap().clone();
+            if !truncate_fails {
+                assert!(expected.starts_with(&text(&failing)), "write {writes}");
+            }
+            let again = store(&left, u32::MAX, false);
+            assert_eq!(run(&dir, again.clone()).unwrap(), Ending::BudgetSpent);
+            assert_eq!(text(&again), expected, "write {writes}");
+        }
+    }
+}
+
+#[test]
+fn a_journal_of_other_proposals_is_refused() {
+    let studies = Studies::new();
+    let dir = studies.dir("s");
+    std::fs::create_dir(&dir).unwrap();
+    std::fs::copy(format!("{FIXTURE}/study.toml"), dir.join("study.toml")).unwrap();
+    let journal = read(Path::new(&format!("{FIXTURE}/journal.jsonl"))).into_bytes();
+    let bytes = Arc::new(Mutex::new(journal));
+    let error = run(&dir, Failing { bytes, left: u32::MAX, truncate_fails: false }).unwrap_err();
+    assert!(matches!(error, StudyError::Replay { index: 0, .. }), "{error}");
+    assert!(error.is_bad_input() && error.to_string().contains("another version"), "{error}");
+}
+
+/// Never change this fixture: every later version must read it.
+#[test]
+fn a_study_of_schema_version_1_is_read() {
+    let record = StudyRecord::load(Path::new(FIXTURE)).unwrap();
+    assert_eq!((record.config.task.as_str(), record.config.budget), ("usb", 10));
+    assert_eq!(record.evaluations.len(), 10);
+    let best = record.best().unwrap();
+    assert_eq!((best.index, best.value), (4, Some(6.7)));
+    assert_eq!(best.design, Design::infill(11.0, 6.0));
+    assert_eq!(best.evaluation.window.negative_mm(), -4.8);
+    assert_eq!(best.evaluation.failure_counts, [0, 1, 1, 0]);
+    let stiffness = best.stiffness;
+    assert_eq!((stiffness.compliance.mean, stiffness.assembly.sd), (1410.0000000000002, 2000.0));
+    let diverged = &record.evaluations[6];
+    assert_eq!((diverged.value, diverged.evaluation.diverged), (None, 1));
+    assert_eq!(diverged.evaluation.window.nominal, Outcome::Diverged);
+    assert!(diverged.evaluation.peak_force_n.is_nan());
+}
+
+#[test]
+fn a_newer_schema_version_is_refused() {
+    let studies = Studies::new();
+    std::fs::create_dir(studies.dir("new")).unwrap();
+    for file in ["study.toml", "journal.jsonl"] {
+        let text = read(&Path::new(FIXTURE).join(file));
+        let text = text.replace("\"schema_version\":1,", "\"schema_version\":2,");
+        std::fs::write(studies.dir("new").join(file), reseal(&text)).unwrap();
+    }
+    let error = StudyRecord::load(&studies.dir("new")).unwrap_err().to_string();
+    assert!(error.contains("schema version is 2"), "{error}");
+}
+
+/// The second line with a check that fits.
+fn reseal(text: &str) -> String {
+    use sha2::{Digest, Sha256};
+    let line = |line: &str| match line.split_once(",\"check\":\"") {
+        Some((content, rest)) if content.contains("schema_version") => {
+            let digest = Sha256::digest(content.as_bytes());
+            let check: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
+            format!("{content},\"check\":\"{check}{}\n", &rest[16..])
+        }
+        _ => format!("{line}\n"),
+    };
+    text.lines().map(line).collect()
+}

@@ -1,0 +1,269 @@
+//! Studies: the same seed gives the same journal, whatever happens on the way.
+
+mod common;
+
+use common::{Studies, command, optimize, read, run};
+use finger_opt::stream::stream;
+use rand::RngExt;
+use std::fs;
+use std::io::Write;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Microseconds per trial that let a study of [`BUDGET`] take a few tenths of a second.
+const SLOW: (&str, &str) = ("FINGER_OPT_FAKE_DELAY_US", "100");
+/// Ends within a batch of 4.
+const BUDGET: u32 = 22;
+
+fn reference(studies: &Studies) -> String {
+    studies.study("reference", BUDGET, &[]).succeeds();
+    studies.journal("reference")
+}
+
+fn start(command: &mut Command) -> Child {
+    let command = command.env(SLOW.0, SLOW.1).stdout(Stdio::null()).stderr(Stdio::piped());
+    command.spawn().expect("the command starts")
+}
+
+/// Waits until the journal has so many lines.
+fn wait_for_lines(studies: &Studies, name: &str, lines: usize) {
+    let path = studies.dir(name).join("journal.jsonl");
+    let begun = Instant::now();
+    while fs::read_to_string(&path).unwrap_or_default().lines().count() < lines {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no journal of {lines} lines");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_journal_whatever_the_threads() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    assert_eq!(expected.lines().count(), 2 + BUDGET as usize);
+    for threads in ["1", "2", "8"] {
+        let name = format!("threads-{threads}");
+        let study = &mut studies.command(&name, BUDGET, &["--threads", threads]);
+        run(study.env(SLOW.0, SLOW.1)).succeeds();
+        assert_eq!(studies.journal(&name), expected, "{threads} threads");
+    }
+    studies.study("seed", BUDGET, &["--seed", "1"]).succeeds();
+    assert_ne!(studies.journal("seed").lines().nth(2), expected.lines().nth(2));
+}
+
+#[test]
+fn a_raised_budget_goes_on_as_if_it_had_been_so_from_the_start() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    for budget in [1, 3, 4, 5, 13, BUDGET] {
+        studies.study("raised", budget, &[]).succeeds();
+        assert_eq!(studies.journal("raised").lines().count(), 2 + budget as usize);
+    }
+    assert_eq!(studies.journal("raised"), expected);
+    studies.study("raised", 5, &[]).fails(2, &["budget: the study has 22, now has 5"]);
+    assert_eq!(studies.journal("raised"), expected);
+}
+
+#[test]
+fn every_optimizer_goes_on_as_if_it_had_not_stopped() {
+    let studies = Studies::new();
+    for optimizer in ["gp", "cma-es", "random", "sobol", "grid"] {
+        let more = ["--optimizer", optimizer];
+        studies.study(&format!("{optimizer}-once"), 40, &more).succeeds();
+        for budget in [9, 31, 40] {
+            studies.study(&format!("{optimizer}-thrice"), budget, &more).succeeds();
+        }
+        let journal = |times| studies.journal(&format!("{optimizer}-{times}"));
+        assert_eq!(journal("once"), journal("thrice"), "{optimizer}");
+    }
+}
+
+#[test]
+fn a_study_of_every_design_ends_when_there_are_no_more() {
+    let studies = Studies::new();
+    let space = studies.dir("small.toml");
+    let infill = include_str!("../spaces/infill.toml");
+    let text = infill.replace("high = 30.0", "high = 15.0").replace("high = 40.0", "high = 0.0");
+    fs::write(&space, text).unwrap();
+    let space = space.to_str().unwrap();
+    let result = studies.study("small", 50, &["--json", "--space", space]).json();
+    assert_eq!((&result["evaluations"], &result["ending"]), (&6.into(), &"space_exhausted".into()));
+    // The copy in the study's folder is enough to go on.
+    fs::remove_file(space).unwrap();
+    studies.resume("small").succeeds();
+}
+
+#[test]
+fn fifty_kills_leave_the_same_journal() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    let mut random = stream(0, 0, "kill");
+    let (mut kills, mut round) = (0, 0);
+    while kills < 50 {
+        let name = format!("killed-{round}");
+        for _ in 0..5 {
+            let mut child = start(&mut studies.command(&name, BUDGET, &["--threads", "2"]));
+            std::thread::sleep(Duration::from_micros(random.random_range(0..150_000)));
+            if child.try_wait().unwrap().is_none() {
+                child.kill().unwrap();
+                kills += 1;
+            }
+            child.wait().unwrap();
+        }
+        match studies.dir(&name).join("study.toml").exists() {
+            true => studies.resume(&name).succeeds().len(),
+            false => studies.study(&name, BUDGET, &[]).succeeds().len(),
+        };
+        assert_eq!(studies.journal(&name), expected, "{name}");
+        round += 1;
+    }
+}
+
+#[test]
+fn any_torn_tail_is_cut_off_and_measured_again() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    let path = studies.dir("reference").join("journal.jsonl");
+    let whole = fs::read(&path).unwrap();
+    let mut random = stream(0, 0, "tear");
+    for _ in 0..12 {
+        fs::write(&path, &whole[..random.random_range(0..whole.len())]).unwrap();
+        studies.resume("reference").succeeds();
+        assert_eq!(studies.journal("reference"), expected);
+    }
+    fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(&[0; 100]).unwrap();
+    studies.resume("reference").succeeds();
+    assert_eq!(studies.journal("reference"), expected);
+}
+
+#[test]
+fn damage_in_the_middle_names_the_file_and_the_line() {
+    let studies = Studies::new();
+    reference(&studies);
+    let path = studies.dir("reference").join("journal.jsonl");
+    let whole = read(&path);
+    let lines: Vec<String> = whole.lines().map(str::to_owned).collect();
+    let with = |change: &dyn Fn(&mut Vec<String>)| {
+        let mut lines = lines.clone();
+        change(&mut lines);
+        fs::write(&path, lines.join("\n") + "\n").unwrap();
+        let written = fs::read(&path).unwrap();
+        let ran = studies.resume("reference");
+        assert_eq!(fs::read(&path).unwrap(), written, "a damaged journal is left as it is");
+        ran
+    };
+    let other = lines[6].replace("\"slip_mm\":0.1", "\"slip_mm\":0.2");
+    with(&|lines| lines[6] = other.clone())
+        .fails(2, &["journal.jsonl: line 7", "damaged", "delete line 7"]);
+    with(&|lines| lines[5].clear()).fails(2, &["journal.jsonl: line 6"]);
+    with(&|lines| drop(lines.remove(8))).fails(2, &["line 9", "evaluation 7 stands where"]);
+    with(&|lines| lines.swap(3, 4)).fails(2, &["line 4"]);
+    with(&|lines| lines[0] = "{}".to_owned()).fails(2, &["journal.jsonl", "line 1"]);
+    fs::write(&path, "the list of my bees").unwrap();
+    studies.resume("reference").fails(2, &["journal.jsonl", "not the journal of this study"]);
+    assert_eq!(read(&path), "the list of my bees");
+}
+
+#[test]
+fn a_journal_of_another_study_is_refused() {
+    let studies = Studies::new();
+    reference(&studies);
+    studies.study("other", BUDGET, &["--seed", "7"]).succeeds();
+    let journal = |name| studies.dir(name).join("journal.jsonl");
+    fs::copy(journal("other"), journal("reference")).unwrap();
+    studies.resume("reference").fails(2, &["journal.jsonl", "seed: the journal has 7"]);
+    // Without its study.toml a journal could be anybody's.
+    fs::remove_file(studies.dir("other").join("study.toml")).unwrap();
+    studies.study("other", BUDGET, &["--seed", "7"]).fails(2, &["no study.toml beside it"]);
+    studies.resume("other").fails(2, &["not a study"]);
+}
+
+#[test]
+fn another_configuration_is_refused_field_by_field() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    for (more, field) in [
+        (["--seed", "1"], "seed: the study has 0, now has 1"),
+        (["--batch", "5"], "batch: the study has 4, now has 5"),
+        (["--optimizer", "random"], "optimizer: the study has \"gp\", now has \"random\""),
+        (["--objective", "centred-range"], "objective: the study has \"range\""),
+    ] {
+        studies.study("reference", BUDGET, &more).fails(2, &[field, "another configuration"]);
+    }
+    let config = studies.dir("reference").join("study.toml");
+    let text = read(&config);
+    fs::write(&config, text.replace("program = \"", "program = \"99.")).unwrap();
+    studies.resume("reference").fails(2, &["versions.program"]);
+    fs::write(&config, text.replace("seed = 0", "sead = 0")).unwrap();
+    studies.resume("reference").fails(2, &["study.toml", "sead"]);
+    fs::write(&config, text).unwrap();
+    fs::write(studies.dir("reference").join("inputs/task.toml"), "name = 'x'").unwrap();
+    studies.resume("reference").fails(2, &["task.toml", "was changed"]);
+    assert_eq!(studies.journal("reference"), expected);
+}
+
+#[test]
+fn a_second_process_on_the_same_study_is_refused() {
+    let studies = Studies::new();
+    let mut first = start(&mut studies.command("shared", 10_000, &[]));
+    wait_for_lines(&studies, "shared", 3);
+    let owner = first.id().to_string();
+    studies.study("shared", 10_000, &[]).fails(1, &["another process", &owner, "--out"]);
+    studies.resume("shared").fails(1, &["another process"]);
+    optimize(&["report", studies.dir("shared").to_str().unwrap()]).succeeds();
+    first.kill().unwrap();
+    first.wait().unwrap();
+    // The lock of a dead process blocks nobody.
+    let mut second = start(command(&["resume"]).arg(studies.dir("shared")));
+    wait_for_lines(&studies, "shared", 20);
+    second.kill().unwrap();
+    second.wait().unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_stops_soon_and_says_how_to_go_on() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    let child = start(&mut studies.command("stopped", BUDGET, &[]));
+    wait_for_lines(&studies, "stopped", 5);
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.expect("kill").success());
+    let output = child.wait_with_output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("optimize resume"), "{stderr}");
+    let lines = studies.journal("stopped").lines().count();
+    assert!(lines < expected.lines().count(), "it ran on for {lines} lines");
+    studies.resume("stopped").succeeds();
+    assert_eq!(studies.journal("stopped"), expected);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_stops_the_study_and_loses_nothing() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    let study = studies.command("full", BUDGET, &[]);
+    // A limit of 16 blocks stands in for the disk; it ends within a line.
+    let mut limited = Command::new("sh");
+    limited.args(["-c", "trap '' XFSZ; ulimit -f 16; exec \"$0\" \"$@\""]);
+    let ran = run(limited.arg(study.get_program()).args(study.get_args()));
+    ran.fails(1, &["journal.jsonl: cannot write", "optimize resume"]);
+    let kept = studies.journal("full");
+    assert!(kept.lines().count() > 3 && expected.starts_with(&kept), "{kept}");
+    studies.resume("full").succeeds();
+    assert_eq!(studies.journal("full"), expected);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let studies = Studies::new();
+    fs::write(studies.dir("file"), "").unwrap();
+    studies.study("file/study", 4, &[]).fails(1, &["file/study", "cannot create the folder"]);
+    studies.study("file", 4, &[]).fails(1, &["file: cannot create the folder"]);
+    // A folder where a file belongs refuses writing even to root.
+    fs::create_dir_all(studies.dir("odd/journal.jsonl")).unwrap();
+    studies.study("odd", 4, &[]).fails(2, &["odd/journal.jsonl"]);
+    fs::create_dir_all(studies.dir("locked/.lock")).unwrap();
+    studies.study("locked", 4, &[]).fails(1, &["locked/.lock", "cannot open"]);
+}

@@ -3,6 +3,20 @@
 //! They maximise. They know the unit cube, the number of levels per axis and
 //! the numbers they are told, and nothing of fingers or tasks.
 
+pub mod cmaes;
+pub mod gp;
+mod kind;
+mod lattice;
+mod proposed;
+mod random;
+mod sobol;
+
+pub use kind::{OptimizerKind, UnknownOptimizer, build};
+pub use lattice::GridSearch;
+pub use proposed::Proposed;
+pub use random::RandomSearch;
+pub use sobol::SobolSearch;
+
 use crate::space::GridPoint;
 
 /// The grid of the unit cube: axis `i` has `levels[i]` values
@@ -39,6 +53,19 @@ impl Grid {
             if n == 1 { 0.5 } else { f64::from(k) / f64::from(n - 1) }
         };
         point.0.iter().zip(&self.levels).map(coordinate).collect()
+    }
+
+    /// Whether `point` has one level per axis, each below the axis' count.
+    pub fn contains(&self, point: &GridPoint) -> bool {
+        point.0.len() == self.levels.len() && point.0.iter().zip(&self.levels).all(|(k, n)| k < n)
+    }
+
+    /// The grid point whose cell holds `unit`: each axis is cut into `levels[i]` equal cells,
+    /// so that a uniform `unit` gives every level the same chance ([`snap`](Self::snap) gives
+    /// the two end levels half of one). Coordinates outside [0, 1] are clamped.
+    pub fn cell(&self, unit: &[f64]) -> GridPoint {
+        let level = |(&u, &n): (&f64, &u32)| ((u.max(0.0) * f64::from(n)) as u32).min(n - 1);
+        GridPoint(unit.iter().zip(&self.levels).map(level).collect())
     }
 
     /// The grid point nearest to `unit`; coordinates outside [0, 1] are clamped.

@@ -1,0 +1,71 @@
+//! From told values to what the model is trained on.
+
+/// Values in the model's units: mean 0, variance 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Standardised {
+    /// One value per observation.
+    pub values: Vec<f64>,
+    /// The noise floor as a variance in the same units, in [1e-8, 1].
+    pub noise_floor: f64,
+}
+
+/// Standardises `values`; `noise_floor` is a standard deviation in objective units.
+///
+/// A missing value, and one that is not finite, counts as the worst finite one: the model learns
+/// that the place is bad, but not a number out of all proportion. Constant values become zeros.
+/// `None` if no value is finite.
+pub fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<Standardised> {
+    let finite = || values.iter().flatten().copied().filter(|v| v.is_finite());
+    let worst = finite().reduce(f64::min)?;
+    // Dividing by the largest first keeps sums of huge values finite.
+    let unit = finite().map(f64::abs).fold(f64::MIN_POSITIVE, f64::max);
+    let filled: Vec<f64> =
+        values.iter().map(|v| v.filter(|v| v.is_finite()).unwrap_or(worst) / unit).collect();
+    let n = filled.len() as f64;
+    let mean = filled.iter().sum::<f64>() / n;
+    let deviation = (filled.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
+    if deviation < 1e-13 {
+        return Some(Standardised { values: vec![0.0; filled.len()], noise_floor: 1e-6 });
+    }
+    let floor = noise_floor / unit / deviation;
+    Some(Standardised {
+        values: filled.iter().map(|v| (v - mean) / deviation).collect(),
+        noise_floor: (floor * floor).clamp(1e-8, 1.0),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_result_has_mean_zero_and_variance_one() {
+        let s = standardise(&[Some(1.0), Some(2.0), Some(6.0)], 0.1).unwrap();
+        assert!(s.values.iter().sum::<f64>().abs() < 1e-14);
+        assert!((s.values.iter().map(|v| v * v).sum::<f64>() / 3.0 - 1.0).abs() < 1e-14);
+        assert!((s.noise_floor - 0.01 / (14.0 / 3.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_number_counts_as_the_worst() {
+        let s =
+            standardise(&[None, Some(2.0), Some(f64::NAN), Some(6.0), Some(f64::INFINITY)], 0.0);
+        let s = s.unwrap().values;
+        assert!(s[0] == s[1] && s[2] == s[1] && s[4] == s[1] && s[3] > s[1]);
+    }
+
+    #[test]
+    fn extreme_data_stay_finite() {
+        for values in [
+            vec![Some(1e308), Some(-1e308), Some(1e307)],
+            vec![Some(5.0); 4],
+            vec![Some(0.0)],
+            vec![Some(1e-310), Some(3e-310)],
+        ] {
+            let s = standardise(&values, 0.03).unwrap();
+            assert!(s.values.iter().all(|v| v.is_finite()) && s.noise_floor.is_finite());
+        }
+        assert_eq!(standardise(&[None, Some(f64::NAN)], 0.1), None);
+        assert_eq!(standardise(&[], 0.1), None);
+    }
+}

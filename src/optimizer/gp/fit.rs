@@ -1,0 +1,96 @@
+//! Hyperparameters by maximum a posteriori.
+
+use super::kernel::Hyperparameters;
+use super::lbfgs::{Limits, minimise};
+use super::likelihood::{log_posterior, priors};
+
+/// How much to spend on a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FitEffort {
+    /// Evaluations of the posterior per start.
+    pub evaluations: usize,
+    /// Whether to try the fixed starts beside the warm one.
+    pub restarts: bool,
+}
+
+impl FitEffort {
+    /// The effort for `n` observations: an evaluation costs about `n^3 / 2` multiplications, and
+    /// a fit should stay well below 10 ms. The fixed starts are tried at every fit while data
+    /// are few, and at each tenth observation up to 100.
+    pub fn for_observations(n: usize) -> Self {
+        let cost = (n * n * n / 2).max(1);
+        let evaluations = (12_000_000 / cost).clamp(3, 40);
+        FitEffort { evaluations, restarts: n <= 30 || (n <= 100 && n.is_multiple_of(10)) }
+    }
+}
+
+/// Range of the log length scales: a hundredth of the cube's edge to thirty edges.
+const LOG_LENGTH: (f64, f64) = (-4.6, 3.4);
+/// Range of the log signal variance.
+const LOG_SIGNAL: (f64, f64) = (-4.6, 4.6);
+/// Range of the log noise variance above the floor.
+const LOG_NOISE: (f64, f64) = (-18.4, 0.0);
+
+/// The best hyperparameters found from `warm` (those of the last fit) and, as `effort` says,
+/// from three fixed starts: the prior's mode, short and long length scales.
+/// Falls back to the prior's mode; never fails.
+pub fn fit(
+    x: &[Vec<f64>],
+    y: &[f64],
+    noise_floor: f64,
+    warm: Option<&Hyperparameters>,
+    effort: FitEffort,
+) -> Hyperparameters {
+    let d = x.first().map_or(0, Vec::len);
+    let mode: Vec<f64> = priors(d).into_iter().map(|(mean, _)| mean).collect();
+    let bound = |pick: fn((f64, f64)) -> f64| {
+        let mut bounds = vec![pick(LOG_LENGTH); d];
+        bounds.extend([pick(LOG_SIGNAL), pick(LOG_NOISE)]);
+        bounds
+    };
+    let (low, high) = (bound(|b| b.0), bound(|b| b.1));
+    let limits = Limits { low: &low, high: &high, evaluations: effort.evaluations, gradient: 1e-3 };
+    let mut starts: Vec<Vec<f64>> = warm.map(Hyperparameters::to_vec).into_iter().collect();
+    if effort.restarts || starts.is_empty() {
+        let shifted = |by: f64, noise: f64| {
+            let mut start = mode.clone();
+            start[..d].iter_mut().for_each(|l| *l += by);
+            start[d + 1] = noise;
+            start
+        };
+        starts.extend([mode.clone(), shifted(-1.0, -5.0), shifted(1.0, -12.0)]);
+    }
+    let negated = |theta: &[f64]| {
+        let p = log_posterior(x, y, noise_floor, &Hyperparameters::from_slice(theta))?;
+        Some((-p.value, p.gradient.iter().map(|g| -g).collect()))
+    };
+    let found = starts.iter().filter_map(|start| minimise(negated, start, &limits));
+    let best = found.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(mode, |(theta, _)| theta);
+    Hyperparameters::from_slice(&best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_axis_that_matters_gets_the_shorter_length() {
+        let x: Vec<Vec<f64>> =
+            (0..40).map(|i| vec![f64::from(i) / 39.0, f64::from(i * 17 % 40) / 39.0]).collect();
+        let y: Vec<f64> = x.iter().map(|p| (9.0 * p[0]).sin() * 1.4).collect();
+        let effort = FitEffort { evaluations: 60, restarts: true };
+        let theta = fit(&x, &y, 1e-8, None, effort);
+        assert!(theta.log_length[0] + 1.0 < theta.log_length[1], "{theta:?}");
+        assert!(theta.log_noise < -9.0, "{theta:?}");
+    }
+
+    #[test]
+    fn data_without_shape_do_not_break_it() {
+        let x = vec![vec![0.5, 0.5]; 12];
+        let effort = FitEffort::for_observations(12);
+        for y in [vec![0.0; 12], (0..12).map(|i| f64::from(i % 2)).collect(), vec![f64::NAN; 12]] {
+            assert!(fit(&x, &y, 1e-8, None, effort).to_vec().iter().all(|t| t.is_finite()));
+        }
+        fit(&[], &[], 1e-8, None, effort);
+    }
+}

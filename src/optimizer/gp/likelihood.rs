@@ -1,0 +1,134 @@
+//! Log posterior of the hyperparameters and its gradient.
+
+use super::kernel::{Hyperparameters, distance2, matern52, matern52_slope};
+use super::linalg::{Cholesky, dot, offset, row};
+
+/// Value and gradient at one setting of the hyperparameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posterior {
+    /// Log marginal likelihood plus log priors, up to a constant.
+    pub value: f64,
+    /// Derivatives in the order of [`Hyperparameters::to_vec`].
+    pub gradient: Vec<f64>,
+}
+
+/// Mean and standard deviation of the normal prior of each log hyperparameter.
+///
+/// Length scales: Hvarfner et al. 2024 (arXiv 2402.02229), whose log-normal prior grows with
+/// the square root of the dimension; its mode in the scale itself is the mean here. Signal
+/// and noise: about 1 and 1e-4 of the variance of the data, both very wide.
+pub(super) fn priors(dimension: usize) -> Vec<(f64, f64)> {
+    let length = std::f64::consts::SQRT_2 - 3.0 + 0.5 * libm::log(dimension.max(1) as f64);
+    let mut priors = vec![(length, 3f64.sqrt()); dimension];
+    priors.extend([(0.0, 1.5), (-9.2, 3.0)]);
+    priors
+}
+
+/// The generalised least squares mean, `K^-1 (y - mean)` with it, and the quadratic form.
+pub(super) fn residual(factor: &Cholesky, y: &[f64]) -> (f64, Vec<f64>) {
+    let ones = factor.solve(&vec![1.0; y.len()]);
+    let sum: f64 = ones.iter().sum();
+    let mean = if sum > 0.0 { dot(&ones, y) / sum } else { 0.0 };
+    let centred: Vec<f64> = y.iter().map(|v| v - mean).collect();
+    let alpha = factor.solve(&centred);
+    (mean, alpha)
+}
+
+/// Log posterior of `theta` for points `x` of the unit cube with standardised values `y`.
+/// The constant mean is profiled out, which leaves the gradient as it is at fixed mean.
+/// `None` if the covariance is not positive definite.
+pub fn log_posterior(
+    x: &[Vec<f64>],
+    y: &[f64],
+    noise_floor: f64,
+    theta: &Hyperparameters,
+) -> Option<Posterior> {
+    let (n, d) = (y.len(), theta.log_length.len());
+    let scaled: Vec<Vec<f64>> = x.iter().map(|p| theta.scale(p)).collect();
+    let (signal, noise) = (libm::exp(theta.log_signal), libm::exp(theta.log_noise));
+    let mut k = Vec::with_capacity(offset(n));
+    let mut slope = Vec::with_capacity(offset(n));
+    for i in 0..n {
+        for j in 0..=i {
+            let r2 = distance2(&scaled[i], &scaled[j]);
+            k.push(signal * matern52(r2));
+            slope.push(2.0 * signal * matern52_slope(r2));
+        }
+        k[offset(i) + i] += noise_floor + noise;
+    }
+    let factor = Cholesky::new(&k, n)?;
+    let (mean, alpha) = residual(&factor, y);
+    let quadratic: f64 = alpha.iter().zip(y).map(|(a, y)| a * (y - mean)).sum();
+    let mut value = -0.5 * (quadratic + factor.log_determinant());
+
+    // d LML / d theta = 1/2 sum_ij (alpha_i alpha_j - (K^-1)_ij) dK_ij / d theta.
+    let inverse = factor.inverse();
+    let mut gradient = vec![0.0; d + 2];
+    let (mut through_k, mut trace) = (0.0, 0.0);
+    for i in 0..n {
+        let (ki, si, vi) = (row(&k, i), row(&slope, i), row(&inverse, i));
+        for j in 0..i {
+            let weight = alpha[i] * alpha[j] - vi[j];
+            through_k += weight * ki[j];
+            let by_length = weight * si[j];
+            for a in 0..d {
+                let difference = scaled[i][a] - scaled[j][a];
+                gradient[a] += by_length * difference * difference;
+            }
+        }
+        trace += alpha[i] * alpha[i] - vi[i];
+    }
+    gradient[d] = through_k + 0.5 * trace * signal;
+    gradient[d + 1] = 0.5 * trace * noise;
+
+    for ((t, g), (mean, std)) in theta.to_vec().iter().zip(&mut gradient).zip(priors(d)) {
+        let z = (t - mean) / std;
+        value -= 0.5 * z * z;
+        *g -= z / std;
+    }
+    value.is_finite().then_some(Posterior { value, gradient })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn data() -> (Vec<Vec<f64>>, Vec<f64>) {
+        let x: Vec<Vec<f64>> = (0..14)
+            .map(|i| vec![f64::from(i * 5 % 14) / 13.0, f64::from(i * 3 % 14) / 13.0])
+            .collect();
+        let y = x.iter().map(|p| (5.0 * p[0]).sin() + p[1] * p[1] - 0.4).collect();
+        (x, y)
+    }
+
+    #[test]
+    fn the_gradient_is_that_of_finite_differences() {
+        let (x, y) = data();
+        for theta in [[-1.0, 0.3, 0.2, -4.0], [-2.0, -0.5, -0.4, -9.0], [0.5, 1.0, 1.0, -1.0]] {
+            let at = |theta: &[f64]| {
+                log_posterior(&x, &y, 1e-4, &Hyperparameters::from_slice(theta)).unwrap()
+            };
+            let gradient = at(&theta).gradient;
+            for i in 0..4 {
+                let h = 1e-5;
+                let (mut up, mut down) = (theta, theta);
+                up[i] += h;
+                down[i] -= h;
+                let difference = (at(&up).value - at(&down).value) / (2.0 * h);
+                let error = (gradient[i] - difference).abs() / difference.abs().max(1.0);
+                assert!(error < 1e-6, "{i}: {} and {difference}", gradient[i]);
+            }
+        }
+    }
+
+    #[test]
+    fn the_value_is_that_of_a_two_point_process_worked_by_hand() {
+        let theta = Hyperparameters { log_length: vec![0.0], log_signal: 0.0, log_noise: -40.0 };
+        let x = [vec![0.0], vec![1.0]];
+        let value = |y: [f64; 2]| log_posterior(&x, &y, 0.1, &theta).unwrap().value;
+        // The mean of (1, -1) is 0; K = [[1.1, k], [k, 1.1]] has (1, -1) as an eigenvector.
+        let k = matern52(1.0);
+        let difference = value([1.0, -1.0]) - value([0.0, 0.0]);
+        assert!((difference + 0.5 * 2.0 / (1.1 - k)).abs() < 1e-12, "{difference}");
+    }
+}

@@ -1,0 +1,26 @@
+//! Bayesian optimization with an exact Gaussian process.
+//!
+//! Matern 5/2 with one length scale per axis, constant mean, fitted noise; hyperparameters by
+//! maximum a posteriori; log expected improvement (Ament et al. 2023, arXiv 2310.20708)
+//! maximised over the grid; batches by the kriging believer.
+//!
+//! The linear algebra is our own and plain: libraries that choose their kernels by the CPU at
+//! hand would let the proposals depend on the machine.
+
+mod acquisition;
+mod data;
+mod fit;
+mod kernel;
+mod lbfgs;
+mod likelihood;
+mod linalg;
+mod model;
+mod optimizer;
+mod search;
+
+pub use acquisition::{log_expected_improvement, log_h};
+pub use fit::{FitEffort, fit};
+pub use kernel::Hyperparameters;
+pub use likelihood::{Posterior, log_posterior};
+pub use model::Gp;
+pub use optimizer::{DEFAULT_NOISE_FLOOR, GpOptimizer};

@@ -1,0 +1,94 @@
+//! Optimizers by name.
+
+use super::cmaes::CmaEsOptimizer;
+use super::gp::GpOptimizer;
+use super::{Grid, GridSearch, Optimizer, RandomSearch, SobolSearch};
+use std::fmt;
+use std::str::FromStr;
+
+/// The optimizers a study can be run with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum OptimizerKind {
+    /// `gp`: Gaussian process with log expected improvement.
+    Gp,
+    /// `cma-es`: CMA-ES with BIPOP restarts.
+    CmaEs,
+    /// `random`: uniform, without replacement.
+    Random,
+    /// `sobol`: scrambled Sobol sequence.
+    Sobol,
+    /// `grid`: coarse-to-fine full factorial.
+    Grid,
+}
+
+impl OptimizerKind {
+    /// All kinds, in the order in which help texts list them.
+    pub const ALL: [OptimizerKind; 5] =
+        [Self::Gp, Self::CmaEs, Self::Random, Self::Sobol, Self::Grid];
+
+    /// The name as written on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gp => "gp",
+            Self::CmaEs => "cma-es",
+            Self::Random => "random",
+            Self::Sobol => "sobol",
+            Self::Grid => "grid",
+        }
+    }
+}
+
+impl fmt::Display for OptimizerKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// A name that is none of [`OptimizerKind::ALL`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown optimizer '{name}'; valid names are {}", valid_names())]
+pub struct UnknownOptimizer {
+    /// The name as given.
+    pub name: String,
+}
+
+fn valid_names() -> String {
+    OptimizerKind::ALL.map(OptimizerKind::name).join(", ")
+}
+
+impl FromStr for OptimizerKind {
+    type Err = UnknownOptimizer;
+
+    fn from_str(name: &str) -> Result<Self, UnknownOptimizer> {
+        let found = Self::ALL.into_iter().find(|kind| kind.name() == name);
+        found.ok_or_else(|| UnknownOptimizer { name: name.to_owned() })
+    }
+}
+
+/// The optimizer of that kind over `grid`, with its default settings.
+pub fn build(kind: OptimizerKind, grid: Grid, seed: u64) -> Box<dyn Optimizer + Send> {
+    match kind {
+        OptimizerKind::Gp => Box::new(GpOptimizer::new(grid, seed)),
+        OptimizerKind::CmaEs => Box::new(CmaEsOptimizer::new(grid, seed)),
+        OptimizerKind::Random => Box::new(RandomSearch::new(grid, seed)),
+        OptimizerKind::Sobol => Box::new(SobolSearch::new(grid, seed)),
+        OptimizerKind::Grid => Box::new(GridSearch::new(grid)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_round_trip_and_a_wrong_one_lists_the_right_ones() {
+        for kind in OptimizerKind::ALL {
+            assert_eq!(kind.to_string().parse(), Ok(kind));
+        }
+        let error = "bayes".parse::<OptimizerKind>().unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "unknown optimizer 'bayes'; valid names are gp, cma-es, random, sobol, grid"
+        );
+    }
+}

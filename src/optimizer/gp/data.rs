@@ -1,5 +1,7 @@
 //! From told values to what the model is trained on.
 
+use super::warp::warp;
+
 /// Values in the model's units: mean 0, variance 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Standardised {
@@ -28,10 +30,18 @@ pub fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<Standardi
         return Some(Standardised { values: vec![0.0; filled.len()], noise_floor: 1e-6 });
     }
     let floor = noise_floor / unit / deviation;
-    Some(Standardised {
-        values: filled.iter().map(|v| (v - mean) / deviation).collect(),
-        noise_floor: (floor * floor).clamp(1e-8, 1.0),
-    })
+    let values = filled.iter().map(|v| (v - mean) / deviation).collect();
+    Some(Standardised { values, noise_floor: (floor * floor).clamp(1e-8, 1.0) })
+}
+
+impl Standardised {
+    /// The same values under the power transformation that makes them most nearly normal, with
+    /// the noise floor at the scale's average slope; unchanged if there is none.
+    pub fn warped(self) -> Self {
+        let Some(warped) = warp(&self.values) else { return self };
+        let noise_floor = (self.noise_floor * warped.slope * warped.slope).clamp(1e-8, 1.0);
+        Standardised { values: warped.values, noise_floor }
+    }
 }
 
 #[cfg(test)]

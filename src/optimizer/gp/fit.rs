@@ -19,7 +19,7 @@ impl FitEffort {
     /// are few, and at each tenth observation up to 100.
     pub fn for_observations(n: usize) -> Self {
         let cost = (n * n * n / 2).max(1);
-        let evaluations = (12_000_000 / cost).clamp(3, 40);
+        let evaluations = (10_000_000 / cost).clamp(2, 40);
         FitEffort { evaluations, restarts: n <= 30 || (n <= 100 && n.is_multiple_of(10)) }
     }
 }

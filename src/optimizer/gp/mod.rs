@@ -1,6 +1,6 @@
 //! Bayesian optimization with an exact Gaussian process.
 //!
-//! Matern 5/2 with one length scale per axis, constant mean, fitted noise; hyperparameters by
+//! Values standardised and warped; Matern 5/2 with one length scale per axis, constant mean, fitted noise; hyperparameters by
 //! maximum a posteriori; log expected improvement (Ament et al. 2023, arXiv 2310.20708)
 //! maximised over the grid; batches by the kriging believer.
 //!
@@ -17,6 +17,7 @@ mod linalg;
 mod model;
 mod optimizer;
 mod search;
+mod warp;
 
 pub use acquisition::{log_expected_improvement, log_h};
 pub use fit::{FitEffort, fit};

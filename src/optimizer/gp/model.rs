@@ -9,6 +9,8 @@ use super::linalg::{Cholesky, dot, offset};
 #[derive(Debug, Clone)]
 pub struct Gp {
     theta: Hyperparameters,
+    /// One over each length scale.
+    inverse_length: Vec<f64>,
     signal: f64,
     noise: f64,
     mean: f64,
@@ -43,6 +45,7 @@ impl Gp {
             (0..axes).map(|a| scaled.iter().map(|p| p[a]).collect()).collect();
         let mut noise = noise_floor + libm::exp(theta.log_noise);
         let mut gp = Gp {
+            inverse_length: theta.log_length.iter().map(|l| libm::exp(-l)).collect(),
             theta,
             signal,
             noise,
@@ -89,7 +92,7 @@ impl Gp {
     /// Posterior mean and variance of the function (without noise) at a point.
     pub fn predict(&self, x: &[f64]) -> (f64, f64) {
         let mut k = Vec::new();
-        self.covariances(&self.theta.scale(x), self.len(), &mut k);
+        self.covariances(&self.scale(x), self.len(), &mut k);
         let v = self.factor.forward(&k);
         (self.mean + dot(&k, &self.alpha), (self.signal - dot(&v, &v)).max(0.0))
     }
@@ -97,7 +100,7 @@ impl Gp {
     /// Takes the posterior mean at `x` for observed (kriging believer). The mean stays as it is,
     /// the variance falls. Nothing changes if `x` cannot be told from points already there.
     pub fn believe(&mut self, x: &[f64]) {
-        let scaled = self.theta.scale(x);
+        let scaled = self.scale(x);
         let mut k = Vec::new();
         self.covariances(&scaled, self.len(), &mut k);
         if self.factor.append(&k, self.signal + self.noise) {
@@ -134,7 +137,11 @@ impl Gp {
 
     /// Covariances of a candidate of the unit cube with all observations.
     pub(super) fn cross(&self, x: &[f64], k: &mut Vec<f64>) {
-        self.covariances(&self.theta.scale(x), self.len(), k);
+        self.covariances(&self.scale(x), self.len(), k);
+    }
+
+    fn scale(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().zip(&self.inverse_length).map(|(x, i)| x * i).collect()
     }
 
     /// Covariances of a scaled point with the first `n` observations.

@@ -17,8 +17,8 @@ const INCUMBENTS: usize = 4;
 
 /// Bayesian optimization over a grid. **Maximises.**
 ///
-/// - *First design*: `max(5, 2 d + 1)` points of a scrambled Sobol sequence, `d` the number of
-///   axes with more than one level.
+/// - *First design*: `max(5, d + 1)` points of a scrambled Sobol sequence, `d` the number of axes
+///   with more than one level.
 /// - *Then*: the unseen point with the largest log expected improvement over the best posterior
 ///   mean at an observed point. Hyperparameters are refitted when new values were told.
 /// - *Batches*, and points asked and not yet told: kriging believer.
@@ -77,7 +77,7 @@ impl GpOptimizer {
     }
 
     fn design_size(&self) -> u64 {
-        (2 * self.free.len() as u64 + 1).max(5)
+        (self.free.len() as u64 + 1).max(5)
     }
 
     fn unit(&self, point: &GridPoint) -> Vec<f64> {
@@ -91,7 +91,7 @@ impl GpOptimizer {
             return self.model.clone();
         }
         let values: Vec<Option<f64>> = self.told.iter().map(|o| o.value).collect();
-        let data = standardise(&values, self.noise_floor)?;
+        let data = standardise(&values, self.noise_floor)?.warped();
         let x: Vec<Vec<f64>> = self.told.iter().map(|o| self.unit(&o.point)).collect();
         let effort = FitEffort::for_observations(x.len());
         let theta = fit(&x, &data.values, data.noise_floor, self.theta.as_ref(), effort);

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Grids up to this size are searched completely.
 const EXHAUSTIVE: u64 = 20_000;
 /// ... as long as grid size times observations stays below this (some ten milliseconds).
-const EXHAUSTIVE_WORK: u64 = 2_000_000;
+const EXHAUSTIVE_WORK: u64 = 1_000_000;
 /// Starts of the local search.
 const STARTS: usize = 6;
 
@@ -96,8 +96,8 @@ impl Search<'_> {
     /// coordinate search on the lattice with halving steps.
     fn sampled(&self) -> Option<GridPoint> {
         let n = self.gp.len();
-        // A prediction takes about n^2 / 4 + 15 n nanoseconds; some eight milliseconds in all.
-        let mut budget = (8_000_000 / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
+        // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
+        let mut budget = (6_000_000 / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
         let mut memory: BTreeMap<GridPoint, f64> = BTreeMap::new();
         let spread = budget / 3;
         let mut candidates = self.candidates(spread);

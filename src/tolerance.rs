@@ -8,11 +8,32 @@ use crate::units::MM;
 /// Farthest offset tried, in grid steps: well beyond any published window (9 mm).
 pub const OFFSET_LIMIT_STEPS: OffsetStep = 150;
 
+/// How the window's ends are looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Search {
+    /// In strides of 0.5 mm outward to the first failure, then by bisection
+    /// between the last two: a quarter of the trials. It finds the end that
+    /// the walk finds unless a gap in the window is narrower than a stride.
+    #[default]
+    Strides,
+    /// Step by step outward to the first failure: the paper's way.
+    Walk,
+}
+
+impl Search {
+    fn stride(self) -> OffsetStep {
+        match self {
+            Search::Strides => 5,
+            Search::Walk => 1,
+        }
+    }
+}
+
 /// Measures one finger: its window, and what all trials on the way reported.
 ///
-/// The start is shifted outward in 0.1 mm steps in both directions until the
-/// first trial that does not insert (the paper, Sec. "Robot Movement").
-pub fn evaluate(rig: &dyn Rig, finger: &Finger) -> Evaluation {
+/// The start is shifted outward on the 0.1 mm grid in both directions until
+/// the first trial that does not insert (the paper, Sec. "Robot Movement").
+pub fn evaluate(rig: &dyn Rig, finger: &Finger, search: Search) -> Evaluation {
     let grasped = rig.grasp(finger);
     let nominal = grasped.trial(0.0);
     let mut log = Log::default();
@@ -27,8 +48,10 @@ pub fn evaluate(rig: &dyn Rig, finger: &Finger) -> Evaluation {
         };
         return log.evaluation(window);
     }
-    let ((negative, log_negative), (positive, log_positive)) =
-        rayon::join(|| scan(&*grasped, -1), || scan(&*grasped, 1));
+    let ((negative, log_negative), (positive, log_positive)) = rayon::join(
+        || find_end(&*grasped, -1, search.stride()),
+        || find_end(&*grasped, 1, search.stride()),
+    );
     log.merge(&log_negative);
     log.merge(&log_positive);
     log.evaluation(Window {
@@ -41,16 +64,33 @@ pub fn evaluate(rig: &dyn Rig, finger: &Finger) -> Evaluation {
 }
 
 /// The last inserting step in one direction and what the next one did.
-fn scan(grasped: &dyn Grasped, sign: OffsetStep) -> ((OffsetStep, Option<Outcome>), Log) {
+fn find_end(
+    grasped: &dyn Grasped,
+    sign: OffsetStep,
+    stride: OffsetStep,
+) -> ((OffsetStep, Option<Outcome>), Log) {
     let mut log = Log::default();
-    for step in 1..=OFFSET_LIMIT_STEPS {
+    let mut trial = |step: OffsetStep| {
         let trial = grasped.trial(offset(sign * step));
         log.add(&trial);
-        if trial.outcome != Outcome::Inserted {
-            return ((step - 1, Some(trial.outcome)), log);
+        trial.outcome
+    };
+    let (mut inside, mut outside) = (0, None);
+    while outside.is_none() && inside < OFFSET_LIMIT_STEPS {
+        let step = (inside + stride).min(OFFSET_LIMIT_STEPS);
+        match trial(step) {
+            Outcome::Inserted => inside = step,
+            failure => outside = Some((step, failure)),
         }
     }
-    ((OFFSET_LIMIT_STEPS, None), log)
+    while let Some((step, _)) = outside.filter(|(step, _)| step - inside > 1) {
+        let middle = (inside + step) / 2;
+        match trial(middle) {
+            Outcome::Inserted => inside = middle,
+            failure => outside = Some((middle, failure)),
+        }
+    }
+    ((inside, outside.map(|(_, failure)| failure)), log)
 }
 
 /// The offset of a grid step, m.
@@ -114,15 +154,28 @@ mod tests {
     use crate::units::N_PER_MM;
 
     #[test]
-    fn the_window_of_the_closed_form_is_found_on_the_grid() {
+    fn both_searches_find_the_window_of_the_closed_form() {
         // -(2 + 4/3) = -3.33 and 1 + 20/50 = 1.4 mm.
         let finger = Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM);
-        let found = evaluate(&FakeRig::default(), &finger);
-        assert_eq!((found.window.negative_mm(), found.window.positive_mm()), (-3.3, 1.4));
-        assert_eq!(found.window.range_mm(), 4.7);
-        assert_eq!(found.window.end_negative, Some(Outcome::Failed(FailureClass::Jammed)));
-        assert_eq!(found.window.end_positive, Some(Outcome::Failed(FailureClass::PlugMissed)));
-        assert_eq!(found.failure_counts, [0, 1, 1, 0]);
-        assert_eq!(found.trials, 1 + 34 + 15);
+        let walk = evaluate(&FakeRig::default(), &finger, Search::Walk);
+        assert_eq!((walk.window.negative_mm(), walk.window.positive_mm()), (-3.3, 1.4));
+        assert_eq!(walk.window.range_mm(), 4.7);
+        assert_eq!(walk.window.end_negative, Some(Outcome::Failed(FailureClass::Jammed)));
+        assert_eq!(walk.window.end_positive, Some(Outcome::Failed(FailureClass::PlugMissed)));
+        assert_eq!(walk.failure_counts, [0, 1, 1, 0]);
+        assert_eq!(walk.trials, 1 + 34 + 15);
+        let strides = evaluate(&FakeRig::default(), &finger, Search::Strides);
+        assert_eq!(strides.window, walk.window);
+        assert!(strides.trials < walk.trials / 2, "{} trials", strides.trials);
+    }
+
+    #[test]
+    fn the_two_searches_agree_over_the_designs() {
+        for k in 1..40 {
+            let finger = Finger::new(f64::from(k) * 0.1 * N_PER_MM, f64::from(k) * N_PER_MM);
+            let [a, b] = [Search::Walk, Search::Strides]
+                .map(|search| evaluate(&FakeRig::default(), &finger, search).window);
+            assert_eq!(a, b, "{finger:?}");
+        }
     }
 }

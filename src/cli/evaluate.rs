@@ -7,7 +7,7 @@ use clap::Args;
 use finger_opt::finger::Finger;
 use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use finger_opt::surrogate::Prediction;
-use finger_opt::tolerance;
+use finger_opt::tolerance::{self, Search};
 use finger_opt::units::N_PER_MM;
 use serde_json::{Value, json};
 use std::time::Instant;
@@ -19,6 +19,9 @@ pub struct Arguments {
     setup: SetupArguments,
     #[command(flatten)]
     finger: FingerArguments,
+    /// Try every 0.1 mm step up to the first failure, as the paper does (slow)
+    #[arg(long)]
+    walk: bool,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -65,7 +68,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
     let clock = Instant::now();
-    let evaluation = tolerance::evaluate(&*setup.rig, &chosen.finger);
+    let search = if arguments.walk { Search::Walk } else { Search::Strides };
+    let evaluation = tolerance::evaluate(&*setup.rig, &chosen.finger, search);
     let wall_s = clock.elapsed().as_secs_f64();
     if arguments.json {
         let mut fields = chosen.json(&setup, &arguments.finger);

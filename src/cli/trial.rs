@@ -6,7 +6,8 @@ use super::summary::{failure, merge, outcome_word};
 use super::{Failure, print, print_json};
 use clap::Args;
 use finger_opt::evaluation::Outcome;
-use finger_opt::trial::Trial;
+use finger_opt::study::write_file;
+use finger_opt::trial::{Trial, picture};
 use finger_opt::units::MM;
 use serde_json::json;
 
@@ -24,6 +25,9 @@ pub struct Arguments {
     #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0,
           value_parser = offset)]
     offset_mm: f64,
+    /// Draw plug, fingertips and socket at the end of each phase
+    #[arg(long, value_name = "FILE.svg")]
+    svg: Option<std::path::PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -34,6 +38,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
     let trial = setup.rig.grasp(&chosen.finger).trial(arguments.offset_mm * MM);
+    if let Some(file) = &arguments.svg {
+        write_file(file, &picture::svg(&setup.task, &trial))?;
+    }
     if arguments.json {
         let mut fields = chosen.json(&setup, &arguments.finger);
         merge(

@@ -4,7 +4,7 @@ use crate::finger::Finger;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use crate::study::{Recorded, StudyConfig, Timing, Versions};
 use crate::surrogate::{Measurement, Model, SHIPPED_CSV, SHIPPED_FILE, fit, parse};
-use crate::tolerance::evaluate;
+use crate::tolerance::{Search, evaluate};
 use crate::trial::fake::FakeRig;
 use std::collections::BTreeMap;
 
@@ -44,7 +44,7 @@ fn study() -> StudyRecord {
         let direction = (index * 29 % 41) as f64;
         let stiffness = model.predict(density, direction);
         let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-        let evaluation = evaluate(&FakeRig::default(), &finger);
+        let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
         recorded(index, [density, direction], stiffness, evaluation)
     });
     record("usb", evaluations.collect())
@@ -138,7 +138,7 @@ fn a_measured_design_shows_our_value_beside_the_published_ones() {
     let model = model();
     let stiffness = model.predict(20.0, 20.0);
     let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-    let evaluation = evaluate(&FakeRig::default(), &finger);
+    let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
     let ours = format!("<td>{:.1} mm (3 | 2)</td>", evaluation.window.range_mm());
     let one = record("usb", vec![recorded(0, [20.0, 20.0], stiffness, evaluation)]);
     let page = html(&one, &measured()).unwrap();
@@ -152,7 +152,7 @@ fn a_best_design_outside_the_hull_is_warned_of() {
     let model = model();
     let stiffness = model.predict(10.0, 40.0);
     let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-    let evaluation = evaluate(&FakeRig::default(), &finger);
+    let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
     let page =
         html(&record("usb", vec![recorded(0, [10.0, 40.0], stiffness, evaluation)]), &measured());
     let distance = format!("by {:.2} of the measured span", stiffness.hull_distance);

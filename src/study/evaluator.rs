@@ -4,7 +4,7 @@ use crate::evaluation::{Evaluation, Outcome};
 use crate::finger::Finger;
 use crate::space::Design;
 use crate::surrogate::Prediction;
-use crate::tolerance;
+use crate::tolerance::{self, Search};
 use crate::trial::{Grasped, Rig, Trial};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -35,7 +35,10 @@ impl<P: Fn(&Design) -> Prediction + Sync> Evaluate for Simulated<'_, P> {
     fn evaluate(&self, design: &Design) -> Measured {
         let stiffness = (self.predict)(design);
         let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-        Measured { stiffness, evaluation: tolerance::evaluate(self.rig, &finger) }
+        Measured {
+            stiffness,
+            evaluation: tolerance::evaluate(self.rig, &finger, Search::default()),
+        }
     }
 }
 

@@ -73,7 +73,7 @@ mod tests {
     fn a_move_starts_and_ends_at_rest_and_peaks_at_15_eighths() {
         let at = |x| Tcp { position: Vector3::new(x, 0.0, 0.0), tilt: 0.0 };
         let motion = Move::new(at(0.0), at(0.01), 0.05);
-        assert_eq!(motion.duration(), 0.2);
+        assert!((motion.duration() - 0.2).abs() < 1e-12);
         let speed = |t: f64| (motion.at(t + 1e-6).position.x - motion.at(t).position.x) / 1e-6;
         assert!(speed(0.0) < 1e-6 && speed(0.2 - 1e-6) < 1e-6);
         assert!((speed(0.1) / 0.05 - 15.0 / 8.0).abs() < 1e-3);

@@ -241,17 +241,22 @@ fn other_spaces_have_no_map_but_a_page() {
     assert!(page.contains("has no infill density and direction"));
 }
 
-/// Writes the pages to `$FINGER_OPT_LOOK`, to be looked at.
+/// Every page and plot can be drawn; they are written to `$FINGER_OPT_LOOK`, if
+/// it is set, to be looked at.
 #[test]
-#[ignore = "for the eye: set FINGER_OPT_LOOK to a folder"]
-fn write_everything() {
-    let dir = std::path::PathBuf::from(std::env::var("FINGER_OPT_LOOK").unwrap());
-    let write = |name: &str, text: String| std::fs::write(dir.join(name), text).unwrap();
+fn everything_can_be_drawn() {
+    let dir = std::env::var_os("FINGER_OPT_LOOK").map(std::path::PathBuf::from);
+    let write = |name: &str, text: String| {
+        assert!(!text.is_empty(), "{name}");
+        if let Some(dir) = &dir {
+            std::fs::write(dir.join(name), text).unwrap();
+        }
+    };
     let jammed = Outcome::Failed(FailureClass::Jammed);
     let failed = record("usb", vec![at_nominal(0, [10.0, 0.0], jammed)]);
     write("report.html", html(&study(), &measured()).unwrap());
     write("failed.html", html(&failed, &measured()).unwrap());
     write("convergence.svg", convergence_svg(&study()).unwrap());
     write("stiffness.svg", stiffness::svg(&model()).unwrap());
-    println!("{}", stiffness::table(&model()));
+    write("stiffness.txt", stiffness::table(&model()));
 }

@@ -119,6 +119,15 @@ impl World for RapierWorld {
         }
     }
 
+    fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>) {
+        let body = &mut self.world.bodies[self.bodies[body.0]];
+        // rapier adds up what it is given until told to forget it.
+        body.reset_forces(true);
+        body.reset_torques(true);
+        body.add_force(vector(&force), true);
+        body.add_torque(vector(&moment), true);
+    }
+
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
         let per_step = 1.0 / self.world.integration_parameters.dt;
         let (first, second) = (self.bodies[first.0], self.bodies[second.0]);

@@ -3,6 +3,7 @@
 use crate::scene::{BodyId, JointId, Pose, Scene, Spring};
 use nalgebra::Vector3;
 
+pub mod direct;
 pub mod rapier;
 
 /// Builds worlds from scenes.

@@ -1,0 +1,193 @@
+//! Elimination of bodies from the system matrix, six rows at a time.
+//!
+//! The matrix couples bodies that share a joint. Bodies that touch nothing
+//! (flange, jaws) are eliminated first by a block Cholesky factorisation; what
+//! remains is a small dense system of the bodies that may touch.
+
+use nalgebra::{Cholesky, Const, Matrix6, SVector};
+
+/// Velocity (linear of the centre of mass, angular) or impulse, world axes.
+pub(super) type Vector6 = SVector<f64, 6>;
+
+const NONE: usize = usize::MAX;
+
+/// A symmetric matrix of 6x6 blocks with a fixed pattern; its lower half is kept.
+#[derive(Clone)]
+pub(super) struct Blocks {
+    /// Number of bodies.
+    size: usize,
+    /// How many of them are eliminated.
+    eliminated: usize,
+    /// Where a block (row >= column) is kept.
+    index: Vec<usize>,
+    blocks: Vec<Matrix6<f64>>,
+    factors: Vec<Cholesky<f64, Const<6>>>,
+}
+
+impl Blocks {
+    /// A matrix with the blocks that couple the pairs, and those that the
+    /// elimination of the first `eliminated` bodies fills in.
+    pub fn new(size: usize, eliminated: usize, pairs: &[(usize, usize)]) -> Self {
+        let mut present = vec![false; size * size];
+        for i in 0..size {
+            present[i * size + i] = true;
+        }
+        for &(a, b) in pairs {
+            present[a.max(b) * size + a.min(b)] = true;
+        }
+        for k in 0..eliminated {
+            for i in k + 1..size {
+                for j in k + 1..=i {
+                    if present[i * size + k] && present[j * size + k] {
+                        present[i * size + j] = true;
+                    }
+                }
+            }
+        }
+        let mut count = 0;
+        let place = |&there: &bool| {
+            if !there {
+                return NONE;
+            }
+            count += 1;
+            count - 1
+        };
+        let index: Vec<usize> = present.iter().map(place).collect();
+        Blocks {
+            size,
+            eliminated,
+            index,
+            blocks: vec![Matrix6::zeros(); count],
+            factors: Vec::with_capacity(eliminated),
+        }
+    }
+
+    /// Sets every block to zero.
+    pub fn clear(&mut self) {
+        self.blocks.fill(Matrix6::zeros());
+    }
+
+    /// Adds to the block of a row and a column, `row >= column`.
+    pub fn add(&mut self, row: usize, column: usize, block: &Matrix6<f64>) {
+        let at = self.index[row * self.size + column];
+        self.blocks[at] += block;
+    }
+
+    fn get(&self, row: usize, column: usize) -> Option<&Matrix6<f64>> {
+        self.blocks.get(self.index[row * self.size + column])
+    }
+
+    /// Eliminates; None if the matrix is not positive definite (or not finite).
+    pub fn eliminate(&mut self) -> Option<()> {
+        self.factors.clear();
+        for k in 0..self.eliminated {
+            let factor = Cholesky::new(*self.get(k, k)?)?;
+            let lower = factor.l();
+            self.factors.push(factor);
+            for i in k + 1..self.size {
+                let at = self.index[i * self.size + k];
+                if at == NONE {
+                    continue;
+                }
+                // L_ik = A_ik L_kk^-T
+                let mut side = self.blocks[at].transpose();
+                lower.solve_lower_triangular_mut(&mut side);
+                self.blocks[at] = side.transpose();
+                for j in k + 1..=i {
+                    let other = self.index[j * self.size + k];
+                    if other == NONE {
+                        continue;
+                    }
+                    let product = self.blocks[at] * self.blocks[other].transpose();
+                    let to = self.index[i * self.size + j];
+                    self.blocks[to] -= product;
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Carries the eliminated bodies' right-hand sides over to the others.
+    pub fn reduce(&self, rhs: &mut [Vector6]) {
+        for (k, factor) in self.factors.iter().enumerate() {
+            factor.l_dirty().solve_lower_triangular_mut(&mut rhs[k]);
+            for i in k + 1..self.size {
+                if let Some(side) = self.get(i, k) {
+                    let carried = side * rhs[k];
+                    rhs[i] -= carried;
+                }
+            }
+        }
+    }
+
+    /// The eliminated bodies' solution, once that of the others is in place.
+    pub fn expand(&self, rhs: &mut [Vector6]) {
+        for (k, factor) in self.factors.iter().enumerate().rev() {
+            for i in k + 1..self.size {
+                if let Some(side) = self.get(i, k) {
+                    let carried = side.tr_mul(&rhs[i]);
+                    rhs[k] -= carried;
+                }
+            }
+            factor.l_dirty().tr_solve_lower_triangular_mut(&mut rhs[k]);
+        }
+    }
+
+    /// The remaining matrix, dense, row by row, both halves.
+    pub fn remainder(&self, dense: &mut [f64]) {
+        let n = 6 * (self.size - self.eliminated);
+        dense.fill(0.0);
+        for i in self.eliminated..self.size {
+            for j in self.eliminated..=i {
+                let Some(block) = self.get(i, j) else { continue };
+                let (row, column) = (6 * (i - self.eliminated), 6 * (j - self.eliminated));
+                for r in 0..6 {
+                    for c in 0..6 {
+                        dense[(row + r) * n + column + c] = block[(r, c)];
+                        dense[(column + c) * n + row + r] = block[(r, c)];
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elimination_and_expansion_solve_the_system() {
+        // A chain 2 - 0 - 1 - 3 with 0 and 1 eliminated.
+        let pairs = [(0, 1), (0, 2), (1, 3)];
+        let mut system = Blocks::new(4, 2, &pairs);
+        let block = |seed: usize| Matrix6::from_fn(|r, c| ((seed + 7 * r + 3 * c) as f64).sin());
+        let mut whole = nalgebra::DMatrix::<f64>::zeros(24, 24);
+        for i in 0..4 {
+            let diagonal = block(i) * block(i).transpose() + Matrix6::identity() * 20.0;
+            system.add(i, i, &diagonal);
+            whole.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&diagonal);
+        }
+        for &(a, b) in &pairs {
+            system.add(b, a, &block(a + b));
+            whole.view_mut((6 * b, 6 * a), (6, 6)).copy_from(&block(a + b));
+            whole.view_mut((6 * a, 6 * b), (6, 6)).copy_from(&block(a + b).transpose());
+        }
+        let mut rhs: Vec<Vector6> =
+            (0..4).map(|i| Vector6::from_fn(|r, _| (i + r) as f64)).collect();
+        let expected = whole.lu().solve(&nalgebra::DVector::from_fn(24, |i, _| rhs[i / 6][i % 6]));
+        system.eliminate().expect("positive definite");
+        system.reduce(&mut rhs);
+        let mut dense = vec![0.0; 144];
+        system.remainder(&mut dense);
+        let reduced = nalgebra::DMatrix::from_row_slice(12, 12, &dense);
+        let right = nalgebra::DVector::from_fn(12, |i, _| rhs[2 + i / 6][i % 6]);
+        let solved = reduced.lu().solve(&right).expect("regular");
+        for i in 0..12 {
+            rhs[2 + i / 6][i % 6] = solved[i];
+        }
+        system.expand(&mut rhs);
+        let expected = expected.expect("regular");
+        assert!((0..24).all(|i| (rhs[i / 6][i % 6] - expected[i]).abs() < 1e-12));
+    }
+}

@@ -1,0 +1,140 @@
+//! Bodies: pose, velocity and mass of each, and how they move on.
+
+use super::blocks::Vector6;
+use crate::scene::{self, Inertia, Motion, Pose};
+use nalgebra::{Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
+
+/// How a body's velocity comes about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Kind {
+    /// It has none.
+    Fixed,
+    /// It is what takes the body to this pose within the step.
+    Driven(Pose),
+    /// It is solved for; the index is the body's place in the system.
+    Dynamic(usize),
+}
+
+/// A body in motion.
+#[derive(Debug, Clone)]
+pub(super) struct Body {
+    pub kind: Kind,
+    /// Body frame in the world.
+    pub pose: Pose,
+    inertia: Inertia,
+    weightless: bool,
+    /// Centre of mass in the world, m; the body frame's origin if it has no mass.
+    pub centre: Point3<f64>,
+    /// Of the centre of mass (m/s) and angular (rad/s), world axes.
+    pub velocity: Vector6,
+    /// Angular momentum about the centre of mass, N m s, world axes. It, not the
+    /// angular velocity, is carried from step to step: that is the gyroscopic
+    /// term, to first order in the step (negligible in an insertion anyway).
+    spin: Vector3<f64>,
+    /// Inertia about the centre of mass, world axes, kg m2.
+    tensor: Matrix3<f64>,
+}
+
+impl Body {
+    /// At rest; `place` is the place in the system if the body is dynamic.
+    pub fn new(body: &scene::Body, place: usize) -> Self {
+        let (kind, inertia, weightless) = match body.motion {
+            Motion::Fixed => (Kind::Fixed, MASSLESS, true),
+            Motion::Driven => (Kind::Driven(body.pose), MASSLESS, true),
+            Motion::Free(inertia) => (Kind::Dynamic(place), inertia, false),
+            Motion::Carried(inertia) => (Kind::Dynamic(place), inertia, true),
+        };
+        let mut made = Body {
+            kind,
+            pose: body.pose,
+            inertia,
+            weightless,
+            centre: Point3::origin(),
+            velocity: Vector6::zeros(),
+            spin: Vector3::zeros(),
+            tensor: Matrix3::zeros(),
+        };
+        made.refresh();
+        made
+    }
+
+    /// Place in the system of a dynamic body.
+    pub fn place(&self) -> Option<usize> {
+        if let Kind::Dynamic(place) = self.kind { Some(place) } else { None }
+    }
+
+    /// Puts the body elsewhere, at rest.
+    pub fn put(&mut self, pose: Pose) {
+        self.pose = pose;
+        if let Kind::Driven(target) = &mut self.kind {
+            *target = pose;
+        }
+        self.refresh();
+    }
+
+    /// Mass matrix about the centre of mass, world axes.
+    pub fn mass(&self) -> Matrix6<f64> {
+        let mut mass = Matrix6::from_diagonal_element(self.inertia.mass);
+        mass.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.tensor);
+        mass
+    }
+
+    /// Momentum at the end of a step in which only gravity acts.
+    pub fn momentum(&self, gravity: &Vector3<f64>, step: f64) -> Vector6 {
+        let gained = if self.weightless { Vector3::zeros() } else { gravity * step };
+        let linear = (self.velocity.fixed_rows::<3>(0) + gained) * self.inertia.mass;
+        let mut all = Vector6::zeros();
+        all.fixed_rows_mut::<3>(0).copy_from(&linear);
+        all.fixed_rows_mut::<3>(3).copy_from(&self.spin);
+        all
+    }
+
+    /// Gives a driven body the velocity that takes it to its target.
+    pub fn steer(&mut self, step: f64) {
+        let Kind::Driven(target) = self.kind else { return };
+        let moved = target.translation.vector - self.pose.translation.vector;
+        let turned = (target.rotation * self.pose.rotation.inverse()).scaled_axis();
+        self.velocity.fixed_rows_mut::<3>(0).copy_from(&(moved / step));
+        self.velocity.fixed_rows_mut::<3>(3).copy_from(&(turned / step));
+    }
+
+    /// Moves on with the velocity; the turn is the exponential of it.
+    pub fn advance(&mut self, step: f64) {
+        match self.kind {
+            Kind::Fixed => return,
+            Kind::Driven(target) => self.pose = target,
+            Kind::Dynamic(_) => {
+                let angular = self.velocity.fixed_rows::<3>(3).into_owned();
+                self.spin = self.tensor * angular;
+                let centre = self.centre + self.velocity.fixed_rows::<3>(0) * step;
+                let turn = UnitQuaternion::from_scaled_axis(angular * step);
+                let rotation =
+                    UnitQuaternion::new_normalize((turn * self.pose.rotation).into_inner());
+                let origin = centre - rotation * self.inertia.centre.coords;
+                self.pose = Pose::from_parts(Translation3::from(origin), rotation);
+            }
+        }
+        self.refresh();
+    }
+
+    /// Whether pose and velocity are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        let pose = self.pose.translation.vector.iter().chain(self.pose.rotation.coords.iter());
+        pose.chain(self.velocity.iter()).all(|x| x.is_finite())
+    }
+
+    /// Velocity of the point of the body at `arm` from its centre, m/s.
+    #[cfg(test)]
+    pub fn kinetic_energy(&self) -> f64 {
+        0.5 * self.velocity.dot(&(self.mass() * self.velocity))
+    }
+
+    fn refresh(&mut self) {
+        self.centre = self.pose * self.inertia.centre;
+        let axes = self.pose.rotation.to_rotation_matrix().into_inner();
+        self.tensor = axes * Matrix3::from_diagonal(&self.inertia.moments) * axes.transpose();
+    }
+}
+
+const MASSLESS: Inertia =
+    Inertia { mass: 0.0, centre: Point3::new(0.0, 0.0, 0.0), moments: Vector3::new(0.0, 0.0, 0.0) };

@@ -1,0 +1,176 @@
+//! Joints as implicit springs and dampers.
+//!
+//! With the coordinates `q` (translations of the child's joint frame along, and
+//! the rotation vector about, the axes of the parent's) and their exact Jacobian
+//! `J`, the force at the end of the step, `f = -k (q + h J v - target) - c J v`,
+//! adds `J^T (h c + h^2 k) J` to the system and `-h J^T k (q - target)` to its
+//! right-hand side: stable for any stiffness, and exact at rest. A locked axis is
+//! a very stiff spring (0.1 um at 100 N). A servo at its limit pushes with the
+//! limit; which servos are is settled by repeating the step's solution.
+
+use super::blocks::{Blocks, Vector6};
+use super::body::{Body, Kind};
+use crate::scene::{self, Axis, Pose, Spring};
+use nalgebra::{Matrix3, Matrix6, Vector3};
+
+/// Stiffness of a locked translation, N/m.
+const LOCKED: f64 = 1e9;
+/// Stiffness of a locked rotation, N m/rad: as stiff at an arm of 30 mm.
+const LOCKED_TURN: f64 = 1e6;
+
+/// One axis of a joint.
+#[derive(Debug, Clone, Copy)]
+struct Drive {
+    spring: Spring,
+    /// The sign of the force if the servo is at its limit, else 0.
+    saturated: f64,
+}
+
+/// A joint with its coordinates at the start of the step.
+#[derive(Debug, Clone)]
+pub(super) struct Joint {
+    parent: usize,
+    child: usize,
+    in_parent: Pose,
+    in_child: Pose,
+    drives: [Drive; 6],
+    /// m, rad.
+    position: Vector6,
+    /// Of the coordinates by the child's and by the parent's velocity.
+    by_child: Matrix6<f64>,
+    by_parent: Matrix6<f64>,
+}
+
+impl Joint {
+    pub fn new(joint: &scene::Joint) -> Self {
+        let drive = |i: usize| {
+            let spring = match joint.axes[i] {
+                Axis::Sprung(spring) => spring,
+                Axis::Locked => Spring::new(if i < 3 { LOCKED } else { LOCKED_TURN }, 0.0),
+            };
+            Drive { spring, saturated: 0.0 }
+        };
+        Joint {
+            parent: joint.parent.0,
+            child: joint.child.0,
+            in_parent: joint.in_parent,
+            in_child: joint.in_child,
+            drives: std::array::from_fn(drive),
+            position: Vector6::zeros(),
+            by_child: Matrix6::zeros(),
+            by_parent: Matrix6::zeros(),
+        }
+    }
+
+    /// Replaces the spring of an axis; a servo stays at its limit till the next step.
+    pub fn set(&mut self, axis: usize, spring: Spring) {
+        let drive = &mut self.drives[axis];
+        drive.spring = spring;
+        if spring.limit.is_infinite() {
+            drive.saturated = 0.0;
+        }
+    }
+
+    /// Coordinates and their Jacobian at the bodies' poses.
+    pub fn locate(&mut self, bodies: &[Body]) {
+        let (parent, child) = (&bodies[self.parent], &bodies[self.child]);
+        let (p, c) = (parent.pose * self.in_parent, child.pose * self.in_child);
+        let relative = p.inv_mul(&c);
+        let turn = relative.rotation.scaled_axis();
+        self.position.fixed_rows_mut::<3>(0).copy_from(&relative.translation.vector);
+        self.position.fixed_rows_mut::<3>(3).copy_from(&turn);
+        let axes = p.rotation.inverse().to_rotation_matrix().into_inner();
+        let angular = inverse_left_jacobian(&turn) * axes;
+        // Both bodies' points where the child's joint frame is now.
+        let place = c.translation.vector;
+        self.by_child = jacobian(&axes, &angular, &(place - child.centre.coords));
+        self.by_parent = -jacobian(&axes, &angular, &(place - parent.centre.coords));
+    }
+
+    /// Adds the springs to the system and its right-hand side.
+    pub fn assemble(&self, bodies: &[Body], step: f64, system: &mut Blocks, rhs: &mut [Vector6]) {
+        let mut stiff = Vector6::zeros();
+        let mut push = Vector6::zeros();
+        for (i, drive) in self.drives.iter().enumerate() {
+            if drive.saturated == 0.0 {
+                stiff[i] = step * (drive.spring.damping + step * drive.spring.stiffness);
+                push[i] = -step * drive.spring.stiffness * (self.position[i] - drive.spring.target);
+            } else {
+                push[i] = step * drive.saturated * drive.spring.limit;
+            }
+        }
+        // A driven end moves at a known velocity: it belongs on the right-hand side.
+        for (end, jacobian) in [(self.parent, &self.by_parent), (self.child, &self.by_child)] {
+            if let Kind::Driven(_) = bodies[end].kind {
+                push -= stiff.component_mul(&(jacobian * bodies[end].velocity));
+            }
+        }
+        let weighted = |jacobian: &Matrix6<f64>| {
+            let mut rows = *jacobian;
+            for (i, mut row) in rows.row_iter_mut().enumerate() {
+                row *= stiff[i];
+            }
+            rows
+        };
+        let (parent, child) = (bodies[self.parent].place(), bodies[self.child].place());
+        for (place, jacobian) in [(parent, &self.by_parent), (child, &self.by_child)] {
+            if let Some(place) = place {
+                system.add(place, place, &jacobian.tr_mul(&weighted(jacobian)));
+                rhs[place] += jacobian.tr_mul(&push);
+            }
+        }
+        if let (Some(p), Some(c)) = (parent, child) {
+            if p > c {
+                system.add(p, c, &self.by_parent.tr_mul(&weighted(&self.by_child)));
+            } else {
+                system.add(c, p, &self.by_child.tr_mul(&weighted(&self.by_parent)));
+            }
+        }
+    }
+
+    /// Whether every servo is at its limit, or not, as was assumed when the
+    /// bodies' velocities were solved for; sets it right for another try.
+    pub fn settle(&mut self, bodies: &[Body], step: f64) -> bool {
+        if self.drives.iter().all(|drive| drive.spring.limit.is_infinite()) {
+            return true;
+        }
+        let rate = self.by_child * bodies[self.child].velocity
+            + self.by_parent * bodies[self.parent].velocity;
+        let mut settled = true;
+        for (i, drive) in self.drives.iter_mut().enumerate() {
+            let Spring { stiffness, damping, target, limit } = drive.spring;
+            let end = self.position[i] + step * rate[i];
+            let force = -stiffness * (end - target) - damping * rate[i];
+            // A margin, lest rounding flips it for ever.
+            let now = if force.abs() > limit * (1.0 + 1e-9) { force.signum() } else { 0.0 };
+            settled &= now == drive.saturated;
+            drive.saturated = now;
+        }
+        settled
+    }
+}
+
+/// Rows of `axes (v + w x arm)` and of `angular w`.
+fn jacobian(axes: &Matrix3<f64>, angular: &Matrix3<f64>, arm: &Vector3<f64>) -> Matrix6<f64> {
+    let mut made = Matrix6::zeros();
+    made.fixed_view_mut::<3, 3>(0, 0).copy_from(axes);
+    made.fixed_view_mut::<3, 3>(0, 3).copy_from(&-(axes * arm.cross_matrix()));
+    made.fixed_view_mut::<3, 3>(3, 3).copy_from(angular);
+    made
+}
+
+/// Rate of the rotation vector by the angular velocity in the same (parent's)
+/// axes: `1 - [t]/2 + (1/|t|^2 - cot(|t|/2)/(2 |t|)) [t]^2` (Bullo and Murray
+/// 1995, "Proportional derivative control on the Euclidean group").
+fn inverse_left_jacobian(turn: &Vector3<f64>) -> Matrix3<f64> {
+    let angle = turn.norm();
+    let cross = turn.cross_matrix();
+    let second = if angle < 1e-3 {
+        // Series: 1/12 + angle^2/720.
+        1.0 / 12.0 + angle * angle / 720.0
+    } else {
+        let half = 0.5 * angle;
+        (1.0 - half / half.tan()) / (angle * angle)
+    };
+    Matrix3::identity() - cross * 0.5 + cross * cross * second
+}

@@ -1,0 +1,69 @@
+//! Shapes for collision detection by parry, in millimetres: some of its
+//! tolerances are absolute and made for metre-sized things (in metres it drops
+//! the crossing of two edges of 1 mm that meet at less than a degree).
+
+use crate::scene::{Pose, Shape};
+use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use parry::math as pm;
+use parry::shape::SharedShape;
+use rapier3d_f64::parry;
+
+/// Millimetres per metre.
+pub(super) const SCALE: f64 = 1e3;
+
+/// The shape, and the turn from parry's frame of it to ours.
+pub(super) fn shared(shape: &Shape) -> (SharedShape, Pose) {
+    match shape {
+        Shape::Box { half } => {
+            let half = half * SCALE;
+            (SharedShape::cuboid(half.x, half.y, half.z), Pose::identity())
+        }
+        Shape::Cylinder { half_height, radius } => {
+            // parry's cylinders stand along y, ours along z.
+            let quarter = std::f64::consts::FRAC_PI_2;
+            let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), quarter);
+            let shape = SharedShape::cylinder(half_height * SCALE, radius * SCALE);
+            (shape, Pose::from_parts(Translation3::identity(), turn))
+        }
+        Shape::Hull { points } => {
+            let points: Vec<_> = points.iter().map(|p| vector(&(p.coords * SCALE))).collect();
+            // The task file's checks leave no degenerate hull; a ball would be seen at once.
+            let hull = SharedShape::convex_hull(&points);
+            (hull.unwrap_or_else(|| SharedShape::ball(0.0)), Pose::identity())
+        }
+    }
+}
+
+/// Half extents, in m, of the box about the shape's frame that encloses it, and its centre.
+pub(super) fn bounds(shape: &Shape) -> (Vector3<f64>, Vector3<f64>) {
+    match shape {
+        Shape::Box { half } => (Vector3::zeros(), *half),
+        Shape::Cylinder { half_height, radius } => {
+            (Vector3::zeros(), Vector3::new(*radius, *radius, *half_height))
+        }
+        Shape::Hull { points } => {
+            let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+            let (low, high) = points
+                .iter()
+                .fold(start, |(low, high), p| (low.inf(&p.coords), high.sup(&p.coords)));
+            ((low + high) / 2.0, (high - low) / 2.0)
+        }
+    }
+}
+
+/// To parry's vector, no change of unit.
+pub(super) fn vector(v: &Vector3<f64>) -> pm::Vector {
+    pm::Vector::new(v.x, v.y, v.z)
+}
+
+/// From parry's vector, no change of unit.
+pub(super) fn from_vector(v: pm::Vector) -> Vector3<f64> {
+    Vector3::new(v.x, v.y, v.z)
+}
+
+/// A pose in metres to parry's in millimetres.
+pub(super) fn pose(pose: &Pose) -> pm::Pose {
+    let q = pose.rotation.coords;
+    let rotation = pm::Rotation::from_xyzw(q.x, q.y, q.z, q.w);
+    pm::Pose::from_parts(vector(&(pose.translation.vector * SCALE)), rotation)
+}

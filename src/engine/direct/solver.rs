@@ -1,0 +1,319 @@
+//! The velocities at the end of a step: Newton's method on a convex potential.
+//!
+//! With the reduced system `S`, right-hand side `r` and the contacts' potentials
+//! the velocities minimise `v.S v/2 - r.v + sum of potentials`; its gradient is
+//! the out-of-balance impulse `S v - r - sum J^T l`. The potential's cone law has
+//! associated friction, which would lift a sliding contact by `mu |u_t| h`; the
+//! term `s = mu |u_t|` of De Saxce and Feng (1998, Math. Comput. Modelling 28)
+//! takes that back, by a fixed point about the Newton iterations (Acary, Cadoux,
+//! Lemarechal and Malick 2011, ZAMM 91).
+
+use super::blocks::Vector6;
+use super::cone::{Cone, Pull, State};
+use super::dense;
+use nalgebra::{Matrix3, Vector3};
+
+/// Out-of-balance force at which an iteration ends, N (N per 10 mm for moments).
+const FORCE_TOLERANCE: f64 = 1e-4;
+/// Arm by which moments are compared with forces, m.
+const ARM: f64 = 0.01;
+/// Newton iterations at most, in a step.
+const ITERATIONS: usize = 60;
+/// Error of the sliding term that is let go, m/s: 0.1 um in a step of 0.1 ms.
+const SLIDING_TOLERANCE: f64 = 1e-3;
+/// Rounds of the fixed point at most.
+const ROUNDS: usize = 6;
+
+/// A contact as the solver sees it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Contact {
+    /// First and second body: place in the reduced system, if they move freely.
+    pub place: [Option<usize>; 2],
+    /// Contact point from each body's centre of mass, world, m.
+    pub arm: [Vector3<f64>; 2],
+    /// Unit normal from the first to the second.
+    pub normal: Vector3<f64>,
+    /// Relative velocity by the bodies whose motion is given, m/s.
+    pub drift: Vector3<f64>,
+    /// Least approach velocity that the gap allows, `gap / h`, m/s.
+    pub bias: f64,
+    /// Law of contact.
+    pub cone: Cone,
+    /// De Saxce's term, m/s.
+    slide: f64,
+    /// Relative velocity, m/s.
+    velocity: Vector3<f64>,
+    /// Its change along the line of search.
+    change: Vector3<f64>,
+    /// Impulse on the second body, N s.
+    pub impulse: Vector3<f64>,
+}
+
+impl Contact {
+    /// A contact between bodies at these places with these arms.
+    pub fn new(
+        place: [Option<usize>; 2],
+        arm: [Vector3<f64>; 2],
+        normal: Vector3<f64>,
+        cone: Cone,
+    ) -> Self {
+        let zero = Vector3::zeros();
+        Contact {
+            place,
+            arm,
+            normal,
+            drift: zero,
+            bias: 0.0,
+            cone,
+            slide: 0.0,
+            velocity: zero,
+            change: zero,
+            impulse: zero,
+        }
+    }
+
+    /// Relative velocity by the free bodies' velocities.
+    fn relative(&self, velocities: &[Vector6]) -> Vector3<f64> {
+        let mut sum = Vector3::zeros();
+        for (side, sign) in [(0, -1.0), (1, 1.0)] {
+            if let Some(place) = self.place[side] {
+                let v = &velocities[place];
+                let linear = Vector3::new(v[0], v[1], v[2]);
+                let angular = Vector3::new(v[3], v[4], v[5]);
+                sum += (linear + angular.cross(&self.arm[side])) * sign;
+            }
+        }
+        sum
+    }
+
+    fn pull(&self, along: f64) -> Pull {
+        Pull::new(&(self.velocity + self.change * along), &self.normal, self.bias + self.slide)
+    }
+
+    /// What the contact would slide at, times its friction.
+    fn sliding(&self) -> f64 {
+        let along = self.velocity.dot(&self.normal);
+        self.cone.mu * (self.velocity - self.normal * along).norm()
+    }
+}
+
+/// What a solution took.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Effort {
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Rounds of the fixed point.
+    pub rounds: usize,
+    /// Whether the force tolerance was met.
+    pub converged: bool,
+}
+
+/// The reduced problem and its workspace.
+#[derive(Clone)]
+pub(super) struct Solver {
+    /// Rows of the reduced system, row by row.
+    pub system: Vec<f64>,
+    /// Right-hand side.
+    pub rhs: Vec<Vector6>,
+    /// The solution; on entry, the first guess.
+    pub velocities: Vec<Vector6>,
+    hessian: Vec<f64>,
+    gradient: Vec<Vector6>,
+    direction: Vec<Vector6>,
+}
+
+impl Solver {
+    /// For so many bodies.
+    pub fn new(bodies: usize) -> Self {
+        let zeros = vec![Vector6::zeros(); bodies];
+        let square = vec![0.0; 36 * bodies * bodies];
+        Solver {
+            system: square.clone(),
+            rhs: zeros.clone(),
+            velocities: zeros.clone(),
+            hessian: square,
+            gradient: zeros.clone(),
+            direction: zeros,
+        }
+    }
+
+    /// Solves; None if the numbers are not finite.
+    pub fn solve(&mut self, contacts: &mut [Contact], step: f64) -> Option<Effort> {
+        let mut effort = Effort::default();
+        self.relate(contacts);
+        for contact in contacts.iter_mut() {
+            contact.slide = contact.sliding();
+        }
+        while effort.rounds < ROUNDS {
+            effort.rounds += 1;
+            self.newton(contacts, step * FORCE_TOLERANCE, &mut effort)?;
+            let mut error: f64 = 0.0;
+            for contact in contacts.iter_mut() {
+                if contact.cone.state(&contact.pull(0.0)) != State::Apart {
+                    let now = contact.sliding();
+                    error = error.max((now - contact.slide).abs());
+                    contact.slide = now;
+                }
+            }
+            if error < SLIDING_TOLERANCE {
+                break;
+            }
+        }
+        for contact in contacts.iter_mut() {
+            contact.impulse = contact.cone.impulse(&contact.pull(0.0), &contact.normal);
+        }
+        Some(effort)
+    }
+
+    fn newton(
+        &mut self,
+        contacts: &mut [Contact],
+        tolerance: f64,
+        effort: &mut Effort,
+    ) -> Option<()> {
+        effort.converged = false;
+        while effort.iterations < ITERATIONS {
+            if self.slope(contacts) < tolerance {
+                effort.converged = true;
+                break;
+            }
+            effort.iterations += 1;
+            self.descend(contacts)?;
+            let along = self.search(contacts);
+            for (v, d) in self.velocities.iter_mut().zip(&self.direction) {
+                *v += d * along;
+            }
+            self.relate(contacts);
+        }
+        Some(())
+    }
+
+    /// Relative velocities at the present velocities.
+    fn relate(&self, contacts: &mut [Contact]) {
+        for contact in contacts {
+            contact.velocity = contact.relative(&self.velocities) + contact.drift;
+            contact.change = Vector3::zeros();
+        }
+    }
+
+    /// The gradient, and its largest component as a force times the step.
+    fn slope(&mut self, contacts: &[Contact]) -> f64 {
+        dense::multiply(&self.system, &self.velocities, &mut self.gradient);
+        for (g, r) in self.gradient.iter_mut().zip(&self.rhs) {
+            *g -= r;
+        }
+        for contact in contacts {
+            let impulse = contact.cone.impulse(&contact.pull(0.0), &contact.normal);
+            for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                if let Some(place) = contact.place[side] {
+                    let moment = contact.arm[side].cross(&impulse) * sign;
+                    let force = impulse * sign;
+                    let to = &mut self.gradient[place];
+                    for i in 0..3 {
+                        to[i] += force[i];
+                        to[3 + i] += moment[i];
+                    }
+                }
+            }
+        }
+        let scaled = |g: &Vector6| {
+            let linear = g.fixed_rows::<3>(0).amax();
+            linear.max(g.fixed_rows::<3>(3).amax() / ARM)
+        };
+        // NaN must not pass for small: `max` would drop it.
+        self.gradient.iter().map(scaled).fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
+    }
+
+    /// Newton's direction.
+    fn descend(&mut self, contacts: &mut [Contact]) -> Option<()> {
+        self.hessian.copy_from_slice(&self.system);
+        for contact in contacts.iter() {
+            let pull = contact.pull(0.0);
+            if contact.cone.state(&pull) != State::Apart {
+                let stiffness = contact.cone.stiffness(&pull, &contact.normal);
+                add_stiffness(&mut self.hessian, self.velocities.len(), contact, &stiffness);
+            }
+        }
+        for (d, g) in self.direction.iter_mut().zip(&self.gradient) {
+            *d = -g;
+        }
+        dense::factor(&mut self.hessian, 6 * self.velocities.len())?;
+        dense::solve(&self.hessian, &mut self.direction);
+        for contact in contacts.iter_mut() {
+            contact.change = contact.relative(&self.direction);
+        }
+        Some(())
+    }
+
+    /// How far to go along the direction: all the way if the potential's slope
+    /// does not turn against us, else to where it is a tenth of the first.
+    fn search(&mut self, contacts: &[Contact]) -> f64 {
+        let dot =
+            |a: &[Vector6], b: &[Vector6]| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>();
+        let first = dot(&self.gradient, &self.direction);
+        // Along the line the quadratic part is linear in the distance.
+        dense::multiply(&self.system, &self.direction, &mut self.gradient);
+        let curvature = dot(&self.gradient, &self.direction);
+        let pushed = |along: f64| -> f64 {
+            let power = |c: &Contact| c.cone.impulse(&c.pull(along), &c.normal).dot(&c.change);
+            contacts.iter().map(power).sum()
+        };
+        let start = first + pushed(0.0);
+        let slope = |along: f64| start + along * curvature - pushed(along);
+        let mut high = (1.0, slope(1.0));
+        if high.1 <= 0.3 * first.abs() {
+            return 1.0;
+        }
+        let mut low = (0.0, first);
+        for _ in 0..30 {
+            // Regula falsi, kept off the ends.
+            let share = (-low.1 / (high.1 - low.1)).clamp(0.05, 0.95);
+            let at = low.0 + share * (high.0 - low.0);
+            let value = slope(at);
+            if value.abs() < 0.1 * first.abs() {
+                return at;
+            }
+            if value < 0.0 {
+                low = (at, value);
+            } else {
+                high = (at, value);
+            }
+        }
+        low.0
+    }
+}
+
+/// Adds `J^T K J` of a contact: with `J = [1, -[arm]]` on each side, up to sign.
+fn add_stiffness(hessian: &mut [f64], bodies: usize, contact: &Contact, k: &Matrix3<f64>) {
+    for row in 0..2 {
+        let Some(i) = contact.place[row] else { continue };
+        // [arm] K, column by column.
+        let turned = cross_columns(&contact.arm[row], k);
+        for column in 0..2 {
+            let Some(j) = contact.place[column] else { continue };
+            if j > i {
+                continue; // The factorisation reads the lower half.
+            }
+            let sign = if row == column { 1.0 } else { -1.0 };
+            let arm = &contact.arm[column];
+            // K [arm]^T = ([arm] K)^T for the symmetric K.
+            let across = cross_columns(arm, k).transpose();
+            let both = cross_columns(arm, &turned.transpose()).transpose();
+            let n = 6 * bodies;
+            for r in 0..3 {
+                let (upper, lower) = ((6 * i + r) * n + 6 * j, (6 * i + 3 + r) * n + 6 * j);
+                for c in 0..3 {
+                    hessian[upper + c] += sign * k[(r, c)];
+                    hessian[upper + 3 + c] += sign * across[(r, c)];
+                    hessian[lower + c] += sign * turned[(r, c)];
+                    hessian[lower + 3 + c] += sign * both[(r, c)];
+                }
+            }
+        }
+    }
+}
+
+fn cross_columns(arm: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
+    let column = |i: usize| arm.cross(&Vector3::new(m[(0, i)], m[(1, i)], m[(2, i)]));
+    Matrix3::from_columns(&[column(0), column(1), column(2)])
+}

@@ -3,6 +3,8 @@
 
 use super::Failure;
 use clap::ValueEnum;
+use finger_opt::engine::Engine;
+use finger_opt::engine::direct::Direct;
 use finger_opt::engine::rapier::Rapier;
 use finger_opt::optimizer::{self, Grid, Optimizer};
 use finger_opt::robot::Robot;
@@ -32,6 +34,8 @@ const FAKE_DELAY: &str = "FINGER_OPT_FAKE_DELAY_US";
 pub enum EngineKind {
     /// Contact simulation in rapier3d
     Rapier,
+    /// Implicit stepper made for sprung fingers and rigid contacts
+    Direct,
     /// A closed formula, for tests
     #[value(hide = true)]
     Fake,
@@ -42,6 +46,7 @@ impl EngineKind {
     pub fn name(self) -> &'static str {
         match self {
             EngineKind::Rapier => "rapier",
+            EngineKind::Direct => "direct",
             EngineKind::Fake => "fake",
         }
     }
@@ -49,7 +54,7 @@ impl EngineKind {
     /// What computes with this engine.
     pub fn versions(self) -> Versions {
         let engine = match self {
-            EngineKind::Rapier => RAPIER_VERSION,
+            EngineKind::Rapier | EngineKind::Direct => RAPIER_VERSION,
             EngineKind::Fake => "1",
         };
         Versions { program: env!("CARGO_PKG_VERSION").to_owned(), engine: engine.to_owned() }
@@ -168,16 +173,17 @@ fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Source, F
 /// Where trials of one task with one robot are run.
 pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Box<dyn Rig> {
     match engine {
-        EngineKind::Rapier => Box::new(EngineRig {
-            task: task.clone(),
-            robot: robot.clone(),
-            engine: Box::new(Rapier::default()),
-        }),
+        EngineKind::Rapier => engine_rig(task, robot, Box::new(Rapier::default())),
+        EngineKind::Direct => engine_rig(task, robot, Box::new(Direct::default())),
         EngineKind::Fake => {
             let delay = std::env::var(FAKE_DELAY).ok().and_then(|text| text.parse().ok());
             Box::new(FakeRig { delay: Duration::from_micros(delay.unwrap_or(0)) })
         }
     }
+}
+
+fn engine_rig(task: &Task, robot: &Robot, engine: Box<dyn Engine>) -> Box<dyn Rig> {
+    Box::new(EngineRig { task: task.clone(), robot: robot.clone(), engine })
 }
 
 /// The stiffness model.

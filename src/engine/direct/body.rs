@@ -23,6 +23,8 @@ pub(super) struct Body {
     pub pose: Pose,
     inertia: Inertia,
     weightless: bool,
+    /// Force at the centre of mass and moment from outside, N and N m, world axes.
+    pub pushed: Vector6,
     /// Centre of mass in the world, m; the body frame's origin if it has no mass.
     pub centre: Point3<f64>,
     /// Of the centre of mass (m/s) and angular (rad/s), world axes.
@@ -49,6 +51,7 @@ impl Body {
             pose: body.pose,
             inertia,
             weightless,
+            pushed: Vector6::zeros(),
             centre: Point3::origin(),
             velocity: Vector6::zeros(),
             spin: Vector3::zeros(),
@@ -79,14 +82,14 @@ impl Body {
         mass
     }
 
-    /// Momentum at the end of a step in which only gravity acts.
+    /// Momentum at the end of a step in which only gravity and pushes act.
     pub fn momentum(&self, gravity: &Vector3<f64>, step: f64) -> Vector6 {
         let gained = if self.weightless { Vector3::zeros() } else { gravity * step };
         let linear = (self.velocity.fixed_rows::<3>(0) + gained) * self.inertia.mass;
         let mut all = Vector6::zeros();
         all.fixed_rows_mut::<3>(0).copy_from(&linear);
         all.fixed_rows_mut::<3>(3).copy_from(&self.spin);
-        all
+        all + self.pushed * step
     }
 
     /// Gives a driven body the velocity that takes it to its target.

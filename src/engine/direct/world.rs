@@ -206,6 +206,12 @@ impl World for DirectWorld {
         self.joints[joint.0].set(axis, spring);
     }
 
+    fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>) {
+        let pushed = &mut self.bodies[body.0].pushed;
+        pushed.fixed_rows_mut::<3>(0).copy_from(&force);
+        pushed.fixed_rows_mut::<3>(3).copy_from(&moment);
+    }
+
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
         let mut sum = NO_FORCE;
         for (&pair, force) in self.pairs.iter().zip(&self.forces) {

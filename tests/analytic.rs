@@ -37,6 +37,11 @@ fn t4_peg_jams_where_whitney_says() {
 }
 
 #[test]
+fn t5_peg_wedges_where_whitney_says() {
+    assert_passed(check::wedging::t5(&Rapier::default()));
+}
+
+#[test]
 fn t6_chamfer_takes_the_force_of_its_angle_and_friction() {
     assert_passed(check::chamfer::t6(&Rapier::default()));
 }

@@ -7,6 +7,7 @@
 //! | T2 | friction on an incline |
 //! | T3 | geometry of two-point contact of a peg in a hole |
 //! | T4 | jamming threshold in two-point contact |
+//! | T5 | wedging threshold in two-point contact |
 //! | T6 | force of crossing a chamfer |
 //! | T7 | remote centre of compliance |
 //! | T8 | edge drop, convergence with the step, snapshots |
@@ -26,6 +27,7 @@ pub mod peg;
 pub mod spring;
 pub mod step;
 mod table;
+pub mod wedging;
 
 pub use table::{json, table};
 
@@ -97,6 +99,7 @@ pub fn run(make: Make<'_>) -> Vec<Row> {
     rows.extend(incline::t2(engine));
     rows.extend(peg::t3(engine));
     rows.extend(jamming::t4(engine));
+    rows.extend(wedging::t5(engine));
     rows.extend(chamfer::t6(engine));
     rows.extend(spring::t7(engine));
     rows.extend(edge::t8(engine));

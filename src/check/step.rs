@@ -6,7 +6,7 @@
 
 use super::build;
 use super::edge::{self, Push};
-use super::{Make, Row, Tolerance, incline, jamming};
+use super::{Make, Row, Tolerance, incline, jamming, wedging};
 use crate::engine::{Diverged, Engine, World};
 use crate::scene::{BodyId, Pose};
 use crate::units::{DEG, MM};
@@ -38,8 +38,8 @@ fn changed_outcomes(make: Make<'_>) -> Result<f64, Diverged> {
     Ok(whole.iter().zip(&half).filter(|(a, b)| a != b).count() as f64)
 }
 
-/// Whether a block rests on an incline at two headings, and a peg jams,
-/// below and above their thresholds; whether a block tips at the edge.
+/// Whether a block rests on an incline at two headings, a peg jams, a peg
+/// wedges, below and above their thresholds; whether a block tips at the edge.
 fn outcomes(engine: &dyn Engine) -> Result<Vec<bool>, Diverged> {
     let mut all = Vec::new();
     for share in [1.0 - MARGIN, 1.0 + MARGIN] {
@@ -47,6 +47,7 @@ fn outcomes(engine: &dyn Engine) -> Result<Vec<bool>, Diverged> {
             all.push(incline::creep(engine, FRICTION, heading * DEG, share)? < RESTS);
         }
         all.push(jamming::jams_at(engine, share)?);
+        all.push(wedging::wedges(engine, FRICTION, share * FRICTION)?);
     }
     all.push(edge::tipping_place(engine)?.abs() < edge::ALLOWED);
     Ok(all)

@@ -1,5 +1,6 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
+pub mod check;
 pub mod evaluate;
 mod failure;
 mod progress;
@@ -79,6 +80,7 @@ pub enum Command {
     Trial(trial::Arguments),
     /// Show the stiffness model and how well it fits
     Stiffness(stiffness::Arguments),
+    Check(check::Arguments),
     /// List tasks, spaces and robots
     Tasks(tasks::Arguments),
 }

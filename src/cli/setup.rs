@@ -22,6 +22,8 @@ pub use finger_opt::optimizer::OptimizerKind;
 
 /// Robot used unless another is named.
 pub const DEFAULT_ROBOT: &str = "servo";
+/// Contact engine used unless another is named.
+pub const DEFAULT_ENGINE: &str = "rapier";
 /// Search space used unless another is named.
 pub const DEFAULT_SPACE: &str = "infill";
 /// The contact engine's version, as pinned in Cargo.toml.
@@ -51,6 +53,23 @@ impl EngineKind {
         }
     }
 
+    /// The engine with its production step times `factor`; `None` for the fake.
+    pub fn build(self, factor: f64) -> Option<Box<dyn Engine>> {
+        match self {
+            EngineKind::Rapier => {
+                let mut engine = Rapier::default();
+                engine.settings.step_s *= factor;
+                Some(Box::new(engine))
+            }
+            EngineKind::Direct => {
+                let mut engine = Direct::default();
+                engine.settings.step_s *= factor;
+                Some(Box::new(engine))
+            }
+            EngineKind::Fake => None,
+        }
+    }
+
     /// What computes with this engine.
     pub fn versions(self) -> Versions {
         let engine = match self {
@@ -77,7 +96,7 @@ pub struct SetupArguments {
     #[arg(long, value_name = "FILE.csv")]
     pub stiffness_data: Option<String>,
     /// Contact engine
-    #[arg(long, value_enum, default_value = "rapier")]
+    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
     pub engine: EngineKind,
 }
 
@@ -172,18 +191,11 @@ fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Source, F
 
 /// Where trials of one task with one robot are run.
 pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Box<dyn Rig> {
-    match engine {
-        EngineKind::Rapier => engine_rig(task, robot, Box::new(Rapier::default())),
-        EngineKind::Direct => engine_rig(task, robot, Box::new(Direct::default())),
-        EngineKind::Fake => {
-            let delay = std::env::var(FAKE_DELAY).ok().and_then(|text| text.parse().ok());
-            Box::new(FakeRig { delay: Duration::from_micros(delay.unwrap_or(0)) })
-        }
+    if let Some(engine) = engine.build(1.0) {
+        return Box::new(EngineRig { task: task.clone(), robot: robot.clone(), engine });
     }
-}
-
-fn engine_rig(task: &Task, robot: &Robot, engine: Box<dyn Engine>) -> Box<dyn Rig> {
-    Box::new(EngineRig { task: task.clone(), robot: robot.clone(), engine })
+    let delay = std::env::var(FAKE_DELAY).ok().and_then(|text| text.parse().ok());
+    Box::new(FakeRig { delay: Duration::from_micros(delay.unwrap_or(0)) })
 }
 
 /// The stiffness model.

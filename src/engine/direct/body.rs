@@ -29,10 +29,11 @@ pub(super) struct Body {
     pub centre: Point3<f64>,
     /// Of the centre of mass (m/s) and angular (rad/s), world axes.
     pub velocity: Vector6,
-    /// Angular momentum about the centre of mass, N m s, world axes. It, not the
-    /// angular velocity, is carried from step to step: that is the gyroscopic
-    /// term, to first order in the step (negligible in an insertion anyway).
-    spin: Vector3<f64>,
+    /// Momentum and angular momentum about the centre of mass at the start of the
+    /// step, N s, N m s, world axes. They, not the velocities, are carried from
+    /// step to step: that is the gyroscopic term, to first order in the step
+    /// (negligible in an insertion anyway).
+    momentum: Vector6,
     /// Inertia about the centre of mass, world axes, kg m2.
     tensor: Matrix3<f64>,
 }
@@ -54,7 +55,7 @@ impl Body {
             pushed: Vector6::zeros(),
             centre: Point3::origin(),
             velocity: Vector6::zeros(),
-            spin: Vector3::zeros(),
+            momentum: Vector6::zeros(),
             tensor: Matrix3::zeros(),
         };
         made.refresh();
@@ -84,11 +85,11 @@ impl Body {
 
     /// Momentum at the end of a step in which only gravity and pushes act.
     pub fn momentum(&self, gravity: &Vector3<f64>, step: f64) -> Vector6 {
-        let gained = if self.weightless { Vector3::zeros() } else { gravity * step };
-        let linear = (self.velocity.fixed_rows::<3>(0) + gained) * self.inertia.mass;
-        let mut all = Vector6::zeros();
-        all.fixed_rows_mut::<3>(0).copy_from(&linear);
-        all.fixed_rows_mut::<3>(3).copy_from(&self.spin);
+        let mut all = self.momentum;
+        if !self.weightless {
+            let mut linear = all.fixed_rows_mut::<3>(0);
+            linear += gravity * (step * self.inertia.mass);
+        }
         all + self.pushed * step
     }
 
@@ -108,7 +109,7 @@ impl Body {
             Kind::Driven(target) => self.pose = target,
             Kind::Dynamic(_) => {
                 let angular = self.velocity.fixed_rows::<3>(3).into_owned();
-                self.spin = self.tensor * angular;
+                self.momentum = self.mass() * self.velocity;
                 let centre = self.centre + self.velocity.fixed_rows::<3>(0) * step;
                 let turn = UnitQuaternion::from_scaled_axis(angular * step);
                 let rotation =
@@ -126,12 +127,6 @@ impl Body {
         pose.chain(self.velocity.iter()).all(|x| x.is_finite())
     }
 
-    /// Velocity of the point of the body at `arm` from its centre, m/s.
-    #[cfg(test)]
-    pub fn kinetic_energy(&self) -> f64 {
-        0.5 * self.velocity.dot(&(self.mass() * self.velocity))
-    }
-
     fn refresh(&mut self) {
         self.centre = self.pose * self.inertia.centre;
         let axes = self.pose.rotation.to_rotation_matrix().into_inner();
@@ -141,3 +136,22 @@ impl Body {
 
 const MASSLESS: Inertia =
     Inertia { mass: 0.0, centre: Point3::new(0.0, 0.0, 0.0), moments: Vector3::new(0.0, 0.0, 0.0) };
+
+#[cfg(test)]
+impl Body {
+    /// J.
+    pub fn kinetic_energy(&self) -> f64 {
+        0.5 * self.velocity.dot(&(self.mass() * self.velocity))
+    }
+
+    /// Angular momentum about the centre of mass, N m s.
+    pub fn spin(&self) -> Vector3<f64> {
+        self.momentum.fixed_rows::<3>(3).into_owned()
+    }
+
+    /// Sets the velocity.
+    pub fn spin_up(&mut self, velocity: Vector6) {
+        self.velocity = velocity;
+        self.momentum = self.mass() * velocity;
+    }
+}

@@ -12,6 +12,10 @@ use rapier3d_f64::parry;
 
 /// At most so many points of a manifold are kept.
 const POINTS: usize = 4;
+/// A surface is covered if a neighbour is found this far out from it, m.
+const COVER: f64 = 20e-6;
+/// What a neighbour may be off by, m: more than contacts sink, less than any gap.
+const SEAM: f64 = 2e-6;
 
 /// A point of contact between two bodies.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +46,8 @@ struct Geom {
     /// Enclosing box in the world, m.
     low: Vector3<f64>,
     high: Vector3<f64>,
+    /// Other shapes of the same body that may cover a part of this one.
+    neighbours: Vec<usize>,
 }
 
 /// Two shapes that may touch.
@@ -72,6 +78,15 @@ impl Detector {
             geoms.extend(body.geoms.iter().map(|geom| new_geom(index, geom)));
             of_body.push(from..geoms.len());
         }
+        for range in &of_body {
+            for i in range.clone() {
+                geoms[i].enclose(&Pose::identity());
+            }
+            for i in range.clone() {
+                let near = |&j: &usize| j != i && !geoms[i].apart(&geoms[j], COVER);
+                geoms[i].neighbours = range.clone().filter(near).collect();
+            }
+        }
         let mut candidates = Vec::new();
         for (pair, (a, b)) in scene.contacts.iter().enumerate() {
             for first in of_body[a.0].clone() {
@@ -99,6 +114,7 @@ impl Detector {
             let pose = bodies[first.body].pose * first.pose;
             let other = bodies[second.body].pose * second.pose;
             candidate.meet(&pose, &other, (first, second), self.prediction);
+            candidate.uncover(&self.geoms);
             candidate.report(&pose, self.prediction, found);
         }
     }
@@ -116,6 +132,7 @@ fn new_geom(body: usize, geom: &crate::scene::Geom) -> Geom {
         friction: geom.friction,
         low: Vector3::zeros(),
         high: Vector3::zeros(),
+        neighbours: Vec::new(),
     }
 }
 
@@ -129,6 +146,18 @@ impl Geom {
 
     fn apart(&self, other: &Geom, margin: f64) -> bool {
         (0..3).any(|i| self.low[i] > other.high[i] + margin || other.low[i] > self.high[i] + margin)
+    }
+}
+
+impl Geom {
+    /// Whether a neighbour covers a place on the surface, both in parry's frame of the shape, m.
+    fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, geoms: &[Geom]) -> bool {
+        let outside = self.pose * Point3::from(place + outward * COVER);
+        self.neighbours.iter().any(|&j| {
+            let local = geoms[j].pose.inverse_transform_point(&outside).coords * shapes::SCALE;
+            let distance = geoms[j].shape.distance_to_local_point(shapes::vector(&local), true);
+            distance < SEAM * shapes::SCALE
+        })
     }
 }
 
@@ -151,6 +180,22 @@ impl Candidate {
             // Not reached: every shape that a scene can hold is convex.
             self.manifold.points.clear();
         }
+    }
+
+    /// Drops the points on faces that another shape of the same body covers: at
+    /// a seam of two flush parts the hidden end face of the next part would stop
+    /// an edge that slides along, 0.1 um deep, as if it were a step.
+    fn uncover(&mut self, geoms: &[Geom]) {
+        let manifold = &mut self.manifold;
+        let outward = [manifold.local_n1, manifold.local_n2].map(shapes::from_vector);
+        let sides = [&geoms[self.first], &geoms[self.second]];
+        if sides.iter().all(|side| side.neighbours.is_empty()) {
+            return;
+        }
+        manifold.points.retain(|point| {
+            let places = [point.local_p1, point.local_p2].map(shapes::from_vector);
+            (0..2).all(|i| !sides[i].covered(&(places[i] / shapes::SCALE), &outward[i], geoms))
+        });
     }
 
     /// Adds the manifold's extreme points to the list.

@@ -4,6 +4,9 @@ use super::blocks::Vector6;
 
 /// `result = matrix * vector`.
 pub(super) fn multiply(matrix: &[f64], vector: &[Vector6], result: &mut [Vector6]) {
+    if vector.is_empty() {
+        return;
+    }
     let n = 6 * vector.len();
     for (i, rows) in matrix.chunks_exact(6 * n).enumerate() {
         for (r, row) in rows.chunks_exact(n).enumerate() {

@@ -36,9 +36,9 @@ pub struct Settings {
     /// Stiffness of a contact point, N/m, whatever the masses: it makes the
     /// forces of a redundant contact unique, and sinks 0.1 um under 10 N.
     pub contact_stiffness: f64,
-    /// Mass by which friction holds a sticking point, kg: a force F creeps at
-    /// F times the step over it (5 N, 0.5 ms: 1.3 um/s).
-    pub stick_mass: f64,
+    /// How friction holds a sticking point, N s/m: a force F creeps at F over it
+    /// (5 N: 2.5 um/s), whatever the masses and the step.
+    pub stick_damping: f64,
     /// Fastest a penetration is pushed out, m/s.
     pub push_out: f64,
 }
@@ -49,7 +49,7 @@ impl Default for Settings {
             step_s: 5e-4,
             prediction: 0.2e-3,
             contact_stiffness: 1e8,
-            stick_mass: 2e3,
+            stick_damping: 2e6,
             push_out: 0.2,
         }
     }

@@ -21,6 +21,8 @@ const ARM: f64 = 0.01;
 const ITERATIONS: usize = 60;
 /// Error of the sliding term that is let go, m/s: 0.1 um in a step of 0.1 ms.
 const SLIDING_TOLERANCE: f64 = 1e-3;
+/// Trials along a line at most.
+const SEARCHES: usize = 30;
 /// Rounds of the fixed point at most.
 const ROUNDS: usize = 6;
 
@@ -265,21 +267,22 @@ impl Solver {
             return 1.0;
         }
         let mut low = (0.0, first);
-        for _ in 0..30 {
-            // Regula falsi, kept off the ends.
-            let share = (-low.1 / (high.1 - low.1)).clamp(0.05, 0.95);
-            let at = low.0 + share * (high.0 - low.0);
+        for _ in 0..SEARCHES {
+            let at = low.0 - low.1 / (high.1 - low.1) * (high.0 - low.0);
             let value = slope(at);
             if value.abs() < 0.1 * first.abs() {
                 return at;
             }
+            // Illinois: an end that stays counts half, lest the other creeps up to it.
             if value < 0.0 {
                 low = (at, value);
+                high.1 *= 0.5;
             } else {
                 high = (at, value);
+                low.1 *= 0.5;
             }
         }
-        low.0
+        if low.0 > 0.0 { low.0 } else { high.0 }
     }
 }
 

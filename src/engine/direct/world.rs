@@ -74,7 +74,7 @@ impl DirectWorld {
         self.contacts.clear();
         let compliance = Compliance {
             normal: 1.0 / (self.settings.contact_stiffness * step * step),
-            tangent: 1.0 / self.settings.stick_mass,
+            tangent: 1.0 / (self.settings.stick_damping * step),
         };
         for touch in &self.touches {
             let (a, b) = self.pairs[touch.pair];

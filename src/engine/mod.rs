@@ -49,6 +49,10 @@ pub trait World: Send + Sync {
     /// Replaces the spring of a sprung axis (0..6) of a joint.
     fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring);
 
+    /// Applies a force at a free body's centre of mass, N, and a moment, N m, in
+    /// world axes, in every step from now on; replaces what was applied before.
+    fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>);
+
     /// Contact between two bodies over the last step.
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce;
 

@@ -23,8 +23,6 @@ pub(super) struct Body {
     pub pose: Pose,
     inertia: Inertia,
     weightless: bool,
-    /// Force at the centre of mass and moment from outside, N and N m, world axes.
-    pub pushed: Vector6,
     /// Centre of mass in the world, m; the body frame's origin if it has no mass.
     pub centre: Point3<f64>,
     /// Of the centre of mass (m/s) and angular (rad/s), world axes.
@@ -52,7 +50,6 @@ impl Body {
             pose: body.pose,
             inertia,
             weightless,
-            pushed: Vector6::zeros(),
             centre: Point3::origin(),
             velocity: Vector6::zeros(),
             momentum: Vector6::zeros(),
@@ -83,14 +80,14 @@ impl Body {
         mass
     }
 
-    /// Momentum at the end of a step in which only gravity and pushes act.
+    /// Momentum at the end of a step in which only gravity acts.
     pub fn momentum(&self, gravity: &Vector3<f64>, step: f64) -> Vector6 {
         let mut all = self.momentum;
         if !self.weightless {
             let mut linear = all.fixed_rows_mut::<3>(0);
             linear += gravity * (step * self.inertia.mass);
         }
-        all + self.pushed * step
+        all
     }
 
     /// Gives a driven body the velocity that takes it to its target.

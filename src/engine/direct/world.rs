@@ -31,6 +31,8 @@ pub(super) struct DirectWorld {
     system: Blocks,
     /// Right-hand side, then solution; by place.
     values: Vec<Vector6>,
+    /// Force at the centre of mass and moment applied to each body, N, N m.
+    pushes: Vec<Vector6>,
     /// Places before this one are eliminated before contacts are solved.
     eliminated: usize,
     solver: Solver,
@@ -58,6 +60,7 @@ impl DirectWorld {
             detector: Detector::new(scene, settings.prediction),
             system: Blocks::new(size, eliminated, &coupled),
             values: vec![Vector6::zeros(); size],
+            pushes: vec![Vector6::zeros(); scene.bodies.len()],
             eliminated,
             solver: Solver::new(size - eliminated),
             touches: Vec::new(),
@@ -99,10 +102,10 @@ impl DirectWorld {
     fn solve(&mut self) -> Option<()> {
         let step = self.settings.step_s;
         self.system.clear();
-        for body in &self.bodies {
+        for (body, push) in self.bodies.iter().zip(&self.pushes) {
             if let Some(place) = body.place() {
                 self.system.add(place, place, &body.mass());
-                self.values[place] = body.momentum(&self.gravity, step);
+                self.values[place] = body.momentum(&self.gravity, step) + push * step;
             }
         }
         for joint in &self.joints {
@@ -207,9 +210,9 @@ impl World for DirectWorld {
     }
 
     fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>) {
-        let pushed = &mut self.bodies[body.0].pushed;
-        pushed.fixed_rows_mut::<3>(0).copy_from(&force);
-        pushed.fixed_rows_mut::<3>(3).copy_from(&moment);
+        let push = &mut self.pushes[body.0];
+        push.fixed_rows_mut::<3>(0).copy_from(&force);
+        push.fixed_rows_mut::<3>(3).copy_from(&moment);
     }
 
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {

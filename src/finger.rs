@@ -2,6 +2,7 @@
 //! centre of compliance (RCC), Sec. "Stiffness model" and Table "Simulation Inputs".
 
 use crate::scene::{Geom, Inertia, Pose, Shape, Spring};
+use crate::task::Friction;
 use crate::units::{GRAM, MM, N_PER_MM};
 use nalgebra::{Point3, Vector3};
 
@@ -82,14 +83,15 @@ impl Finger {
 /// Pad and roof in the finger frame: origin on the pad's face at the height of
 /// the TCP, `side` -1 for the finger at -y, +1 for the one at +y; `shoulder` is
 /// the height of the part's shoulder above the TCP, m.
-pub fn tip(shoulder: f64, side: f64, friction: f64) -> Vec<Geom> {
+pub fn tip(shoulder: f64, side: f64, friction: &Friction) -> Vec<Geom> {
     use notch::*;
     let roof_z = shoulder + ROOF_GAP;
     let cuboid = |name: &str, y: [f64; 2], z: [f64; 2]| Geom {
         name: name.into(),
         shape: Shape::Box { half: Vector3::new(WIDTH, y[1] - y[0], z[1] - z[0]) / 2.0 },
         pose: Pose::translation(0.0, side * (y[0] + y[1]) / 2.0, (z[0] + z[1]) / 2.0),
-        friction,
+        friction: friction.finger_plug,
+        patch: friction.finger_torsion / friction.finger_plug.max(f64::MIN_POSITIVE),
     };
     vec![
         cuboid("pad", [0.0, PAD_THICKNESS], [roof_z - PAD_HEIGHT, roof_z]),

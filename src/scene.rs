@@ -47,6 +47,11 @@ pub struct Geom {
     pub pose: Pose,
     /// Coefficient of friction; a pair of geoms has the smaller of its two.
     pub friction: f64,
+    /// Radius over which a face contact spreads its friction, m: its moment about
+    /// the normal is that times the friction force (torsional friction of a soft
+    /// surface). A pair has the smaller of its two; 0 leaves the contact points
+    /// where they are. Engines without it ignore it.
+    pub patch: f64,
 }
 
 /// Mass properties of a body about its centre of mass, along the body axes.

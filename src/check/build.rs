@@ -9,7 +9,7 @@ pub const GRAVITY: f64 = 9.81;
 
 /// A geom that is a box of the given size, m, centred in a frame.
 pub fn cuboid(name: &str, size: Vector3<f64>, pose: Pose, friction: f64) -> Geom {
-    Geom { name: name.into(), shape: Shape::Box { half: size / 2.0 }, pose, friction }
+    Geom { name: name.into(), shape: Shape::Box { half: size / 2.0 }, pose, friction, patch: 0.0 }
 }
 
 /// Mass properties of a homogeneous box, m and kg.

@@ -23,7 +23,7 @@ pub use finger_opt::optimizer::OptimizerKind;
 /// Robot used unless another is named.
 pub const DEFAULT_ROBOT: &str = "servo";
 /// Contact engine used unless another is named.
-pub const DEFAULT_ENGINE: &str = "rapier";
+pub const DEFAULT_ENGINE: &str = "direct";
 /// Search space used unless another is named.
 pub const DEFAULT_SPACE: &str = "infill";
 /// The contact engine's version, as pinned in Cargo.toml.

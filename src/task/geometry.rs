@@ -53,6 +53,7 @@ impl Part {
             shape,
             pose: Pose::from_parts(Translation3::from(origin), nalgebra::one()),
             friction: self.friction.unwrap_or(friction),
+            patch: 0.0,
         }
     }
 }

@@ -73,6 +73,9 @@ pub enum Hold {
 pub struct Friction {
     /// Finger on plug.
     pub finger_plug: f64,
+    /// Torsional friction of finger on plug, m: moment about the normal per
+    /// normal force, of the soft pad's pressed patch.
+    pub finger_torsion: f64,
     /// Plug on socket, unless a socket part has its own.
     pub plug_socket: f64,
 }

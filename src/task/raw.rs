@@ -106,6 +106,7 @@ struct RawGrip {
 #[serde(deny_unknown_fields)]
 struct RawFriction {
     finger_plug: f64,
+    finger_plug_torsion_mm: f64,
     plug_socket: f64,
 }
 
@@ -175,6 +176,10 @@ pub fn parse(text: &str, file: &str) -> Result<Task, TaskError> {
         grip: check.grip(&raw.grip)?,
         friction: Friction {
             finger_plug: check.friction("friction.finger_plug", raw.friction.finger_plug)?,
+            finger_torsion: check.not_negative(
+                "friction.finger_plug_torsion_mm",
+                raw.friction.finger_plug_torsion_mm,
+            )? * MM,
             plug_socket: check.friction("friction.plug_socket", raw.friction.plug_socket)?,
         },
         strategy: check.strategy(&raw.strategy)?,
@@ -221,6 +226,13 @@ impl Check<'_> {
             return Ok(value);
         }
         self.fail(key, format!("is {value}; it must be a finite number above 0"))
+    }
+
+    fn not_negative(&self, key: &str, value: f64) -> Result<f64, TaskError> {
+        if value.is_finite() && value >= 0.0 {
+            return Ok(value);
+        }
+        self.fail(key, format!("is {value}; it must be a finite number, 0 or above"))
     }
 
     fn friction(&self, key: &str, value: f64) -> Result<f64, TaskError> {

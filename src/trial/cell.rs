@@ -5,7 +5,9 @@
 
 use crate::finger::{self, Finger};
 use crate::robot::{Flange, Robot};
-use crate::scene::{Axis, Body, BodyId, Inertia, Joint, JointId, Motion, Pose, Scene, Spring};
+use crate::scene::{
+    Axis, Body, BodyId, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Spring,
+};
 use crate::task::{Task, geometry};
 use crate::units::MM;
 use nalgebra::{Point3, Translation3, Vector3};
@@ -141,7 +143,13 @@ fn plug_body(task: &Task, pose: Pose) -> Body {
         name: "plug".into(),
         motion: Motion::Free(geometry::inertia(&task.plug.parts, task.plug.mass)),
         pose,
-        geoms: task.plug.parts.iter().map(|part| part.geom(friction)).collect(),
+        // The finger's patch decides, too.
+        geoms: task
+            .plug
+            .parts
+            .iter()
+            .map(|part| Geom { patch: f64::INFINITY, ..part.geom(friction) })
+            .collect(),
     }
 }
 
@@ -150,11 +158,12 @@ fn stand_body(task: &Task, plug: Pose) -> Body {
     let bottom = corners.map(|p| p.z).fold(f64::INFINITY, f64::min);
     let half = Vector3::new(20.0, 20.0, 1.0) * MM;
     let pose = plug * Pose::translation(0.0, 0.0, bottom - half.z);
-    let geom = crate::scene::Geom {
+    let geom = Geom {
         name: "stand".into(),
         shape: crate::scene::Shape::Box { half },
         pose: Pose::identity(),
         friction: task.friction.plug_socket,
+        patch: 0.0,
     };
     Body { name: "stand".into(), motion: Motion::Fixed, pose, geoms: vec![geom] }
 }
@@ -197,7 +206,7 @@ fn hand(
         name: format!("finger {label}"),
         motion: Motion::Free(finger::inertia(finger)),
         pose: tcp * in_flange,
-        geoms: finger::tip(task.grip.shoulder_z - task.grip.tcp_z, side, task.friction.finger_plug),
+        geoms: finger::tip(task.grip.shoulder_z - task.grip.tcp_z, side, &task.friction),
     });
     let rcc = Pose::from_parts(Translation3::new(0.0, 0.0, -finger.rcc), nalgebra::one());
     scene.joint(Joint {

@@ -68,7 +68,7 @@ fn panel(out: &mut String, task: &Task, poses: &Poses, axis: usize) {
     }
     let shoulder = task.grip.shoulder_z - task.grip.tcp_z;
     for (pose, side) in poses.fingers.iter().zip([-1.0, 1.0]) {
-        for geom in finger::tip(shoulder, side, 0.0) {
+        for geom in finger::tip(shoulder, side, &task.friction) {
             polygon(out, &geom, pose, axis, "#5b8c5a");
         }
     }

@@ -218,8 +218,7 @@ impl<'a> Run<'a> {
     fn reach(&mut self, motion: Move, within: f64) -> Result<(), Stop> {
         self.follow(motion, 0.0)?;
         for _ in 0..self.steps(TOLERANCE_TIMEOUT) {
-            let tcp = self.world.pose(self.cell.flange).translation.vector;
-            if (tcp - self.target.position).amax() < within {
+            if (self.tcp() - self.target.position).amax() < within {
                 break;
             }
             self.step()?;
@@ -240,8 +239,11 @@ impl<'a> Run<'a> {
         }
         let along = (end.position - start.position).normalize();
         let speed = (end.position - start.position).norm() / motion.duration();
-        let further = Move::new(self.target, self.target.moved(along * preload), speed);
-        self.follow(further, self.rig.settle())
+        // From where the TCP is, not from its command: a soft flange lags behind,
+        // and the lag would come on top of the preload.
+        let reached = along.dot(&(self.tcp() - start.position));
+        let to = start.moved(along * (reached + preload));
+        self.follow(Move::new(self.target, to, speed), self.rig.settle())
     }
 
     /// One step of the command, the engine and the monitors.
@@ -258,6 +260,10 @@ impl<'a> Run<'a> {
         self.watch_grasp(dt)?;
         self.watch_depth()?;
         if force > self.rig.robot.stop_force { Err(Stop::ForceLimit) } else { Ok(()) }
+    }
+
+    fn tcp(&self) -> Vector3<f64> {
+        self.world.pose(self.cell.flange).translation.vector
     }
 
     fn contact_force(&self) -> f64 {

@@ -33,8 +33,10 @@ pub struct Settings {
     pub step_s: f64,
     /// Gap at which a contact is foreseen, m: farther than anything moves in a step.
     pub prediction: f64,
-    /// Stiffness of a contact point, N/m, whatever the masses: it makes the
-    /// forces of a redundant contact unique, and sinks 0.1 um under 10 N.
+    /// Stiffness of a contact point, N/m, whatever the masses. It stands for the
+    /// give of real edges, which the exact boxes lack: 3 N/um is a loaded edge of
+    /// plastic, and makes the forces of a redundant contact unique. It decides
+    /// whether a key wedges: at 10 N/um and above most ket8 starts do.
     pub contact_stiffness: f64,
     /// How friction holds a sticking point, N s/m: a force F creeps at F over it
     /// (5 N: 2.5 um/s), whatever the masses and the step.
@@ -48,7 +50,7 @@ impl Default for Settings {
         Settings {
             step_s: 5e-4,
             prediction: 0.2e-3,
-            contact_stiffness: 1e8,
+            contact_stiffness: 3e6,
             stick_damping: 2e6,
             push_out: 0.2,
         }

@@ -31,8 +31,8 @@ const ROUNDS: usize = 6;
 pub(super) struct Contact {
     /// First and second body: place in the reduced system, if they move freely.
     pub place: [Option<usize>; 2],
-    /// Contact point from each body's centre of mass, world, m.
-    pub arm: [Vector3<f64>; 2],
+    /// On each side: relative velocity by the body's angular velocity, world, m.
+    pub lever: [Matrix3<f64>; 2],
     /// Unit normal from the first to the second.
     pub normal: Vector3<f64>,
     /// Relative velocity by the bodies whose motion is given, m/s.
@@ -52,17 +52,17 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    /// A contact between bodies at these places with these arms.
+    /// A contact between bodies at these places with these levers.
     pub fn new(
         place: [Option<usize>; 2],
-        arm: [Vector3<f64>; 2],
+        lever: [Matrix3<f64>; 2],
         normal: Vector3<f64>,
         cone: Cone,
     ) -> Self {
         let zero = Vector3::zeros();
         Contact {
             place,
-            arm,
+            lever,
             normal,
             drift: zero,
             bias: 0.0,
@@ -82,7 +82,7 @@ impl Contact {
                 let v = &velocities[place];
                 let linear = Vector3::new(v[0], v[1], v[2]);
                 let angular = Vector3::new(v[3], v[4], v[5]);
-                sum += (linear + angular.cross(&self.arm[side])) * sign;
+                sum += (linear + self.lever[side] * angular) * sign;
             }
         }
         sum
@@ -208,7 +208,7 @@ impl Solver {
             let impulse = contact.cone.impulse(&contact.pull(0.0), &contact.normal);
             for (side, sign) in [(0, 1.0), (1, -1.0)] {
                 if let Some(place) = contact.place[side] {
-                    let moment = contact.arm[side].cross(&impulse) * sign;
+                    let moment = contact.lever[side].tr_mul(&impulse) * sign;
                     let force = impulse * sign;
                     let to = &mut self.gradient[place];
                     for i in 0..3 {
@@ -286,22 +286,19 @@ impl Solver {
     }
 }
 
-/// Adds `J^T K J` of a contact: with `J = [1, -[arm]]` on each side, up to sign.
+/// Adds `J^T K J` of a contact: with `J = [1, lever]` on each side, up to sign.
 fn add_stiffness(hessian: &mut [f64], bodies: usize, contact: &Contact, k: &Matrix3<f64>) {
     for row in 0..2 {
         let Some(i) = contact.place[row] else { continue };
-        // [arm] K, column by column.
-        let turned = cross_columns(&contact.arm[row], k);
+        let turned = contact.lever[row].tr_mul(k);
         for column in 0..2 {
             let Some(j) = contact.place[column] else { continue };
             if j > i {
                 continue; // The factorisation reads the lower half.
             }
             let sign = if row == column { 1.0 } else { -1.0 };
-            let arm = &contact.arm[column];
-            // K [arm]^T = ([arm] K)^T for the symmetric K.
-            let across = cross_columns(arm, k).transpose();
-            let both = cross_columns(arm, &turned.transpose()).transpose();
+            let across = k * contact.lever[column];
+            let both = turned * contact.lever[column];
             let n = 6 * bodies;
             for r in 0..3 {
                 let (upper, lower) = ((6 * i + r) * n + 6 * j, (6 * i + 3 + r) * n + 6 * j);
@@ -314,9 +311,4 @@ fn add_stiffness(hessian: &mut [f64], bodies: usize, contact: &Contact, k: &Matr
             }
         }
     }
-}
-
-fn cross_columns(arm: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
-    let column = |i: usize| arm.cross(&Vector3::new(m[(0, i)], m[(1, i)], m[(2, i)]));
-    Matrix3::from_columns(&[column(0), column(1), column(2)])
 }

@@ -85,7 +85,11 @@ impl DirectWorld {
             let place = ends.map(|body| body.place().map(|place| place - self.eliminated));
             let arm = ends.map(|body| touch.point - body.centre);
             let cone = Cone { mu: touch.friction, compliance };
-            let mut contact = Contact::new(place, arm, touch.normal, cone);
+            // v + w x arm; friction acts beside the point by `spread`, which only a
+            // turn about the normal feels.
+            let twist = touch.normal.cross(&touch.spread) * touch.normal.transpose();
+            let lever = arm.map(|arm| twist - arm.cross_matrix());
+            let mut contact = Contact::new(place, lever, touch.normal, cone);
             for (body, arm, sign) in [(ends[0], arm[0], -1.0), (ends[1], arm[1], 1.0)] {
                 if let Kind::Driven(_) = body.kind {
                     let linear = body.velocity.fixed_rows::<3>(0);

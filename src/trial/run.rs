@@ -292,8 +292,12 @@ impl<'a> Run<'a> {
             }
             Stage::Assembly => {
                 let success = self.rig.task.success;
-                let seated = -self.tip().z >= success.depth && self.tilt() <= success.tilt;
-                if seated { Err(Stop::Seated) } else { Ok(()) }
+                let tip = self.tip();
+                // Deep beside the socket is not inserted.
+                let inside = within(tip.x, self.rig.task.opening[0])
+                    && within(tip.y, self.rig.task.opening[1]);
+                let deep = -tip.z >= success.depth && self.tilt() <= success.tilt;
+                if deep && inside { Err(Stop::Seated) } else { Ok(()) }
             }
         }
     }
@@ -323,7 +327,6 @@ impl<'a> Run<'a> {
     fn leading_edge_inside(&self) -> bool {
         let plug = self.plug();
         let lowest = self.corners.iter().map(|p| plug * p).min_by(|a, b| a.z.total_cmp(&b.z));
-        let within = |v: f64, [from, to]: [f64; 2]| from <= v && v <= to;
         let [x, y] = self.rig.task.opening;
         lowest.is_some_and(|p| p.z < -ENTERED_DEPTH && within(p.x, x) && within(p.y, y))
     }
@@ -380,6 +383,10 @@ impl<'a> Run<'a> {
             phases: self.phases,
         }
     }
+}
+
+fn within(value: f64, [from, to]: [f64; 2]) -> bool {
+    from <= value && value <= to
 }
 
 impl EngineRig {

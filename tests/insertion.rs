@@ -1,0 +1,155 @@
+//! The contact simulation on the four shipped tasks: does the physics hold, not the code.
+
+use finger_opt::engine::Engine;
+use finger_opt::engine::direct::Direct;
+use finger_opt::engine::rapier::Rapier;
+use finger_opt::evaluation::{FailureClass, Outcome};
+use finger_opt::finger::Finger;
+use finger_opt::robot::Robot;
+use finger_opt::shipped::{ROBOTS, STIFFNESS, TASKS};
+use finger_opt::surrogate;
+use finger_opt::task::Task;
+use finger_opt::tolerance::{Search, evaluate};
+use finger_opt::trial::run::EngineRig;
+use finger_opt::trial::{Rig, Trial, picture};
+use finger_opt::units::{MM, N_PER_MM};
+
+fn task(name: &str) -> Task {
+    let file = TASKS.iter().find(|file| file.name == name).unwrap();
+    Task::parse(file.text, file.file).unwrap()
+}
+
+fn rig(name: &str, engine: Box<dyn Engine>) -> EngineRig {
+    let file = ROBOTS.iter().find(|file| file.name == "servo").unwrap();
+    EngineRig { task: task(name), robot: Robot::parse(file.text, file.file).unwrap(), engine }
+}
+
+fn direct(name: &str) -> EngineRig {
+    rig(name, Box::new(Direct::default()))
+}
+
+fn finger(compliance: f64, assembly: f64) -> Finger {
+    Finger::new(compliance * N_PER_MM, assembly * N_PER_MM)
+}
+
+fn trial(rig: &EngineRig, finger: &Finger, offset_mm: f64) -> Trial {
+    rig.grasp(finger).trial(offset_mm * MM)
+}
+
+#[test]
+fn at_least_ten_of_eleven_measured_fingers_insert_at_each_nominal_start() {
+    let measured = surrogate::parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
+    for file in TASKS {
+        let rig = direct(file.name);
+        let inserts = |m: &&surrogate::Measurement| {
+            let finger = Finger::new(m.compliance, m.assembly);
+            trial(&rig, &finger, 0.0).outcome == Outcome::Inserted
+        };
+        let count = measured.iter().filter(inserts).count();
+        assert!(count >= 10, "{}: {count} of {}", file.name, measured.len());
+    }
+}
+
+#[test]
+fn rapier_inserts_the_keys_too() {
+    for name in ["ket8", "ket12"] {
+        let rig = rig(name, Box::new(Rapier::default()));
+        let trial = trial(&rig, &finger(1.2, 52.4), 0.0);
+        assert_eq!(trial.outcome, Outcome::Inserted, "{name}");
+    }
+}
+
+#[test]
+fn an_inserted_key_is_deep_upright_and_held() {
+    let trial = trial(&direct("ket12"), &finger(1.2, 52.4), 0.0);
+    assert_eq!(trial.outcome, Outcome::Inserted);
+    assert!(trial.depth_mm > 25.0 && trial.tilt_deg < 5.0 && trial.slip_mm < 1.0, "{trial:?}");
+    let names: Vec<_> = trial.phases.iter().map(|phase| phase.name.as_str()).collect();
+    let order = ["grasp", "carry", "approach", "touch", "back", "front", "side", "assembly"];
+    assert_eq!(names, order);
+    // 5 degrees of commanded tilt, bent a little by its own weight.
+    assert!((trial.phases[2].tilt_deg - 5.0).abs() < 0.1, "{:?}", trial.phases[2]);
+    assert!(trial.phases.windows(2).all(|pair| pair[0].time_s < pair[1].time_s));
+}
+
+#[test]
+fn far_outside_every_task_fails_and_never_diverges() {
+    for file in TASKS {
+        let rig = direct(file.name);
+        let grasped = rig.grasp(&finger(3.0, 30.0));
+        for offset_mm in [-12.0, 12.0] {
+            let outcome = grasped.trial(offset_mm * MM).outcome;
+            assert!(
+                matches!(outcome, Outcome::Failed(_)),
+                "{} {offset_mm}: {outcome:?}",
+                file.name
+            );
+        }
+    }
+}
+
+#[test]
+fn a_key_set_down_beside_its_slot_is_missed() {
+    let outcome = trial(&direct("ket8"), &finger(3.0, 30.0), 12.0).outcome;
+    assert_eq!(outcome, Outcome::Failed(FailureClass::PlugMissed));
+}
+
+#[test]
+fn jaws_without_force_lose_the_part_before_the_search() {
+    let mut rig = direct("ket12");
+    rig.task.grip.force = 0.05;
+    let outcome = trial(&rig, &finger(1.2, 52.4), 0.0).outcome;
+    assert_eq!(outcome, Outcome::Failed(FailureClass::ContactLossBeforeSearch));
+}
+
+#[test]
+fn a_socket_that_is_too_narrow_is_not_entered() {
+    let mut rig = direct("ket8");
+    // The key grows by 0.3 mm in y; the slot has 0.15 mm to spare.
+    for part in &mut rig.task.plug.parts {
+        if let finger_opt::task::Solid::Box { min, max } = &mut part.solid {
+            min.y -= 0.15 * MM;
+            max.y += 0.15 * MM;
+        }
+    }
+    let outcome = trial(&rig, &finger(1.2, 52.4), 0.0).outcome;
+    assert!(matches!(outcome, Outcome::Failed(_)), "{outcome:?}");
+}
+
+#[test]
+fn the_same_trial_gives_the_same_bits() {
+    for name in ["usb", "rj45"] {
+        let rig = direct(name);
+        let (first, again) = (rig.grasp(&finger(2.0, 50.0)), rig.grasp(&finger(2.0, 50.0)));
+        let alone = first.trial(0.4 * MM);
+        let other = first.trial(-0.7 * MM);
+        assert_eq!(alone, again.trial(0.4 * MM), "{name}");
+        assert_eq!(other, again.trial(-0.7 * MM), "{name}: trials do not disturb one another");
+    }
+}
+
+/// Why usb loses range with stiffness: at a negative shift the side move goes on
+/// after the plug has met the wall. A stiffer finger answers with more force, keeps
+/// the plug tilted while it goes down, and its body lands on the socket's rim.
+#[test]
+fn a_stiffer_finger_keeps_the_plug_tilted_and_tolerates_less() {
+    let rig = direct("usb");
+    let (soft, stiff) = (finger(1.2, 52.4), finger(3.84, 52.4));
+    let at = |finger| rig.grasp(finger).trial(-1.5 * MM);
+    let (upright, tilted) = (at(&soft), at(&stiff));
+    assert_eq!(upright.outcome, Outcome::Inserted);
+    assert_eq!(tilted.outcome, Outcome::Failed(FailureClass::Jammed));
+    let tilts = (upright.tilt_deg, tilted.tilt_deg);
+    assert!(tilts.1 > tilts.0 + 1.0, "{tilts:?} deg");
+    let range = |finger| evaluate(&rig, finger, Search::Strides).window.range_mm();
+    assert!(range(&soft) > range(&stiff) + 2.0, "{} and {} mm", range(&soft), range(&stiff));
+}
+
+#[test]
+fn a_picture_shows_each_phase_twice() {
+    let rig = direct("rj45");
+    let trial = trial(&rig, &finger(2.0, 50.0), 0.0);
+    let svg = picture::svg(&rig.task, &trial);
+    assert_eq!(svg.matches("(y, z)").count(), trial.phases.len());
+    assert_eq!(svg.matches("(x, z)").count(), trial.phases.len());
+}

@@ -29,7 +29,7 @@ fn inertia(mass: f64, half: Vector3<f64>) -> Inertia {
 
 fn cuboid(name: &str, motion: Motion, half: [f64; 3], pose: Pose, friction: f64) -> Body {
     let shape = Shape::Box { half: Vector3::from(half) };
-    let geom = Geom { name: name.into(), shape, pose: Pose::identity(), friction };
+    let geom = Geom { name: name.into(), shape, pose: Pose::identity(), friction, patch: 0.0 };
     Body { name: name.into(), motion, pose, geoms: vec![geom] }
 }
 
@@ -101,6 +101,39 @@ fn sprung(springs: [f64; 6], gravity: Vector3<f64>, arm: Vector3<f64>) -> Scene 
         }),
     });
     scene
+}
+
+/// Torsional friction: a face of friction mu and patch radius rho resists a turn
+/// about its normal with mu rho N, and sliding with mu N as ever.
+#[test]
+fn a_patch_resists_a_turn_with_its_radius() {
+    let (mass, mu, rho) = (0.1, 0.5, 30e-3);
+    let [limit, push] = [mu * rho * mass * G, mu * mass * G];
+    for (moment, force, moves) in [
+        (0.98 * limit, 0.0, false),
+        (1.02 * limit, 0.0, true),
+        (0.0, 0.98 * push, false),
+        (0.0, 1.02 * push, true),
+    ] {
+        let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -G), ..Scene::default() };
+        let half = [5e-3, 5e-3, 2e-3];
+        let under = Pose::translation(0.0, 0.0, -5e-3);
+        let mut floor = cuboid("floor", Motion::Fixed, [0.1, 0.1, 5e-3], under, mu);
+        floor.geoms[0].patch = rho;
+        let floor = scene.body(floor);
+        let on_top = Pose::translation(0.0, 0.0, 2e-3);
+        let mut block = cuboid("block", free(mass, half), half, on_top, mu);
+        block.geoms[0].patch = f64::INFINITY;
+        let block = scene.body(block);
+        scene.contacts.push((floor, block));
+        let mut world = world(&scene, 5e-4);
+        run(&mut world, 0.05);
+        world.push(block, Vector3::x() * force, Vector3::z() * moment);
+        run(&mut world, 0.1);
+        let velocity = world.bodies[block.0].velocity;
+        let moved = velocity[5].abs() > 1e-2 || velocity[0].abs() > 1e-3;
+        assert_eq!(moved, moves, "moment {moment} N m, force {force} N: {velocity}");
+    }
 }
 
 #[test]
@@ -248,7 +281,10 @@ fn a_wedged_plug_hardly_sinks() {
         let mut world = world(&scene, step);
         run(&mut world, 0.5);
         let sunk = pose.translation.z - world.pose(plug).translation.z;
-        assert!((0.0..2e-6).contains(&sunk), "step {step}: {sunk}");
+        // Two corners carry it, each a spring of the contact stiffness, and the
+        // engine may not sink further than twice that.
+        let give = 70.0 / (2.0 * Settings::default().contact_stiffness);
+        assert!((0.0..2.0 * give).contains(&sunk), "step {step}: {sunk} of {give}");
         let force = world.contact(wall, plug);
         assert!((force.net.z - 70.0).abs() < 0.1 && (force.normal_sum - 70.0).abs() < 0.1);
         assert_eq!(world.contact(plug, wall).net, -force.net);

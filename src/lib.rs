@@ -16,6 +16,7 @@ pub mod check;
 pub mod engine;
 pub mod evaluation;
 pub mod finger;
+pub mod input;
 pub mod objective;
 pub mod optimizer;
 pub mod report;

@@ -1,5 +1,6 @@
 //! The robot as the flange feels: ideal, or soft about its servos.
 
+use crate::input::{Check, InputError, read};
 use crate::units::N_PER_MM;
 use serde::Deserialize;
 
@@ -40,29 +41,6 @@ pub struct Servo {
     pub damping_ratio: f64,
 }
 
-/// What is wrong with a robot file.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum RobotError {
-    /// Not TOML, an unknown key or a missing field; the text names the line.
-    #[error("{file}: {message}")]
-    Syntax {
-        /// The file as given.
-        file: String,
-        /// The parser's message, with line and column.
-        message: String,
-    },
-    /// A number that cannot be used.
-    #[error("{file}: {key}: is {value}; it must be a finite number above 0")]
-    Value {
-        /// The file as given.
-        file: String,
-        /// The field.
-        key: String,
-        /// The value found.
-        value: f64,
-    },
-}
-
 #[derive(Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 enum RawRobot {
@@ -85,17 +63,10 @@ enum RawRobot {
 
 impl Robot {
     /// Reads and checks a robot; `file` is named in errors.
-    pub fn parse(text: &str, file: &str) -> Result<Self, RobotError> {
-        let raw: RawRobot = toml::from_str(text).map_err(|error| RobotError::Syntax {
-            file: file.to_owned(),
-            message: error.to_string().trim_end().to_owned(),
-        })?;
-        let positive = |key: &str, value: f64| {
-            if value.is_finite() && value > 0.0 {
-                return Ok(value);
-            }
-            Err(RobotError::Value { file: file.to_owned(), key: key.to_owned(), value })
-        };
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let raw: RawRobot = read(text, file)?;
+        let check = Check { file };
+        let positive = |key: &str, value: f64| check.positive(key, value);
         match raw {
             RawRobot::Rigid { name, description, stop_force_n } => Ok(Robot {
                 name,

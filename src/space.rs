@@ -1,5 +1,6 @@
 //! Search spaces: named, bounded, stepped parameters, and the designs in them.
 
+use crate::input::{Check, InputError, read};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -79,29 +80,6 @@ impl std::fmt::Display for Design {
     }
 }
 
-/// What is wrong with a space file.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum SpaceError {
-    /// Not TOML, an unknown key or a missing field; the text names the line.
-    #[error("{file}: {message}")]
-    Syntax {
-        /// The file as given.
-        file: String,
-        /// The parser's message, with line and column.
-        message: String,
-    },
-    /// A field with a value that cannot be used.
-    #[error("{file}: {key}: {problem}")]
-    Value {
-        /// The file as given.
-        file: String,
-        /// The field.
-        key: String,
-        /// What is wrong and what would be right.
-        problem: String,
-    },
-}
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawSpace {
@@ -112,30 +90,21 @@ struct RawSpace {
 
 /// A space inside another file, which is named by whoever reads that.
 impl TryFrom<RawSpace> for Space {
-    type Error = SpaceError;
-    fn try_from(raw: RawSpace) -> Result<Self, SpaceError> {
+    type Error = InputError;
+    fn try_from(raw: RawSpace) -> Result<Self, InputError> {
         Space::check(raw, "[space]")
     }
 }
 
 impl Space {
     /// Reads and checks a space; `file` is named in errors.
-    pub fn parse(text: &str, file: &str) -> Result<Self, SpaceError> {
-        let raw: RawSpace = toml::from_str(text).map_err(|error| SpaceError::Syntax {
-            file: file.to_owned(),
-            message: error.to_string().trim_end().to_owned(),
-        })?;
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let raw: RawSpace = read(text, file)?;
         Self::check(raw, file)
     }
 
-    fn check(raw: RawSpace, file: &str) -> Result<Self, SpaceError> {
-        let fail = |key: &str, problem: &str| {
-            Err(SpaceError::Value {
-                file: file.to_owned(),
-                key: key.to_owned(),
-                problem: problem.to_owned(),
-            })
-        };
+    fn check(raw: RawSpace, file: &str) -> Result<Self, InputError> {
+        let fail = |key: &str, problem: &str| Check { file }.fail(key, problem);
         if raw.parameter.is_empty() {
             return fail("parameter", "a space needs at least one [[parameter]]");
         }

@@ -2,10 +2,11 @@
 
 use super::{Failure, print, print_json};
 use clap::Args;
-use finger_opt::robot::{Robot, RobotError};
+use finger_opt::input::InputError;
+use finger_opt::robot::Robot;
 use finger_opt::shipped::{ROBOTS, SPACES, Shipped, TASKS};
-use finger_opt::space::{Space, SpaceError};
-use finger_opt::task::{Task, TaskError};
+use finger_opt::space::Space;
+use finger_opt::task::Task;
 use serde_json::json;
 
 /// List what is shipped.
@@ -35,12 +36,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 type Entries = Vec<(&'static str, String)>;
 
 fn lists_of_shipped() -> Result<[(&'static str, Entries); 3], Failure> {
-    let task = |file: &Shipped| Ok::<_, TaskError>(Task::parse(file.text, file.file)?.description);
+    let task = |file: &Shipped| Ok::<_, InputError>(Task::parse(file.text, file.file)?.description);
     let space = |file: &Shipped| {
-        Ok::<_, SpaceError>(Space::parse(file.text, file.file)?.description().to_owned())
+        Ok::<_, InputError>(Space::parse(file.text, file.file)?.description().to_owned())
     };
     let robot =
-        |file: &Shipped| Ok::<_, RobotError>(Robot::parse(file.text, file.file)?.description);
+        |file: &Shipped| Ok::<_, InputError>(Robot::parse(file.text, file.file)?.description);
     Ok([
         ("tasks", described(TASKS, task).map_err(Failure::input)?),
         ("spaces", described(SPACES, space).map_err(Failure::input)?),

@@ -4,7 +4,8 @@ pub(crate) mod geometry;
 mod raw;
 
 pub use geometry::{Part, Solid};
-pub use raw::TaskError;
+
+use crate::input::InputError;
 
 /// A checked task, in SI units, in the task frame: origin at the centre of the
 /// socket's opening on its top surface, z out of the socket, y the direction
@@ -143,7 +144,7 @@ pub struct Success {
 
 impl Task {
     /// Reads and checks a task; `file` is named in errors.
-    pub fn parse(text: &str, file: &str) -> Result<Self, TaskError> {
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         raw::parse(text, file)
     }
 }

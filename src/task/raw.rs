@@ -2,32 +2,10 @@
 
 use super::geometry::{Part, Solid};
 use super::{Ending, Friction, Grip, Hold, Phase, Plug, Stage, Strategy, Success, Task};
+use crate::input::{Check, InputError, read};
 use crate::units::{DEG, GRAM, MM};
 use nalgebra::Vector3;
 use serde::Deserialize;
-
-/// What is wrong with a task file.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum TaskError {
-    /// Not TOML, an unknown key or a missing field; the text names the line.
-    #[error("{file}: {message}")]
-    Syntax {
-        /// The file as given.
-        file: String,
-        /// The parser's message, with line and column.
-        message: String,
-    },
-    /// A field with a value that cannot be used.
-    #[error("{file}: {key}: {problem}")]
-    Value {
-        /// The file as given.
-        file: String,
-        /// The field.
-        key: String,
-        /// What is wrong and what would be right.
-        problem: String,
-    },
-}
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -155,11 +133,8 @@ struct RawSuccess {
 }
 
 /// Reads and checks a task; `file` is named in errors.
-pub fn parse(text: &str, file: &str) -> Result<Task, TaskError> {
-    let raw: RawTask = toml::from_str(text).map_err(|error| TaskError::Syntax {
-        file: file.to_owned(),
-        message: error.to_string().trim_end().to_owned(),
-    })?;
+pub fn parse(text: &str, file: &str) -> Result<Task, InputError> {
+    let raw: RawTask = read(text, file)?;
     let check = Check { file };
     check.name(&raw.name)?;
     let plug = Plug {
@@ -192,21 +167,9 @@ pub fn parse(text: &str, file: &str) -> Result<Task, TaskError> {
     })
 }
 
-struct Check<'a> {
-    file: &'a str,
-}
-
 impl Check<'_> {
-    fn fail<T>(&self, key: &str, problem: impl Into<String>) -> Result<T, TaskError> {
-        Err(TaskError::Value {
-            file: self.file.to_owned(),
-            key: key.to_owned(),
-            problem: problem.into(),
-        })
-    }
-
     /// The name becomes part of a folder's name.
-    fn name(&self, name: &str) -> Result<(), TaskError> {
+    fn name(&self, name: &str) -> Result<(), InputError> {
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
         if name.is_empty() || !name.chars().all(plain) {
             return self.fail("name", "must be letters, digits, - and _ only, as in \"usb\"");
@@ -214,35 +177,14 @@ impl Check<'_> {
         Ok(())
     }
 
-    fn finite(&self, key: &str, value: f64) -> Result<f64, TaskError> {
-        if value.is_finite() {
-            return Ok(value);
-        }
-        self.fail(key, format!("is {value}; it must be a finite number"))
-    }
-
-    fn positive(&self, key: &str, value: f64) -> Result<f64, TaskError> {
-        if value.is_finite() && value > 0.0 {
-            return Ok(value);
-        }
-        self.fail(key, format!("is {value}; it must be a finite number above 0"))
-    }
-
-    fn not_negative(&self, key: &str, value: f64) -> Result<f64, TaskError> {
-        if value.is_finite() && value >= 0.0 {
-            return Ok(value);
-        }
-        self.fail(key, format!("is {value}; it must be a finite number, 0 or above"))
-    }
-
-    fn friction(&self, key: &str, value: f64) -> Result<f64, TaskError> {
+    fn friction(&self, key: &str, value: f64) -> Result<f64, InputError> {
         if (0.0..=5.0).contains(&value) {
             return Ok(value);
         }
         self.fail(key, format!("is {value}; a coefficient of friction lies in 0 .. 5"))
     }
 
-    fn span(&self, key: &str, span: [f64; 2]) -> Result<[f64; 2], TaskError> {
+    fn span(&self, key: &str, span: [f64; 2]) -> Result<[f64; 2], InputError> {
         self.finite(key, span[0])?;
         self.finite(key, span[1])?;
         if span[0] >= span[1] {
@@ -252,14 +194,14 @@ impl Check<'_> {
         Ok([span[0] * MM, span[1] * MM])
     }
 
-    fn parts(&self, key: &str, parts: &[RawPart]) -> Result<Vec<Part>, TaskError> {
+    fn parts(&self, key: &str, parts: &[RawPart]) -> Result<Vec<Part>, InputError> {
         if parts.is_empty() {
             return self.fail(key, "needs at least one part");
         }
         parts.iter().map(|part| self.part(key, part)).collect()
     }
 
-    fn part(&self, key: &str, part: &RawPart) -> Result<Part, TaskError> {
+    fn part(&self, key: &str, part: &RawPart) -> Result<Part, InputError> {
         let (name, friction) = match part {
             RawPart::Box { name, friction, .. }
             | RawPart::Cylinder { name, friction, .. }
@@ -295,7 +237,7 @@ impl Check<'_> {
     }
 
     /// A strictly convex outline: every turn is to the same side.
-    fn outline(&self, key: &str, outline: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, TaskError> {
+    fn outline(&self, key: &str, outline: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, InputError> {
         if outline.len() < 3 {
             return self.fail(key, "needs at least three corners");
         }
@@ -314,7 +256,7 @@ impl Check<'_> {
         Ok(outline.iter().map(|p| [p[0] * MM, p[1] * MM]).collect())
     }
 
-    fn grip(&self, raw: &RawGrip) -> Result<Grip, TaskError> {
+    fn grip(&self, raw: &RawGrip) -> Result<Grip, InputError> {
         let tcp_z = self.positive("grip.tcp_z_mm", raw.tcp_z_mm)? * MM;
         let shoulder_z = self.positive("grip.shoulder_z_mm", raw.shoulder_z_mm)? * MM;
         if shoulder_z <= tcp_z {
@@ -330,7 +272,7 @@ impl Check<'_> {
         })
     }
 
-    fn strategy(&self, raw: &RawStrategy) -> Result<Strategy, TaskError> {
+    fn strategy(&self, raw: &RawStrategy) -> Result<Strategy, InputError> {
         let tilt = self.finite("strategy.tilt_deg", raw.tilt_deg)?;
         if tilt.abs() > 45.0 {
             return self.fail("strategy.tilt_deg", "must lie in -45 .. 45");
@@ -351,7 +293,7 @@ impl Check<'_> {
         Ok(Strategy { tilt: tilt * DEG, start: raw.start_mm.map(|v| v * MM), phases })
     }
 
-    fn phase(&self, raw: &RawPhase) -> Result<Phase, TaskError> {
+    fn phase(&self, raw: &RawPhase) -> Result<Phase, InputError> {
         let at = |field: &str| format!("strategy.phase \"{}\" {field}", raw.name);
         for value in raw.move_mm {
             self.finite(&at("move_mm"), value)?;

@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Makes the outputs under results/reference that the documents quote. A few minutes on 2 cores.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+cargo build --release
+optimize=target/release/optimize
+reference=results/reference
+studies=$(mktemp -d)
+trap 'rm -rf "$studies"' EXIT
+
+"$optimize" stiffness --svg "$reference/stiffness.svg" > "$reference/stiffness.txt"
+"$optimize" check > "$reference/check.txt"
+"$optimize" trial --task usb --density 20 --direction 10 --svg "$reference/trial-usb.svg" \
+    > "$reference/trial-usb.txt"
+for task in usb ket8 ket12 rj45; do
+    mkdir -p "$reference/$task"
+    /usr/bin/env time -f "%e s wall, %U s processor, %M KiB" -o "$reference/$task/time.txt" \
+        "$optimize" --task "$task" --budget 200 --out "$studies/$task" --quiet \
+        > "$reference/$task/summary.txt"
+    sed -i '/^study /d' "$reference/$task/summary.txt"
+    for file in report.html convergence.svg evaluations.csv study.toml; do
+        cp "$studies/$task/$file" "$reference/$task/"
+    done
+done

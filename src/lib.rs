@@ -30,3 +30,4 @@ pub mod task;
 pub mod tolerance;
 pub mod trial;
 pub mod units;
+pub mod validate;

@@ -29,7 +29,7 @@ fn inertia(mass: f64, half: Vector3<f64>) -> Inertia {
 
 fn cuboid(name: &str, motion: Motion, half: [f64; 3], pose: Pose, friction: f64) -> Body {
     let shape = Shape::Box { half: Vector3::from(half) };
-    let geom = Geom { name: name.into(), shape, pose: Pose::identity(), friction };
+    let geom = Geom { name: name.into(), shape, pose: Pose::identity(), friction, patch: 0.0 };
     Body { name: name.into(), motion, pose, geoms: vec![geom] }
 }
 

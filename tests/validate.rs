@@ -62,7 +62,7 @@ fn one_task_prints_json_that_threads_do_not_change() {
 #[test]
 fn a_task_that_is_not_published_is_refused() {
     let folder = Studies::new();
-    validate(&["--task", "ubs"], &folder.dir("a")).fails(2, &["ubs", "did you mean `usb`"]);
+    validate(&["--task", "rj54"], &folder.dir("a")).fails(2, &["rj54", "did you mean `rj45`"]);
     let mine = folder.dir("mine.toml");
     let text = std::fs::read_to_string("tasks/usb.toml").unwrap();
     std::fs::write(&mine, text.replacen("name = \"usb\"", "name = \"mine\"", 1)).unwrap();

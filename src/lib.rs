@@ -31,3 +31,4 @@ pub mod task;
 pub mod tolerance;
 pub mod trial;
 pub mod units;
+pub mod validate;

@@ -31,6 +31,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Trial(arguments)) => cli::trial::run(&arguments),
         Some(Command::Stiffness(arguments)) => cli::stiffness::run(&arguments),
         Some(Command::Check(arguments)) => cli::check::run(&arguments),
+        Some(Command::Validate(arguments)) => cli::validate::run(&arguments),
         Some(Command::Tasks(arguments)) => cli::tasks::run(&arguments),
     }
 }

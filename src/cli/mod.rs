@@ -13,6 +13,7 @@ pub mod study;
 mod summary;
 pub mod tasks;
 pub mod trial;
+pub mod validate;
 
 pub use failure::Failure;
 
@@ -81,6 +82,7 @@ pub enum Command {
     /// Show the stiffness model and how well it fits
     Stiffness(stiffness::Arguments),
     Check(check::Arguments),
+    Validate(validate::Arguments),
     /// List tasks, spaces and robots
     Tasks(tasks::Arguments),
 }

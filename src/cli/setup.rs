@@ -185,7 +185,8 @@ pub fn stiffness_data(path: Option<&str>) -> Result<Source, Failure> {
     find("stiffness data", STIFFNESS, path.unwrap_or("measured"))
 }
 
-fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Source, Failure> {
+/// The shipped file of that name, or the file at that path.
+pub fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Source, Failure> {
     shipped::resolve(kind, shipped, name).map_err(Failure::input)
 }
 

@@ -6,7 +6,6 @@ mod chart;
 mod convergence;
 mod html;
 mod map;
-mod published;
 mod scatter;
 mod sections;
 pub mod stiffness;
@@ -14,6 +13,7 @@ pub mod stiffness;
 mod tests;
 mod text;
 mod theme;
+pub mod validation;
 mod windows;
 
 use crate::study::StudyRecord;

@@ -2,10 +2,10 @@
 
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet};
-use super::published::{Origin, designs, of_task};
 use super::theme::{BLUE, GREEN, ORANGE};
 use crate::study::StudyRecord;
 use crate::units::N_PER_MM;
+use crate::validate::published::{Origin, designs, of_task};
 use plotters::prelude::*;
 
 /// The plot, `size` pixels; `None` if there is nothing to show.
@@ -34,7 +34,7 @@ impl Points {
         let measured = designs();
         let published = |origin| {
             let rows = of_task(&record.config.task, origin);
-            let point = |row: &super::published::Published| {
+            let point = |row: &crate::validate::published::Published| {
                 let design = measured.iter().find(|m| m.design == row.design)?;
                 Some((design.compliance / N_PER_MM, row.tolerable_range_mm?))
             };

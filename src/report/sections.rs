@@ -1,12 +1,12 @@
 //! The page's tables and texts.
 
-use super::published::{Origin, Published, designs, of_task, rank_correlation};
 use super::text::{design, escape, outcome_words};
 use super::windows;
 use crate::evaluation::{FailureClass, Outcome, Window};
 use crate::space::{DENSITY_KEY, DIRECTION_KEY};
 use crate::study::{Recorded, StudyRecord};
 use crate::surrogate::Measurement;
+use crate::validate::published::{Origin, Published, designs, of_task, rank_correlation};
 
 /// A list of names and values; both are escaped.
 pub(super) fn definitions(rows: &[(String, String)]) -> String {

@@ -1,5 +1,7 @@
 //! The published ranges: simulation and in-situ, 11 designs, four tasks.
 
+use super::statistics::spearman;
+use crate::evaluation::FailureClass;
 use crate::surrogate::{Measurement, SHIPPED_CSV, SHIPPED_FILE, parse};
 use serde::Deserialize;
 
@@ -8,7 +10,7 @@ const IN_SITU: &str = include_str!("../../data/published_in_situ.csv");
 
 /// Where a published range comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Origin {
+pub enum Origin {
     /// The publication's MuJoCo simulation.
     Simulation,
     /// The publication's robot.
@@ -17,19 +19,24 @@ pub(super) enum Origin {
 
 /// One published result.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-pub(super) struct Published {
-    task: String,
+pub struct Published {
+    /// Name of the task.
+    pub task: String,
+    /// Number of the design, as in [`designs`].
     pub design: u32,
-    failure_negative_offset: Option<u8>,
-    failure_positive_offset: Option<u8>,
-    /// mm; `None` if the publication gives none.
+    /// What stopped the shift in the negative direction.
+    pub failure_negative_offset: Option<FailureClass>,
+    /// What stopped the shift in the positive direction.
+    pub failure_positive_offset: Option<FailureClass>,
+    /// Tolerable range, mm; `None` if the publication gives none.
     pub tolerable_range_mm: Option<f64>,
 }
 
 impl Published {
     /// Range and failure classes at both ends: `7.2 mm (3 | 3)`.
     pub fn words(&self) -> String {
-        let class = |c: Option<u8>| c.map_or("–".to_owned(), |c| c.to_string());
+        let class =
+            |c: Option<FailureClass>| c.map_or("–".to_owned(), |c| c.number().to_string());
         let Some(range) = self.tolerable_range_mm else { return "not given".to_owned() };
         let ends = [class(self.failure_negative_offset), class(self.failure_positive_offset)];
         format!("{range:.1} mm ({} | {})", ends[0], ends[1])
@@ -37,7 +44,7 @@ impl Published {
 }
 
 /// The published results of a task; empty for a task that is not among them.
-pub(super) fn of_task(task: &str, origin: Origin) -> Vec<Published> {
+pub fn of_task(task: &str, origin: Origin) -> Vec<Published> {
     let text = match origin {
         Origin::Simulation => SIMULATION,
         Origin::InSitu => IN_SITU,
@@ -47,14 +54,14 @@ pub(super) fn of_task(task: &str, origin: Origin) -> Vec<Published> {
 }
 
 /// The designs the publication measured.
-pub(super) fn designs() -> Vec<Measurement> {
+pub fn designs() -> Vec<Measurement> {
     parse(SHIPPED_CSV, SHIPPED_FILE).unwrap_or_default()
 }
 
 /// Spearman's rank correlation between published simulation and in-situ ranges
 /// of a task, and the number of designs it rests on; `None` below 3 designs or
 /// if all ranges are equal.
-pub(super) fn rank_correlation(task: &str) -> Option<(f64, usize)> {
+pub fn rank_correlation(task: &str) -> Option<(f64, usize)> {
     let in_situ = of_task(task, Origin::InSitu);
     let pairs: Vec<(f64, f64)> = of_task(task, Origin::Simulation)
         .iter()
@@ -63,24 +70,7 @@ pub(super) fn rank_correlation(task: &str) -> Option<(f64, usize)> {
             Some((a.tolerable_range_mm?, b.tolerable_range_mm?))
         })
         .collect();
-    let first = ranks(&pairs.iter().map(|p| p.0).collect::<Vec<_>>());
-    let second = ranks(&pairs.iter().map(|p| p.1).collect::<Vec<_>>());
-    let middle = (pairs.len() as f64 - 1.0) / 2.0;
-    let sum = |a: &[f64], b: &[f64]| -> f64 {
-        a.iter().zip(b).map(|(a, b)| (a - middle) * (b - middle)).sum()
-    };
-    let scale = (sum(&first, &first) * sum(&second, &second)).sqrt();
-    (pairs.len() >= 3 && scale > 0.0).then(|| (sum(&first, &second) / scale, pairs.len()))
-}
-
-/// Ranks from 0; equals share the mean of their ranks.
-fn ranks(values: &[f64]) -> Vec<f64> {
-    let rank = |v: &f64| {
-        let below = values.iter().filter(|other| *other < v).count() as f64;
-        let equal = values.iter().filter(|other| *other == v).count() as f64;
-        below + (equal - 1.0) / 2.0
-    };
-    values.iter().map(rank).collect()
+    Some((spearman(&pairs)?, pairs.len()))
 }
 
 #[cfg(test)]
@@ -98,10 +88,5 @@ mod tests {
         }
         assert!(of_task("mine", Origin::InSitu).is_empty());
         assert_eq!(designs().len(), 11);
-    }
-
-    #[test]
-    fn equal_values_share_their_rank() {
-        assert_eq!(ranks(&[3.0, 1.0, 3.0]), vec![1.5, 0.0, 1.5]);
     }
 }

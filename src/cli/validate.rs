@@ -1,0 +1,125 @@
+//! `optimize validate`: our windows beside the published ones.
+
+use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
+use super::{Failure, print, print_json};
+use clap::Args;
+use finger_opt::evaluation::Window;
+use finger_opt::report::validation;
+use finger_opt::robot::Robot;
+use finger_opt::shipped::{ROBOTS, TASKS};
+use finger_opt::study::write_file;
+use finger_opt::task::Task;
+use finger_opt::tolerance::{self, Search};
+use finger_opt::validate::published::{self, Origin};
+use finger_opt::validate::{self, TaskTable};
+use rayon::prelude::*;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Compare our tolerance windows with the published ones.
+///
+/// Measures the windows of all published designs, with their measured stiffness,
+/// and writes validation.csv, validation_summary.csv and figures.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Task: ket8, ket12, rj45, usb, all, or the path of a task file of such a name
+    #[arg(long, value_name = "NAME", default_value = "all")]
+    task: String,
+    /// Robot: see `optimize tasks`, or the path of a robot file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
+    robot: String,
+    /// Contact engine
+    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    engine: EngineKind,
+    /// Try every 0.1 mm step up to the first failure, as the paper does (slow)
+    #[arg(long)]
+    walk: bool,
+    /// Folder that tables and figures are written to
+    #[arg(long, value_name = "DIR", default_value = "results/validation")]
+    out: PathBuf,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let tasks = arguments.tasks()?;
+    let robot = setup::find("robot", ROBOTS, &arguments.robot)?;
+    let robot = Robot::parse(&robot.text, &robot.file).map_err(Failure::input)?;
+    let tables = arguments.measure(&tasks, &robot);
+    write(&arguments.out, &tables)?;
+    if arguments.json {
+        return print_json(&json!({
+            "robot": robot.name,
+            "engine": arguments.engine.name(),
+            "tasks": validate::json(&tables),
+        }));
+    }
+    let (engine, out) = (arguments.engine.name(), arguments.out.display());
+    let texts: Vec<String> = tables.iter().map(validate::text).collect();
+    print(&format!(
+        "robot {}, engine {engine}; ends: failure class (1 lost early, 2 missed, 3 jammed, 4 lost)\n\n\
+         {}\ntables and figures are in {out}\n",
+        robot.name,
+        texts.join("\n"),
+    ))
+}
+
+impl Arguments {
+    fn tasks(&self) -> Result<Vec<Task>, Failure> {
+        let names = match self.task.as_str() {
+            "all" => TASKS.iter().map(|shipped| shipped.name).collect(),
+            name => vec![name],
+        };
+        names.into_iter().map(task).collect()
+    }
+
+    /// All windows, in parallel over tasks and designs; collected in order, so
+    /// the number of threads changes nothing.
+    fn measure(&self, tasks: &[Task], robot: &Robot) -> Vec<TaskTable> {
+        let designs = published::designs();
+        let search = if self.walk { Search::Walk } else { Search::Strides };
+        let rigs: Vec<_> = tasks.iter().map(|task| setup::rig(self.engine, task, robot)).collect();
+        let pairs: Vec<_> =
+            rigs.iter().flat_map(|rig| designs.iter().map(move |design| (rig, design))).collect();
+        let windows: Vec<Window> = pairs
+            .into_par_iter()
+            .map(|(rig, design)| {
+                tolerance::evaluate(&**rig, &validate::finger(design), search).window
+            })
+            .collect();
+        let of_tasks = windows.chunks(designs.len().max(1));
+        let table = |(task, windows): (&Task, &[Window])| {
+            TaskTable::new(&task.name, designs.iter().copied().zip(windows.iter().cloned()))
+        };
+        tasks.iter().zip(of_tasks).map(table).collect()
+    }
+}
+
+/// A task of which something is published.
+fn task(name: &str) -> Result<Task, Failure> {
+    let source = setup::find("task", TASKS, name)?;
+    let task = Task::parse(&source.text, &source.file).map_err(Failure::input)?;
+    if published::of_task(&task.name, Origin::Simulation).is_empty() {
+        let names: Vec<&str> = TASKS.iter().map(|shipped| shipped.name).collect();
+        return Err(Failure::usage(format!(
+            "{}: nothing is published of the task `{}`; there are {}",
+            source.file,
+            task.name,
+            names.join(", ")
+        )));
+    }
+    Ok(task)
+}
+
+fn write(out: &Path, tables: &[TaskTable]) -> Result<(), Failure> {
+    write_file(&out.join("validation.csv"), &validate::csv(tables))?;
+    write_file(&out.join("validation_summary.csv"), &validate::summary_csv(tables))?;
+    let figures = validation::figures(tables)
+        .map_err(|error| Failure::running(format!("cannot draw the figures: {error}")))?;
+    for (name, svg) in figures {
+        write_file(&out.join(name), &svg)?;
+    }
+    Ok(())
+}

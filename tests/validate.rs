@@ -1,0 +1,71 @@
+//! `optimize validate` on the fake engine: output, files, and what is said of bad input.
+
+mod common;
+
+use common::{Studies, optimize, read};
+
+fn validate(more: &[&str], out: &std::path::Path) -> common::Ran {
+    let out = out.to_str().expect("a path in UTF-8");
+    optimize(&[&["validate", "--engine", "fake", "--out", out], more].concat())
+}
+
+#[test]
+fn all_tasks_are_compared_and_written() {
+    let folder = Studies::new();
+    let dir = folder.dir("all");
+    let ran = validate(&[], &dir);
+    for part in ["ket8", "ket12", "rj45", "usb", "target", "27.3 %", "54.5 %", "100.0 %"] {
+        assert!(ran.succeeds().contains(part), "{part} is not in {}", ran.stdout);
+    }
+    assert!(
+        ran.stdout
+            .lines()
+            .all(|line| { line.starts_with("tables and figures") || line.chars().count() <= 100 })
+    );
+    let csv = read(&dir.join("validation.csv"));
+    assert!(csv.starts_with("task,design,infill_density_percent,infill_direction_deg,"));
+    assert_eq!(csv.lines().count(), 45);
+    assert_eq!(read(&dir.join("validation_summary.csv")).lines().count(), 13);
+    for figure in [
+        "failures",
+        "simulated_against_in_situ",
+        "range_against_direction",
+        "range_against_stiffness_usb",
+    ] {
+        assert!(read(&dir.join(format!("{figure}.svg"))).contains("</svg>"));
+    }
+}
+
+#[test]
+fn one_task_prints_json_that_threads_do_not_change() {
+    let folder = Studies::new();
+    let ran = |name: &str, threads: &str| {
+        let out = folder.dir(name);
+        let mut command =
+            common::command(&["validate", "--engine", "fake", "--task", "usb", "--json", "--out"]);
+        common::run(command.arg(out).env("RAYON_NUM_THREADS", threads))
+    };
+    let result = ran("one", "1");
+    let found = result.json();
+    assert_eq!(found["engine"], "fake");
+    let task = &found["tasks"][0];
+    assert_eq!(task["designs"].as_array().map(Vec::len), Some(11));
+    // The measured stiffness, not the surrogate's.
+    assert_eq!(task["designs"][4]["stiffness_compliance_n_per_mm"], 2.6);
+    assert_eq!(task["agreement"][2]["compared"], "simulation");
+    assert_eq!(task["agreement"][2]["matched_ends"], 6);
+    assert_eq!(ran("eight", "8").stdout, result.stdout);
+    assert!(folder.dir("one").join("range_against_stiffness_usb.svg").exists());
+    assert!(!folder.dir("one").join("range_against_stiffness_ket8.svg").exists());
+}
+
+#[test]
+fn a_task_that_is_not_published_is_refused() {
+    let folder = Studies::new();
+    validate(&["--task", "rj54"], &folder.dir("a")).fails(2, &["rj54", "did you mean `rj45`"]);
+    let mine = folder.dir("mine.toml");
+    let text = std::fs::read_to_string("tasks/usb.toml").unwrap();
+    std::fs::write(&mine, text.replacen("name = \"usb\"", "name = \"mine\"", 1)).unwrap();
+    let mine = mine.to_str().unwrap();
+    validate(&["--task", mine], &folder.dir("b")).fails(2, &["mine.toml", "nothing is published"]);
+}

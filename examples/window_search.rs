@@ -11,7 +11,8 @@
 //! measured stiffness, on the 4 tasks with the robot `servo`. `searches` compares
 //! the default search with the scan, `settings` the production settings with steps
 //! of 25 us and the scan. A summary goes to standard error. `maps` prints the outcome
-//! of every offset from 0.5 mm below to 0.5 mm above the window of the default search.
+//! of every offset from 0.5 mm below to 0.5 mm above the window of the default search,
+//! `steps` the window of one design at several steps.
 
 use finger_opt::engine::direct::Direct;
 use finger_opt::evaluation::{Evaluation, Outcome, Window, grid_mm};
@@ -30,6 +31,9 @@ use std::sync::Mutex;
 
 /// Step of the reference settings, s.
 const REFERENCE_STEP_S: f64 = 2.5e-5;
+
+/// Steps whose windows are compared with each other, s.
+const STEPS_S: [f64; 6] = [5e-4, 3.5e-4, 2.5e-4, 1e-4, 5e-5, REFERENCE_STEP_S];
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
@@ -51,7 +55,11 @@ fn main() -> Fallible<()> {
             print_maps(&cases, &robot);
             return Ok(());
         }
-        _ => return Err("give `searches`, `settings` or `maps`".into()),
+        "steps" => {
+            print_steps(&cases, &robot);
+            return Ok(());
+        }
+        _ => return Err("give `searches`, `settings`, `maps` or `steps`".into()),
     };
     let pairs: Vec<Pair> = cases
         .par_iter()
@@ -180,6 +188,26 @@ fn print_maps(cases: &[(&Task, &Measurement)], robot: &Robot) {
         })
         .collect();
     println!("task,design,from_mm,outcomes\n{}", rows.join("\n"));
+}
+
+/// The default search's window at several steps, for the fifth measured design.
+fn print_steps(cases: &[(&Task, &Measurement)], robot: &Robot) {
+    println!("task,design,step_s,negative_mm,positive_mm,end_negative,end_positive");
+    for (task, design) in cases.iter().filter(|(_, design)| design.design == 5) {
+        let rows: Vec<String> = STEPS_S
+            .par_iter()
+            .map(|&step_s| {
+                let rig = rig(task, robot, Some(step_s));
+                let window = tolerance::evaluate(&rig, &finger(design), Search::default()).window;
+                let (from, to) = (window.negative_mm(), window.positive_mm());
+                let ends = [window.end_negative, window.end_positive].map(label);
+                format!("{step_s},{from:.1},{to:.1},{},{}", ends[0], ends[1])
+            })
+            .collect();
+        for row in rows {
+            println!("{},{},{row}", task.name, design.design);
+        }
+    }
 }
 
 fn rig(task: &Task, robot: &Robot, step_s: Option<f64>) -> EngineRig {

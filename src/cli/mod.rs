@@ -1,5 +1,6 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
+pub mod bench;
 pub mod check;
 pub mod evaluate;
 mod failure;
@@ -81,6 +82,7 @@ pub enum Command {
     /// Show the stiffness model and how well it fits
     Stiffness(stiffness::Arguments),
     Check(check::Arguments),
+    Bench(bench::Arguments),
     /// List tasks, spaces and robots
     Tasks(tasks::Arguments),
 }

@@ -13,7 +13,8 @@ pub const OFFSET_LIMIT_STEPS: OffsetStep = 150;
 pub enum Search {
     /// In strides of 0.5 mm outward to the first failure, then by bisection
     /// between the last two: a quarter of the trials. It finds the end that
-    /// the walk finds unless a gap in the window is narrower than a stride.
+    /// the walk finds unless a gap in the window is narrower than a stride; there
+    /// is one in 7 of the 44 measured cases (docs/performance.md).
     #[default]
     Strides,
     /// Step by step outward to the first failure: the paper's way.

@@ -1,5 +1,6 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
+pub mod bench;
 pub mod check;
 pub mod evaluate;
 mod failure;
@@ -83,6 +84,7 @@ pub enum Command {
     Stiffness(stiffness::Arguments),
     Check(check::Arguments),
     Validate(validate::Arguments),
+    Bench(bench::Arguments),
     /// List tasks, spaces and robots
     Tasks(tasks::Arguments),
 }

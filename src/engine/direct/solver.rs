@@ -122,6 +122,8 @@ pub(super) struct Solver {
     hessian: Vec<f64>,
     gradient: Vec<Vector6>,
     direction: Vec<Vector6>,
+    /// The direction as the dense solution wants it.
+    flat: Vec<f64>,
 }
 
 impl Solver {
@@ -136,6 +138,7 @@ impl Solver {
             hessian: square,
             gradient: zeros.clone(),
             direction: zeros,
+            flat: vec![0.0; 6 * bodies],
         }
     }
 
@@ -236,11 +239,14 @@ impl Solver {
                 add_stiffness(&mut self.hessian, self.velocities.len(), contact, &stiffness);
             }
         }
-        for (d, g) in self.direction.iter_mut().zip(&self.gradient) {
-            *d = -g;
+        for (d, g) in self.flat.chunks_exact_mut(6).zip(&self.gradient) {
+            d.copy_from_slice((-g).as_slice());
         }
         dense::factor(&mut self.hessian, 6 * self.velocities.len())?;
-        dense::solve(&self.hessian, &mut self.direction);
+        dense::solve(&self.hessian, &mut self.flat);
+        for (d, flat) in self.direction.iter_mut().zip(self.flat.chunks_exact(6)) {
+            d.copy_from_slice(flat);
+        }
         for contact in contacts.iter_mut() {
             contact.change = contact.relative(&self.direction);
         }
@@ -286,27 +292,26 @@ impl Solver {
     }
 }
 
-/// Adds `J^T K J` of a contact: with `J = [1, lever]` on each side, up to sign.
+/// Adds `J^T K J` of a contact to the upper half, with `J = [1, lever]` on each
+/// side, up to sign. `K` is symmetric, so `(K lever)^T` is `lever^T K`.
 fn add_stiffness(hessian: &mut [f64], bodies: usize, contact: &Contact, k: &Matrix3<f64>) {
+    let n = 6 * bodies;
+    let across = contact.lever.map(|lever| k * lever);
     for row in 0..2 {
         let Some(i) = contact.place[row] else { continue };
-        let turned = contact.lever[row].tr_mul(k);
         for column in 0..2 {
-            let Some(j) = contact.place[column] else { continue };
-            if j > i {
-                continue; // The factorisation reads the lower half.
-            }
+            let Some(j) = contact.place[column].filter(|&j| j >= i) else { continue };
             let sign = if row == column { 1.0 } else { -1.0 };
-            let across = k * contact.lever[column];
-            let both = turned * contact.lever[column];
-            let n = 6 * bodies;
+            let both = across[row].tr_mul(&contact.lever[column]) * sign;
+            let (right, down) = (across[column] * sign, across[row] * sign);
             for r in 0..3 {
-                let (upper, lower) = ((6 * i + r) * n + 6 * j, (6 * i + 3 + r) * n + 6 * j);
+                let at = (6 * i + r) * n + 6 * j;
+                let (upper, lower) = hessian[at..].split_at_mut(3 * n);
                 for c in 0..3 {
-                    hessian[upper + c] += sign * k[(r, c)];
-                    hessian[upper + 3 + c] += sign * across[(r, c)];
-                    hessian[lower + c] += sign * turned[(r, c)];
-                    hessian[lower + 3 + c] += sign * both[(r, c)];
+                    upper[c] += sign * k[(r, c)];
+                    upper[3 + c] += right[(r, c)];
+                    lower[c] += down[(c, r)];
+                    lower[3 + c] += both[(r, c)];
                 }
             }
         }

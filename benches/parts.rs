@@ -1,0 +1,130 @@
+//! Times of the parts that a study is made of: `cargo bench`.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use finger_opt::engine::Engine;
+use finger_opt::engine::direct::Direct;
+use finger_opt::finger::Finger;
+use finger_opt::objective::Objective;
+use finger_opt::optimizer::{Grid, Observation, OptimizerKind, build};
+use finger_opt::robot::Robot;
+use finger_opt::shipped::{ROBOTS, SPACES, STIFFNESS, TASKS};
+use finger_opt::space::Space;
+use finger_opt::study::{
+    FileStore, Inputs, JOURNAL_FILE, Journal, Runner, Simulated, Study, StudyConfig, Versions,
+};
+use finger_opt::surrogate::{self, Model};
+use finger_opt::task::Task;
+use finger_opt::tolerance::{self, Search};
+use finger_opt::trial::fake::FakeRig;
+use finger_opt::trial::run::EngineRig;
+use finger_opt::trial::{Rig, cell};
+use finger_opt::units::N_PER_MM;
+use std::collections::BTreeMap;
+use std::hint::black_box;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+fn task() -> Task {
+    let usb = TASKS.iter().find(|task| task.name == "usb").expect("shipped");
+    Task::parse(usb.text, usb.file).expect("valid")
+}
+
+fn robot() -> Robot {
+    Robot::parse(ROBOTS[0].text, ROBOTS[0].file).expect("valid")
+}
+
+fn space() -> Space {
+    Space::parse(SPACES[0].text, SPACES[0].file).expect("valid")
+}
+
+fn model() -> Model {
+    let data = surrogate::parse(STIFFNESS[0].text, STIFFNESS[0].file).expect("valid");
+    surrogate::fit(&data).expect("fits")
+}
+
+fn simulation(c: &mut Criterion) {
+    let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+    let mut world = Direct::default().world(&cell::build(&task(), &robot(), &finger).scene);
+    c.bench_function("step", |b| b.iter(|| world.step()));
+    let rig = EngineRig { task: task(), robot: robot(), engine: Box::new(Direct::default()) };
+    let grasped = rig.grasp(&finger);
+    c.bench_function("trial", |b| b.iter(|| grasped.trial(0.0)));
+    c.bench_function("evaluation", |b| {
+        b.iter(|| tolerance::evaluate(&rig, &finger, Search::default()));
+    });
+}
+
+fn proposals(c: &mut Criterion) {
+    let model = model();
+    c.bench_function("surrogate", |b| b.iter(|| model.predict(black_box(17.0), black_box(23.0))));
+    // As many designs known as in the middle of a study of 100.
+    let mut gp = build(OptimizerKind::Gp, Grid::new(space().levels()), 0);
+    for _ in 0..12 {
+        let observed = |point: finger_opt::space::GridPoint| {
+            let value = space().design(&point).get("infill_density_percent");
+            Observation { point, value }
+        };
+        let told: Vec<Observation> = gp.ask(4).into_iter().map(observed).collect();
+        gp.tell(&told);
+    }
+    c.bench_function("suggestion of 4, gp, 48 known", |b| b.iter(|| gp.ask(4)));
+}
+
+fn config(budget: u64) -> StudyConfig {
+    StudyConfig {
+        task: "usb".into(),
+        robot: "servo".into(),
+        engine: "fake".into(),
+        optimizer: "random".into(),
+        objective: Objective::Range.to_string(),
+        seed: 0,
+        budget,
+        batch: 4,
+        versions: Versions { program: "bench".into(), engine: "1".into() },
+        input_sha256: BTreeMap::new(),
+        space: space(),
+    }
+}
+
+/// A study of 100 random designs on the fake engine.
+fn study(dir: &Path, model: &Model) -> Study {
+    let mut study =
+        Study::create_or_continue(dir, &config(100), &Inputs::new()).expect("a new study");
+    let rig = FakeRig::default();
+    let predict = |design: &finger_opt::space::Design| {
+        let value = |key| design.get(key).expect("in the space");
+        model.predict(value("infill_density_percent"), value("infill_direction_deg"))
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let runner = Runner {
+        evaluator: &Simulated { predict, rig: &rig },
+        objective: Objective::Range,
+        pool: &pool,
+        stop: &AtomicBool::new(false),
+    };
+    let mut random = build(OptimizerKind::Random, Grid::new(space().levels()), 0);
+    runner.run(&mut study, &mut *random, &mut |_| ()).expect("runs");
+    study
+}
+
+fn studies(c: &mut Criterion) {
+    let model = model();
+    c.bench_function("study of 100, fake engine", |b| {
+        b.iter(|| study(tempfile::tempdir().expect("a folder").path(), &model));
+    });
+    let dir = tempfile::tempdir().expect("a folder");
+    let recorded = study(dir.path(), &model).evaluations.remove(0);
+    let path = dir.path().join(format!("other-{JOURNAL_FILE}"));
+    let store = Box::new(FileStore::open(&path).expect("a file"));
+    let (mut journal, _) = Journal::open(store, &path, &config(100)).expect("a journal");
+    c.bench_function("journal append", |b| b.iter(|| journal.append(&recorded)));
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(10)
+        .warm_up_time(std::time::Duration::from_millis(300))
+        .measurement_time(std::time::Duration::from_secs(2));
+    targets = simulation, proposals, studies
+}
+criterion_main!(benches);

@@ -31,6 +31,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Trial(arguments)) => cli::trial::run(&arguments),
         Some(Command::Stiffness(arguments)) => cli::stiffness::run(&arguments),
         Some(Command::Check(arguments)) => cli::check::run(&arguments),
+        Some(Command::AskTell(arguments)) => cli::ask_tell::run(&arguments),
         Some(Command::Tasks(arguments)) => cli::tasks::run(&arguments),
     }
 }

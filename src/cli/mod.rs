@@ -1,5 +1,6 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
+pub mod ask_tell;
 pub mod check;
 pub mod evaluate;
 mod failure;
@@ -81,6 +82,8 @@ pub enum Command {
     /// Show the stiffness model and how well it fits
     Stiffness(stiffness::Arguments),
     Check(check::Arguments),
+    /// Optimize anything: JSON lines on standard input and output
+    AskTell(ask_tell::Arguments),
     /// List tasks, spaces and robots
     Tasks(tasks::Arguments),
 }

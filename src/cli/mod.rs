@@ -2,6 +2,7 @@
 
 pub mod ask_tell;
 pub mod check;
+pub mod compare;
 pub mod evaluate;
 mod failure;
 mod progress;
@@ -81,6 +82,8 @@ pub enum Command {
     Trial(trial::Arguments),
     /// Show the stiffness model and how well it fits
     Stiffness(stiffness::Arguments),
+    /// Compare optimizers over studies of the same task and objective
+    Compare(compare::Arguments),
     Check(check::Arguments),
     /// Optimize anything: JSON lines on standard input and output
     AskTell(ask_tell::Arguments),

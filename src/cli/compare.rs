@@ -46,9 +46,9 @@ fn table(comparison: &Comparison) -> String {
         "batch",
         "studies",
         "reached",
-        "quarter",
+        "25 %",
         "median",
-        "3/4"
+        "75 %"
     );
     for group in &comparison.groups {
         let number = |n: Option<f64>| n.map_or("-".to_owned(), |n| format!("{n:.1}"));

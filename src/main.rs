@@ -30,9 +30,11 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Evaluate(arguments)) => cli::evaluate::run(&arguments),
         Some(Command::Trial(arguments)) => cli::trial::run(&arguments),
         Some(Command::Stiffness(arguments)) => cli::stiffness::run(&arguments),
+        Some(Command::Compare(arguments)) => cli::compare::run(&arguments),
         Some(Command::Check(arguments)) => cli::check::run(&arguments),
         Some(Command::Validate(arguments)) => cli::validate::run(&arguments),
         Some(Command::Bench(arguments)) => cli::bench::run(&arguments),
+        Some(Command::AskTell(arguments)) => cli::ask_tell::run(&arguments),
         Some(Command::Tasks(arguments)) => cli::tasks::run(&arguments),
     }
 }

@@ -186,7 +186,7 @@ fn those_that_learn_find_the_hill_and_those_that_spread_come_near_it() {
         let best = points.iter().filter_map(|p| hill(&grid, p, 0)).fold(f64::MIN, f64::max);
         let enough = match kind {
             OptimizerKind::Gp => 1e-9,
-            OptimizerKind::CmaEs => 1e-2,
+            OptimizerKind::CmaEs | OptimizerKind::NelderMead => 1e-2,
             _ => 3e-2,
         };
         assert!(best > -enough, "{kind}: {best}");

@@ -1,7 +1,9 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
+pub mod ask_tell;
 pub mod bench;
 pub mod check;
+pub mod compare;
 pub mod evaluate;
 mod failure;
 mod progress;
@@ -82,9 +84,13 @@ pub enum Command {
     Trial(trial::Arguments),
     /// Show the stiffness model and how well it fits
     Stiffness(stiffness::Arguments),
+    /// Compare optimizers over studies of the same task and objective
+    Compare(compare::Arguments),
     Check(check::Arguments),
     Validate(validate::Arguments),
     Bench(bench::Arguments),
+    /// Optimize anything: JSON lines on standard input and output
+    AskTell(ask_tell::Arguments),
     /// List tasks, spaces and robots
     Tasks(tasks::Arguments),
 }

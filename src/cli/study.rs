@@ -19,7 +19,7 @@ pub struct Arguments {
     /// Evaluations in all; run the same command with a larger one to go on
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     budget: u64,
-    /// Optimizer: gp, cma-es, random, sobol or grid
+    /// Optimizer: gp, cma-es, nelder-mead, random, sobol or grid
     #[arg(long, value_name = "NAME", default_value = "gp")]
     optimizer: OptimizerKind,
     /// What is made large: range, or centred-range

@@ -2,7 +2,7 @@
 
 use super::cmaes::CmaEsOptimizer;
 use super::gp::GpOptimizer;
-use super::{Grid, GridSearch, Optimizer, RandomSearch, SobolSearch};
+use super::{Grid, GridSearch, NelderMeadOptimizer, Optimizer, RandomSearch, SobolSearch};
 use std::fmt;
 use std::str::FromStr;
 
@@ -13,6 +13,8 @@ pub enum OptimizerKind {
     Gp,
     /// `cma-es`: CMA-ES with BIPOP restarts.
     CmaEs,
+    /// `nelder-mead`: Nelder-Mead with restarts.
+    NelderMead,
     /// `random`: uniform, without replacement.
     Random,
     /// `sobol`: scrambled Sobol sequence.
@@ -23,14 +25,15 @@ pub enum OptimizerKind {
 
 impl OptimizerKind {
     /// All kinds, in the order in which help texts list them.
-    pub const ALL: [OptimizerKind; 5] =
-        [Self::Gp, Self::CmaEs, Self::Random, Self::Sobol, Self::Grid];
+    pub const ALL: [OptimizerKind; 6] =
+        [Self::Gp, Self::CmaEs, Self::NelderMead, Self::Random, Self::Sobol, Self::Grid];
 
     /// The name as written on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gp => "gp",
             Self::CmaEs => "cma-es",
+            Self::NelderMead => "nelder-mead",
             Self::Random => "random",
             Self::Sobol => "sobol",
             Self::Grid => "grid",
@@ -70,6 +73,7 @@ pub fn build(kind: OptimizerKind, grid: Grid, seed: u64) -> Box<dyn Optimizer + 
     match kind {
         OptimizerKind::Gp => Box::new(GpOptimizer::new(grid, seed)),
         OptimizerKind::CmaEs => Box::new(CmaEsOptimizer::new(grid, seed)),
+        OptimizerKind::NelderMead => Box::new(NelderMeadOptimizer::new(grid, seed)),
         OptimizerKind::Random => Box::new(RandomSearch::new(grid, seed)),
         OptimizerKind::Sobol => Box::new(SobolSearch::new(grid, seed)),
         OptimizerKind::Grid => Box::new(GridSearch::new(grid)),
@@ -88,7 +92,7 @@ mod tests {
         let error = "bayes".parse::<OptimizerKind>().unwrap_err().to_string();
         assert_eq!(
             error,
-            "unknown optimizer 'bayes'; valid names are gp, cma-es, random, sobol, grid"
+            "unknown optimizer 'bayes'; valid names are gp, cma-es, nelder-mead, random, sobol, grid"
         );
     }
 }

@@ -7,12 +7,15 @@ pub mod cmaes;
 pub mod gp;
 mod kind;
 mod lattice;
+mod neldermead;
 mod proposed;
 mod random;
+mod simplex;
 mod sobol;
 
 pub use kind::{OptimizerKind, UnknownOptimizer, build};
 pub use lattice::GridSearch;
+pub use neldermead::NelderMeadOptimizer;
 pub use proposed::Proposed;
 pub use random::RandomSearch;
 pub use sobol::SobolSearch;

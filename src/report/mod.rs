@@ -3,6 +3,8 @@
 
 mod best;
 mod chart;
+pub mod compare;
+mod compare_plot;
 mod convergence;
 mod html;
 mod map;
@@ -18,6 +20,7 @@ mod windows;
 
 use crate::study::StudyRecord;
 
+pub use compare_plot::svg as compare_svg;
 pub use html::html;
 
 /// Why a plot could not be made.

@@ -143,7 +143,7 @@ impl CmaEsOptimizer {
 }
 
 /// Reflects R onto [0, 1].
-fn fold(x: f64) -> f64 {
+pub(in crate::optimizer) fn fold(x: f64) -> f64 {
     (x - 2.0 * (x / 2.0).round()).abs()
 }
 

@@ -18,6 +18,7 @@ mod stop;
 pub use self::core::{CmaEs, Solution, Start};
 pub use eigen::symmetric_eigen;
 pub use grid::CmaEsOptimizer;
+pub(super) use grid::fold;
 pub use parameters::{Parameters, default_lambda};
 pub use restarts::{Restarts, Run, StartBox, Strategy};
 pub use stop::{Stop, Tolerances};

@@ -1,0 +1,104 @@
+//! The lines as they are read.
+
+use super::AskTellError;
+use super::parameter::ParameterLine;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+
+/// Most points of one batch, and most that can be asked at once.
+pub const LARGEST_BATCH: usize = 10_000;
+
+/// The first line.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Header {
+    /// What is to be found.
+    pub parameters: Vec<ParameterLine>,
+    /// Name of the optimizer, as for `--optimizer`.
+    pub optimizer: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Whether small or large values are wanted.
+    pub direction: Direction,
+    /// Points the optimizer proposes at a time; `None`: as many as each ask asks for.
+    #[serde(default)]
+    pub batch: Option<usize>,
+}
+
+/// Which values are better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Direction {
+    /// Small ones.
+    Minimize,
+    /// Large ones.
+    Maximize,
+}
+
+impl Direction {
+    /// A value as the optimizers want it, larger is better; and back again.
+    pub fn flip(self, value: f64) -> f64 {
+        match self {
+            Direction::Minimize => -value,
+            Direction::Maximize => value,
+        }
+    }
+}
+
+/// The value of one point.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Told {
+    /// Which point.
+    pub id: u64,
+    /// Its value; `null` if the evaluation failed. It may not be left out.
+    #[serde(deserialize_with = "must_be_given")]
+    pub value: Option<f64>,
+}
+
+/// Without this a missing value would read as null.
+fn must_be_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    Option::deserialize(deserializer)
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AskLine {
+    ask: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TellLine {
+    tell: Vec<Told>,
+}
+
+/// A line that was understood.
+pub(super) enum Line {
+    Header(Header),
+    Ask(usize),
+    Tell(Vec<Told>),
+}
+
+impl Line {
+    pub fn parse(text: &str) -> Result<Line, AskTellError> {
+        let value: Value = serde_json::from_str(text)
+            .map_err(|error| AskTellError::Syntax(format!("not a line of JSON: {error}")))?;
+        let has = |key| value.get(key).is_some();
+        if has("parameters") {
+            read(value, "parameters").map(Line::Header)
+        } else if has("ask") {
+            read(value, "ask").map(|line: AskLine| Line::Ask(line.ask))
+        } else if has("tell") {
+            read(value, "tell").map(|line: TellLine| Line::Tell(line.tell))
+        } else {
+            Err(AskTellError::UnknownLine)
+        }
+    }
+}
+
+fn read<T: DeserializeOwned>(value: Value, kind: &str) -> Result<T, AskTellError> {
+    serde_json::from_value(value)
+        .map_err(|error| AskTellError::Syntax(format!("in the `{kind}` line: {error}")))
+}

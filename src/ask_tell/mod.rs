@@ -1,0 +1,15 @@
+//! `optimize ask-tell`: an optimizer behind JSON lines, for anything that can be measured.
+//!
+//! The protocol is described in `docs/ask-tell.md`. [`Session`] is all of it but the reading
+//! and writing: one line in, at most one line out.
+
+mod batch;
+mod error;
+mod message;
+mod parameter;
+mod session;
+
+pub use error::AskTellError;
+pub use message::{Direction, Header, LARGEST_BATCH, Told};
+pub use parameter::{Axis, ParameterLine};
+pub use session::{Best, Session};

@@ -1,0 +1,87 @@
+//! `optimize compare DIR..`: studies of the same problem side by side.
+
+use super::{Failure, print, print_json};
+use clap::Args;
+use finger_opt::report::compare::{Comparison, Quartiles, TOLERANCE_MM, compare};
+use finger_opt::report::compare_svg;
+use finger_opt::study::{StudyRecord, write_file};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// Compare optimizers over studies of the same task and objective.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Folders of the studies; several seeds of an optimizer give its median and quartiles
+    #[arg(required = true, value_name = "DIR")]
+    dirs: Vec<PathBuf>,
+    /// Draw the best so far of each optimizer
+    #[arg(long, value_name = "FILE.svg")]
+    svg: Option<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
+    let studies = arguments.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
+    let comparison = compare(&studies).map_err(Failure::input)?;
+    if let Some(file) = &arguments.svg {
+        let drawn = compare_svg(&comparison);
+        write_file(file, &drawn.map_err(|error| Failure::running(error.to_string()))?)?;
+    }
+    if arguments.json { print_json(&to_json(&comparison)) } else { print(&table(&comparison)) }
+}
+
+fn table(comparison: &Comparison) -> String {
+    let best = comparison.best_known_mm;
+    let mut text = format!(
+        "{}, {}: best known {best:.1} mm\nevaluations to {:.1} mm ({TOLERANCE_MM} mm below the best known)\n\n\
+         {:<14} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8}\n",
+        comparison.task,
+        comparison.objective,
+        best - TOLERANCE_MM,
+        "optimizer",
+        "batch",
+        "studies",
+        "reached",
+        "25 %",
+        "median",
+        "75 %"
+    );
+    for group in &comparison.groups {
+        let number = |n: Option<f64>| n.map_or("-".to_owned(), |n| format!("{n:.1}"));
+        let [low, median, high] = group.evaluations_to_target().map(number);
+        text.push_str(&format!(
+            "{:<14} {:>5} {:>8} {:>8} {low:>8} {median:>8} {high:>8}\n",
+            group.optimizer,
+            group.batch,
+            group.studies,
+            group.reached(),
+        ));
+    }
+    text
+}
+
+fn to_json(comparison: &Comparison) -> Value {
+    let quartiles =
+        |[low, median, high]: Quartiles| json!({"q25": low, "median": median, "q75": high});
+    let group = |group: &finger_opt::report::compare::Group| {
+        json!({
+            "optimizer": group.optimizer,
+            "batch": group.batch,
+            "studies": group.studies,
+            "reached": group.reached(),
+            "evaluations_to_target": quartiles(group.evaluations_to_target()),
+            "best_so_far_mm": group.best_so_far.iter().copied().map(quartiles).collect::<Vec<_>>(),
+        })
+    };
+    json!({
+        "task": comparison.task,
+        "objective": comparison.objective,
+        "best_known_mm": comparison.best_known_mm,
+        "target_mm": comparison.best_known_mm - TOLERANCE_MM,
+        "optimizers": comparison.groups.iter().map(group).collect::<Vec<_>>(),
+    })
+}

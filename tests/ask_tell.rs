@@ -1,0 +1,238 @@
+//! `optimize ask-tell` as another program sees it.
+
+mod common;
+
+use common::{command, run};
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+
+const OPTIMIZERS: [&str; 6] = ["gp", "cma-es", "nelder-mead", "random", "sobol", "grid"];
+
+/// A running program; ended when dropped.
+struct Talk {
+    child: Child,
+    input: Option<ChildStdin>,
+    output: BufReader<ChildStdout>,
+}
+
+impl Talk {
+    fn begin(header: &Value) -> Self {
+        let mut talk = Self::silent();
+        talk.say(&header.to_string());
+        talk
+    }
+
+    fn silent() -> Self {
+        let mut command = command(&["ask-tell"]);
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let (input, output) = (child.stdin.take(), BufReader::new(child.stdout.take().unwrap()));
+        Talk { child, input, output }
+    }
+
+    fn say(&mut self, line: &str) {
+        writeln!(self.input.as_mut().unwrap(), "{line}").unwrap();
+    }
+
+    /// Waits for the answer before anything else is said: answers must not stay in a buffer.
+    fn raw(&mut self, line: &str) -> String {
+        self.say(line);
+        let mut answer = String::new();
+        self.output.read_line(&mut answer).unwrap();
+        answer
+    }
+
+    fn answer(&mut self, line: &Value) -> Value {
+        serde_json::from_str(&self.raw(&line.to_string())).unwrap()
+    }
+
+    fn ask(&mut self, n: usize) -> Vec<Value> {
+        self.answer(&json!({"ask": n}))["asked"].as_array().unwrap().clone()
+    }
+
+    fn error(&mut self, line: &str, part: &str) {
+        let answer: Value = serde_json::from_str(&self.raw(line)).unwrap();
+        let text = answer["error"].as_str().unwrap_or_else(|| panic!("{line}: {answer}"));
+        assert!(text.contains(part), "{line}: {text}");
+        assert_eq!(answer.as_object().unwrap().len(), 1);
+    }
+}
+
+impl Drop for Talk {
+    fn drop(&mut self) {
+        drop(self.input.take());
+        let status = self.child.wait().unwrap();
+        assert!(status.success() || std::thread::panicking());
+    }
+}
+
+fn header(optimizer: &str, direction: &str, batch: Option<usize>) -> Value {
+    let parameters = json!([
+        {"name": "x", "low": -5, "high": 5},
+        {"name": "n", "low": 1, "high": 9, "step": 2},
+    ]);
+    let mut header = json!({"parameters": parameters, "optimizer": optimizer, "seed": 1,
+                            "direction": direction});
+    if let Some(batch) = batch {
+        header["batch"] = json!(batch);
+    }
+    header
+}
+
+fn bowl(point: &Value) -> f64 {
+    let value = |name: &str| point["values"][name].as_f64().unwrap();
+    (value("x") - 1.0).powi(2) + (value("n") - 7.0).powi(2)
+}
+
+fn told(points: &[Value], sign: f64) -> Value {
+    let one = |p: &Value| json!({"id": p["id"], "value": sign * bowl(p)});
+    json!({"tell": points.iter().map(one).collect::<Vec<_>>()})
+}
+
+#[test]
+fn every_optimizer_asks_distinct_points_within_the_bounds_in_both_directions_alike() {
+    for name in OPTIMIZERS {
+        let mut down = Talk::begin(&header(name, "minimize", None));
+        let mut up = Talk::begin(&header(name, "maximize", None));
+        let mut seen = Vec::new();
+        for round in 0..8 {
+            let points = down.ask(4);
+            assert_eq!(points, up.ask(4), "{name}");
+            for (i, point) in points.iter().enumerate() {
+                assert_eq!(point["id"], json!(4 * round + i));
+                assert!((-5.0..=5.0).contains(&point["values"]["x"].as_f64().unwrap()));
+                assert!(
+                    [1.0, 3.0, 5.0, 7.0, 9.0].contains(&point["values"]["n"].as_f64().unwrap())
+                );
+                assert!(!seen.contains(&point["values"]), "{name}: {point}");
+                seen.push(point["values"].clone());
+            }
+            let (low, high) = (down.answer(&told(&points, 1.0)), up.answer(&told(&points, -1.0)));
+            assert_eq!((&low["told"], &low["stop"]), (&json!(4), &Value::Null), "{name}");
+            assert_eq!(low["best"]["id"], high["best"]["id"], "{name}");
+            assert_eq!(low["best"]["value"].as_f64(), high["best"]["value"].as_f64().map(|v| -v));
+        }
+    }
+}
+
+#[test]
+fn it_finds_the_minimum() {
+    let mut talk = Talk::begin(&header("cma-es", "minimize", Some(6)));
+    let mut best = Value::Null;
+    for _ in 0..40 {
+        let points = talk.ask(6);
+        best = talk.answer(&told(&points, 1.0))["best"].clone();
+    }
+    assert!(best["value"].as_f64().unwrap() < 1e-3 && best["values"]["n"] == 7.0, "{best}");
+}
+
+#[test]
+fn a_batch_may_be_asked_and_told_in_any_parts() {
+    let mut whole = Talk::begin(&header("cma-es", "minimize", Some(5)));
+    let mut parts = Talk::begin(&header("cma-es", "minimize", Some(5)));
+    for _ in 0..6 {
+        let points = whole.ask(9);
+        assert_eq!(points.len(), 5, "a batch at most");
+        let mut asked = parts.ask(2);
+        // One value is told before the rest of its batch is asked.
+        parts.answer(&told(&asked[1..2], 1.0));
+        asked.extend(parts.ask(1));
+        asked.extend(parts.ask(7));
+        assert_eq!(asked, points);
+        parts.error(r#"{"ask":1}"#, "tell the values of ids");
+        let last = parts.answer(&told(&[4, 2, 0, 3].map(|i| asked[i].clone()), 1.0));
+        assert_eq!(last["best"], whole.answer(&told(&points, 1.0))["best"]);
+    }
+}
+
+#[test]
+fn failed_evaluations_are_told_as_null() {
+    let mut talk = Talk::begin(&header("gp", "minimize", None));
+    let points = talk.ask(3);
+    let nothing = talk.answer(&json!({"tell": [{"id": 0, "value": null}]}));
+    assert_eq!(nothing, json!({"told": 1, "best": null, "stop": null}));
+    let one = talk.answer(&json!({"tell": [{"id": 2, "value": 8}, {"id": 1, "value": null}]}));
+    assert_eq!(one["best"], json!({"id": 2, "values": points[2]["values"], "value": 8.0}));
+    assert_eq!(talk.ask(2).len(), 2);
+}
+
+#[test]
+fn a_small_space_is_exhausted_and_says_so() {
+    let mut header = header("random", "maximize", None);
+    header["parameters"] = json!([{"name": "n", "low": 0.1, "high": 0.3, "step": 0.1}]);
+    let mut talk = Talk::begin(&header);
+    let points = talk.ask(5);
+    let mut values: Vec<f64> = points.iter().map(|p| p["values"]["n"].as_f64().unwrap()).collect();
+    values.sort_by(f64::total_cmp);
+    assert_eq!(values, [0.1, 0.2, 0.3]);
+    let tell = |id: u64| json!({"tell": [{"id": id, "value": 1}]});
+    assert!(talk.answer(&tell(1))["stop"].is_null() && talk.answer(&tell(2))["stop"].is_null());
+    let last = talk.answer(&tell(0));
+    assert_eq!((&last["stop"], &last["best"]["id"]), (&json!("space_exhausted"), &json!(0)));
+    assert_eq!(talk.ask(5), Vec::<Value>::new());
+}
+
+#[test]
+fn bad_lines_are_answered_and_change_nothing() {
+    let mut talk = Talk::begin(&header("cma-es", "minimize", None));
+    let mut quiet = Talk::begin(&header("cma-es", "minimize", None));
+    talk.error(r#"{"tell":[{"id":0,"value":1}]}"#, "id 0 was not asked");
+    assert_eq!(talk.ask(4), quiet.ask(4));
+    for (line, part) in [
+        ("", "not a line of JSON"),
+        ("{\"ask\":1", "not a line of JSON"),
+        ("[1]", "not a known line"),
+        ("{\"aks\":1}", "not a known line"),
+        (r#"{"ask":-1}"#, "`ask`"),
+        (r#"{"ask":1.5}"#, "`ask`"),
+        (r#"{"ask":1,"more":2}"#, "unknown field `more`"),
+        (r#"{"ask":1}"#, "tell the values of ids 0, 1, 2, 3 first"),
+        (r#"{"ask":10001}"#, "10000"),
+        (r#"{"tell":[{"id":0,"value":1},{"id":9,"value":1}]}"#, "id 9 was not asked"),
+        (r#"{"tell":[{"id":0,"value":1},{"id":0,"value":1}]}"#, "id 0 is told twice"),
+        (r#"{"tell":[{"id":0}]}"#, "missing field `value`"),
+        (r#"{"tell":[{"id":0,"value":NaN}]}"#, "not a line of JSON"),
+        (r#"{"tell":[{"id":0,"value":1e999}]}"#, "not a line of JSON"),
+        (r#"{"tell":[{"id":0,"value":"1"}]}"#, "`tell`"),
+        (&header("gp", "minimize", None).to_string(), "given already"),
+    ] {
+        talk.error(line, part);
+    }
+    let tell = json!({"tell": [{"id": 3, "value": 1}, {"id": 0, "value": 2},
+                               {"id": 1, "value": 3}, {"id": 2, "value": null}]});
+    assert_eq!(talk.answer(&tell), quiet.answer(&tell));
+    talk.error(r#"{"tell":[{"id":3,"value":0}]}"#, "id 3 is told twice");
+    assert_eq!(talk.ask(4), quiet.ask(4));
+}
+
+#[test]
+fn a_bad_first_line_is_refused_and_a_good_one_may_follow() {
+    let mut talk = Talk::silent();
+    talk.error(r#"{"ask":1}"#, "the first line must be");
+    let with = |key: &str, value: Value| {
+        let mut header = header("cma-es", "minimize", None);
+        header[key] = value;
+        header.to_string()
+    };
+    let twice = json!([{"name": "a", "low": 0, "high": 1}, {"name": "a", "low": 0, "high": 1}]);
+    let steps = json!([{"name": "a", "low": 0, "high": 1, "step": 0.3}]);
+    for (line, part) in [
+        (with("optimizer", json!("cma")), "valid names are gp, cma-es"),
+        (with("direction", json!("down")), "minimize"),
+        (with("seed", json!(-1)), "-1"),
+        (with("batch", json!(0)), "between 1 and 10000"),
+        (with("parameters", json!([])), "at least one"),
+        (with("parameters", twice), "`a`: is given twice"),
+        (with("parameters", steps), "whole number of steps"),
+        (with("speed", json!(1)), "unknown field `speed`"),
+    ] {
+        talk.error(&line, part);
+    }
+    talk.say(&header("cma-es", "minimize", None).to_string());
+    assert_eq!(talk.ask(2).len(), 2);
+}
+
+#[test]
+fn no_input_is_no_error() {
+    assert_eq!(run(&mut command(&["ask-tell"])).succeeds(), "");
+}

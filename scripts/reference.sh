@@ -13,7 +13,7 @@ trap 'rm -rf "$studies"' EXIT
 "$optimize" check > "$reference/check.txt"
 "$optimize" trial --task usb --density 20 --direction 10 --svg "$reference/trial-usb.svg" \
     > "$reference/trial-usb.txt"
-for task in usb ket8 ket12 rj45; do
+for task in ket8 ket12 rj45 usb; do
     mkdir -p "$reference/$task"
     /usr/bin/env time -f "%e s wall, %U s processor, %M KiB" -o "$reference/$task/time.txt" \
         "$optimize" --task "$task" --budget 200 --out "$studies/$task" --quiet \

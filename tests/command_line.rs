@@ -40,7 +40,7 @@ fn an_evaluation_prints_the_promised_keys() {
 fn a_given_stiffness_bypasses_the_surrogate() {
     let stiffness = ["--stiffness-compliance", "3", "--stiffness-assembly", "20"];
     let evaluate = ["evaluate", "--task", "usb", "--json"];
-    let result = fake(&[&evaluate[..], &stiffness, &["--walk"]].concat()).json();
+    let result = fake(&[&evaluate[..], &stiffness].concat()).json();
     assert_eq!(result["range_mm"], 4.7);
     assert_eq!(result["failure_negative"], 3);
     assert_eq!(result["failure_counts"], serde_json::json!([0, 1, 1, 0]));

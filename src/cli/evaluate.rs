@@ -19,9 +19,9 @@ pub struct Arguments {
     setup: SetupArguments,
     #[command(flatten)]
     finger: FingerArguments,
-    /// Try every 0.1 mm step up to the first failure, as the paper does (slow)
+    /// Look every 0.5 mm and bisect: a third of the trials, but it may step over gaps
     #[arg(long)]
-    walk: bool,
+    strides: bool,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
     let clock = Instant::now();
-    let search = if arguments.walk { Search::Walk } else { Search::Strides };
+    let search = if arguments.strides { Search::Strides } else { Search::Walk };
     let evaluation = tolerance::evaluate(&*setup.rig, &chosen.finger, search);
     let wall_s = clock.elapsed().as_secs_f64();
     if arguments.json {

@@ -75,8 +75,12 @@ impl DirectWorld {
         let step = self.settings.step_s;
         self.detector.detect(&self.bodies, &mut self.touches);
         self.contacts.clear();
+        // Of a contact's force at the end of the step, k gap + c rate, what the gap
+        // at its start makes, and how the impulse answers to the velocity.
+        let spring = self.settings.contact_stiffness * step;
+        let share = spring / (spring + self.settings.contact_damping);
         let compliance = Compliance {
-            normal: 1.0 / (self.settings.contact_stiffness * step * step),
+            normal: share / (spring * step),
             tangent: 1.0 / (self.settings.stick_damping * step),
         };
         for touch in &self.touches {
@@ -97,7 +101,9 @@ impl DirectWorld {
                     contact.drift += (linear + angular.cross(&arm)) * sign;
                 }
             }
-            contact.bias = (touch.gap / step).max(-self.settings.push_out);
+            let closing = touch.gap / step;
+            let bias = if touch.gap > 0.0 { closing } else { closing * share };
+            contact.bias = bias.max(-self.settings.push_out);
             self.contacts.push(contact);
         }
     }

@@ -44,9 +44,10 @@ fn model() -> Model {
 
 fn simulation(c: &mut Criterion) {
     let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
-    let mut world = Direct::default().world(&cell::build(&task(), &robot(), &finger).scene);
+    let mounted = robot().mount(0.0, 0.0).expect("in reach");
+    let mut world = Direct::default().world(&cell::build(&task(), &mounted, &finger).scene);
     c.bench_function("step", |b| b.iter(|| world.step()));
-    let rig = EngineRig { task: task(), robot: robot(), engine: Box::new(Direct::default()) };
+    let rig = EngineRig::new(task(), &robot(), Box::new(Direct::default())).expect("fits");
     let grasped = rig.grasp(&finger);
     c.bench_function("trial", |b| b.iter(|| grasped.trial(0.0)));
     c.bench_function("evaluation", |b| {

@@ -213,7 +213,7 @@ fn print_steps(cases: &[(&Task, &Measurement)], robot: &Robot) {
 fn rig(task: &Task, robot: &Robot, step_s: Option<f64>) -> EngineRig {
     let mut engine = Direct::default();
     engine.settings.step_s = step_s.unwrap_or(engine.settings.step_s);
-    EngineRig { task: task.clone(), robot: robot.clone(), engine: Box::new(engine) }
+    EngineRig::new(task.clone(), robot, Box::new(engine)).expect("a shipped robot")
 }
 
 /// A rig that runs no trial of its one finger twice.

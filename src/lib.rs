@@ -12,6 +12,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod arm;
 pub mod ask_tell;
 pub mod check;
 pub mod engine;

@@ -1,7 +1,9 @@
-//! The robot as the flange feels: ideal, or soft about its servos.
+//! The robot as the flange feels it: ideal, soft about its servos, or an arm.
 
+use crate::arm::{Arm, ArmError, RawArm, Reduced};
 use crate::input::{Check, InputError, read};
 use crate::units::N_PER_MM;
+use nalgebra::Vector3;
 use serde::Deserialize;
 
 /// A checked robot, SI units.
@@ -11,19 +13,21 @@ pub struct Robot {
     pub name: String,
     /// One line for lists.
     pub description: String,
-    /// How the flange follows its command.
-    pub flange: Flange,
+    /// What holds the flange.
+    pub drive: Drive,
     /// Plug-socket contact force at which the robot stops moving, N.
     pub stop_force: f64,
 }
 
-/// How a flange follows its command.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Flange {
-    /// Exactly.
+/// What holds a robot's flange.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Drive {
+    /// Nothing gives.
     Ideal,
-    /// Through a spring and damper per Cartesian axis at the TCP.
+    /// A spring and damper per Cartesian axis at the TCP.
     Servo(Servo),
+    /// Six joints with servos.
+    Arm(Box<Arm>),
 }
 
 /// A servo-compliant flange, SI units, axes of the task frame.
@@ -39,6 +43,50 @@ pub struct Servo {
     pub inertia: f64,
     /// 1 is critical.
     pub damping_ratio: f64,
+}
+
+/// A robot in place for a task: what its flange feels like there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mounted {
+    /// How the flange follows its command.
+    pub flange: Flange,
+    stop_force: f64,
+}
+
+/// How a flange follows its command.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Flange {
+    /// Exactly.
+    Ideal,
+    /// Through a spring and damper per Cartesian axis at the TCP.
+    Servo(Servo),
+    /// Through an arm's coupled spring, damper and mass at the TCP.
+    Reduced(Box<Reduced>),
+}
+
+impl Robot {
+    /// The robot at the start of a task whose frame is turned by `turn` about the
+    /// base's z, with the TCP tilted by `tilt` about the task's x, rad.
+    pub fn mount(&self, turn: f64, tilt: f64) -> Result<Mounted, ArmError> {
+        let flange = match &self.drive {
+            Drive::Ideal => Flange::Ideal,
+            Drive::Servo(servo) => Flange::Servo(*servo),
+            Drive::Arm(arm) => Flange::Reduced(Box::new(arm.at_start(turn, tilt)?)),
+        };
+        Ok(Mounted { flange, stop_force: self.stop_force })
+    }
+}
+
+impl Mounted {
+    /// Whether the robot stops at this plug-socket force, N, task axes: a protective
+    /// stop, or a joint at its torque limit.
+    pub fn stops(&self, force: &Vector3<f64>) -> bool {
+        let overloaded = match &self.flange {
+            Flange::Reduced(arm) => arm.overloaded(force),
+            Flange::Ideal | Flange::Servo(_) => false,
+        };
+        overloaded || force.norm() > self.stop_force
+    }
 }
 
 #[derive(Deserialize)]
@@ -59,6 +107,7 @@ enum RawRobot {
         inertia_kg_m2: f64,
         damping_ratio: f64,
     },
+    Arm(Box<RawArm>),
 }
 
 impl Robot {
@@ -67,13 +116,10 @@ impl Robot {
         let raw: RawRobot = read(text, file)?;
         let check = Check { file };
         let positive = |key: &str, value: f64| check.positive(key, value);
-        match raw {
-            RawRobot::Rigid { name, description, stop_force_n } => Ok(Robot {
-                name,
-                description,
-                flange: Flange::Ideal,
-                stop_force: positive("stop_force_n", stop_force_n)?,
-            }),
+        let (name, description, stop_force_n, drive) = match raw {
+            RawRobot::Rigid { name, description, stop_force_n } => {
+                (name, description, stop_force_n, Drive::Ideal)
+            }
             RawRobot::Servo {
                 name,
                 description,
@@ -97,13 +143,14 @@ impl Robot {
                     inertia: positive("inertia_kg_m2", inertia_kg_m2)?,
                     damping_ratio: positive("damping_ratio", damping_ratio)?,
                 };
-                Ok(Robot {
-                    name,
-                    description,
-                    flange: Flange::Servo(servo),
-                    stop_force: positive("stop_force_n", stop_force_n)?,
-                })
+                (name, description, stop_force_n, Drive::Servo(servo))
             }
-        }
+            RawRobot::Arm(raw) => {
+                let arm = Drive::Arm(Box::new(check.arm(&raw)?));
+                (raw.name, raw.description, raw.stop_force_n, arm)
+            }
+        };
+        let stop_force = positive("stop_force_n", stop_force_n)?;
+        Ok(Robot { name, description, drive, stop_force })
     }
 }

@@ -1,7 +1,7 @@
 //! The engine-neutral scene: bodies with convex geoms, joints with springs and
 //! servos, and the pairs of bodies that may touch. SI units throughout.
 
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Isometry3, Matrix6, Point3, Vector3};
 
 /// A rigid pose, metres.
 pub type Pose = Isometry3<f64>;
@@ -67,6 +67,7 @@ pub struct Inertia {
 
 /// How a body moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a scene has a handful of bodies")]
 pub enum Motion {
     /// Stays where it is.
     Fixed,
@@ -76,6 +77,10 @@ pub enum Motion {
     Free(Inertia),
     /// Follows forces but for its own weight, which the robot compensates.
     Carried(Inertia),
+    /// The end of a mechanism that carries its own weight: as `Carried`, but its
+    /// mass depends on the direction. Symmetric, positive definite 6x6, about the
+    /// body frame's origin, along the body axes: kg, kg m, kg m2.
+    Mechanism(Matrix6<f64>),
 }
 
 /// A rigid body.
@@ -120,6 +125,25 @@ pub enum Axis {
     Sprung(Spring),
 }
 
+/// A joint's springs where the axes pull at one another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coupled {
+    /// Symmetric, positive definite: N/m, N/rad (N m/m) and N m/rad.
+    pub stiffness: Matrix6<f64>,
+    /// Symmetric, not negative: N s/m, N s/rad and N m s/rad.
+    pub damping: Matrix6<f64>,
+}
+
+/// What holds a joint's child to its parent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a scene has a handful of joints")]
+pub enum Springs {
+    /// Each axis by itself: translations x, y, z, rotations x, y, z.
+    Axes([Axis; 6]),
+    /// All six axes at once; coordinates as above, the rotations as a rotation vector.
+    Coupled(Coupled),
+}
+
 /// A joint between two bodies: translations along, then rotations about, the
 /// x, y and z axes of the frame fixed to the parent.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,8 +158,8 @@ pub struct Joint {
     pub in_parent: Pose,
     /// Joint frame in the child frame.
     pub in_child: Pose,
-    /// Translations x, y, z, rotations x, y, z.
-    pub axes: [Axis; 6],
+    /// What resists relative motion.
+    pub springs: Springs,
 }
 
 /// Everything an engine needs to know.

@@ -38,6 +38,7 @@ pub const SPACES: &[Shipped] = shipped! { "infill": "spaces/infill.toml" };
 pub const ROBOTS: &[Shipped] = shipped! {
     "servo": "robots/servo.toml",
     "rigid": "robots/rigid.toml",
+    "ur5e": "robots/ur5e.toml",
 };
 
 /// Measured stiffness of printed fingers.

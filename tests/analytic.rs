@@ -77,6 +77,12 @@ fn t8_step_and_snapshots_change_nothing() {
 }
 
 #[test]
+fn t11_the_arm_deflects_as_its_joints_say() {
+    assert_passed(check::arm::t11(&*direct(1.0)));
+    assert!(check::arm::t11(&*rapier(1.0)).is_empty(), "it has no coupled springs");
+}
+
+#[test]
 fn t10_light_wedged_plug_does_not_sink() {
     on_both(check::peg::t10);
 }

@@ -130,6 +130,15 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
 }
 
 #[test]
+fn an_engine_without_coupled_springs_refuses_the_arm() {
+    let trial = ["trial", "--task", "usb", "--density", "20", "--direction", "20"];
+    let on_rapier = ["--robot", "ur5e", "--engine", "rapier"];
+    let parts = ["rapier3d", "`servo`", "springs that couple the axes", "--engine direct"];
+    optimize(&[&trial[..], &on_rapier].concat()).fails(2, &parts);
+    optimize(&["tasks"]).succeeds().contains("ur5e").then_some(()).expect("listed");
+}
+
+#[test]
 fn a_design_outside_the_space_is_answered_with_its_bounds() {
     for (density, direction, parts) in [
         ("31", "10", ["--density 31", "infill_density_percent must lie between 10 and 30"]),

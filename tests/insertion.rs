@@ -20,8 +20,13 @@ fn task(name: &str) -> Task {
 }
 
 fn rig(name: &str, engine: Box<dyn Engine>) -> EngineRig {
-    let file = ROBOTS.iter().find(|file| file.name == "servo").unwrap();
-    EngineRig { task: task(name), robot: Robot::parse(file.text, file.file).unwrap(), engine }
+    with_robot(name, "servo", engine)
+}
+
+fn with_robot(name: &str, robot: &str, engine: Box<dyn Engine>) -> EngineRig {
+    let file = ROBOTS.iter().find(|file| file.name == robot).unwrap();
+    let robot = Robot::parse(file.text, file.file).unwrap();
+    EngineRig::new(task(name), &robot, engine).unwrap()
 }
 
 fn direct(name: &str) -> EngineRig {
@@ -47,6 +52,14 @@ fn at_least_ten_of_eleven_measured_fingers_insert_at_each_nominal_start() {
         };
         let count = measured.iter().filter(inserts).count();
         assert!(count >= 10, "{}: {count} of {}", file.name, measured.len());
+    }
+}
+
+#[test]
+fn the_arm_inserts_the_usb_plug() {
+    let rig = with_robot("usb", "ur5e", Box::new(Direct::default()));
+    for finger in [finger(1.2, 52.4), finger(2.6, 45.0), finger(3.84, 35.0)] {
+        assert_eq!(trial(&rig, &finger, 0.0).outcome, Outcome::Inserted, "{finger:?}");
     }
 }
 

@@ -11,7 +11,7 @@ use super::build;
 use super::{Row, Tolerance};
 use crate::engine::{Diverged, Engine};
 use crate::finger::Finger;
-use crate::scene::{Axis, Body, Joint, Motion, Pose, Scene};
+use crate::scene::{Axis, Body, Joint, Motion, Pose, Scene, Springs};
 use crate::units::{DEG, GRAM, MM, N_PER_MM};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -68,7 +68,7 @@ fn force_ratio(engine: &dyn Engine, angle: f64) -> Result<f64, Diverged> {
         child: plug,
         in_parent: middle,
         in_child: middle,
-        axes: support.springs().map(Axis::Sprung),
+        springs: Springs::Axes(support.springs().map(Axis::Sprung)),
     });
     let socket = scene.body(chamfer(-size.y / 2.0, angle));
     scene.contacts.push((socket, plug));

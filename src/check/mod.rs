@@ -12,12 +12,14 @@
 //! | T7 | remote centre of compliance |
 //! | T8 | edge drop, convergence with the step, snapshots |
 //! | T10 | stiffness of a contact that wedges a light plug |
+//! | T11 | static deflection of the arm's TCP under its servos |
 //!
 //! (T9 compares two engines on trials.) Every expected value is computed from
 //! its formula, which the check's file gives with its source.
 
 use crate::engine::{Diverged, Engine};
 
+pub mod arm;
 mod build;
 pub mod chamfer;
 pub mod edge;
@@ -105,5 +107,6 @@ pub fn run(make: Make<'_>) -> Vec<Row> {
     rows.extend(edge::t8(engine));
     rows.extend(step::t8(make));
     rows.extend(peg::t10(engine));
+    rows.extend(arm::t11(engine));
     rows
 }

@@ -9,7 +9,7 @@ use super::build::{self, Wrench};
 use super::{Row, Tolerance};
 use crate::engine::{Diverged, Engine};
 use crate::finger::{self, Finger};
-use crate::scene::{Axis, Body, BodyId, Joint, Motion, Pose, Scene};
+use crate::scene::{Axis, Body, BodyId, Joint, Motion, Pose, Scene, Springs};
 use crate::units::{GRAM, MM, N_PER_MM};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -93,7 +93,7 @@ fn mounted(finger: &Finger) -> (Scene, BodyId) {
         child: body,
         in_parent: centre,
         in_child: centre,
-        axes: finger.springs().map(Axis::Sprung),
+        springs: Springs::Axes(finger.springs().map(Axis::Sprung)),
     });
     (scene, body)
 }
@@ -165,7 +165,7 @@ fn held_part(
         child: part,
         in_parent: Pose::identity(),
         in_child: Pose::identity(),
-        axes: [Axis::Locked; 6],
+        springs: Springs::Axes([Axis::Locked; 6]),
     });
     let mut world = engine.world(&scene);
     let mut wrench = Wrench { force: Vector3::zeros(), moment: Vector3::zeros() };

@@ -12,7 +12,7 @@ use super::build;
 use super::peg::{Peg, REFERENCE};
 use super::{Row, Tolerance};
 use crate::engine::{Diverged, Engine};
-use crate::scene::{Axis, Body, Joint, Motion, Pose, Scene, Spring};
+use crate::scene::{Axis, Body, Joint, Motion, Pose, Scene, Spring, Springs};
 use crate::units::{GRAM, MM};
 use nalgebra::{Point3, Vector3};
 
@@ -81,7 +81,7 @@ pub(super) fn wedges(engine: &dyn Engine, friction: f64, depth: f64) -> Result<b
         child: wall,
         in_parent: slide,
         in_child: Pose::identity(),
-        axes,
+        springs: Springs::Axes(axes),
     });
     scene.contacts.extend([(fixed, body), (wall, body)]);
 

@@ -62,14 +62,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .iter()
         .map(|file| {
             let task = Task::parse(file.text, file.file).map_err(Failure::input)?;
-            Ok(measure(&task, &robot, arguments))
+            measure(&task, &robot, arguments)
         })
         .collect::<Result<Vec<Row>, Failure>>()?;
     if arguments.json { print_json(&json(arguments, &rows)) } else { print(&table(&rows)) }
 }
 
-fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Row {
-    let rig = setup::rig(arguments.engine, task, robot);
+fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<Row, Failure> {
+    let rig = setup::rig(arguments.engine, task, robot)?;
     let finger = Finger::new(COMPLIANCE * N_PER_MM, ASSEMBLY * N_PER_MM);
     let trials = std::sync::atomic::AtomicU32::new(0);
     let clock = Instant::now();
@@ -82,11 +82,11 @@ fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Row {
         }
     });
     let wall_s = clock.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
-    Row {
+    Ok(Row {
         task: task.name.clone(),
         trials_per_s: f64::from(trials.into_inner()) / wall_s,
         evaluations_per_min: 60.0 * f64::from(arguments.repeats) / wall_s,
-    }
+    })
 }
 
 fn table(rows: &[Row]) -> String {

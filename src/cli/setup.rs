@@ -140,7 +140,7 @@ impl Setup {
         let task = Task::parse(&task.text, &task.file).map_err(Failure::input)?;
         let robot = Robot::parse(&robot.text, &robot.file).map_err(Failure::input)?;
         Ok(Setup {
-            rig: rig(engine, &task, &robot),
+            rig: rig(engine, &task, &robot)?,
             task,
             robot,
             space,
@@ -190,13 +190,14 @@ pub fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Sourc
     shipped::resolve(kind, shipped, name).map_err(Failure::input)
 }
 
-/// Where trials of one task with one robot are run.
-pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Box<dyn Rig> {
+/// Where trials of one task with one robot are run, if the three go together.
+pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Result<Box<dyn Rig>, Failure> {
     if let Some(engine) = engine.build(1.0) {
-        return Box::new(EngineRig { task: task.clone(), robot: robot.clone(), engine });
+        let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
+        return Ok(Box::new(rig));
     }
     let delay = std::env::var(FAKE_DELAY).ok().and_then(|text| text.parse().ok());
-    Box::new(FakeRig { delay: Duration::from_micros(delay.unwrap_or(0)) })
+    Ok(Box::new(FakeRig { delay: Duration::from_micros(delay.unwrap_or(0)) }))
 }
 
 /// The stiffness model.

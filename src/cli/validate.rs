@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let tasks = arguments.tasks()?;
     let robot = setup::find("robot", ROBOTS, &arguments.robot)?;
     let robot = Robot::parse(&robot.text, &robot.file).map_err(Failure::input)?;
-    let tables = arguments.measure(&tasks, &robot);
+    let tables = arguments.measure(&tasks, &robot)?;
     write(&arguments.out, &tables)?;
     if arguments.json {
         return print_json(&json!({
@@ -77,10 +77,11 @@ impl Arguments {
 
     /// All windows, in parallel over tasks and designs; collected in order, so
     /// the number of threads changes nothing.
-    fn measure(&self, tasks: &[Task], robot: &Robot) -> Vec<TaskTable> {
+    fn measure(&self, tasks: &[Task], robot: &Robot) -> Result<Vec<TaskTable>, Failure> {
         let designs = published::designs();
         let search = if self.strides { Search::Strides } else { Search::Walk };
-        let rigs: Vec<_> = tasks.iter().map(|task| setup::rig(self.engine, task, robot)).collect();
+        let rig = |task| setup::rig(self.engine, task, robot);
+        let rigs: Vec<_> = tasks.iter().map(rig).collect::<Result<_, _>>()?;
         let pairs: Vec<_> =
             rigs.iter().flat_map(|rig| designs.iter().map(move |design| (rig, design))).collect();
         let windows: Vec<Window> = pairs
@@ -93,7 +94,7 @@ impl Arguments {
         let table = |(task, windows): (&Task, &[Window])| {
             TaskTable::new(&task.name, designs.iter().copied().zip(windows.iter().cloned()))
         };
-        tasks.iter().zip(of_tasks).map(table).collect()
+        Ok(tasks.iter().zip(of_tasks).map(table).collect())
     }
 }
 

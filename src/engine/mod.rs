@@ -1,6 +1,6 @@
 //! Contact engines behind one trait; they know scenes, not studies.
 
-use crate::scene::{BodyId, JointId, Pose, Scene, Spring};
+use crate::scene::{Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
 use nalgebra::Vector3;
 
 pub mod direct;
@@ -11,8 +11,41 @@ pub trait Engine: Send + Sync {
     /// Name and version, as recorded in a study.
     fn version(&self) -> String;
 
-    /// A world at time zero.
+    /// Whether it can simulate a scene exactly as it stands.
+    fn supports(&self, _scene: &Scene) -> Result<(), Unsupported> {
+        Ok(())
+    }
+
+    /// A world at time zero, of a scene that it [supports](Engine::supports).
     fn world(&self, scene: &Scene) -> Box<dyn World>;
+}
+
+/// An engine lacks what a scene needs.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the engine {engine} cannot simulate `{part}`: it has no {lacking}; use --engine direct")]
+pub struct Unsupported {
+    /// Name and version of the engine.
+    pub engine: String,
+    /// Body or joint of the scene.
+    pub part: String,
+    /// What is needed.
+    pub lacking: &'static str,
+}
+
+/// Refuses springs that couple axes, and masses that depend on the direction.
+fn refuse_coupling(engine: &dyn Engine, scene: &Scene) -> Result<(), Unsupported> {
+    let refuse = |part: &str, lacking| {
+        Err(Unsupported { engine: engine.version(), part: part.to_owned(), lacking })
+    };
+    let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled(_));
+    if let Some(joint) = scene.joints.iter().find(coupled) {
+        return refuse(&joint.name, "springs that couple the axes of a joint");
+    }
+    let mechanism = |body: &&Body| matches!(body.motion, Motion::Mechanism(_));
+    match scene.bodies.iter().find(mechanism) {
+        Some(body) => refuse(&body.name, "mass that depends on the direction"),
+        None => Ok(()),
+    }
 }
 
 /// The state left the finite numbers; the trial says nothing.

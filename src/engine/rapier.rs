@@ -1,7 +1,7 @@
 //! The production engine: rapier3d in double precision. The only file that knows it.
 
-use super::{ContactForce, Diverged, Engine, World};
-use crate::scene::{self, Axis, BodyId, JointId, Motion, Pose, Scene, Shape, Spring};
+use super::{ContactForce, Diverged, Engine, Unsupported, World, refuse_coupling};
+use crate::scene::{self, Axis, BodyId, JointId, Motion, Pose, Scene, Shape, Spring, Springs};
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 use rapier3d_f64::math as rm;
 use rapier3d_f64::prelude as rp;
@@ -61,7 +61,16 @@ impl Engine for Rapier {
         format!("rapier3d-f64 {}", rapier3d_f64::VERSION)
     }
 
+    fn supports(&self, scene: &Scene) -> Result<(), Unsupported> {
+        refuse_coupling(self, scene)
+    }
+
+    /// # Panics
+    /// On a scene that it does not support.
     fn world(&self, scene: &Scene) -> Box<dyn World> {
+        if let Err(unsupported) = self.supports(scene) {
+            panic!("{unsupported}");
+        }
         Box::new(RapierWorld::new(scene, &self.settings))
     }
 }
@@ -230,7 +239,8 @@ fn insert_body(
     group: rp::InteractionGroups,
 ) -> rp::RigidBodyHandle {
     let builder = match &body.motion {
-        Motion::Fixed => rp::RigidBodyBuilder::fixed(),
+        // A mechanism's end is refused before; see `supports`.
+        Motion::Fixed | Motion::Mechanism(_) => rp::RigidBodyBuilder::fixed(),
         Motion::Driven => rp::RigidBodyBuilder::kinematic_position_based(),
         Motion::Free(inertia) | Motion::Carried(inertia) => {
             let centre = vector(&inertia.centre.coords);
@@ -292,7 +302,9 @@ fn generic_joint(joint: &scene::Joint) -> rp::GenericJoint {
     made.set_local_frame1(to_rapier(&joint.in_parent));
     made.set_local_frame2(to_rapier(&joint.in_child));
     made.set_contacts_enabled(false);
-    for (axis, spring) in AXES.into_iter().zip(&joint.axes) {
+    // Coupled springs are refused before; see `supports`.
+    let Springs::Axes(axes) = &joint.springs else { return made };
+    for (axis, spring) in AXES.into_iter().zip(axes) {
         match spring {
             Axis::Locked => {
                 made.lock_axes(axis.into());

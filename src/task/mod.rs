@@ -16,6 +16,8 @@ pub struct Task {
     pub name: String,
     /// One line for lists.
     pub description: String,
+    /// Turn of the task frame about z in the robot's base frame, rad.
+    pub turn: f64,
     /// Plug, in the plug frame (origin at the tip, z along its axis).
     pub plug: Plug,
     /// Socket, in the task frame.

@@ -12,6 +12,8 @@ use serde::Deserialize;
 struct RawTask {
     name: String,
     description: String,
+    #[serde(default)]
+    turn_in_base_deg: f64,
     plug: RawPlug,
     socket: RawSocket,
     grip: RawGrip,
@@ -142,6 +144,7 @@ pub fn parse(text: &str, file: &str) -> Result<Task, InputError> {
         mass: check.positive("plug.mass_g", raw.plug.mass_g)? * GRAM,
     };
     Ok(Task {
+        turn: check.finite("turn_in_base_deg", raw.turn_in_base_deg)? * DEG,
         plug,
         socket: check.parts("socket.part", &raw.socket.part)?,
         opening: [

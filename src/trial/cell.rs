@@ -4,9 +4,10 @@
 //! stands upright at its pick-up place, straight above the start of the search.
 
 use crate::finger::{self, Finger};
-use crate::robot::{Flange, Robot};
+use crate::robot::{Flange, Mounted, Servo};
 use crate::scene::{
-    Axis, Body, BodyId, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Spring,
+    Axis, Body, BodyId, Coupled, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Spring,
+    Springs,
 };
 use crate::task::{Task, geometry};
 use crate::units::MM;
@@ -62,12 +63,12 @@ pub struct Hand {
 }
 
 /// Builds the scene for one pair of fingers; the jaws are open.
-pub fn build(task: &Task, robot: &Robot, finger: &Finger) -> Cell {
+pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> Cell {
     let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -9.81), ..Scene::default() };
     let [x, y, z] = task.strategy.start;
     let tcp = Pose::translation(x, y, z + PICK_UP_HEIGHT);
     let plug_pose = tcp * Pose::translation(0.0, 0.0, -task.grip.tcp_z);
-    let (command, flange) = flange(&mut scene, robot, tcp);
+    let (command, flange) = flange(&mut scene, &robot.flange, tcp);
     let plug = scene.body(plug_body(task, plug_pose));
     let socket = scene.body(Body {
         name: "socket".into(),
@@ -96,25 +97,40 @@ pub fn holding(position: f64) -> Spring {
     Spring { stiffness: HOLD_GAIN, damping: 1e4, target: position, limit: f64::INFINITY }
 }
 
-fn flange(scene: &mut Scene, robot: &Robot, tcp: Pose) -> (BodyId, BodyId) {
+/// The commanded body, and the flange that follows it (the same if it does so exactly).
+pub(crate) fn flange(scene: &mut Scene, flange: &Flange, tcp: Pose) -> (BodyId, BodyId) {
     let command = scene.body(Body {
         name: "command".into(),
         motion: Motion::Driven,
         pose: tcp,
         geoms: Vec::new(),
     });
-    let Flange::Servo(servo) = robot.flange else { return (command, command) };
+    let (motion, springs) = match flange {
+        Flange::Ideal => return (command, command),
+        Flange::Servo(servo) => servo_flange(servo),
+        Flange::Reduced(arm) => {
+            let coupled = Coupled { stiffness: arm.stiffness, damping: arm.damping };
+            (Motion::Mechanism(arm.mass), Springs::Coupled(coupled))
+        }
+    };
+    let flange = scene.body(Body { name: "flange".into(), motion, pose: tcp, geoms: Vec::new() });
+    scene.joint(Joint {
+        name: "servo".into(),
+        parent: command,
+        child: flange,
+        in_parent: Pose::identity(),
+        in_child: Pose::identity(),
+        springs,
+    });
+    (command, flange)
+}
+
+fn servo_flange(servo: &Servo) -> (Motion, Springs) {
     let inertia = Inertia {
         mass: servo.mass,
         centre: Point3::origin(),
         moments: Vector3::repeat(servo.inertia),
     };
-    let flange = scene.body(Body {
-        name: "flange".into(),
-        motion: Motion::Carried(inertia),
-        pose: tcp,
-        geoms: Vec::new(),
-    });
     let critical = |k: f64, m: f64| 2.0 * servo.damping_ratio * (k * m).sqrt();
     let axis = |i: usize| {
         let (k, m) = if i < 3 {
@@ -124,15 +140,7 @@ fn flange(scene: &mut Scene, robot: &Robot, tcp: Pose) -> (BodyId, BodyId) {
         };
         Axis::Sprung(Spring::new(k, critical(k, m)))
     };
-    scene.joint(Joint {
-        name: "servo".into(),
-        parent: command,
-        child: flange,
-        in_parent: Pose::identity(),
-        in_child: Pose::identity(),
-        axes: std::array::from_fn(axis),
-    });
-    (command, flange)
+    (Motion::Carried(inertia), Springs::Axes(std::array::from_fn(axis)))
 }
 
 fn plug_body(task: &Task, pose: Pose) -> Body {
@@ -200,7 +208,7 @@ fn hand(
         child: jaw,
         in_parent: in_flange,
         in_child: Pose::identity(),
-        axes,
+        springs: Springs::Axes(axes),
     });
     let body = scene.body(Body {
         name: format!("finger {label}"),
@@ -215,7 +223,7 @@ fn hand(
         child: body,
         in_parent: rcc,
         in_child: rcc,
-        axes: finger.springs().map(Axis::Sprung),
+        springs: Springs::Axes(finger.springs().map(Axis::Sprung)),
     });
     Hand { jaw, finger: body, slide, zero_y }
 }

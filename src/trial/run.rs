@@ -4,13 +4,14 @@ use super::cell::{self, Cell};
 use super::classify::{Facts, classify};
 use super::motion::{Move, Tcp};
 use super::{Grasped, PhaseEnd, Poses, Rig, Trial};
-use crate::engine::{Diverged, Engine, World};
+use crate::arm::ArmError;
+use crate::engine::{Diverged, Engine, Unsupported, World};
 use crate::evaluation::Outcome;
 use crate::finger::Finger;
-use crate::robot::Robot;
+use crate::robot::{Mounted, Robot};
 use crate::scene::{BodyId, Pose};
 use crate::task::{Ending, Hold, Phase, Stage, Task};
-use crate::units::{DEG, MM};
+use crate::units::{DEG, MM, N_PER_MM};
 use nalgebra::{Point3, Vector3};
 
 /// Time for the jaws to close and the fingers to come to rest, s.
@@ -32,14 +33,43 @@ const ENTERED_DEPTH: f64 = 0.15 * MM;
 /// First contact, N.
 const TOUCH_FORCE: f64 = 0.05;
 
-/// A task, a robot and an engine.
+/// A task, a robot in place for it, and an engine that can simulate both.
 pub struct EngineRig {
     /// The task.
     pub task: Task,
-    /// The robot.
-    pub robot: Robot,
-    /// The engine.
-    pub engine: Box<dyn Engine>,
+    robot: Mounted,
+    engine: Box<dyn Engine>,
+}
+
+/// Why a task, a robot and an engine do not go together.
+#[derive(Debug, thiserror::Error)]
+pub enum RigError {
+    /// The robot cannot do the task.
+    #[error("the robot `{robot}` on the task `{task}`: {error}")]
+    Robot {
+        /// Name of the robot.
+        robot: String,
+        /// Name of the task.
+        task: String,
+        /// What its arm lacks.
+        error: ArmError,
+    },
+    /// The engine cannot simulate the two.
+    #[error(transparent)]
+    Engine(#[from] Unsupported),
+}
+
+impl EngineRig {
+    /// Puts the robot in place.
+    pub fn new(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<Self, RigError> {
+        let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(|error| {
+            RigError::Robot { robot: robot.name.clone(), task: task.name.clone(), error }
+        })?;
+        // What a scene needs does not depend on how stiff its fingers are.
+        let any = Finger::new(N_PER_MM, N_PER_MM);
+        engine.supports(&cell::build(&task, &mounted, &any).scene)?;
+        Ok(EngineRig { task, robot: mounted, engine })
+    }
 }
 
 impl Rig for EngineRig {
@@ -254,12 +284,11 @@ impl<'a> Run<'a> {
         self.time += dt;
         let contact = self.world.contact(self.cell.socket, self.cell.plug);
         self.force += (contact.net - self.force) * (dt / FORCE_FILTER);
-        let force = self.force.norm();
-        self.peak_force = self.peak_force.max(force);
-        self.phase_peak = self.phase_peak.max(force);
+        self.peak_force = self.peak_force.max(self.force.norm());
+        self.phase_peak = self.phase_peak.max(self.force.norm());
         self.watch_grasp(dt)?;
         self.watch_depth()?;
-        if force > self.rig.robot.stop_force { Err(Stop::ForceLimit) } else { Ok(()) }
+        if self.rig.robot.stops(&self.force) { Err(Stop::ForceLimit) } else { Ok(()) }
     }
 
     fn tcp(&self) -> Vector3<f64> {

@@ -22,6 +22,8 @@ pub(super) struct Body {
     /// Body frame in the world.
     pub pose: Pose,
     inertia: Inertia,
+    /// Mass by direction of the end of a mechanism, body axes.
+    mechanism: Option<Matrix6<f64>>,
     weightless: bool,
     /// Centre of mass in the world, m; the body frame's origin if it has no mass.
     pub centre: Point3<f64>,
@@ -44,11 +46,17 @@ impl Body {
             Motion::Driven => (Kind::Driven(body.pose), MASSLESS, true),
             Motion::Free(inertia) => (Kind::Dynamic(place), inertia, false),
             Motion::Carried(inertia) => (Kind::Dynamic(place), inertia, true),
+            Motion::Mechanism(_) => (Kind::Dynamic(place), MASSLESS, true),
+        };
+        let mechanism = match body.motion {
+            Motion::Mechanism(mass) => Some(mass),
+            _ => None,
         };
         let mut made = Body {
             kind,
             pose: body.pose,
             inertia,
+            mechanism,
             weightless,
             centre: Point3::origin(),
             velocity: Vector6::zeros(),
@@ -73,8 +81,12 @@ impl Body {
         self.refresh();
     }
 
-    /// Mass matrix about the centre of mass, world axes.
+    /// Mass matrix about the centre of mass, world axes. That of a mechanism turns
+    /// with its end; how it changes with the mechanism's pose is left out.
     pub fn mass(&self) -> Matrix6<f64> {
+        if let Some(mass) = &self.mechanism {
+            return turned(mass, &self.pose.rotation.to_rotation_matrix().into_inner());
+        }
         let mut mass = Matrix6::from_diagonal_element(self.inertia.mass);
         mass.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.tensor);
         mass
@@ -129,6 +141,14 @@ impl Body {
         let axes = self.pose.rotation.to_rotation_matrix().into_inner();
         self.tensor = axes * Matrix3::from_diagonal(&self.inertia.moments) * axes.transpose();
     }
+}
+
+/// A 6x6 matrix of body axes in world axes.
+fn turned(matrix: &Matrix6<f64>, axes: &Matrix3<f64>) -> Matrix6<f64> {
+    let mut both = Matrix6::zeros();
+    both.fixed_view_mut::<3, 3>(0, 0).copy_from(axes);
+    both.fixed_view_mut::<3, 3>(3, 3).copy_from(axes);
+    both * matrix * both.transpose()
 }
 
 const MASSLESS: Inertia =

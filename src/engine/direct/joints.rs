@@ -4,13 +4,14 @@
 //! the rotation vector about, the axes of the parent's) and their exact Jacobian
 //! `J`, the force at the end of the step, `f = -k (q + h J v - target) - c J v`,
 //! adds `J^T (h c + h^2 k) J` to the system and `-h J^T k (q - target)` to its
-//! right-hand side: stable for any stiffness, and exact at rest. A locked axis is
+//! right-hand side: stable for any stiffness, and exact at rest. `k` and `c` are a
+//! number for each axis or, for coupled springs, a matrix. A locked axis is
 //! a very stiff spring (0.1 um at 100 N). A servo at its limit pushes with the
 //! limit; which servos are is settled by repeating the step's solution.
 
 use super::blocks::{Blocks, Vector6};
 use super::body::{Body, Kind};
-use crate::scene::{self, Axis, Pose, Spring};
+use crate::scene::{self, Axis, Coupled, Pose, Spring, Springs};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
 /// Stiffness of a locked translation, N/m.
@@ -26,6 +27,46 @@ struct Drive {
     saturated: f64,
 }
 
+/// What force answers to the coordinates.
+#[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "a world has a handful of joints")]
+enum Law {
+    Drives([Drive; 6]),
+    Coupled(Coupled),
+}
+
+/// How a joint's force at the end of the step answers to its rate, times the
+/// step: `h c + h^2 k`, of each axis or of all at once.
+#[expect(clippy::large_enum_variant, reason = "lives on the stack of one call")]
+enum Answer {
+    Each(Vector6),
+    All(Matrix6<f64>),
+}
+
+impl Answer {
+    /// To a rate.
+    fn to(&self, rate: &Vector6) -> Vector6 {
+        match self {
+            Answer::Each(stiff) => stiff.component_mul(rate),
+            Answer::All(stiff) => stiff * rate,
+        }
+    }
+
+    /// To the velocities that a Jacobian makes rates of.
+    fn through(&self, jacobian: &Matrix6<f64>) -> Matrix6<f64> {
+        match self {
+            Answer::Each(stiff) => {
+                let mut rows = *jacobian;
+                for (i, mut row) in rows.row_iter_mut().enumerate() {
+                    row *= stiff[i];
+                }
+                rows
+            }
+            Answer::All(stiff) => stiff * jacobian,
+        }
+    }
+}
+
 /// A joint with its coordinates at the start of the step.
 #[derive(Debug, Clone)]
 pub(super) struct Joint {
@@ -33,7 +74,7 @@ pub(super) struct Joint {
     child: usize,
     in_parent: Pose,
     in_child: Pose,
-    drives: [Drive; 6],
+    law: Law,
     /// m, rad.
     position: Vector6,
     /// Of the coordinates by the child's and by the parent's velocity.
@@ -43,28 +84,34 @@ pub(super) struct Joint {
 
 impl Joint {
     pub fn new(joint: &scene::Joint) -> Self {
-        let drive = |i: usize| {
-            let spring = match joint.axes[i] {
+        let drive = |i: usize, axis: Axis| {
+            let spring = match axis {
                 Axis::Sprung(spring) => spring,
                 Axis::Locked => Spring::new(if i < 3 { LOCKED } else { LOCKED_TURN }, 0.0),
             };
             Drive { spring, saturated: 0.0 }
+        };
+        let law = match &joint.springs {
+            Springs::Axes(axes) => Law::Drives(std::array::from_fn(|i| drive(i, axes[i]))),
+            Springs::Coupled(coupled) => Law::Coupled(*coupled),
         };
         Joint {
             parent: joint.parent.0,
             child: joint.child.0,
             in_parent: joint.in_parent,
             in_child: joint.in_child,
-            drives: std::array::from_fn(drive),
+            law,
             position: Vector6::zeros(),
             by_child: Matrix6::zeros(),
             by_parent: Matrix6::zeros(),
         }
     }
 
-    /// Replaces the spring of an axis; a servo stays at its limit till the next step.
+    /// Replaces the spring of an axis; a servo stays at its limit till the next
+    /// step. Coupled springs have no axis that could be set by itself.
     pub fn set(&mut self, axis: usize, spring: Spring) {
-        let drive = &mut self.drives[axis];
+        let Law::Drives(drives) = &mut self.law else { return };
+        let drive = &mut drives[axis];
         drive.spring = spring;
         if spring.limit.is_infinite() {
             drive.saturated = 0.0;
@@ -87,11 +134,18 @@ impl Joint {
         self.by_parent = -jacobian(&axes, &angular, &(place - parent.centre.coords));
     }
 
-    /// Adds the springs to the system and its right-hand side.
-    pub fn assemble(&self, bodies: &[Body], step: f64, system: &mut Blocks, rhs: &mut [Vector6]) {
+    /// The answer to rates, and the impulse without them.
+    fn answer(&self, step: f64) -> (Answer, Vector6) {
+        let drives = match &self.law {
+            Law::Drives(drives) => drives,
+            Law::Coupled(coupled) => {
+                let stiff = (coupled.damping + coupled.stiffness * step) * step;
+                return (Answer::All(stiff), coupled.stiffness * self.position * -step);
+            }
+        };
         let mut stiff = Vector6::zeros();
         let mut push = Vector6::zeros();
-        for (i, drive) in self.drives.iter().enumerate() {
+        for (i, drive) in drives.iter().enumerate() {
             if drive.saturated == 0.0 {
                 stiff[i] = step * (drive.spring.damping + step * drive.spring.stiffness);
                 push[i] = -step * drive.spring.stiffness * (self.position[i] - drive.spring.target);
@@ -99,31 +153,30 @@ impl Joint {
                 push[i] = step * drive.saturated * drive.spring.limit;
             }
         }
+        (Answer::Each(stiff), push)
+    }
+
+    /// Adds the springs to the system and its right-hand side.
+    pub fn assemble(&self, bodies: &[Body], step: f64, system: &mut Blocks, rhs: &mut [Vector6]) {
+        let (answer, mut push) = self.answer(step);
         // A driven end moves at a known velocity: it belongs on the right-hand side.
         for (end, jacobian) in [(self.parent, &self.by_parent), (self.child, &self.by_child)] {
             if let Kind::Driven(_) = bodies[end].kind {
-                push -= stiff.component_mul(&(jacobian * bodies[end].velocity));
+                push -= answer.to(&(jacobian * bodies[end].velocity));
             }
         }
-        let weighted = |jacobian: &Matrix6<f64>| {
-            let mut rows = *jacobian;
-            for (i, mut row) in rows.row_iter_mut().enumerate() {
-                row *= stiff[i];
-            }
-            rows
-        };
         let (parent, child) = (bodies[self.parent].place(), bodies[self.child].place());
         for (place, jacobian) in [(parent, &self.by_parent), (child, &self.by_child)] {
             if let Some(place) = place {
-                system.add(place, place, &jacobian.tr_mul(&weighted(jacobian)));
+                system.add(place, place, &jacobian.tr_mul(&answer.through(jacobian)));
                 rhs[place] += jacobian.tr_mul(&push);
             }
         }
         if let (Some(p), Some(c)) = (parent, child) {
             if p > c {
-                system.add(p, c, &self.by_parent.tr_mul(&weighted(&self.by_child)));
+                system.add(p, c, &self.by_parent.tr_mul(&answer.through(&self.by_child)));
             } else {
-                system.add(c, p, &self.by_child.tr_mul(&weighted(&self.by_parent)));
+                system.add(c, p, &self.by_child.tr_mul(&answer.through(&self.by_parent)));
             }
         }
     }
@@ -131,13 +184,14 @@ impl Joint {
     /// Whether every servo is at its limit, or not, as was assumed when the
     /// bodies' velocities were solved for; sets it right for another try.
     pub fn settle(&mut self, bodies: &[Body], step: f64) -> bool {
-        if self.drives.iter().all(|drive| drive.spring.limit.is_infinite()) {
+        let Law::Drives(drives) = &mut self.law else { return true };
+        if drives.iter().all(|drive| drive.spring.limit.is_infinite()) {
             return true;
         }
         let rate = self.by_child * bodies[self.child].velocity
             + self.by_parent * bodies[self.parent].velocity;
         let mut settled = true;
-        for (i, drive) in self.drives.iter_mut().enumerate() {
+        for (i, drive) in drives.iter_mut().enumerate() {
             let Spring { stiffness, damping, target, limit } = drive.spring;
             let end = self.position[i] + step * rate[i];
             let force = -stiffness * (end - target) - damping * rate[i];

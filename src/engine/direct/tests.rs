@@ -4,7 +4,7 @@ use super::Settings;
 use super::world::DirectWorld;
 use crate::engine::World;
 use crate::scene::{
-    Axis, Body, BodyId, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Shape, Spring,
+    Axis, Body, BodyId, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Shape, Spring, Springs,
 };
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
@@ -96,9 +96,9 @@ fn sprung(springs: [f64; 6], gravity: Vector3<f64>, arm: Vector3<f64>) -> Scene 
         child: body,
         in_parent: Pose::identity(),
         in_child: Pose::identity(),
-        axes: std::array::from_fn(|i| {
+        springs: Springs::Axes(std::array::from_fn(|i| {
             Axis::Sprung(Spring::new(springs[i], if i < 3 { 20.0 } else { 0.02 }))
-        }),
+        })),
     });
     scene
 }
@@ -179,7 +179,7 @@ fn a_servo_pushes_with_its_limit_and_no_more() {
 #[test]
 fn a_locked_joint_holds_a_swinging_arm() {
     let mut scene = sprung([1.0; 6], Vector3::new(0.0, 0.0, -G), Vector3::new(0.0, 0.05, 0.0));
-    scene.joints[0].axes = [Axis::Locked; 6];
+    scene.joints[0].springs = Springs::Axes([Axis::Locked; 6]);
     let mut world = world(&scene, 5e-4);
     run(&mut world, 1.0);
     let pose = world.pose(BodyId(1));
@@ -206,7 +206,8 @@ fn a_peg_in_a_hole_tilts_to_two_points() {
     let in_child = Pose::translation(0.0, 0.0, -20e-3);
     let in_parent = Pose::translation(0.0, 0.0, -8e-3);
     let name = "hold".into();
-    scene.joint(Joint { name, parent: post, child: body, in_parent, in_child, axes });
+    let springs = Springs::Axes(axes);
+    scene.joint(Joint { name, parent: post, child: body, in_parent, in_child, springs });
     for step in STEPS {
         let mut world = world(&scene, step);
         run(&mut world, 2.0);
@@ -241,7 +242,8 @@ fn a_block_tips_where_its_centre_crosses_the_edge() {
         axes[0] = Axis::Sprung(Spring::new(1e5, 10.0));
         let at = Pose::translation(0.0, 0.0, -5e-3);
         let (name, in_parent, in_child) = ("push".into(), at, at);
-        scene.joint(Joint { name, parent: pusher, child: block, in_parent, in_child, axes });
+        let springs = Springs::Axes(axes);
+        scene.joint(Joint { name, parent: pusher, child: block, in_parent, in_child, springs });
         let mut world = world(&scene, step);
         let speed = 2e-3;
         let mut time = 0.0;
@@ -277,7 +279,8 @@ fn a_wedged_plug_hardly_sinks() {
         axes[2] = Axis::Sprung(Spring { target, ..Spring::new(1e5, 10.0) });
         let (in_parent, in_child) = (Pose::identity(), Pose::identity());
         let name = "spring".into();
-        scene.joint(Joint { name, parent: top, child: press, in_parent, in_child, axes });
+        let springs = Springs::Axes(axes);
+        scene.joint(Joint { name, parent: top, child: press, in_parent, in_child, springs });
         let mut world = world(&scene, step);
         run(&mut world, 0.5);
         let sunk = pose.translation.z - world.pose(plug).translation.z;

@@ -177,8 +177,7 @@ impl DirectWorld {
 /// eliminated before contacts, and how many there are. Those that touch nothing
 /// come first, the ones with the fewest joints first of all: little fill-in.
 fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
-    let dynamic =
-        |i: &usize| matches!(scene.bodies[*i].motion, Motion::Free(_) | Motion::Carried(_));
+    let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
     let touching = |i: &usize| scene.contacts.iter().any(|&(a, b)| a.0 == *i || b.0 == *i);
     let joints =
         |i: &usize| scene.joints.iter().filter(|j| j.parent.0 == *i || j.child.0 == *i).count();

@@ -23,7 +23,7 @@ use finger_opt::surrogate::{self, Measurement};
 use finger_opt::task::Task;
 use finger_opt::tolerance::{self, Search};
 use finger_opt::trial::run::EngineRig;
-use finger_opt::trial::{Grasped, Rig, Trial};
+use finger_opt::trial::{Conditions, Grasped, Rig, Trial};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -224,8 +224,9 @@ struct Remembering<'a> {
 }
 
 impl Rig for Remembering<'_> {
-    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
-        Box::new(RememberingGrasp { grasped: self.rig.grasp(finger), known: &self.known })
+    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+        let grasped = self.rig.grasp_in(finger, conditions);
+        Box::new(RememberingGrasp { grasped, known: &self.known })
     }
 }
 

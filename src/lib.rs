@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! space -> design -> stiffness surrogate -> finger -> scene -> engine -> trial
-//!       -> tolerance -> objective -> optimizer -> study -> report
+//!       -> tolerance -> robustness -> objective -> optimizer -> study -> report
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -23,6 +23,7 @@ pub mod objective;
 pub mod optimizer;
 pub mod report;
 pub mod robot;
+pub mod robustness;
 pub mod scene;
 pub mod shipped;
 pub mod space;
@@ -32,5 +33,6 @@ pub mod surrogate;
 pub mod task;
 pub mod tolerance;
 pub mod trial;
+pub mod uncertainty;
 pub mod units;
 pub mod validate;

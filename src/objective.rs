@@ -79,6 +79,8 @@ mod tests {
             peak_force_n: 5.0,
             slip_mm: 0.1,
             simulated_s: 49.0,
+            success: None,
+            robust: None,
         }
     }
 

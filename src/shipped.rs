@@ -41,6 +41,9 @@ pub const ROBOTS: &[Shipped] = shipped! {
     "ur5e": "robots/ur5e.toml",
 };
 
+/// Distributions of the errors under which a finger is to work.
+pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typical.toml" };
+
 /// Measured stiffness of printed fingers.
 pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffness.csv" };
 
@@ -156,7 +159,7 @@ mod tests {
 
     #[test]
     fn every_shipped_file_has_contents() {
-        for shipped in [TASKS, SPACES, ROBOTS, STIFFNESS].concat() {
+        for shipped in [TASKS, SPACES, ROBOTS, UNCERTAINTIES, STIFFNESS].concat() {
             assert!(!shipped.text.trim().is_empty(), "{}", shipped.file);
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::evaluation::{Evaluation, OFFSET_STEP_MM, OffsetStep, Outcome, Window};
 use crate::finger::Finger;
-use crate::trial::{Grasped, Rig, Trial};
+use crate::trial::{Conditions, Grasped, Rig, Trial};
 use crate::units::MM;
 
 /// Farthest offset tried, in grid steps: well beyond any published window (9 mm).
@@ -35,7 +35,17 @@ impl Search {
 /// The start is shifted outward on the 0.1 mm grid in both directions until
 /// the first trial that does not insert (the paper, Sec. "Robot Movement").
 pub fn evaluate(rig: &dyn Rig, finger: &Finger, search: Search) -> Evaluation {
-    let grasped = rig.grasp(finger);
+    evaluate_in(rig, finger, &Conditions::NOMINAL, search)
+}
+
+/// The same under other conditions than those of the task file.
+pub fn evaluate_in(
+    rig: &dyn Rig,
+    finger: &Finger,
+    conditions: &Conditions,
+    search: Search,
+) -> Evaluation {
+    let grasped = rig.grasp_in(finger, conditions);
     let nominal = grasped.trial(0.0);
     let mut log = Log::default();
     log.add(&nominal);
@@ -143,6 +153,8 @@ impl Log {
             peak_force_n: self.peak_force_n,
             slip_mm: self.slip_mm,
             simulated_s: self.simulated_s,
+            success: None,
+            robust: None,
         }
     }
 }

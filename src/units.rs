@@ -11,3 +11,6 @@ pub const N_PER_MM: f64 = 1e3;
 pub const DEG: f64 = std::f64::consts::PI / 180.0;
 /// One gram, in kilograms.
 pub const GRAM: f64 = 1e-3;
+
+/// One percent, as a share.
+pub const PERCENT: f64 = 0.01;

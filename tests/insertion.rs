@@ -6,13 +6,15 @@ use finger_opt::engine::rapier::Rapier;
 use finger_opt::evaluation::{FailureClass, Outcome};
 use finger_opt::finger::Finger;
 use finger_opt::robot::Robot;
-use finger_opt::shipped::{ROBOTS, STIFFNESS, TASKS};
-use finger_opt::surrogate;
+use finger_opt::robustness::{self, Plan};
+use finger_opt::shipped::{ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
+use finger_opt::surrogate::{self, Estimate, Prediction};
 use finger_opt::task::Task;
 use finger_opt::tolerance::{Search, evaluate};
 use finger_opt::trial::run::EngineRig;
-use finger_opt::trial::{Rig, Trial, picture};
-use finger_opt::units::{MM, N_PER_MM};
+use finger_opt::trial::{Conditions, Rig, Trial, picture};
+use finger_opt::uncertainty::Uncertainty;
+use finger_opt::units::{DEG, MM, N_PER_MM};
 
 fn task(name: &str) -> Task {
     let file = TASKS.iter().find(|file| file.name == name).unwrap();
@@ -156,6 +158,77 @@ fn a_stiffer_finger_keeps_the_plug_tilted_and_tolerates_less() {
     assert!(tilts.1 > tilts.0 + 1.0, "{tilts:?} deg");
     let range = |finger| evaluate(&rig, finger, Search::Strides).window.range_mm();
     assert!(range(&soft) > range(&stiff) + 2.0, "{} and {} mm", range(&soft), range(&stiff));
+}
+
+#[test]
+fn yaw_turns_the_socket_about_its_middle_and_too_much_of_it_keeps_a_key_out() {
+    let rig = direct("ket8");
+    let soft = finger(1.2, 52.4);
+    let at = |yaw_deg: f64| {
+        let conditions = Conditions { yaw: yaw_deg * DEG, ..Conditions::NOMINAL };
+        rig.grasp_in(&soft, &conditions).trial(0.3 * MM)
+    };
+    assert_eq!(at(0.0), rig.grasp(&soft).trial(0.3 * MM));
+    let (half, ten) = (at(0.5), at(10.0));
+    assert_eq!(half.outcome, Outcome::Inserted);
+    assert!(matches!(ten.outcome, Outcome::Failed(_)), "{ten:?}");
+}
+
+#[test]
+fn a_part_low_in_the_gripper_is_touched_that_much_earlier() {
+    let rig = direct("ket12");
+    let soft = finger(1.2, 52.4);
+    let touch = |grasp_low: f64| {
+        let conditions = Conditions { grasp_low, ..Conditions::NOMINAL };
+        let trial = rig.grasp_in(&soft, &conditions).trial(0.0);
+        trial.phases.iter().find(|phase| phase.name == "approach").unwrap().tip_mm[2]
+    };
+    let lower = touch(0.0) - touch(0.3 * MM);
+    assert!((lower - 0.3).abs() < 0.05, "{lower} mm");
+}
+
+/// Under drawn errors the finger with the wider window inserts more often.
+#[test]
+fn the_success_rate_follows_the_window() {
+    let typical = UNCERTAINTIES[0];
+    let mut typical = Uncertainty::parse(typical.text, typical.file).unwrap();
+    typical.success.trials = 40;
+    let plan = Plan::new(&typical, 0, true, false);
+    let rig = direct("usb");
+    let rate = |compliance: f64| {
+        let finger = finger(compliance, 52.4);
+        let exact = |mean| Estimate { mean, sd: 0.0 };
+        let predicted = Prediction {
+            compliance: exact(finger.compliance),
+            assembly: exact(finger.assembly),
+            hull_distance: 0.0,
+        };
+        let found = robustness::evaluate(&rig, &finger, &predicted, Search::Strides, &plan);
+        let success = found.success.unwrap();
+        assert_eq!(success.diverged, 0);
+        (found.window.range_mm(), success.rate().unwrap())
+    };
+    let (soft, stiff) = (rate(1.2), rate(3.84));
+    assert!(soft.0 > stiff.0 + 2.0 && soft.1 > stiff.1 + 0.1, "{soft:?} and {stiff:?}");
+}
+
+/// Errors cost range: a robust range lies below the range without them.
+#[test]
+fn a_robust_range_is_smaller_than_the_range() {
+    let typical = UNCERTAINTIES[0];
+    let mut typical = Uncertainty::parse(typical.text, typical.file).unwrap();
+    typical.robust.samples = 6;
+    typical.robust.search = Search::Strides;
+    let plan = Plan::new(&typical, 0, false, true);
+    let model = surrogate::fit(&surrogate::parse(STIFFNESS[0].text, "measured").unwrap()).unwrap();
+    let predicted = model.predict(20.0, 10.0);
+    let finger = Finger::new(predicted.compliance.mean, predicted.assembly.mean);
+    let found = robustness::evaluate(&direct("usb"), &finger, &predicted, Search::Strides, &plan);
+    let robust = found.robust.unwrap();
+    assert_eq!((robust.ranges_mm.len(), robust.diverged), (6, 0));
+    assert!(robust.sd_mm() > 0.0);
+    let value = robust.value_mm.unwrap();
+    assert!(value > 0.0 && value < found.window.range_mm(), "{value} of {:?}", found.window);
 }
 
 #[test]

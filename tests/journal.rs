@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Studies, read};
-use finger_opt::evaluation::{Evaluation, FailureClass, Outcome, Window};
+use finger_opt::evaluation::{Evaluation, FailureClass, Outcome, RobustRange, SuccessRate, Window};
 use finger_opt::objective::Objective;
 use finger_opt::optimizer::{Grid, Observation, Optimizer, StopReason};
 use finger_opt::space::{Design, GridPoint, Space};
@@ -37,11 +37,36 @@ fn finite() -> impl Strategy<Value = f64> {
     any::<f64>().prop_filter("finite", |value| value.is_finite())
 }
 
+fn success() -> impl Strategy<Value = SuccessRate> {
+    (0..1000u32, [0..1000u32, 0..1000, 0..1000, 0..1000], any::<u32>(), 0.01..0.99f64).prop_map(
+        |(inserted, failure_counts, diverged, confidence)| SuccessRate {
+            inserted,
+            failure_counts,
+            diverged,
+            confidence,
+        },
+    )
+}
+
+fn robust() -> impl Strategy<Value = RobustRange> {
+    let ranges = prop::collection::vec(finite(), 0..20);
+    (ranges, any::<u32>(), prop::option::of(finite()), any::<u32>()).prop_map(
+        |(ranges_mm, diverged, value_mm, trials)| RobustRange {
+            ranges_mm,
+            diverged,
+            value_mm,
+            trials,
+        },
+    )
+}
+
 fn evaluation() -> impl Strategy<Value = Evaluation> {
+    let drawn = (prop::option::of(success()), prop::option::of(robust()));
     let ends = (prop::option::of(outcome()), prop::option::of(outcome()));
     let window = (outcome(), -150..=0i32, 0..=150i32, ends);
     let counts = (any::<[u32; 4]>(), any::<u32>(), any::<u32>());
-    (window, counts, [finite(), finite(), finite()]).prop_map(|(window, counts, measured)| {
+    let measured = [finite(), finite(), finite()];
+    (window, counts, measured, drawn).prop_map(|(window, counts, measured, (success, robust))| {
         let (nominal, negative_steps, positive_steps, (end_negative, end_positive)) = window;
         let (failure_counts, diverged, trials) = counts;
         let [peak_force_n, slip_mm, simulated_s] = measured;
@@ -53,6 +78,8 @@ fn evaluation() -> impl Strategy<Value = Evaluation> {
             peak_force_n,
             slip_mm,
             simulated_s,
+            success,
+            robust,
         }
     })
 }

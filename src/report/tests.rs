@@ -85,6 +85,8 @@ fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
         peak_force_n: 0.0,
         slip_mm: 0.0,
         simulated_s: 3.0,
+        success: None,
+        robust: None,
     };
     recorded(index, infill, model().predict(infill[0], infill[1]), evaluation)
 }

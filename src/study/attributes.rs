@@ -1,6 +1,6 @@
 //! What a journal line says of an evaluation beyond what Optuna has fields for.
 
-use crate::evaluation::{Evaluation, Outcome, Window, grid_mm};
+use crate::evaluation::{Evaluation, Outcome, RobustRange, SuccessRate, Window, grid_mm};
 use crate::surrogate::{Estimate, Prediction};
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -20,6 +20,71 @@ pub struct Attributes {
     stiffness: StiffnessLine,
     #[serde(deserialize_with = "null_is_nan")]
     hull_distance: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    success_rate: Option<SuccessLine>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    robust_range: Option<RobustLine>,
+}
+
+/// The counts, and for other readers what follows from them.
+#[derive(Serialize, Deserialize)]
+struct SuccessLine {
+    rate: Option<f64>,
+    interval: [f64; 2],
+    confidence: f64,
+    inserted: u32,
+    failure_counts: [u32; 4],
+    diverged: u32,
+}
+
+impl From<&SuccessRate> for SuccessLine {
+    fn from(success: &SuccessRate) -> Self {
+        SuccessLine {
+            rate: success.rate(),
+            interval: success.interval(),
+            confidence: success.confidence,
+            inserted: success.inserted,
+            failure_counts: success.failure_counts,
+            diverged: success.diverged,
+        }
+    }
+}
+
+impl From<&SuccessLine> for SuccessRate {
+    fn from(line: &SuccessLine) -> Self {
+        SuccessRate {
+            inserted: line.inserted,
+            failure_counts: line.failure_counts,
+            diverged: line.diverged,
+            confidence: line.confidence,
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct RobustLine {
+    value_mm: Option<f64>,
+    ranges_mm: Vec<f64>,
+    diverged: u32,
+    trials: u32,
+}
+
+impl From<&RobustRange> for RobustLine {
+    fn from(robust: &RobustRange) -> Self {
+        let RobustRange { ranges_mm, diverged, value_mm, trials } = robust.clone();
+        RobustLine { value_mm, ranges_mm, diverged, trials }
+    }
+}
+
+impl From<&RobustLine> for RobustRange {
+    fn from(line: &RobustLine) -> Self {
+        RobustRange {
+            ranges_mm: line.ranges_mm.clone(),
+            diverged: line.diverged,
+            value_mm: line.value_mm,
+            trials: line.trials,
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -74,6 +139,8 @@ impl Attributes {
                 assembly_sd_n_per_m: stiffness.assembly.sd,
             },
             hull_distance: stiffness.hull_distance,
+            success_rate: evaluation.success.as_ref().map(SuccessLine::from),
+            robust_range: evaluation.robust.as_ref().map(RobustLine::from),
         }
     }
 
@@ -95,6 +162,8 @@ impl Attributes {
             peak_force_n: self.peak_force_n,
             slip_mm: self.slip_mm,
             simulated_s: self.simulated_s,
+            success: self.success_rate.as_ref().map(SuccessRate::from),
+            robust: self.robust_range.as_ref().map(RobustRange::from),
         }
     }
 

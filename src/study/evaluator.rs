@@ -5,7 +5,7 @@ use crate::finger::Finger;
 use crate::space::Design;
 use crate::surrogate::Prediction;
 use crate::tolerance::{self, Search};
-use crate::trial::{Grasped, Rig, Trial};
+use crate::trial::{Conditions, Grasped, Rig, Trial};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is known of one design after its evaluation.
@@ -52,11 +52,12 @@ pub struct Stoppable<'a> {
 }
 
 impl Rig for Stoppable<'_> {
-    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
+    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
         if self.stop.load(Ordering::SeqCst) {
             return Box::new(Stopped);
         }
-        Box::new(StoppableGrasp { grasped: self.rig.grasp(finger), stop: self.stop })
+        let grasped = self.rig.grasp_in(finger, conditions);
+        Box::new(StoppableGrasp { grasped, stop: self.stop })
     }
 }
 

@@ -2,11 +2,13 @@
 //!
 //! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50]` mm, with `k` and
 //! `a` the compliance and assembly stiffness in N/mm; it jams below and misses above.
+//! Conditions narrow it: friction divides the lower end, yaw takes 1 mm a degree off
+//! both ends, what sits low in the gripper its own height off both; clearance is added.
 
-use super::{Grasped, Rig, Trial};
+use super::{Conditions, Grasped, Rig, Trial};
 use crate::evaluation::{FailureClass, Outcome};
 use crate::finger::Finger;
-use crate::units::{MM, N_PER_MM};
+use crate::units::{DEG, MM, N_PER_MM};
 
 /// The rig with the closed-form window.
 #[derive(Debug, Clone, Copy, Default)]
@@ -16,18 +18,25 @@ pub struct FakeRig {
 }
 
 impl Rig for FakeRig {
-    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
-        let (low, high) = window_mm(finger);
+    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+        let (low, high) = window_in_mm(finger, conditions);
         Box::new(FakeGrasp { low, high, delay: self.delay })
     }
 }
 
 /// The window's ends in mm: `(most negative, most positive)` inserting offset.
 pub fn window_mm(finger: &Finger) -> (f64, f64) {
+    window_in_mm(finger, &Conditions::NOMINAL)
+}
+
+/// The same under these conditions.
+pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     let compliance = finger.compliance / N_PER_MM;
     let assembly = finger.assembly / N_PER_MM;
+    let less = conditions.yaw.abs() / DEG + conditions.grasp_low / MM - conditions.clearance / MM;
     let nanometres = |mm: f64| (mm * 1e6).round() / 1e6;
-    (nanometres(-(2.0 + 4.0 / compliance)), nanometres(1.0 + assembly / 50.0))
+    let low = -(2.0 + 4.0 / compliance) / conditions.friction_socket;
+    (nanometres(low + less), nanometres(1.0 + assembly / 50.0 - less))
 }
 
 struct FakeGrasp {

@@ -7,10 +7,13 @@ use serde::Serialize;
 
 pub mod cell;
 pub mod classify;
+pub mod conditions;
 pub mod fake;
 pub mod motion;
 pub mod picture;
 pub mod run;
+
+pub use conditions::Conditions;
 
 /// State at the end of one phase of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -62,9 +65,14 @@ pub struct Trial {
 
 /// A place where trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
-    /// Grasps the part with a pair of such fingers; what follows does not
-    /// depend on the offset until the approach, so it is done once.
-    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_>;
+    /// Grasps the part with a pair of such fingers under these conditions; what
+    /// follows does not depend on the offset until the approach, so it is done once.
+    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_>;
+
+    /// The same in the world as the task file says.
+    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
+        self.grasp_in(finger, &Conditions::NOMINAL)
+    }
 }
 
 /// A part held and tilted, ready for a trial at any offset.

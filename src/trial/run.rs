@@ -3,7 +3,7 @@
 use super::cell::{self, Cell};
 use super::classify::{Facts, classify};
 use super::motion::{Move, Tcp};
-use super::{Grasped, PhaseEnd, Poses, Rig, Trial};
+use super::{Conditions, Grasped, PhaseEnd, Poses, Rig, Trial};
 use crate::arm::ArmError;
 use crate::engine::{Diverged, Engine, Unsupported, World};
 use crate::evaluation::Outcome;
@@ -13,6 +13,7 @@ use crate::scene::{BodyId, Pose};
 use crate::task::{Ending, Hold, Phase, Stage, Task};
 use crate::units::{DEG, MM, N_PER_MM};
 use nalgebra::{Point3, Vector3};
+use std::sync::Arc;
 
 /// Time for the jaws to close and the fingers to come to rest, s.
 const GRASP_TIME: f64 = 0.3;
@@ -73,10 +74,12 @@ impl EngineRig {
 }
 
 impl Rig for EngineRig {
-    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
-        let cell = cell::build(&self.task, &self.robot, finger);
+    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+        let task = Arc::new(conditions.task(&self.task));
+        let mut cell = cell::build(&task, &self.robot, finger);
+        conditions.displace(&mut cell);
         let world = self.engine.world(&cell.scene);
-        let mut run = Run::new(self, cell, world);
+        let mut run = Run { yaw: conditions.yaw, ..Run::new(self, task, cell, world) };
         let lost = run.prepare();
         Box::new(Ready { run, lost })
     }
@@ -93,8 +96,9 @@ impl Grasped for Ready<'_> {
         let mut run = self.run.copy();
         // Shifting the start by y is shifting the socket by -y: the part has
         // touched nothing of it yet. So all offsets share grasp and approach.
-        run.offset = offset;
-        run.world.place(run.cell.socket, Pose::translation(0.0, -offset, 0.0));
+        let socket = Pose::translation(0.0, -offset, 0.0) * turned(run.yaw);
+        run.socket = turned(-run.yaw) * Pose::translation(0.0, offset, 0.0);
+        run.world.place(run.cell.socket, socket);
         let end = match self.lost {
             Ok(()) => run.search_and_assemble(),
             Err(stop) => Err(stop),
@@ -120,11 +124,16 @@ impl From<Diverged> for Stop {
 
 struct Run<'a> {
     rig: &'a EngineRig,
+    /// The rig's task under the conditions of this run.
+    task: Arc<Task>,
     cell: Cell,
     world: Box<dyn World>,
     target: Tcp,
     stage: Stage,
-    offset: f64,
+    /// Turn of the socket, rad.
+    yaw: f64,
+    /// From the world to the socket.
+    socket: Pose,
     time: f64,
     /// Grasp point in each finger's frame right after the grasp.
     grasp: [Vector3<f64>; 2],
@@ -139,16 +148,18 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(rig: &'a EngineRig, cell: Cell, world: Box<dyn World>) -> Self {
+    fn new(rig: &'a EngineRig, task: Arc<Task>, cell: Cell, world: Box<dyn World>) -> Self {
         let pose = world.pose(cell.command);
-        let corners = rig.task.plug.parts.iter().flat_map(|part| part.solid.corners()).collect();
+        let corners = task.plug.parts.iter().flat_map(|part| part.solid.corners()).collect();
         Run {
             rig,
+            task,
             cell,
             world,
             target: Tcp { position: pose.translation.vector, tilt: 0.0 },
             stage: Stage::Approach,
-            offset: 0.0,
+            yaw: 0.0,
+            socket: Pose::identity(),
             time: 0.0,
             grasp: [Vector3::zeros(); 2],
             force: Vector3::zeros(),
@@ -164,6 +175,7 @@ impl<'a> Run<'a> {
     fn copy(&self) -> Run<'a> {
         Run {
             rig: self.rig,
+            task: Arc::clone(&self.task),
             cell: self.cell.clone(),
             world: self.world.snapshot(),
             corners: self.corners.clone(),
@@ -174,7 +186,7 @@ impl<'a> Run<'a> {
 
     /// Grasp, lift, tilt, carry to the start, and the approach through the air.
     fn prepare(&mut self) -> Result<(), Stop> {
-        let task = &self.rig.task;
+        let task = Arc::clone(&self.task);
         for i in 1..=self.steps(GRASP_TIME) {
             let time = i as f64 * self.world.step_s();
             for (side, hand) in self.cell.hands.iter().enumerate() {
@@ -199,8 +211,8 @@ impl<'a> Run<'a> {
     }
 
     fn search_and_assemble(&mut self) -> Result<(), Stop> {
-        let rig = self.rig;
-        for phase in rig.task.strategy.phases.iter().filter(|p| p.stage != Stage::Approach) {
+        let task = Arc::clone(&self.task);
+        for phase in task.strategy.phases.iter().filter(|p| p.stage != Stage::Approach) {
             self.phase(phase)?;
         }
         Ok(())
@@ -209,7 +221,7 @@ impl<'a> Run<'a> {
     fn phase(&mut self, phase: &Phase) -> Result<(), Stop> {
         if phase.stage == Stage::Assembly
             && self.stage != Stage::Assembly
-            && self.rig.task.grip.hold == Hold::Assembly
+            && self.task.grip.hold == Hold::Assembly
         {
             self.hold();
         }
@@ -308,7 +320,7 @@ impl<'a> Run<'a> {
         };
         let loose = self.cell.hands.iter().all(off);
         self.loose_for = if loose { self.loose_for + dt } else { 0.0 };
-        let slipped = !self.phases.is_empty() && self.slip() > self.rig.task.grip.slip_limit;
+        let slipped = !self.phases.is_empty() && self.slip() > self.task.grip.slip_limit;
         if self.loose_for > LOSS_TIME || slipped { Err(Stop::Lost) } else { Ok(()) }
     }
 
@@ -320,20 +332,20 @@ impl<'a> Run<'a> {
                 Ok(())
             }
             Stage::Assembly => {
-                let success = self.rig.task.success;
+                let success = self.task.success;
                 let tip = self.tip();
                 // Deep beside the socket is not inserted.
-                let inside = within(tip.x, self.rig.task.opening[0])
-                    && within(tip.y, self.rig.task.opening[1]);
+                let inside =
+                    within(tip.x, self.task.opening[0]) && within(tip.y, self.task.opening[1]);
                 let deep = -tip.z >= success.depth && self.tilt() <= success.tilt;
                 if deep && inside { Err(Stop::Seated) } else { Ok(()) }
             }
         }
     }
 
-    /// A body in the task frame: as if the start, not the socket, were shifted.
+    /// A body in the task frame: as if the start, not the socket, were shifted and turned.
     fn pose(&self, body: BodyId) -> Pose {
-        Pose::translation(0.0, self.offset, 0.0) * self.world.pose(body)
+        self.socket * self.world.pose(body)
     }
 
     fn plug(&self) -> Pose {
@@ -356,13 +368,12 @@ impl<'a> Run<'a> {
     fn leading_edge_inside(&self) -> bool {
         let plug = self.plug();
         let lowest = self.corners.iter().map(|p| plug * p).min_by(|a, b| a.z.total_cmp(&b.z));
-        let [x, y] = self.rig.task.opening;
+        let [x, y] = self.task.opening;
         lowest.is_some_and(|p| p.z < -ENTERED_DEPTH && within(p.x, x) && within(p.y, y))
     }
 
     fn grasp_points(&self) -> [Vector3<f64>; 2] {
-        let point =
-            self.world.pose(self.cell.plug) * Point3::new(0.0, 0.0, self.rig.task.grip.tcp_z);
+        let point = self.world.pose(self.cell.plug) * Point3::new(0.0, 0.0, self.task.grip.tcp_z);
         self.cell.hands.map(|hand| (self.world.pose(hand.finger).inverse() * point).coords)
     }
 
@@ -412,6 +423,11 @@ impl<'a> Run<'a> {
             phases: self.phases,
         }
     }
+}
+
+/// A turn about z, rad.
+fn turned(angle: f64) -> Pose {
+    Pose::rotation(Vector3::z() * angle)
 }
 
 fn within(value: f64, [from, to]: [f64; 2]) -> bool {

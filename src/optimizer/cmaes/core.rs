@@ -3,9 +3,8 @@
 use super::eigen::symmetric_eigen;
 use super::parameters::Parameters;
 use super::stop::{History, Stop, Tolerances};
-use crate::stream::stream;
-use libm::{cos, exp, log, pow, sqrt};
-use rand::RngExt;
+use crate::stream::{normal, stream};
+use libm::{exp, pow, sqrt};
 
 /// Largest condition number of C; above it a run ends.
 const CONDITION: f64 = 1e14;
@@ -302,13 +301,8 @@ fn norm(v: &[f64]) -> f64 {
     sqrt(v.iter().map(|x| x * x).sum())
 }
 
-/// `n` standard normal numbers by Box and Muller, from the stream of that name.
+/// `n` standard normal numbers from the stream of that name.
 fn normals(n: usize, seed: u64, counter: u64, purpose: &str) -> Vec<f64> {
     let mut random = stream(seed, counter, purpose);
-    let mut draw = || {
-        // 1 - u lies in (0, 1], so the logarithm is finite.
-        let (radius, angle) = (1.0 - random.random::<f64>(), random.random::<f64>());
-        sqrt(-2.0 * log(radius)) * cos(2.0 * std::f64::consts::PI * angle)
-    };
-    (0..n).map(|_| draw()).collect()
+    (0..n).map(|_| normal(&mut random)).collect()
 }

@@ -1,6 +1,7 @@
 //! Times of the parts that a study is made of: `cargo bench`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use finger_opt::codesign::Template;
 use finger_opt::engine::Engine;
 use finger_opt::engine::direct::Direct;
 use finger_opt::finger::Finger;
@@ -16,7 +17,7 @@ use finger_opt::surrogate::{self, Model};
 use finger_opt::task::Task;
 use finger_opt::tolerance::{self, Search};
 use finger_opt::trial::fake::FakeRig;
-use finger_opt::trial::run::EngineRig;
+use finger_opt::trial::run::{EngineRig, RigError};
 use finger_opt::trial::{Rig, cell};
 use finger_opt::units::N_PER_MM;
 use std::collections::BTreeMap;
@@ -87,21 +88,27 @@ fn config(budget: u64) -> StudyConfig {
     }
 }
 
+fn fake(_: &Task) -> Result<Box<dyn Rig>, RigError> {
+    Ok(Box::new(FakeRig::default()))
+}
+
 /// A study of 100 random designs on the fake engine.
 fn study(dir: &Path, model: &Model) -> Study {
     let mut study =
         Study::create_or_continue(dir, &config(100), &Inputs::new()).expect("a new study");
-    let rig = FakeRig::default();
+    let stop = AtomicBool::new(false);
+    let usb = TASKS.iter().find(|task| task.name == "usb").expect("shipped");
+    let template = Template::parse(usb.text, usb.file).expect("valid");
     let predict = |design: &finger_opt::space::Design| {
         let value = |key| design.get(key).expect("in the space");
         model.predict(value("infill_density_percent"), value("infill_direction_deg"))
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let runner = Runner {
-        evaluator: &Simulated { predict, rig: &rig },
+        evaluator: &Simulated { predict, template: &template, rig: fake, stop: &stop },
         objective: Objective::Range,
         pool: &pool,
-        stop: &AtomicBool::new(false),
+        stop: &stop,
     };
     let mut random = build(OptimizerKind::Random, Grid::new(space().levels()), 0);
     runner.run(&mut study, &mut *random, &mut |_| ()).expect("runs");

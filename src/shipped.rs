@@ -32,7 +32,10 @@ pub const TASKS: &[Shipped] = shipped! {
 };
 
 /// Search spaces.
-pub const SPACES: &[Shipped] = shipped! { "infill": "spaces/infill.toml" };
+pub const SPACES: &[Shipped] = shipped! {
+    "infill": "spaces/infill.toml",
+    "codesign": "spaces/codesign.toml",
+};
 
 /// Robots.
 pub const ROBOTS: &[Shipped] = shipped! {

@@ -53,7 +53,7 @@ pub struct Space {
 pub struct GridPoint(pub Vec<u32>);
 
 /// A design: values by key, in the units the keys carry.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Design(pub BTreeMap<String, f64>);
 

@@ -185,7 +185,7 @@ fn a_bad_file_is_named_with_its_key() {
         ("step = 1.0", "stop = 1.0", "stop"),
         ("low = 10.0", "low = ", "line"),
         ("infill_direction_deg", "infill_direction", "infill_direction_deg: is missing"),
-        ("[[parameter]]", EXTRA, "speed_mm_per_s: has no effect"),
+        ("[[parameter]]", EXTRA, "speed_mm_per_s: sets nothing; a key begins with"),
     ] {
         let path = write("space.toml", &space.replacen(from, to, 1));
         studies.study("s", 4, &["--space", &path]).fails(2, &["space.toml", part]);
@@ -198,4 +198,76 @@ fn a_bad_file_is_named_with_its_key() {
     let task = write("task.toml", "nonsense");
     optimize(&["--task", &task, "--budget", "4", "--engine", "fake"]).fails(2, &["task.toml"]);
     assert!(!studies.dir("s").exists(), "bad input leaves no folder behind");
+}
+
+#[test]
+fn a_number_of_task_or_finger_can_be_set() {
+    let evaluate = ["evaluate", "--task", "usb", "--density", "20", "--direction", "10", "--json"];
+    let range = |more: &[&str]| fake(&[&evaluate[..], more].concat()).json()["range_mm"].clone();
+    let as_in_the_paper = range(&[]).as_f64().unwrap();
+    let set = ["--space", "codesign", "--set", "finger.rcc_mm=16", "--set", "task.grip.force_n=7"];
+    // The closed form gains 0.1 mm for each mm that the remote centre is nearer.
+    assert!((range(&set).as_f64().unwrap() - as_in_the_paper - 0.5).abs() < 1e-9);
+    let shown = fake(&[&evaluate[..], &set].concat()).json();
+    assert_eq!(shown["set"], serde_json::json!({"finger.rcc_mm": 16.0, "task.grip.force_n": 7.0}));
+    let trial = ["trial", "--task", "usb", "--density", "20", "--direction", "10"];
+    let text = fake(&[&trial[..], &set].concat());
+    assert!(text.succeeds().contains("set           finger.rcc_mm = 16, task"), "{}", text.stdout);
+    // A key that the space does not name has no bounds but those of the task.
+    assert!((range(&["--set", "finger.rcc_mm=1"]).as_f64().unwrap() - as_in_the_paper) > 1.9);
+    for (set, parts) in [
+        ("finger.rcc_mm", &["KEY=NUMBER"][..]),
+        ("finger.rcc_mm=far", &["KEY=NUMBER"]),
+        ("finger.rcc_mm=nan", &["finger.rcc_mm must lie between 15 and 27"]),
+        ("finger.rcc_mm=28", &["finger.rcc_mm must lie between 15 and 27"]),
+        ("finger.mass_g=0", &["finger.mass_g: is 0; it must be"]),
+        ("task.success.tilt_deg=-1", &["tasks/usb.toml", "success.tilt_deg", "above 0"]),
+        ("task.grip.force=1", &["task.grip.force:", "goes on with faces_y_mm, force_n"]),
+        ("infill_density_percent=11", &["--density"]),
+    ] {
+        let space = ["--space", "codesign", "--set", set];
+        fake(&[&evaluate[..], &space].concat()).fails(2, parts);
+    }
+}
+
+#[test]
+fn a_co_design_study_names_its_parameters_everywhere() {
+    let studies = Studies::new();
+    let more = ["--space", "codesign", "--optimizer", "sobol"];
+    let text = studies.study("s", 8, &more);
+    let keys = [
+        "infill_density_percent",
+        "infill_direction_deg",
+        "task.strategy.tilt_deg",
+        "task.strategy.phase.touch.preload_mm",
+        "task.strategy.phase.side.move_mm.y",
+        "task.grip.force_n",
+        "finger.rcc_mm",
+        "task.strategy.phase.assembly.speed_mm_per_s",
+    ];
+    let json = studies.study("s", 8, &[&more[..], &["--json"]].concat()).json();
+    let page = common::read(&studies.dir("s").join("report.html"));
+    let table = common::read(&studies.dir("s").join("evaluations.csv"));
+    let journal = studies.journal("s");
+    for key in keys {
+        assert!(json["best"][key].is_f64(), "{key} is not in {json}");
+        assert!(text.succeeds().contains(key), "{key} is not in {}", text.stdout);
+        for (place, text) in [("table", &table), ("journal", &journal), ("page", &page)] {
+            assert!(text.contains(key), "{key} is not in the {place}");
+        }
+    }
+    assert!(page.contains("<section id=\"others\">"));
+    // The remote centre matters to the closed form, so equal infill is not enough.
+    let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let column = |row: &str, key| {
+        let at = header.iter().position(|name| *name == key).unwrap();
+        row.split(',').nth(at).unwrap().parse::<f64>().unwrap()
+    };
+    for row in table.lines().skip(1) {
+        let assembly = column(row, "stiffness_assembly_n_per_mm");
+        let end = 1.0 + assembly / 50.0 + (21.0 - column(row, "finger.rcc_mm")) / 10.0;
+        assert!((column(row, "positive_mm") - end).abs() < 0.101, "{row}");
+    }
+    studies.resume("s").succeeds();
+    assert_eq!(studies.journal("s"), journal);
 }

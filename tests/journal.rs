@@ -3,16 +3,22 @@
 mod common;
 
 use common::{Studies, read};
+use finger_opt::codesign::Template;
 use finger_opt::evaluation::{Evaluation, FailureClass, Outcome, RobustRange, SuccessRate, Window};
+use finger_opt::finger::Finger;
 use finger_opt::objective::Objective;
 use finger_opt::optimizer::{Grid, Observation, Optimizer, StopReason};
 use finger_opt::space::{Design, GridPoint, Space};
 use finger_opt::study::{
-    Ending, Recorded, Runner, Simulated, Store, Study, StudyError, StudyRecord, Timing, decode,
-    encode, strip_times,
+    Ending, Evaluate, Measured, Recorded, Runner, Simulated, Store, Study, StudyError, StudyRecord,
+    Timing, decode, encode, strip_times,
 };
 use finger_opt::surrogate::{Estimate, Prediction};
+use finger_opt::task::Task;
+use finger_opt::tolerance::{Search, evaluate};
+use finger_opt::trial::Rig;
 use finger_opt::trial::fake::FakeRig;
+use finger_opt::trial::run::RigError;
 use proptest::prelude::*;
 use std::io;
 use std::path::Path;
@@ -210,12 +216,16 @@ fn run(dir: &Path, store: Failing) -> Result<Ending, StudyError> {
         let [compliance, assembly] = ["infill_direction_deg", "infill_density_percent"].map(of);
         Prediction { compliance, assembly, hull_distance: 0.0 }
     };
+    let usb = include_str!("../tasks/usb.toml");
+    let template = Template::parse(usb, "usb.toml").unwrap();
+    let rig = |_: &Task| -> Result<Box<dyn Rig>, RigError> { Ok(Box::new(FakeRig::default())) };
+    let stop = AtomicBool::new(false);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     let runner = Runner {
-        evaluator: &Simulated { predict, rig: &FakeRig::default() },
+        evaluator: &Simulated { predict, template: &template, rig, stop: &stop },
         objective: Objective::Range,
         pool: &pool,
-        stop: &AtomicBool::new(false),
+        stop: &stop,
     };
     runner.run(&mut study, &mut optimizer, &mut |_| ())
 }
@@ -251,6 +261,51 @@ fn whichever_write_fails_the_journal_stays_whole_and_the_study_goes_on() {
             assert_eq!(text(&again), expected, "write {writes}");
         }
     }
+}
+
+/// Cannot evaluate a density of 3 levels above the lowest.
+struct Impossible;
+
+impl Evaluate for Impossible {
+    fn evaluate(&self, design: &Design) -> Result<Measured, finger_opt::codesign::Impossible> {
+        let usb = include_str!("../tasks/usb.toml");
+        let template = Template::parse(usb, "usb.toml").unwrap();
+        let tilt = (design.get("infill_density_percent") == Some(13.0)).then_some(90.0);
+        let set = tilt.map(|tilt| ("task.strategy.tilt_deg".to_owned(), tilt));
+        let finger = Finger::new(3e3, 2e4);
+        let (_, finger) = template.apply(&Design(set.into_iter().collect()), finger)?;
+        let one = Estimate { mean: 1e3, sd: 1.0 };
+        Ok(Measured {
+            stiffness: Prediction { compliance: one, assembly: one, hull_distance: 0.0 },
+            evaluation: evaluate(&FakeRig::default(), &finger, Search::Walk),
+        })
+    }
+}
+
+#[test]
+fn a_design_that_cannot_be_stops_the_study_and_is_named() {
+    let studies = Studies::new();
+    let dir = studies.dir("s");
+    std::fs::create_dir(&dir).unwrap();
+    std::fs::copy(format!("{FIXTURE}/study.toml"), dir.join("study.toml")).unwrap();
+    let mut study = Study::resume(&dir).unwrap();
+    let grid = Grid::new(study.config.space.levels());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let runner = Runner {
+        evaluator: &Impossible,
+        objective: Objective::Range,
+        pool: &pool,
+        stop: &AtomicBool::new(false),
+    };
+    let mut walk = Walk { grid, at: 0, stride: 1 };
+    let error = runner.run(&mut study, &mut walk, &mut |_| ()).unwrap_err();
+    assert!(error.is_bad_input());
+    let error = error.to_string();
+    for part in ["evaluation 2 of infill_density_percent = 13", "strategy.tilt_deg: must lie"] {
+        assert!(error.contains(part), "{error}");
+    }
+    drop(study);
+    assert_eq!(StudyRecord::load(&dir).unwrap().evaluations.len(), 2);
 }
 
 #[test]

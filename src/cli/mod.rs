@@ -6,6 +6,7 @@ pub mod check;
 pub mod compare;
 pub mod evaluate;
 mod failure;
+mod finger;
 mod progress;
 pub mod report;
 pub mod resume;

@@ -5,7 +5,7 @@ use super::setup::{self, OptimizerKind, Setup};
 use super::{Failure, report, summary};
 use clap::Args;
 use finger_opt::objective::Objective;
-use finger_opt::study::{Ending, Runner, Simulated, Stoppable, Study};
+use finger_opt::study::{Ending, Runner, Simulated, Study};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,9 +34,12 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         .build()
         .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))?;
     let stop = stop_on_interrupt(study.dir())?;
-    let rig = Stoppable { rig: &*setup.rig, stop: &stop };
-    let predict = |design: &_| setup.surrogate.predict(design);
-    let evaluator = Simulated { predict, rig: &rig };
+    let evaluator = Simulated {
+        predict: |design: &_| setup.surrogate.predict(design),
+        template: &setup.template,
+        rig: |task: &_| setup.rig(task),
+        stop: &stop,
+    };
     let runner = Runner { evaluator: &evaluator, objective, pool: &pool, stop: &stop };
     let mut optimizer = setup::optimizer(kind, &setup.space, config.seed);
     let mut progress = Progress::new(&study, arguments.quiet);

@@ -3,6 +3,7 @@
 
 use super::Failure;
 use clap::ValueEnum;
+use finger_opt::codesign::Template;
 use finger_opt::engine::Engine;
 use finger_opt::engine::direct::Direct;
 use finger_opt::engine::rapier::Rapier;
@@ -15,7 +16,7 @@ use finger_opt::surrogate::{self, Model, Prediction};
 use finger_opt::task::Task;
 use finger_opt::trial::Rig;
 use finger_opt::trial::fake::FakeRig;
-use finger_opt::trial::run::EngineRig;
+use finger_opt::trial::run::{EngineRig, RigError};
 use std::time::Duration;
 
 pub use finger_opt::optimizer::OptimizerKind;
@@ -86,7 +87,7 @@ pub struct SetupArguments {
     /// Task: ket8, ket12, rj45, usb, or the path of a task file
     #[arg(long, value_name = "NAME")]
     pub task: String,
-    /// Search space: infill, or the path of a space file
+    /// Search space: infill, codesign, or the path of a space file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]
     pub space: String,
     /// Robot: see `optimize tasks`, or the path of a robot file
@@ -102,13 +103,12 @@ pub struct SetupArguments {
 
 /// Everything that is needed to measure a design.
 pub struct Setup {
-    pub task: Task,
+    /// The task, whose numbers a design may set.
+    pub template: Template,
     pub robot: Robot,
     pub space: Space,
     pub engine: EngineKind,
     pub surrogate: Surrogate,
-    /// Where trials are run.
-    pub rig: Box<dyn Rig>,
     /// The texts all this was read from.
     pub inputs: Inputs,
 }
@@ -136,12 +136,13 @@ impl Setup {
         let [task, space, robot, stiffness] = &sources;
         let file = &space.file;
         let space = Space::parse(&space.text, file).map_err(Failure::input)?;
-        check_keys(&space, file)?;
-        let task = Task::parse(&task.text, &task.file).map_err(Failure::input)?;
+        let template = Template::parse(&task.text, &task.file).map_err(Failure::input)?;
         let robot = Robot::parse(&robot.text, &robot.file).map_err(Failure::input)?;
+        let fits = |task: &Task| rig(engine, task, &robot).map(|_| ());
+        fits(template.task()).map_err(Failure::input)?;
+        template.check(&space, file, &fits).map_err(Failure::input)?;
         Ok(Setup {
-            rig: rig(engine, &task, &robot)?,
-            task,
+            template,
             robot,
             space,
             surrogate: surrogate(stiffness)?,
@@ -153,22 +154,10 @@ impl Setup {
                 .collect(),
         })
     }
-}
 
-/// A space must name what the surrogate needs, and nothing that would have no effect.
-fn check_keys(space: &Space, file: &str) -> Result<(), Failure> {
-    let known = [DENSITY_KEY, DIRECTION_KEY];
-    let keys: Vec<&str> = space.parameters().iter().map(|p| p.key.as_str()).collect();
-    if let Some(missing) = known.iter().find(|key| !keys.contains(key)) {
-        let problem = "is missing: a space must have it; to hold it fixed let low equal high";
-        return Err(Failure::usage(format!("{file}: {missing}: {problem}")));
-    }
-    match keys.iter().find(|key| !known.contains(key)) {
-        None => Ok(()),
-        Some(key) => Err(Failure::usage(format!(
-            "{file}: {key}: has no effect on a finger; a space has {}",
-            known.join(" and ")
-        ))),
+    /// Where trials of a task with this robot are run.
+    pub fn rig(&self, task: &Task) -> Result<Box<dyn Rig>, RigError> {
+        rig(self.engine, task, &self.robot)
     }
 }
 
@@ -191,10 +180,9 @@ pub fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Sourc
 }
 
 /// Where trials of one task with one robot are run, if the three go together.
-pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Result<Box<dyn Rig>, Failure> {
+pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Result<Box<dyn Rig>, RigError> {
     if let Some(engine) = engine.build(1.0) {
-        let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
-        return Ok(Box::new(rig));
+        return Ok(Box::new(EngineRig::new(task.clone(), robot, engine)?));
     }
     let delay = std::env::var(FAKE_DELAY).ok().and_then(|text| text.parse().ok());
     Ok(Box::new(FakeRig { delay: Duration::from_micros(delay.unwrap_or(0)) }))
@@ -204,7 +192,7 @@ pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Result<Box<dyn Rig
 pub struct Surrogate(pub Model);
 
 impl Surrogate {
-    /// Stiffness predicted for a design of a space that [`check_keys`] passed.
+    /// Stiffness predicted for a design, which must name the infill.
     pub fn predict(&self, design: &Design) -> Prediction {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
         self.0.predict(value(DENSITY_KEY), value(DIRECTION_KEY))

@@ -56,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     fn config(&self, setup: &Setup) -> StudyConfig {
         StudyConfig {
-            task: setup.task.name.clone(),
+            task: setup.template.task().name.clone(),
             robot: setup.robot.name.clone(),
             engine: setup.engine.name().to_owned(),
             optimizer: self.optimizer.to_string(),

@@ -1,6 +1,6 @@
 //! `optimize trial`: one simulated insertion.
 
-use super::evaluate::FingerArguments;
+use super::finger::FingerArguments;
 use super::setup::{Setup, SetupArguments};
 use super::summary::{failure, merge, outcome_word};
 use super::{Failure, print, print_json};
@@ -37,9 +37,10 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
-    let trial = setup.rig.grasp(&chosen.finger).trial(arguments.offset_mm * MM);
+    let rig = setup.rig(&chosen.task).map_err(Failure::input)?;
+    let trial = rig.grasp(&chosen.finger).trial(arguments.offset_mm * MM);
     if let Some(file) = &arguments.svg {
-        write_file(file, &picture::svg(&setup.task, &trial))?;
+        write_file(file, &picture::svg(&chosen.task, &trial))?;
     }
     if arguments.json {
         let mut fields = chosen.json(&setup, &arguments.finger);
@@ -59,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         );
         return print_json(&fields);
     }
-    print(&format!("{}\n{}", chosen.stiffness_line(), text(&trial)))
+    print(&format!("{}\n{}", chosen.text(), text(&trial)))
 }
 
 fn text(trial: &Trial) -> String {

@@ -80,7 +80,7 @@ impl Arguments {
     fn measure(&self, tasks: &[Task], robot: &Robot) -> Result<Vec<TaskTable>, Failure> {
         let designs = published::designs();
         let search = if self.strides { Search::Strides } else { Search::Walk };
-        let rig = |task| setup::rig(self.engine, task, robot);
+        let rig = |task| setup::rig(self.engine, task, robot).map_err(Failure::input);
         let rigs: Vec<_> = tasks.iter().map(rig).collect::<Result<_, _>>()?;
         let pairs: Vec<_> =
             rigs.iter().flat_map(|rig| designs.iter().map(move |design| (rig, design))).collect();

@@ -1,6 +1,6 @@
 //! The best design in words.
 
-use super::text::{design, end, escape, outcome_words, stiffness};
+use super::text::{end, escape, infill, is_infill, outcome_words, stiffness};
 use crate::evaluation::Outcome;
 use crate::study::{Recorded, StudyRecord};
 
@@ -16,7 +16,7 @@ pub(super) fn section(record: &StudyRecord) -> String {
     let window = &best.evaluation.window;
     let mut html = format!(
         "<p class=\"big\">{}</p>\n<p>tolerates a start shifted by <b>{:.1} mm</b> in all</p>\n",
-        escape(&design(&best.design)),
+        escape(&infill(&best.design)),
         window.range_mm(),
     );
     if window.nominal != Outcome::Inserted {
@@ -47,7 +47,10 @@ fn hull_note(best: &Recorded) -> String {
 fn facts(record: &StudyRecord, best: &Recorded) -> String {
     let (found, window) = (&best.evaluation, &best.evaluation.window);
     let value = best.value.map_or("none".to_owned(), |value| format!("{value:.1} mm"));
-    let rows = [
+    let others = best.design.0.iter().filter(|(key, _)| !is_infill(key));
+    let mut rows: Vec<(String, String)> =
+        others.map(|(key, value)| (key.clone(), value.to_string())).collect();
+    rows.extend([
         ("objective".to_owned(), format!("{} = {value}", record.config.objective)),
         (
             "window".to_owned(),
@@ -74,6 +77,6 @@ fn facts(record: &StudyRecord, best: &Recorded) -> String {
             "evaluation".to_owned(),
             format!("number {} of {}", best.index + 1, record.evaluations.len()),
         ),
-    ];
+    ]);
     super::sections::definitions(&rows)
 }

@@ -2,7 +2,7 @@
 
 use super::text::escape;
 use super::theme::{inline, variables};
-use super::{ReportError, best, convergence, map, scatter, sections, windows};
+use super::{ReportError, best, convergence, map, others, scatter, sections, windows};
 use crate::study::StudyRecord;
 use crate::surrogate::Measurement;
 
@@ -22,6 +22,7 @@ pub fn html(record: &StudyRecord, measurements: &[Measurement]) -> Result<String
         section("best", "Best design", &best::section(record)),
         section("convergence", "Convergence", &convergence_part(record)?),
         section("map", "Range over density and direction", &map_part(record, measurements)?),
+        others_part(record)?,
         section("windows", "Tolerance windows of the best designs", &windows_part(record)?),
         section("published", "Published ranges beside ours", &published_part(record)?),
         section("failures", "How the trials ended", &sections::failures(record)),
@@ -63,10 +64,24 @@ fn convergence_part(record: &StudyRecord) -> Result<String, ReportError> {
 fn map_part(record: &StudyRecord, measurements: &[Measurement]) -> Result<String, ReportError> {
     let caption = "Coloured cells: evaluated designs, by range. Rings: designs whose stiffness \
                    was measured. Cross in a frame: the best design. Red outline: no value. \
-                   Outside the rings' hull the stiffness is extrapolated.";
+                   Outside the rings' hull the stiffness is extrapolated. Of designs with the \
+                   same infill the best is on top.";
     Ok(match map::svg(record, measurements, (560, 500))? {
         Some(svg) => figure(&svg, "map of the range over infill density and direction", caption),
         None => "<p>The space of this study has no infill density and direction.</p>\n".to_owned(),
+    })
+}
+
+/// A whole section, or nothing if the space is the infill alone.
+fn others_part(record: &StudyRecord) -> Result<String, ReportError> {
+    let caption = "Range of each evaluated design against one number each of task and finger; \
+                   all others differ as well. Cross: the best design.";
+    Ok(match others::svg(record, PLOT.0)? {
+        Some(svg) => {
+            let figure = figure(&svg, "range against the other parameters", caption);
+            section("others", "Range over the other parameters", &figure)
+        }
+        None => String::new(),
     })
 }
 

@@ -4,7 +4,7 @@ use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, axes, message, sheet, words};
 use super::theme::{Colour, INK, LINES, MUTED, ORANGE, RED, SCALE};
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Space};
-use crate::study::StudyRecord;
+use crate::study::{Recorded, StudyRecord};
 use crate::surrogate::Measurement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -90,7 +90,11 @@ fn draw(
     let cell = |density: f64, direction: f64, style: ShapeStyle| {
         Rectangle::new([(density - dx, direction - dy), (density + dx, direction + dy)], style)
     };
-    for recorded in &record.evaluations {
+    // Best last: it stays visible where designs differ in more than the infill.
+    let mut evaluations: Vec<_> = record.evaluations.iter().collect();
+    let value = |r: &Recorded| r.value.unwrap_or(f64::NEG_INFINITY);
+    evaluations.sort_by(|a, b| value(a).total_cmp(&value(b)));
+    for recorded in evaluations {
         let (Some(density), Some(direction)) =
             (recorded.design.get(DENSITY_KEY), recorded.design.get(DIRECTION_KEY))
         else {

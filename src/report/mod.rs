@@ -8,6 +8,7 @@ mod compare_plot;
 mod convergence;
 mod html;
 mod map;
+mod others;
 mod scatter;
 mod sections;
 pub mod stiffness;

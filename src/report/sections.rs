@@ -90,6 +90,7 @@ pub(super) fn best_ten(record: &StudyRecord) -> String {
         .map(|(r, value)| {
             let window = &r.evaluation.window;
             vec![
+                r.index.to_string(),
                 design(&r.design),
                 format!("{value:.1} mm"),
                 format!("{:+.1} to {:+.1} mm", window.negative_mm(), window.positive_mm()),
@@ -98,7 +99,8 @@ pub(super) fn best_ten(record: &StudyRecord) -> String {
             ]
         })
         .collect();
-    let head = ["design", "objective", "window", "compliance stiffness", "measured hull"];
+    let head =
+        ["evaluation", "design", "objective", "window", "compliance stiffness", "measured hull"];
     format!("<details><summary>The same as a table</summary>\n{}</details>\n", table(&head, &rows))
 }
 

@@ -62,6 +62,20 @@ pub(super) fn end_short(outcome: Option<Outcome>) -> &'static str {
 
 /// A design in words: infill first, then whatever else the space names.
 pub(super) fn design(design: &Design) -> String {
+    let others = design.0.iter().filter(|(key, _)| !is_infill(key));
+    let mut parts = vec![infill(design)];
+    parts.retain(|infill| !infill.is_empty());
+    parts.extend(others.map(|(key, value)| format!("{key} {value}")));
+    parts.join(", ")
+}
+
+/// Whether a key names the infill.
+pub(super) fn is_infill(key: &str) -> bool {
+    [DENSITY_KEY, DIRECTION_KEY].contains(&key)
+}
+
+/// The infill of a design in words; empty if it has none.
+pub(super) fn infill(design: &Design) -> String {
     let mut parts = Vec::new();
     if let Some(density) = design.get(DENSITY_KEY) {
         parts.push(format!("{density} %"));
@@ -69,8 +83,5 @@ pub(super) fn design(design: &Design) -> String {
     if let Some(direction) = design.get(DIRECTION_KEY) {
         parts.push(format!("{direction}°"));
     }
-    let other = |key: &str| key != DENSITY_KEY && key != DIRECTION_KEY;
-    let others = design.0.iter().filter(|(key, _)| other(key));
-    parts.extend(others.map(|(key, value)| format!("{key} {value}")));
     parts.join(", ")
 }

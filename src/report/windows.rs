@@ -31,6 +31,16 @@ pub(super) fn svg(record: &StudyRecord, width: u32) -> Result<Option<String>, Re
     sheet("the windows", (width, height), |area| draw(area, &shown)).map(Some)
 }
 
+/// The design as far as there is room for it: with more than the infill, its evaluation.
+fn name(recorded: &Recorded) -> String {
+    let full = text::design(&recorded.design);
+    let infill = text::infill(&recorded.design);
+    if full == infill || infill.is_empty() {
+        return full;
+    }
+    format!("{infill}, evaluation {}", recorded.index)
+}
+
 fn draw(area: &Area<'_>, shown: &[(&Recorded, f64)]) -> Drawn {
     let window = |r: &Recorded| r.evaluation.window.clone();
     let low = shown.iter().map(|(r, _)| window(r).negative_mm()).fold(0.0, f64::min);
@@ -63,7 +73,7 @@ fn draw(area: &Area<'_>, shown: &[(&Recorded, f64)]) -> Drawn {
     let mut bars = Vec::new();
     for (row, (recorded, value)) in shown.iter().enumerate() {
         let (row, window) = (row as f64, window(recorded));
-        let title = format!("{}.  {}   {value:.1} mm", row + 1.0, text::design(&recorded.design));
+        let title = format!("{}.  {}   {value:.1} mm", row + 1.0, name(recorded));
         let middle = (low + high) / 2.0;
         labels.push(text(title, (middle, row + 0.24), words(15, INK, HPos::Center, VPos::Center)));
         let y = row + 0.68;

@@ -1,6 +1,7 @@
 //! What can go wrong with a study's folder, said so that it can be mended.
 
 use super::line::LineError;
+use crate::codesign::Impossible;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -91,6 +92,16 @@ pub enum StudyError {
         found: String,
         /// The design proposed now.
         proposed: String,
+    },
+    /// A design of the space cannot be simulated.
+    #[error("evaluation {index} of {design} is impossible: {source}; narrow the space")]
+    Impossible {
+        /// The evaluation, counted from 0.
+        index: u64,
+        /// The design.
+        design: String,
+        /// What it sets wrongly.
+        source: Impossible,
     },
 }
 

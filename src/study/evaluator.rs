@@ -1,10 +1,13 @@
 //! What a study measures a design with.
 
+use crate::codesign::{Impossible, Template};
 use crate::evaluation::{Evaluation, Outcome};
 use crate::finger::Finger;
 use crate::space::Design;
 use crate::surrogate::Prediction;
+use crate::task::Task;
 use crate::tolerance::{self, Search};
+use crate::trial::run::RigError;
 use crate::trial::{Conditions, Grasped, Rig, Trial};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -20,35 +23,45 @@ pub struct Measured {
 /// Evaluates designs, several at a time.
 pub trait Evaluate: Sync {
     /// Measures one design; equal designs measure equal.
-    fn evaluate(&self, design: &Design) -> Measured;
+    ///
+    /// # Errors
+    /// If the design cannot be simulated.
+    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible>;
 }
 
-/// Surrogate, finger and window search, one after the other.
-pub struct Simulated<'a, P> {
+/// Surrogate, task and finger, and window search, one after the other.
+pub struct Simulated<'a, P, R> {
     /// Predicts a design's stiffness.
     pub predict: P,
-    /// Where trials are run.
-    pub rig: &'a dyn Rig,
+    /// Puts what else a design sets into task and finger.
+    pub template: &'a Template,
+    /// Makes the place where trials of a task are run.
+    pub rig: R,
+    /// Set when the study is to stop: trials then end at once.
+    pub stop: &'a AtomicBool,
 }
 
-impl<P: Fn(&Design) -> Prediction + Sync> Evaluate for Simulated<'_, P> {
-    fn evaluate(&self, design: &Design) -> Measured {
+impl<P, R> Evaluate for Simulated<'_, P, R>
+where
+    P: Fn(&Design) -> Prediction + Sync,
+    R: Fn(&Task) -> Result<Box<dyn Rig>, RigError> + Sync,
+{
+    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible> {
         let stiffness = (self.predict)(design);
         let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-        Measured {
-            stiffness,
-            evaluation: tolerance::evaluate(self.rig, &finger, Search::default()),
-        }
+        let (task, finger) = self.template.apply(design, finger)?;
+        let rig = (self.rig)(&task)?;
+        let rig = Stoppable { rig: &*rig, stop: self.stop };
+        let evaluation = tolerance::evaluate(&rig, &finger, Search::default());
+        Ok(Measured { stiffness, evaluation })
     }
 }
 
 /// A rig whose trials end at once when the study is to stop. What they then
 /// report is worthless; the runner throws such evaluations away.
-pub struct Stoppable<'a> {
-    /// The rig that does the work.
-    pub rig: &'a dyn Rig,
-    /// Set when the study is to stop.
-    pub stop: &'a AtomicBool,
+struct Stoppable<'a> {
+    rig: &'a dyn Rig,
+    stop: &'a AtomicBool,
 }
 
 impl Rig for Stoppable<'_> {

@@ -18,7 +18,7 @@ mod time;
 
 pub use config::{StudyConfig, Versions, study_name};
 pub use error::StudyError;
-pub use evaluator::{Evaluate, Measured, Simulated, Stoppable};
+pub use evaluator::{Evaluate, Measured, Simulated};
 pub use folder::{
     CONFIG_FILE, Inputs, JOURNAL_FILE, Study, read_config, read_inputs, sha256, write_file,
 };

@@ -49,7 +49,7 @@ pub struct Runner<'a> {
     /// Does the measuring; the calling thread, outside of it, writes.
     pub pool: &'a ThreadPool,
     /// Set (by Ctrl-C) when the run is to stop soon; also set by the runner
-    /// itself when a write fails.
+    /// itself after an error.
     pub stop: &'a AtomicBool,
 }
 
@@ -115,15 +115,15 @@ impl Runner<'_> {
             for (index, design) in (first..).zip(designs) {
                 let sender = sender.clone();
                 scope.spawn(move |_| {
-                    if let Some(recorded) = self.evaluate(index, design) {
-                        // The receiver is gone only after a failed write.
-                        let _ = sender.send(recorded);
+                    if let Some(result) = self.evaluate(index, design).transpose() {
+                        // The receiver is gone only after an error.
+                        let _ = sender.send(result);
                     }
                 });
             }
             drop(sender);
-            for recorded in receiver {
-                if let Err(error) = writer.take(recorded, progress) {
+            for result in receiver {
+                if let Err(error) = result.and_then(|recorded| writer.take(recorded, progress)) {
                     self.stop.store(true, Ordering::SeqCst);
                     return Err(error);
                 }
@@ -133,23 +133,27 @@ impl Runner<'_> {
     }
 
     /// One evaluation, `None` if the run was to stop before it was complete.
-    fn evaluate(&self, index: u64, design: &Design) -> Option<Recorded> {
+    fn evaluate(&self, index: u64, design: &Design) -> Result<Option<Recorded>, StudyError> {
         if self.stop.load(Ordering::SeqCst) {
-            return None;
+            return Ok(None);
         }
         let (datetime_start, clock) = (time::now(), Instant::now());
-        let Measured { stiffness, evaluation } = self.evaluator.evaluate(design);
+        let measured = self.evaluator.evaluate(design);
         // Once it is set the evaluator may have skipped trials.
         if self.stop.load(Ordering::SeqCst) {
-            return None;
+            return Ok(None);
         }
+        let Measured { stiffness, evaluation } = measured.map_err(|source| {
+            StudyError::Impossible { index, design: design.to_string(), source }
+        })?;
         let timing = Timing {
             datetime_start,
             datetime_complete: time::now(),
             wall_s: clock.elapsed().as_secs_f64(),
         };
         let value = self.objective.value(&evaluation);
-        Some(Recorded { index, design: design.clone(), value, stiffness, evaluation, timing })
+        let design = design.clone();
+        Ok(Some(Recorded { index, design, value, stiffness, evaluation, timing }))
     }
 }
 

@@ -149,4 +149,9 @@ impl Task {
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         raw::parse(text, file)
     }
+
+    /// Checks a task file that was read as TOML already; `file` is named in errors.
+    pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
+        raw::from_table(table, file)
+    }
 }

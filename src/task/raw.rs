@@ -136,7 +136,19 @@ struct RawSuccess {
 
 /// Reads and checks a task; `file` is named in errors.
 pub fn parse(text: &str, file: &str) -> Result<Task, InputError> {
-    let raw: RawTask = read(text, file)?;
+    check(read(text, file)?, file)
+}
+
+/// Checks a task that was read already; `file` is named in errors.
+pub fn from_table(table: toml::Table, file: &str) -> Result<Task, InputError> {
+    let raw = table.try_into().map_err(|error: toml::de::Error| InputError::Syntax {
+        file: file.to_owned(),
+        message: error.to_string().trim_end().to_owned(),
+    })?;
+    check(raw, file)
+}
+
+fn check(raw: RawTask, file: &str) -> Result<Task, InputError> {
     let check = Check { file };
     check.name(&raw.name)?;
     let plug = Plug {

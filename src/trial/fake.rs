@@ -1,7 +1,8 @@
 //! A rig with a closed-form window, for tests of everything above the trial.
 //!
-//! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50]` mm, with `k` and
-//! `a` the compliance and assembly stiffness in N/mm; it jams below and misses above.
+//! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm, with
+//! `k` and `a` the compliance and assembly stiffness in N/mm and `r` the distance of the
+//! remote centre in mm; it jams below and misses above.
 //! Conditions narrow it: friction divides the lower end, yaw takes 1 mm a degree off
 //! both ends, what sits low in the gripper its own height off both; clearance is added.
 
@@ -33,10 +34,12 @@ pub fn window_mm(finger: &Finger) -> (f64, f64) {
 pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     let compliance = finger.compliance / N_PER_MM;
     let assembly = finger.assembly / N_PER_MM;
+    let rcc = finger.rcc / MM;
     let less = conditions.yaw.abs() / DEG + conditions.grasp_low / MM - conditions.clearance / MM;
     let nanometres = |mm: f64| (mm * 1e6).round() / 1e6;
     let low = -(2.0 + 4.0 / compliance) / conditions.friction_socket;
-    (nanometres(low + less), nanometres(1.0 + assembly / 50.0 - less))
+    let high = 1.0 + assembly / 50.0 + (21.0 - rcc) / 10.0;
+    (nanometres(low + less), nanometres(high - less))
 }
 
 struct FakeGrasp {

@@ -81,6 +81,7 @@ fn config(budget: u64) -> StudyConfig {
         objective: Objective::Range.to_string(),
         seed: 0,
         budget,
+        polish: 0,
         batch: 4,
         versions: Versions { program: "bench".into(), engine: "1".into() },
         input_sha256: BTreeMap::new(),

@@ -267,3 +267,31 @@ fn a_folder_that_cannot_be_written_is_named() {
     fs::create_dir_all(studies.dir("locked/.lock")).unwrap();
     studies.study("locked", 4, &[]).fails(1, &["locked/.lock", "cannot open"]);
 }
+
+#[test]
+fn a_polish_follows_the_search_and_is_as_durable() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    let polish = |name: &str, more: &[&str]| {
+        studies.study(name, BUDGET, &[&["--polish", "9"][..], more].concat())
+    };
+    let json = polish("polished", &["--json"]).json();
+    let (all, searched) = (studies.journal("polished"), expected.lines().count());
+    let evaluations = all.lines().count() - 2;
+    assert!(evaluations > BUDGET as usize && evaluations <= BUDGET as usize + 9, "{evaluations}");
+    assert_eq!((&json["budget"], &json["polish"]), (&BUDGET.into(), &9.into()));
+    let lines = |text: &str| text.lines().skip(2).take(searched - 2).collect::<String>();
+    assert_eq!(lines(&all), lines(&expected), "the search does not know of the polish");
+    // Any beginning goes on to the same end.
+    let path = studies.dir("polished").join("journal.jsonl");
+    let whole = read(&path);
+    for kept in [2, 2 + 20, 2 + BUDGET as usize, 2 + BUDGET as usize + 1] {
+        let beginning: String = whole.lines().take(kept).map(|line| format!("{line}\n")).collect();
+        fs::write(&path, beginning).unwrap();
+        studies.resume("polished").succeeds();
+        assert_eq!(studies.journal("polished"), all, "{kept} lines kept");
+    }
+    studies.study("polished", BUDGET + 4, &["--polish", "9"]).fails(2, &["budget", "--out"]);
+    studies.study("polished", BUDGET, &[]).fails(2, &["polish: the study has 9, now has nothing"]);
+    studies.study("reference", BUDGET, &["--polish"]).fails(2, &["polish: the study has nothing"]);
+}

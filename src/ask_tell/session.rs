@@ -136,7 +136,10 @@ impl Begun {
     /// Why nothing more can be asked, once all that was asked is told.
     fn stop(&self) -> Option<&'static str> {
         let stop = self.optimizer.stop().filter(|_| self.batch.complete());
-        stop.map(|StopReason::GridExhausted| "space_exhausted")
+        stop.map(|reason| match reason {
+            StopReason::GridExhausted => "space_exhausted",
+            StopReason::Converged => "converged",
+        })
     }
 
     fn values(&self, point: &GridPoint) -> Map<String, Value> {

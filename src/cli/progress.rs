@@ -20,7 +20,7 @@ impl Progress {
     /// Begins; nothing is shown if `quiet`.
     pub fn new(study: &Study, quiet: bool) -> Self {
         let done = study.evaluations.len() as u64;
-        let budget = study.config.budget;
+        let budget = study.config.evaluations();
         let shown = !quiet && done < budget;
         let bar = (shown && stderr().is_terminal()).then(|| bar(done, budget));
         Progress {

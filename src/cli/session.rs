@@ -41,7 +41,7 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         stop: &stop,
     };
     let runner = Runner { evaluator: &evaluator, objective, pool: &pool, stop: &stop };
-    let mut optimizer = setup::optimizer(kind, &setup.space, config.seed);
+    let mut optimizer = setup::optimizer(kind, &setup.space, &config);
     let mut progress = Progress::new(&study, arguments.quiet);
     let ended =
         runner.run(&mut study, &mut *optimizer, &mut |recorded| progress.measured(recorded));
@@ -64,7 +64,8 @@ fn bad_config(error: impl std::fmt::Display) -> Failure {
 }
 
 fn resume_hint(study: &Study) -> String {
-    let (done, budget, dir) = (study.evaluations.len(), study.config.budget, study.dir().display());
+    let (done, budget, dir) =
+        (study.evaluations.len(), study.config.evaluations(), study.dir().display());
     format!("{done} of {budget} evaluations are safe; continue with: optimize resume {dir}")
 }
 

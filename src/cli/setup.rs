@@ -7,11 +7,11 @@ use finger_opt::codesign::Template;
 use finger_opt::engine::Engine;
 use finger_opt::engine::direct::Direct;
 use finger_opt::engine::rapier::Rapier;
-use finger_opt::optimizer::{self, Grid, Optimizer};
+use finger_opt::optimizer::{self, Grid, Optimizer, Polished};
 use finger_opt::robot::Robot;
 use finger_opt::shipped::{self, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
 use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use finger_opt::study::{Inputs, Versions};
+use finger_opt::study::{Inputs, StudyConfig, Versions};
 use finger_opt::surrogate::{self, Model, Prediction};
 use finger_opt::task::Task;
 use finger_opt::trial::Rig;
@@ -208,8 +208,17 @@ pub fn surrogate(data: &Source) -> Result<Surrogate, Failure> {
 }
 
 /// The optimizer of a study.
-pub fn optimizer(kind: OptimizerKind, space: &Space, seed: u64) -> Box<dyn Optimizer + Send> {
-    optimizer::build(kind, Grid::new(space.levels()), seed)
+pub fn optimizer(
+    kind: OptimizerKind,
+    space: &Space,
+    config: &StudyConfig,
+) -> Box<dyn Optimizer + Send> {
+    let grid = Grid::new(space.levels());
+    let search = optimizer::build(kind, grid.clone(), config.seed);
+    match config.polish {
+        0 => search,
+        polish => Box::new(Polished::new(search, grid, config.budget, polish)),
+    }
 }
 
 #[cfg(test)]

@@ -19,6 +19,11 @@ pub struct Arguments {
     /// Evaluations in all; run the same command with a larger one to go on
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     budget: u64,
+    /// Then up to N evaluations more, by Nelder-Mead from the best design; the budget of
+    /// such a study cannot be raised
+    #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=1_000_000))]
+    polish: u64,
     /// Optimizer: gp, cma-es, nelder-mead, random, sobol or grid
     #[arg(long, value_name = "NAME", default_value = "gp")]
     optimizer: OptimizerKind,
@@ -63,6 +68,7 @@ impl Arguments {
             objective: self.objective.to_string(),
             seed: self.seed,
             budget: self.budget,
+            polish: self.polish,
             batch: self.batch,
             versions: setup.engine.versions(),
             input_sha256: sha256(&setup.inputs),
@@ -75,5 +81,5 @@ impl Arguments {
 fn default_folder(config: &StudyConfig) -> PathBuf {
     let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
     let task: String = config.task.chars().map(safe).collect();
-    Path::new("results").join(study_name(&task, &config.optimizer, config.seed))
+    Path::new("results").join(study_name(&task, &config.method(), config.seed))
 }

@@ -22,9 +22,10 @@ fn print_text(study: &Study, ending: Ending) -> Result<(), Failure> {
     };
     let end = match ending {
         Ending::SpaceExhausted => ": every design of the space",
+        Ending::Converged => ": the polish has converged",
         Ending::BudgetSpent | Ending::Interrupted => "",
     };
-    line(format!("{} with {}: {done} evaluations{end}", config.task, config.optimizer));
+    line(format!("{} with {}: {done} evaluations{end}", config.task, config.method()));
     match finger_opt::study::best(&study.evaluations) {
         None => line("no evaluation gave a value".to_owned()),
         Some(best) => {
@@ -92,6 +93,7 @@ fn to_json(study: &Study, ending: Ending) -> Value {
     let ending = match ending {
         Ending::BudgetSpent => "budget_spent",
         Ending::SpaceExhausted => "space_exhausted",
+        Ending::Converged => "converged",
         Ending::Interrupted => "interrupted",
     };
     json!({
@@ -103,6 +105,7 @@ fn to_json(study: &Study, ending: Ending) -> Value {
         "objective": config.objective,
         "seed": config.seed,
         "budget": config.budget,
+        "polish": config.polish,
         "evaluations": study.evaluations.len(),
         "ending": ending,
         "best": finger_opt::study::best(&study.evaluations).map(recorded_json),

@@ -8,6 +8,7 @@ pub mod gp;
 mod kind;
 mod lattice;
 mod neldermead;
+mod polish;
 mod proposed;
 mod random;
 mod simplex;
@@ -16,6 +17,7 @@ mod sobol;
 pub use kind::{OptimizerKind, UnknownOptimizer, build};
 pub use lattice::GridSearch;
 pub use neldermead::NelderMeadOptimizer;
+pub use polish::Polished;
 pub use proposed::Proposed;
 pub use random::RandomSearch;
 pub use sobol::SobolSearch;
@@ -93,6 +95,8 @@ pub struct Observation {
 pub enum StopReason {
     /// Every point of the grid has been proposed.
     GridExhausted,
+    /// It has found what it can find.
+    Converged,
 }
 
 /// A sequential optimizer over a [`Grid`].
@@ -100,7 +104,8 @@ pub enum StopReason {
 /// Contract, checked for every implementation by `tests/optimizers.rs`:
 /// proposals depend only on the constructor's arguments and the sequence of
 /// calls; every proposed point lies on the grid and is proposed once; fewer
-/// than `n` points come back only when the grid is exhausted.
+/// than `n` points come back only when the grid is exhausted (or, of [`Polished`],
+/// where its search or its polish ends).
 pub trait Optimizer {
     /// Proposes up to `n` new points.
     fn ask(&mut self, n: usize) -> Vec<GridPoint>;

@@ -40,7 +40,8 @@ pub struct NelderMeadOptimizer {
     values: BTreeMap<GridPoint, f64>,
     /// Asked and not told.
     pending: Vec<GridPoint>,
-    starts: SobolSequence,
+    /// Where further runs begin; `None` in a polish, which keeps to the best point.
+    starts: Option<SobolSequence>,
     run: Simplex,
     runs: u64,
     barren_iterations: u32,
@@ -50,28 +51,49 @@ pub struct NelderMeadOptimizer {
 impl NelderMeadOptimizer {
     /// Nelder-Mead over `grid`; `seed` chooses where the runs begin.
     pub fn new(grid: Grid, seed: u64) -> Self {
-        let free: Vec<usize> = (0..grid.dimension()).filter(|&i| grid.levels()[i] > 1).collect();
-        let mut optimizer = NelderMeadOptimizer {
-            starts: SobolSequence::new(free.len(), seed, 0, "nelder-mead start"),
+        let mut optimizer = Self::bare(grid, seed);
+        let axes = optimizer.free.len();
+        optimizer.starts = Some(SobolSequence::new(axes, seed, 0, "nelder-mead start"));
+        optimizer.restart();
+        optimizer
+    }
+
+    /// A polish of what others have `told`: runs begin at the best point only, each with half
+    /// the simplex of the one before. It proposes nothing but what Nelder-Mead wants, so fewer
+    /// points than it is asked for, and none once its runs bring nothing new.
+    pub fn polish(grid: Grid, told: &[Observation]) -> Self {
+        let mut optimizer = Self::bare(grid, 0);
+        optimizer.tell(told);
+        optimizer.restart();
+        optimizer
+    }
+
+    /// No run begun.
+    fn bare(grid: Grid, seed: u64) -> Self {
+        NelderMeadOptimizer {
+            free: (0..grid.dimension()).filter(|&i| grid.levels()[i] > 1).collect(),
+            starts: None,
             run: Simplex::new(Vec::new()),
             proposed: Proposed::new(grid, seed),
-            free,
             values: BTreeMap::new(),
             pending: Vec::new(),
             runs: 0,
             barren_iterations: 0,
             barren_restarts: 0,
-        };
-        optimizer.restart();
-        optimizer
+        }
     }
 
     fn restart(&mut self) {
         self.barren_iterations = 0;
-        let best = self.best().filter(|_| self.runs % 2 == 1);
-        let (start, edge) = match best {
-            Some(best) => (best, NARROW),
-            None => (self.starts.next().unwrap_or(vec![0.5; self.free.len()]), WIDE),
+        let best = self.best();
+        let Some((start, edge)) = (match &mut self.starts {
+            None => best.map(|best| (best, NARROW * 0.5f64.powi(self.runs as i32))),
+            Some(starts) => match best.filter(|_| self.runs % 2 == 1) {
+                Some(best) => Some((best, NARROW)),
+                None => Some((starts.next().unwrap_or(vec![0.5; self.free.len()]), WIDE)),
+            },
+        }) else {
+            return;
         };
         self.runs += 1;
         self.run = Simplex::new(self.vertices(&start, edge));
@@ -158,6 +180,10 @@ impl NelderMeadOptimizer {
         if self.free.is_empty() {
             return self.proposed.next_unseen();
         }
+        if self.runs == 0 {
+            // A polish of nothing.
+            return None;
+        }
         let guesses = match self.pending.len() % 2 {
             0 => [f64::NEG_INFINITY, f64::INFINITY],
             _ => [f64::INFINITY, f64::NEG_INFINITY],
@@ -169,6 +195,7 @@ impl NelderMeadOptimizer {
                 self.barren_iterations = 0;
                 self.proposed.insert(&point).then_some(point)
             }
+            None if self.starts.is_none() => None,
             None => self.proposed.next_unseen(),
         }
     }

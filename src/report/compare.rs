@@ -56,7 +56,7 @@ pub type Quartiles = [Option<f64>; 3];
 /// Studies of one optimizer with different seeds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
-    /// Name of the optimizer.
+    /// Name of the optimizer, with its polish.
     pub optimizer: String,
     /// Designs it proposes at a time.
     pub batch: u64,
@@ -101,15 +101,15 @@ impl Group {
 pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, CompareError> {
     let (first, _) = studies.split_first().ok_or(CompareError::Nothing)?;
     studies.iter().try_for_each(|study| alike(first, study))?;
-    let mut groups: BTreeMap<(&str, u64), Vec<&(String, StudyRecord)>> = BTreeMap::new();
+    let mut groups: BTreeMap<(String, u64), Vec<&(String, StudyRecord)>> = BTreeMap::new();
     for study in studies {
         let config = &study.1.config;
-        let group = groups.entry((&config.optimizer, config.batch)).or_default();
+        let group = groups.entry((config.method(), config.batch)).or_default();
         if let Some(same) = group.iter().find(|other| other.1.config.seed == config.seed) {
             return Err(CompareError::Same {
                 first: same.0.clone(),
                 second: study.0.clone(),
-                optimizer: config.optimizer.clone(),
+                optimizer: config.method(),
                 seed: config.seed,
             });
         }
@@ -117,13 +117,17 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, CompareE
     }
     let best = studies.iter().filter_map(|(_, record)| record.best()?.value).reduce(f64::max);
     let best_known_mm = best.ok_or(CompareError::NoValue)?;
-    let group = |((optimizer, batch), studies): ((&str, u64), Vec<&(String, StudyRecord)>)| Group {
-        optimizer: optimizer.to_owned(),
-        batch,
-        studies: studies.len(),
-        best_so_far: band(&studies),
-        to_target: studies.iter().map(|(_, r)| reached(r, best_known_mm - TOLERANCE_MM)).collect(),
-    };
+    let group =
+        |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| Group {
+            optimizer,
+            batch,
+            studies: studies.len(),
+            best_so_far: band(&studies),
+            to_target: studies
+                .iter()
+                .map(|(_, r)| reached(r, best_known_mm - TOLERANCE_MM))
+                .collect(),
+        };
     Ok(Comparison {
         task: first.1.config.task.clone(),
         objective: first.1.config.objective.clone(),

@@ -17,7 +17,7 @@ const PLOT: (u32, u32) = (560, 400);
 /// If the drawing library refuses.
 pub fn html(record: &StudyRecord, measurements: &[Measurement]) -> Result<String, ReportError> {
     let config = &record.config;
-    let title = format!("{} with {}, seed {}", config.task, config.optimizer, config.seed);
+    let title = format!("{} with {}, seed {}", config.task, config.method(), config.seed);
     let body = [
         section("best", "Best design", &best::section(record)),
         section("convergence", "Convergence", &convergence_part(record)?),
@@ -40,7 +40,7 @@ pub fn html(record: &StudyRecord, measurements: &[Measurement]) -> Result<String
          {}</main>\n</body>\n</html>\n",
         style(),
         record.evaluations.len(),
-        config.budget,
+        config.evaluations(),
         body.concat(),
     ))
 }

@@ -25,6 +25,7 @@ fn config(task: &str) -> StudyConfig {
         objective: "range".to_owned(),
         seed: 7,
         budget: 200,
+        polish: 0,
         batch: 4,
         versions: Versions { program: "0.1.0".to_owned(), engine: "1".to_owned() },
         input_sha256: BTreeMap::from([("task".to_owned(), "9f86d081884c7d65".repeat(4))]),

@@ -21,8 +21,12 @@ pub struct StudyConfig {
     pub objective: String,
     /// Seed of every random stream of the study.
     pub seed: u64,
-    /// Evaluations in all; the one field that may be raised later.
+    /// Evaluations that the optimizer has; the one field that may be raised later, unless
+    /// there is a polish.
     pub budget: u64,
+    /// Most evaluations of the polish that follows. Studies from before there was one have none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub polish: u64,
     /// Designs the optimizer proposes at a time.
     pub batch: u64,
     /// Versions of what computed the results.
@@ -46,16 +50,34 @@ pub struct Versions {
 impl StudyConfig {
     /// The study's name: its default folder under `results/`, and its name in Optuna.
     pub fn name(&self) -> String {
-        study_name(&self.task, &self.optimizer, self.seed)
+        study_name(&self.task, &self.method(), self.seed)
+    }
+
+    /// The optimizer with its polish, if it has one: `gp`, `gp+polish20`.
+    pub fn method(&self) -> String {
+        match self.polish {
+            0 => self.optimizer.clone(),
+            polish => format!("{}+polish{polish}", self.optimizer),
+        }
+    }
+
+    /// Evaluations in all, if the polish takes all of its own.
+    pub fn evaluations(&self) -> u64 {
+        self.budget.saturating_add(self.polish)
     }
 
     /// The fields in which a study on disk differs from what is asked for now,
-    /// one line each; a budget that was raised does not count.
+    /// one line each; a budget that was raised does not count, unless a polish follows it.
     pub fn differences(&self, asked: &StudyConfig) -> Option<String> {
-        let budget = if asked.budget > self.budget { asked.budget } else { self.budget };
+        let may_rise = asked.polish == 0 && asked.budget > self.budget;
+        let budget = if may_rise { asked.budget } else { self.budget };
         let raised = StudyConfig { budget, ..self.clone() };
         differences(&raised, asked, ["the study", "now"])
     }
+}
+
+pub(super) fn is_zero(number: &u64) -> bool {
+    *number == 0
 }
 
 /// `<task>-<optimizer>-seed<seed>`.

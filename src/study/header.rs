@@ -47,8 +47,17 @@ struct Identity {
     objective: String,
     seed: u64,
     batch: u64,
+    /// With a polish the budget decides where it begins.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    polish: Option<Polish>,
     versions: Versions,
     input_sha256: BTreeMap<String, String>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Polish {
+    after: u64,
+    at_most: u64,
 }
 
 impl From<&StudyConfig> for Identity {
@@ -63,6 +72,8 @@ impl From<&StudyConfig> for Identity {
             objective: config.objective.clone(),
             seed: config.seed,
             batch: config.batch,
+            polish: (config.polish > 0)
+                .then_some(Polish { after: config.budget, at_most: config.polish }),
             versions: config.versions.clone(),
             input_sha256: config.input_sha256.clone(),
         }

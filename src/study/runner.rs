@@ -3,7 +3,8 @@
 //! # What is guaranteed
 //!
 //! The journal is a function of the configuration without its budget; the
-//! budget only says where it ends. It does not depend on the number of
+//! budget only says where it ends (or where a polish begins, and then it cannot be
+//! raised). It does not depend on the number of
 //! threads, nor on how often the study was interrupted or its budget raised:
 //! 20 evaluations and then 20 more are the same as 40 at once. This holds because
 //!
@@ -21,7 +22,7 @@ use super::journal::Journal;
 use super::record::{Recorded, Timing};
 use super::time;
 use crate::objective::Objective;
-use crate::optimizer::{Observation, Optimizer};
+use crate::optimizer::{Observation, Optimizer, StopReason};
 use crate::space::Design;
 use rayon::ThreadPool;
 use std::collections::BTreeMap;
@@ -36,6 +37,8 @@ pub enum Ending {
     BudgetSpent,
     /// Every design of the space has been evaluated.
     SpaceExhausted,
+    /// The polish has found what it can find.
+    Converged,
     /// It was told to stop.
     Interrupted,
 }
@@ -63,12 +66,15 @@ impl Runner<'_> {
         progress: &mut dyn FnMut(&Recorded),
     ) -> Result<Ending, StudyError> {
         let batch = usize::try_from(study.config.batch).unwrap_or(usize::MAX);
-        let budget = usize::try_from(study.config.budget).unwrap_or(usize::MAX);
+        let budget = usize::try_from(study.config.evaluations()).unwrap_or(usize::MAX);
         let mut begun = 0;
         while begun < budget {
             let points = optimizer.ask(batch);
             if points.is_empty() {
-                return Ok(Ending::SpaceExhausted);
+                return Ok(match optimizer.stop() {
+                    Some(StopReason::Converged) => Ending::Converged,
+                    Some(StopReason::GridExhausted) | None => Ending::SpaceExhausted,
+                });
             }
             let designs: Vec<Design> =
                 points.iter().map(|point| study.config.space.design(point)).collect();

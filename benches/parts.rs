@@ -106,7 +106,7 @@ fn study(dir: &Path, model: &Model) -> Study {
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let runner = Runner {
-        evaluator: &Simulated { predict, template: &template, rig: fake, stop: &stop },
+        evaluator: &Simulated { predict, template: &template, rig: fake, stop: &stop, cache: None },
         objective: Objective::Range,
         pool: &pool,
         stop: &stop,

@@ -222,7 +222,7 @@ fn run(dir: &Path, store: Failing) -> Result<Ending, StudyError> {
     let stop = AtomicBool::new(false);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     let runner = Runner {
-        evaluator: &Simulated { predict, template: &template, rig, stop: &stop },
+        evaluator: &Simulated { predict, template: &template, rig, stop: &stop, cache: None },
         objective: Objective::Range,
         pool: &pool,
         stop: &stop,

@@ -295,3 +295,35 @@ fn a_polish_follows_the_search_and_is_as_durable() {
     studies.study("polished", BUDGET, &[]).fails(2, &["polish: the study has 9, now has nothing"]);
     studies.study("reference", BUDGET, &["--polish"]).fails(2, &["polish: the study has nothing"]);
 }
+
+#[test]
+fn a_known_evaluation_leaves_the_journal_that_a_measured_one_does() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    let dir = studies.dir("cache").to_str().unwrap().to_owned();
+    let cached = |name: &str, budget: u32, more: &[&str]| {
+        let more = [&["--cache", &dir, "--json"][..], more].concat();
+        studies.study(name, budget, &more).json()["cached"].clone()
+    };
+    assert_eq!(cached("first", BUDGET, &[]), 0);
+    assert_eq!(cached("second", BUDGET, &["--threads", "8"]), BUDGET);
+    assert_eq!((studies.journal("first"), studies.journal("second")), (expected.clone(), expected));
+    // Whatever the optimizer, it is the same design; with another robot it is not.
+    assert_eq!(cached("all", 21 * 41, &["--optimizer", "grid"]), BUDGET);
+    assert_eq!(cached("rigid", 4, &["--robot", "rigid"]), 0);
+    assert_eq!(cached("codesign", 4, &["--space", "codesign"]), 0);
+}
+
+#[test]
+fn an_interrupted_study_keeps_no_half_evaluation_in_the_cache() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    let dir = studies.dir("cache").to_str().unwrap().to_owned();
+    let mut child = start(&mut studies.command("stopped", BUDGET, &["--cache", &dir]));
+    wait_for_lines(&studies, "stopped", 5);
+    let pid = child.id().to_string();
+    Command::new("kill").args(["-INT", &pid]).status().expect("kill runs");
+    child.wait().expect("it ends");
+    run(&mut studies.command("other", BUDGET, &["--cache", &dir])).succeeds();
+    assert_eq!(studies.journal("other"), expected);
+}

@@ -1,14 +1,17 @@
 //! Runs an open study to its end: threads, Ctrl-C, progress, summary.
 
 use super::progress::Progress;
-use super::setup::{self, OptimizerKind, Setup};
+use super::setup::{self, EngineKind, OptimizerKind, Setup};
 use super::{Failure, report, summary};
 use clap::Args;
 use finger_opt::objective::Objective;
-use finger_opt::study::{Ending, Runner, Simulated, Study};
-use std::path::Path;
+use finger_opt::study::{Cache, Ending, Runner, Simulated, Study};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Folder of the cache unless another is named.
+const CACHE: &str = "results/.cache";
 
 /// How a study is run, as opposed to what it measures.
 #[derive(Debug, Args)]
@@ -16,6 +19,12 @@ pub struct SessionArguments {
     /// Threads [default: one per processor]; changes no result
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Folder of evaluations that studies share; safe to delete [default: results/.cache]
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// Measure every design anew, and keep nothing
+    #[arg(long, conflicts_with = "cache")]
+    no_cache: bool,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -34,11 +43,13 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         .build()
         .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))?;
     let stop = stop_on_interrupt(study.dir())?;
+    let cache = arguments.cache(setup);
     let evaluator = Simulated {
         predict: |design: &_| setup.surrogate.predict(design),
         template: &setup.template,
         rig: |task: &_| setup.rig(task),
         stop: &stop,
+        cache: cache.as_ref(),
     };
     let runner = Runner { evaluator: &evaluator, objective, pool: &pool, stop: &stop };
     let mut optimizer = setup::optimizer(kind, &setup.space, &config);
@@ -46,6 +57,9 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     let ended =
         runner.run(&mut study, &mut *optimizer, &mut |recorded| progress.measured(recorded));
     progress.finish();
+    if let Some(problem) = cache.as_ref().and_then(Cache::problem) {
+        eprintln!("warning: evaluations are not kept for other studies: {problem}");
+    }
     let ending = ended.map_err(|error| match Failure::from(error) {
         Failure::Run(error) => Failure::running(format!("{error}\n{}", resume_hint(&study))),
         bad_input => bad_input,
@@ -55,7 +69,19 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         Ending::Interrupted => {
             Err(Failure::running(format!("interrupted; {}", resume_hint(&study))))
         }
-        ending => summary::show(&study, ending, arguments.json),
+        ending => {
+            let known = cache.map_or(0, |cache| cache.found());
+            summary::show(&study, ending, known, arguments.json)
+        }
+    }
+}
+
+impl SessionArguments {
+    fn cache(&self, setup: &Setup) -> Option<Cache> {
+        // A closed formula is faster than a file.
+        let default = (setup.engine != EngineKind::Fake).then(|| PathBuf::from(CACHE));
+        let dir = self.cache.clone().or(default).filter(|_| !self.no_cache)?;
+        Some(Cache::new(&dir, &setup.robot, &setup.engine.settings()))
     }
 }
 

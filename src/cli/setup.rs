@@ -71,6 +71,15 @@ impl EngineKind {
         }
     }
 
+    /// All its settings, in words.
+    pub fn settings(self) -> String {
+        match self {
+            EngineKind::Rapier => format!("{:?}", Rapier::default()),
+            EngineKind::Direct => format!("{:?}", Direct::default()),
+            EngineKind::Fake => self.name().to_owned(),
+        }
+    }
+
     /// What computes with this engine.
     pub fn versions(self) -> Versions {
         let engine = match self {

@@ -8,12 +8,15 @@ use finger_opt::units::N_PER_MM;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Prints the result of a study.
-pub fn show(study: &Study, ending: Ending, as_json: bool) -> Result<(), Failure> {
-    if as_json { print_json(&to_json(study, ending)) } else { print_text(study, ending) }
+/// Prints the result of a study, `known` evaluations of which were in the cache.
+pub fn show(study: &Study, ending: Ending, known: u64, as_json: bool) -> Result<(), Failure> {
+    if as_json {
+        return print_json(&to_json(study, ending, known));
+    }
+    print_text(study, ending, known)
 }
 
-fn print_text(study: &Study, ending: Ending) -> Result<(), Failure> {
+fn print_text(study: &Study, ending: Ending, known: u64) -> Result<(), Failure> {
     let (config, done) = (&study.config, study.evaluations.len());
     let mut text = String::new();
     let mut line = |line: String| {
@@ -36,6 +39,9 @@ fn print_text(study: &Study, ending: Ending) -> Result<(), Failure> {
             line(window(&best.evaluation));
             line(stiffness(&best.stiffness));
         }
+    }
+    if known > 0 {
+        line(format!("cache         {known} evaluations were known from other studies"));
     }
     let page = study.dir().join(super::report::PAGE);
     line(format!("study         {} (see {})", study.dir().display(), page.display()));
@@ -88,7 +94,7 @@ pub fn stiffness(prediction: &Prediction) -> String {
     text
 }
 
-fn to_json(study: &Study, ending: Ending) -> Value {
+fn to_json(study: &Study, ending: Ending, known: u64) -> Value {
     let config = &study.config;
     let ending = match ending {
         Ending::BudgetSpent => "budget_spent",
@@ -107,6 +113,7 @@ fn to_json(study: &Study, ending: Ending) -> Value {
         "budget": config.budget,
         "polish": config.polish,
         "evaluations": study.evaluations.len(),
+        "cached": known,
         "ending": ending,
         "best": finger_opt::study::best(&study.evaluations).map(recorded_json),
         "study": study.dir(),

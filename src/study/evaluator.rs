@@ -1,5 +1,6 @@
 //! What a study measures a design with.
 
+use super::cache::Cache;
 use crate::codesign::{Impossible, Template};
 use crate::evaluation::{Evaluation, Outcome};
 use crate::finger::Finger;
@@ -39,6 +40,8 @@ pub struct Simulated<'a, P, R> {
     pub rig: R,
     /// Set when the study is to stop: trials then end at once.
     pub stop: &'a AtomicBool,
+    /// Where evaluations are kept, if they are.
+    pub cache: Option<&'a Cache>,
 }
 
 impl<P, R> Evaluate for Simulated<'_, P, R>
@@ -50,10 +53,20 @@ where
         let stiffness = (self.predict)(design);
         let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
         let (task, finger) = self.template.apply(design, finger)?;
+        let search = Search::default();
+        let keep = self.cache.map(|cache| (cache, cache.key(&(stiffness, &task, finger, search))));
+        if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
+            return Ok(found);
+        }
         let rig = (self.rig)(&task)?;
         let rig = Stoppable { rig: &*rig, stop: self.stop };
-        let evaluation = tolerance::evaluate(&rig, &finger, Search::default());
-        Ok(Measured { stiffness, evaluation })
+        let measured =
+            Measured { stiffness, evaluation: tolerance::evaluate(&rig, &finger, search) };
+        // Once it is set trials may have been skipped.
+        if let Some((cache, key)) = keep.filter(|_| !self.stop.load(Ordering::SeqCst)) {
+            cache.put(&key, &measured);
+        }
+        Ok(measured)
     }
 }
 

@@ -2,6 +2,7 @@
 //! that survives whatever happens to the process.
 
 mod attributes;
+mod cache;
 mod config;
 mod error;
 mod evaluator;
@@ -16,6 +17,7 @@ mod store;
 mod table;
 mod time;
 
+pub use cache::{Cache, Key};
 pub use config::{StudyConfig, Versions, study_name};
 pub use error::StudyError;
 pub use evaluator::{Evaluate, Measured, Simulated};

@@ -1,0 +1,236 @@
+//! Evaluations kept in a folder, so that no study measures what another has measured.
+//!
+//! A file holds one evaluation and is named by the SHA-256 of a text of everything that
+//! determines it: task and finger in full with what a design sets, robot, search, engine
+//! with its settings, and the program's sources. So a file is never out of date, and the
+//! folder may be deleted at any time.
+//!
+//! Files are written beside their place and renamed into it, so readers and writers of
+//! many processes need no lock; of two writers the later wins with an equal file. A file
+//! that is torn or damaged fails its check and is measured and written again.
+
+use super::attributes::Attributes;
+use super::evaluator::Measured;
+use super::seal::{seal, unseal};
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fmt::Debug;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::{fs, io};
+
+/// The sources that this program was built from.
+const SOURCES: &str = env!("FINGER_OPT_SOURCE_SHA256");
+
+/// A folder of evaluations, for one robot and one engine.
+#[derive(Debug)]
+pub struct Cache {
+    dir: PathBuf,
+    /// What all keys begin with.
+    context: String,
+    found: AtomicU64,
+    problem: Mutex<Option<io::Error>>,
+}
+
+/// Names one evaluation.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Key(String);
+
+#[derive(Serialize, Deserialize)]
+struct Entry {
+    key: String,
+    measured: Attributes,
+}
+
+impl Cache {
+    /// The cache in `dir`, which need not exist; `engine` names the engine and all its settings.
+    pub fn new(dir: &Path, robot: &Robot, engine: &str) -> Self {
+        Cache {
+            dir: dir.to_owned(),
+            context: format!("sources {SOURCES}\nengine {engine}\nrobot {robot:?}\n"),
+            found: AtomicU64::new(0),
+            problem: Mutex::new(None),
+        }
+    }
+
+    /// The name of the evaluation that `inputs`, with robot and engine, determine. Their
+    /// `Debug` must show all of them; it shows numbers so that they read back as the same bits.
+    pub fn key(&self, inputs: &impl Debug) -> Key {
+        let text = format!("{}inputs {inputs:?}\n", self.context);
+        let digest = Sha256::digest(text.as_bytes());
+        Key(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+    }
+
+    /// The evaluation of that name, if a whole one is there.
+    pub fn get(&self, key: &Key) -> Option<Measured> {
+        let text = fs::read_to_string(self.path(key)).ok()?;
+        let (content, _) = unseal(text.strip_suffix('\n')?).ok()?;
+        let entry: Entry = serde_json::from_str(&content).ok()?;
+        if entry.key != key.0 {
+            return None;
+        }
+        self.found.fetch_add(1, Ordering::Relaxed);
+        let found = &entry.measured;
+        Some(Measured { stiffness: found.prediction(), evaluation: found.evaluation() })
+    }
+
+    /// Keeps an evaluation. What cannot be kept is measured again next time, so a failure is
+    /// only noted ([`problem`](Self::problem)).
+    pub fn put(&self, key: &Key, measured: &Measured) {
+        if let Err(error) = self.write(key, measured)
+            && let Ok(mut problem) = self.problem.lock()
+        {
+            problem.get_or_insert(error);
+        }
+    }
+
+    /// How many evaluations were found.
+    pub fn found(&self) -> u64 {
+        self.found.load(Ordering::Relaxed)
+    }
+
+    /// Why evaluations could not be kept, if so: folder and the system's first answer.
+    pub fn problem(&self) -> Option<String> {
+        let problem = self.problem.lock().ok()?;
+        problem.as_ref().map(|error| format!("{}: {error}", self.dir.display()))
+    }
+
+    fn path(&self, key: &Key) -> PathBuf {
+        let (folder, name) = key.0.split_at(2);
+        self.dir.join(folder).join(format!("{name}.json"))
+    }
+
+    fn write(&self, key: &Key, measured: &Measured) -> io::Result<()> {
+        let attributes = Attributes::new(&measured.evaluation, &measured.stiffness);
+        let entry = Entry { key: key.0.clone(), measured: attributes };
+        let text = seal(&entry, None::<&()>)?;
+        let path = self.path(key);
+        let folder = path.parent().unwrap_or(&self.dir);
+        fs::create_dir_all(folder)?;
+        // No other thread or process writes to a name with both numbers.
+        static WRITES: AtomicU64 = AtomicU64::new(0);
+        let write = WRITES.fetch_add(1, Ordering::Relaxed);
+        let temporary = folder.join(format!("{}-{write}.new", std::process::id()));
+        let written = fs::write(&temporary, text).and_then(|()| fs::rename(&temporary, &path));
+        if written.is_err() {
+            let _ = fs::remove_file(&temporary);
+        }
+        written
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finger::Finger;
+    use crate::shipped::ROBOTS;
+    use crate::surrogate::{Estimate, Prediction};
+    use crate::tolerance::{Search, evaluate};
+    use crate::trial::fake::FakeRig;
+
+    fn cache(dir: &Path) -> Cache {
+        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+        Cache::new(dir, &robot, "fake")
+    }
+
+    fn measured(compliance: f64) -> Measured {
+        let finger = Finger::new(compliance, 2e4);
+        let of = |mean| Estimate { mean, sd: 0.1 };
+        Measured {
+            stiffness: Prediction {
+                compliance: of(compliance),
+                assembly: of(2e4),
+                hull_distance: 0.0,
+            },
+            evaluation: evaluate(&FakeRig::default(), &finger, Search::Walk),
+        }
+    }
+
+    fn files(dir: &Path) -> Vec<PathBuf> {
+        let below = |dir: &Path| -> Vec<PathBuf> {
+            fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path()).collect()
+        };
+        below(dir).iter().flat_map(|folder| below(folder)).collect()
+    }
+
+    #[test]
+    fn what_is_put_is_found_by_its_own_inputs_only() {
+        let dir = tempfile::tempdir().unwrap();
+        let cache = cache(dir.path());
+        let (a, b) = (cache.key(&0.1), cache.key(&(0.1 + f64::EPSILON)));
+        assert_eq!(cache.get(&a), None);
+        cache.put(&a, &measured(3e3));
+        assert_eq!(cache.get(&a), Some(measured(3e3)));
+        assert_eq!((cache.get(&b), cache.found(), cache.problem()), (None, 1, None));
+        let robot = Robot::parse(ROBOTS[1].text, ROBOTS[1].file).unwrap();
+        let others = [
+            Cache::new(dir.path(), &robot, "fake"),
+            Cache::new(dir.path(), &Robot { stop_force: 1.0, ..robot }, "fake"),
+            Cache::new(dir.path(), &Robot::parse(ROBOTS[0].text, "").unwrap(), "faker"),
+        ];
+        for other in others {
+            assert_eq!(other.get(&other.key(&0.1)), None);
+        }
+    }
+
+    #[test]
+    fn a_torn_or_damaged_file_is_as_good_as_none_and_is_written_again() {
+        let dir = tempfile::tempdir().unwrap();
+        let cache = cache(dir.path());
+        let (key, found) = (cache.key(&1), measured(3e3));
+        cache.put(&key, &found);
+        let [file] = &files(dir.path())[..] else { panic!("one file") };
+        let whole = fs::read(file).unwrap();
+        for torn in 0..whole.len() {
+            fs::write(file, &whole[..torn]).unwrap();
+            assert_eq!(cache.get(&key), None, "{torn} bytes");
+        }
+        for at in 0..whole.len() {
+            let mut damaged = whole.clone();
+            damaged[at] ^= 1;
+            fs::write(file, &damaged).unwrap();
+            assert_eq!(cache.get(&key), None, "byte {at}");
+        }
+        // Another evaluation's file under this name.
+        let other = cache.key(&2);
+        cache.put(&other, &measured(2e3));
+        fs::copy(cache.path(&other), file).unwrap();
+        assert_eq!(cache.get(&key), None);
+        cache.put(&key, &found);
+        assert_eq!(cache.get(&key), Some(found));
+    }
+
+    #[test]
+    fn many_writers_and_readers_see_whole_evaluations_only() {
+        let dir = tempfile::tempdir().unwrap();
+        let caches = [cache(dir.path()), cache(dir.path())];
+        let key = caches[0].key(&1);
+        caches[0].put(&key, &measured(3e3));
+        std::thread::scope(|scope| {
+            for cache in caches.iter().cycle().take(8) {
+                scope.spawn(|| {
+                    for _ in 0..200 {
+                        cache.put(&key, &measured(3e3));
+                        assert_eq!(cache.get(&key), Some(measured(3e3)));
+                    }
+                });
+            }
+        });
+        assert_eq!(files(dir.path()).len(), 1, "no temporary file is left");
+        assert_eq!(caches.map(|cache| cache.problem()), [None, None]);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_written_is_told_and_harms_nothing() {
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join("file");
+        fs::write(&file, "").unwrap();
+        let cache = cache(&file);
+        let key = cache.key(&1);
+        cache.put(&key, &measured(3e3));
+        assert_eq!(cache.get(&key), None);
+        assert!(cache.problem().unwrap().contains("file: "));
+    }
+}

@@ -77,7 +77,28 @@ impl Robot {
     }
 }
 
+/// Time constants after which a servo has all but reached its command.
+const SETTLED: f64 = 5.0;
+
 impl Mounted {
+    /// How much farther an assembly move along a unit vector is commanded, m: by what
+    /// the arm gives under its assembly force. A soft arm that is sent to where the
+    /// part should be hardly pushes it there.
+    pub fn lead(&self, along: &Vector3<f64>) -> f64 {
+        match &self.flange {
+            Flange::Reduced(arm) => arm.assembly_force * along.dot(&(arm.compliance * along)),
+            Flange::Ideal | Flange::Servo(_) => 0.0,
+        }
+    }
+
+    /// How long the robot takes to follow a command, s.
+    pub fn settling(&self) -> f64 {
+        match &self.flange {
+            Flange::Reduced(arm) => SETTLED * arm.time_constant,
+            Flange::Ideal | Flange::Servo(_) => 0.0,
+        }
+    }
+
     /// Whether the robot stops at this plug-socket force, N, task axes: a protective
     /// stop, or a joint at its torque limit.
     pub fn stops(&self, force: &Vector3<f64>) -> bool {

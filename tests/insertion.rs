@@ -58,11 +58,27 @@ fn at_least_ten_of_eleven_measured_fingers_insert_at_each_nominal_start() {
 }
 
 #[test]
-fn the_arm_inserts_the_usb_plug() {
-    let rig = with_robot("usb", "ur5e", Box::new(Direct::default()));
-    for finger in [finger(1.2, 52.4), finger(2.6, 45.0), finger(3.84, 35.0)] {
-        assert_eq!(trial(&rig, &finger, 0.0).outcome, Outcome::Inserted, "{finger:?}");
+fn the_arm_inserts_three_of_the_four_plugs() {
+    for name in ["usb", "ket12", "rj45"] {
+        let rig = with_robot(name, "ur5e", Box::new(Direct::default()));
+        for finger in [finger(1.2, 52.4), finger(2.6, 45.0), finger(3.84, 35.0)] {
+            let outcome = trial(&rig, &finger, 0.0).outcome;
+            assert_eq!(outcome, Outcome::Inserted, "{name} {finger:?}");
+        }
     }
+}
+
+/// A flange that gives nothing meets a higher force for the same motion.
+#[test]
+fn a_rigid_flange_inserts_with_more_force_than_a_soft_one() {
+    let peak = |robot| {
+        let trial =
+            trial(&with_robot("ket8", robot, Box::new(Direct::default())), &finger(2.6, 45.0), 0.0);
+        assert_eq!(trial.outcome, Outcome::Inserted, "{robot}");
+        trial.peak_force_n
+    };
+    let peaks = [peak("servo"), peak("rigid")];
+    assert!(peaks[1] > peaks[0] + 5.0, "{peaks:?} N");
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! A six-joint arm with position servos, and what it feels like at its TCP.
 //!
-//! Each joint is a servo `tau = k (q_command - q) + c d/dt (q_command - q)`: a
-//! spring and a damper on the tracking error. (With the damper on the joint's
-//! velocity alone, an arm of these gains would trail its command by c/k = 0.2 s;
-//! robots feed the commanded velocity forward.) Its links carry their own weight.
+//! Each joint is a servo `tau = k (q_command - q) - c dq/dt`. Its damper acts on the
+//! joint's speed, so the arm trails its command by c/k; or, with the commanded speed
+//! fed forward, on the error's rate, `c d/dt (q_command - q)`. A blocked arm of the
+//! first kind pushes with its spring alone. The links carry their own weight.
 //!
 //! With six joints and six directions at the TCP, displacements `x = J q` are only
 //! another set of coordinates: near a pose the arm *is* one body at the TCP with the
@@ -40,6 +40,10 @@ pub struct Arm {
     pub tool: Pose,
     /// Angles with the TCP at the nominal start of a task.
     pub home: Angles,
+    /// Whether the servos' dampers act on the error's rate, not on the joint's speed.
+    pub feed_forward: bool,
+    /// Force with which the assembly move ends on a part that does not give way, N.
+    pub assembly_force: f64,
 }
 
 /// One joint and the link that it moves.

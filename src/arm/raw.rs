@@ -14,6 +14,8 @@ pub(crate) struct RawArm {
     pub description: String,
     pub stop_force_n: f64,
     home_deg: [f64; JOINTS],
+    velocity_feed_forward: bool,
+    assembly_force_n: f64,
     tool_mm: [f64; 3],
     tool_turn_deg: [f64; 3],
     joint: Vec<RawJoint>,
@@ -58,6 +60,8 @@ impl Check<'_> {
             joints,
             tool: self.frame(["tool_mm", "tool_turn_deg"], raw.tool_mm, raw.tool_turn_deg)?,
             home: Angles::from(raw.home_deg) * DEG,
+            feed_forward: raw.velocity_feed_forward,
+            assembly_force: self.positive("assembly_force_n", raw.assembly_force_n)?,
         })
     }
 

@@ -1,7 +1,7 @@
 //! The arm as its TCP feels it at one pose.
 
 use super::{Angles, Arm, ArmError};
-use crate::scene::Pose;
+use crate::scene::{Coupled, Pose};
 use nalgebra::{Matrix3, Matrix6, SMatrix, UnitQuaternion, Vector3};
 
 /// Ratio of the Jacobian's singular values (m and rad alike) that counts as singular.
@@ -17,6 +17,16 @@ pub struct Reduced {
     pub damping: Matrix6<f64>,
     /// kg, kg m, kg m2.
     pub mass: Matrix6<f64>,
+    /// Tilt of the TCP about the task's x where this holds, rad.
+    pub tilt: f64,
+    /// Whether the damper acts on the rate of the error, not on the flange's speed.
+    pub feed_forward: bool,
+    /// Slowest time constant of a servo, damping over stiffness, s.
+    pub time_constant: f64,
+    /// Force with which the assembly move ends on a part that does not give way, N.
+    pub assembly_force: f64,
+    /// Displacement of the TCP by a force at it, task axes: 3x3, m/N.
+    pub compliance: Matrix3<f64>,
     /// Joint torques by a force at the TCP, task axes: N m/N.
     pub torques: SMatrix<f64, 6, 3>,
     /// Largest joint torques, N m.
@@ -32,10 +42,10 @@ impl Arm {
         let tilted = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), tilt);
         let place = self.at(&self.home).tcp.translation;
         let angles = self.reach(&Pose::from_parts(place, task * tilted))?;
-        self.reduced(&angles, &task)
+        Ok(Reduced { tilt, ..self.reduced(&angles, &task)? })
     }
 
-    /// The arm at some joint angles; `task` turns task axes into base axes.
+    /// The arm at some joint angles, its TCP upright; `task` turns task axes into base axes.
     pub fn reduced(
         &self,
         angles: &Angles,
@@ -57,18 +67,40 @@ impl Arm {
         let diagonal = |of: fn(&super::Joint) -> f64| {
             Matrix6::from_diagonal(&Angles::from_iterator(self.joints.iter().map(of)))
         };
-        let by_force = (both(&task.inverse()) * jacobian).fixed_rows::<3>(0).transpose();
+        let linear = (both(&task.inverse()) * jacobian).fixed_rows::<3>(0).into_owned();
+        let soft = diagonal(|joint| 1.0 / joint.stiffness);
         Ok(Reduced {
             stiffness: at_tcp(&diagonal(|joint| joint.stiffness)),
             damping: at_tcp(&diagonal(|joint| joint.damping)),
             mass: at_tcp(&self.mass(&posture)),
-            torques: by_force,
+            tilt: 0.0,
+            feed_forward: self.feed_forward,
+            time_constant: self
+                .joints
+                .iter()
+                .map(|joint| joint.damping / joint.stiffness)
+                .fold(0.0, f64::max),
+            assembly_force: self.assembly_force,
+            compliance: linear * soft * linear.transpose(),
+            torques: linear.transpose(),
             limits: std::array::from_fn(|i| self.joints[i].limit),
         })
     }
 }
 
 impl Reduced {
+    /// What ties the flange to its command.
+    pub fn servo(&self) -> Coupled {
+        let damping = if self.feed_forward { self.damping } else { Matrix6::zeros() };
+        Coupled { stiffness: self.stiffness, damping }
+    }
+
+    /// What ties it to the world, if its own speed is damped.
+    pub fn brake(&self) -> Option<Coupled> {
+        let brake = Coupled { stiffness: Matrix6::zeros(), damping: self.damping };
+        (!self.feed_forward).then_some(brake)
+    }
+
     /// Whether a force at the TCP (task axes, N) asks more of a joint than it has.
     pub fn overloaded(&self, force: &Vector3<f64>) -> bool {
         let torques = self.torques * force;

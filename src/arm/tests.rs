@@ -3,13 +3,21 @@
 use super::inverse::displacement;
 use super::{Angles, Arm};
 use crate::check::arm::{FORCE, chain, compliance, flange, ur5e};
+use crate::engine::Engine;
 use crate::engine::direct::Direct;
-use crate::scene::Pose;
+use crate::robot::{Drive, Robot};
+use crate::scene::{BodyId, Pose};
+use crate::shipped::ROBOTS;
 use crate::units::{DEG, MM};
 use nalgebra::{Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
 
 fn arm() -> Arm {
     ur5e().expect("the shipped arm stands at home").0
+}
+
+fn robot() -> Robot {
+    let file = ROBOTS.iter().find(|file| file.name == "ur5e").unwrap();
+    Robot::parse(file.text, file.file).unwrap()
 }
 
 /// Some angles that are not special.
@@ -125,6 +133,26 @@ fn the_joint_chain_moves_like_the_reduction() {
     }
 }
 
+/// With its speed fed forward the flange keeps up with a moving command; without, it
+/// trails by the servos' time constant (both kinds have the same here, 0.2 s).
+#[test]
+fn an_arm_without_feed_forward_trails_its_command() {
+    for (feed_forward, expected) in [(false, 0.2), (true, 0.0)] {
+        let robot = Robot { drive: Drive::Arm(Box::new(Arm { feed_forward, ..arm() })), ..robot() };
+        let loaded = flange(&robot.mount(0.0, 0.0).unwrap());
+        let mut world = Direct::default().world(&loaded.scene);
+        let (speed, steps) = (10.0 * MM, (3.0 / world.step_s()) as usize);
+        for i in 1..=steps {
+            let at = speed * i as f64 * world.step_s();
+            world.drive(BodyId(0), Pose::translation(0.0, at, 0.0));
+            world.step().unwrap();
+        }
+        let behind =
+            (world.pose(BodyId(0)).translation.y - world.pose(loaded.end).translation.y) / speed;
+        assert!((behind - expected).abs() < 1e-3, "{feed_forward}: {behind} s behind");
+    }
+}
+
 /// How much the reduction depends on where it is made: the search moves by some
 /// 10 mm about the start.
 #[test]
@@ -151,6 +179,7 @@ fn ten_millimetres_change_the_compliance_by_less_than_two_percent() {
 fn an_arm_file_is_checked() {
     let text = include_str!("../../robots/ur5e.toml");
     for (from, to, part) in [
+        ("assembly_force_n = 50.0", "assembly_force_n = 0.0", "assembly_force_n"),
         ("limit_nm = 28.0", "limit_nm = -28.0", "joint \"wrist 1\" limit_nm"),
         ("home_deg = [270.0,", "home_deg = [nan,", "home_deg"),
         ("link_mass_kg = 3.7", "mass = 3.7", "mass"),

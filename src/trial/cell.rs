@@ -3,15 +3,15 @@
 //! Frames: the world is the task frame. The flange frame is the TCP. The plug
 //! stands upright at its pick-up place, straight above the start of the search.
 
+use crate::arm::Reduced;
 use crate::finger::{self, Finger};
 use crate::robot::{Flange, Mounted, Servo};
 use crate::scene::{
-    Axis, Body, BodyId, Coupled, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Spring,
-    Springs,
+    Axis, Body, BodyId, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Spring, Springs,
 };
 use crate::task::{Task, geometry};
 use crate::units::MM;
-use nalgebra::{Point3, Translation3, Vector3};
+use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Height of the pick-up pose above the start pose, m.
 const PICK_UP_HEIGHT: f64 = 10.0 * MM;
@@ -98,20 +98,17 @@ pub fn holding(position: f64) -> Spring {
 }
 
 /// The commanded body, and the flange that follows it (the same if it does so exactly).
-pub(crate) fn flange(scene: &mut Scene, flange: &Flange, tcp: Pose) -> (BodyId, BodyId) {
+pub(crate) fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) {
     let command = scene.body(Body {
         name: "command".into(),
         motion: Motion::Driven,
         pose: tcp,
         geoms: Vec::new(),
     });
-    let (motion, springs) = match flange {
+    let (motion, springs) = match model {
         Flange::Ideal => return (command, command),
         Flange::Servo(servo) => servo_flange(servo),
-        Flange::Reduced(arm) => {
-            let coupled = Coupled { stiffness: arm.stiffness, damping: arm.damping };
-            (Motion::Mechanism(arm.mass), Springs::Coupled(coupled))
-        }
+        Flange::Reduced(arm) => (Motion::Mechanism(arm.mass), Springs::Coupled(arm.servo())),
     };
     let flange = scene.body(Body { name: "flange".into(), motion, pose: tcp, geoms: Vec::new() });
     scene.joint(Joint {
@@ -122,7 +119,31 @@ pub(crate) fn flange(scene: &mut Scene, flange: &Flange, tcp: Pose) -> (BodyId, 
         in_child: Pose::identity(),
         springs,
     });
+    if let Flange::Reduced(arm) = model {
+        brake(scene, arm, flange, tcp);
+    }
     (command, flange)
+}
+
+/// What damps the flange's speed, if not that of its error: a damper to the world,
+/// whose axes are the tilted TCP's.
+fn brake(scene: &mut Scene, arm: &Reduced, flange: BodyId, tcp: Pose) {
+    let Some(damper) = arm.brake() else { return };
+    let base = scene.body(Body {
+        name: "base".into(),
+        motion: Motion::Fixed,
+        pose: tcp,
+        geoms: Vec::new(),
+    });
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
+    scene.joint(Joint {
+        name: "brake".into(),
+        parent: base,
+        child: flange,
+        in_parent: Pose::from_parts(Translation3::identity(), tilt),
+        in_child: Pose::identity(),
+        springs: Springs::Coupled(damper),
+    });
 }
 
 fn servo_flange(servo: &Servo) -> (Motion, Springs) {

@@ -31,6 +31,8 @@ const TOLERANCE_TIMEOUT: f64 = 1.0;
 /// The leading edge is inside when it is this far below the socket's top, m:
 /// more than contacts sink, less than any preload.
 const ENTERED_DEPTH: f64 = 0.15 * MM;
+/// Rest after a move that has no settling time of its own, s.
+const SETTLE: f64 = 0.03;
 /// First contact, N.
 const TOUCH_FORCE: f64 = 0.05;
 
@@ -226,10 +228,15 @@ impl<'a> Run<'a> {
             self.hold();
         }
         self.stage = phase.stage;
-        let to = self.target.moved(Vector3::from(phase.displacement));
+        let mut displacement = Vector3::from(phase.displacement);
+        if phase.stage == Stage::Assembly {
+            let along = displacement.try_normalize(0.0).unwrap_or_default();
+            displacement += along * self.rig.robot.lead(&along);
+        }
+        let to = self.target.moved(displacement);
         let motion = Move::new(self.target, to, phase.speed);
         let end = match phase.ending {
-            Ending::Duration(settle) => self.follow(motion, settle),
+            Ending::Duration(settle) => self.follow(motion, settle.max(self.rig.settle())),
             Ending::Tolerance(within) => self.reach(motion, within),
             Ending::Touch { preload } => self.touch(motion, preload),
         };
@@ -271,7 +278,8 @@ impl<'a> Run<'a> {
     /// Moves until the plug touches the socket, then on by the preload.
     fn touch(&mut self, motion: Move, preload: f64) -> Result<(), Stop> {
         let (start, end) = (motion.at(0.0), motion.at(f64::INFINITY));
-        let steps = self.steps(motion.duration());
+        // A robot that trails its command touches after it has ended.
+        let steps = self.steps(motion.duration() + self.rig.robot.settling());
         for i in 1..=steps {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
@@ -435,8 +443,8 @@ fn within(value: f64, [from, to]: [f64; 2]) -> bool {
 }
 
 impl EngineRig {
-    /// Rest after a move that has no settling time of its own, s.
+    /// Shortest rest after a move, s.
     fn settle(&self) -> f64 {
-        0.03
+        SETTLE.max(self.robot.settling())
     }
 }

@@ -24,6 +24,7 @@ use finger_opt::task::Task;
 use finger_opt::tolerance::{self, Search};
 use finger_opt::trial::run::EngineRig;
 use finger_opt::trial::{Conditions, Grasped, Rig, Trial};
+use finger_opt::validate;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -64,7 +65,7 @@ fn main() -> Fallible<()> {
     let pairs: Vec<Pair> = cases
         .par_iter()
         .map(|(task, design)| {
-            let pair = compare(task, &robot, &finger(design));
+            let pair = compare(task, &robot, &validate::finger(&task.finger, design));
             eprintln!("{} {}: {}", task.name, design.design, pair.csv());
             pair
         })
@@ -80,10 +81,6 @@ fn main() -> Fallible<()> {
 fn shipped_robot(name: &str) -> Fallible<Robot> {
     let file = ROBOTS.iter().find(|file| file.name == name).ok_or("no such robot")?;
     Ok(Robot::parse(file.text, file.file)?)
-}
-
-fn finger(design: &Measurement) -> Finger {
-    Finger::new(design.compliance, design.assembly)
 }
 
 /// One design measured in two ways, the second being the one to trust.
@@ -174,7 +171,7 @@ fn print_maps(cases: &[(&Task, &Measurement)], robot: &Robot) {
     let rows: Vec<String> = cases
         .par_iter()
         .map(|(task, design)| {
-            let (rig, finger) = (rig(task, robot, None), finger(design));
+            let (rig, finger) = (rig(task, robot, None), validate::finger(&task.finger, design));
             let window = tolerance::evaluate(&rig, &finger, Search::default()).window;
             let grasped = rig.grasp(&finger);
             let from = window.negative_steps - 5;
@@ -198,7 +195,12 @@ fn print_steps(cases: &[(&Task, &Measurement)], robot: &Robot) {
             .par_iter()
             .map(|&step_s| {
                 let rig = rig(task, robot, Some(step_s));
-                let window = tolerance::evaluate(&rig, &finger(design), Search::default()).window;
+                let window = tolerance::evaluate(
+                    &rig,
+                    &validate::finger(&task.finger, design),
+                    Search::default(),
+                )
+                .window;
                 let (from, to) = (window.negative_mm(), window.positive_mm());
                 let ends = [window.end_negative, window.end_positive].map(label);
                 format!("{step_s},{from:.1},{to:.1},{},{}", ends[0], ends[1])

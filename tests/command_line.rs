@@ -129,6 +129,39 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
     }
 }
 
+/// A copy of the usb task with a `[finger]` table.
+fn usb_with(studies: &Studies, finger: &str) -> String {
+    let text = include_str!("../tasks/usb.toml");
+    let file = studies.dir("task.toml");
+    fs::write(&file, text.replace("[friction]", &format!("{finger}\n[friction]"))).unwrap();
+    file.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn the_task_file_says_where_the_remote_centre_is() {
+    let studies = Studies::new();
+    let task = usb_with(&studies, "[finger]\nrcc_mm = { at_0_deg = 21.0, per_deg = 0.25 }");
+    let evaluate = ["evaluate", "--task", &task, "--json"];
+    let design = ["--density", "20", "--direction", "16"];
+    assert_eq!(fake(&[&evaluate[..], &design].concat()).json()["rcc_mm"], 25.0);
+    let given = ["--stiffness-compliance", "3", "--stiffness-assembly", "20"];
+    fake(&[&evaluate[..], &given].concat())
+        .fails(2, &["infill_direction_deg: is missing", "finger.rcc_mm"]);
+    let both = [&evaluate[..], &given, &["--direction", "16"]].concat();
+    assert_eq!(fake(&both).json()["rcc_mm"], 25.0);
+}
+
+#[test]
+fn coupled_fingers_are_simulated_or_refused() {
+    let studies = Studies::new();
+    let coupling = "[[finger.coupling]]\naxes = [\"y\", \"rx\"]\ncoefficient = 0.3";
+    let task = usb_with(&studies, coupling);
+    let trial = ["trial", "--task", &task, "--density", "20", "--direction", "10"];
+    assert!(optimize(&trial).succeeds().contains("outcome"));
+    optimize(&[&trial[..], &["--engine", "rapier"]].concat())
+        .fails(2, &["`springs -y`", "springs that couple"]);
+}
+
 #[test]
 fn an_engine_without_coupled_springs_refuses_the_arm() {
     let trial = ["trial", "--task", "usb", "--density", "20", "--direction", "20"];

@@ -71,6 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<Row, Failure> {
     let rig = setup::rig(arguments.engine, task, robot).map_err(Failure::input)?;
     let finger = Finger::new(COMPLIANCE * N_PER_MM, ASSEMBLY * N_PER_MM);
+    let finger = task.finger.shape(finger, 0.0);
     let trials = std::sync::atomic::AtomicU32::new(0);
     let clock = Instant::now();
     rayon::scope(|scope| {

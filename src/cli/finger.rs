@@ -8,7 +8,7 @@ use finger_opt::finger::Finger;
 use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use finger_opt::surrogate::Prediction;
 use finger_opt::task::Task;
-use finger_opt::units::N_PER_MM;
+use finger_opt::units::{MM, N_PER_MM};
 use serde_json::{Value, json};
 
 /// Which finger, and on what task.
@@ -66,7 +66,9 @@ impl FingerArguments {
         }
         let set = self.settings(setup)?;
         let (finger, prediction) = self.printed(setup)?;
-        let (task, finger) = setup.template.apply(&set, finger).map_err(Failure::input)?;
+        let mut design = set.clone();
+        design.0.extend(self.direction.map(|direction| (DIRECTION_KEY.to_owned(), direction)));
+        let (task, finger) = setup.template.apply(&design, finger).map_err(Failure::input)?;
         Ok(Chosen { task, finger, set, prediction })
     }
 
@@ -114,6 +116,7 @@ impl Chosen {
             "density_percent": arguments.density,
             "direction_deg": arguments.direction,
             "set": self.set,
+            "rcc_mm": self.finger.rcc / MM,
             "stiffness": match &self.prediction {
                 Some(prediction) => stiffness_json(prediction),
                 None => json!({

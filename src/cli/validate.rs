@@ -82,12 +82,15 @@ impl Arguments {
         let search = if self.strides { Search::Strides } else { Search::Walk };
         let rig = |task| setup::rig(self.engine, task, robot).map_err(Failure::input);
         let rigs: Vec<_> = tasks.iter().map(rig).collect::<Result<_, _>>()?;
-        let pairs: Vec<_> =
-            rigs.iter().flat_map(|rig| designs.iter().map(move |design| (rig, design))).collect();
+        let pairs: Vec<_> = tasks
+            .iter()
+            .zip(&rigs)
+            .flat_map(|(task, rig)| designs.iter().map(move |design| (task, rig, design)))
+            .collect();
         let windows: Vec<Window> = pairs
             .into_par_iter()
-            .map(|(rig, design)| {
-                tolerance::evaluate(&**rig, &validate::finger(design), search).window
+            .map(|(task, rig, design)| {
+                tolerance::evaluate(&**rig, &validate::finger(&task.finger, design), search).window
             })
             .collect();
         let of_tasks = windows.chunks(designs.len().max(1));

@@ -93,22 +93,38 @@ impl Template {
     }
 
     /// The task and the finger with the values that the design gives; what it does
-    /// not name stays as in the task file and in `finger`. The infill is left to the surrogate.
+    /// not name stays as in the task file and in `finger`. The stiffness by the infill is
+    /// left to the surrogate; by its direction the task file places the remote centre.
     pub fn apply(&self, design: &Design, finger: Finger) -> Result<(Task, Finger), InputError> {
-        let mut finger = finger;
-        let mut of_task = Vec::new();
-        for (key, &value) in design.0.iter().filter(|(key, _)| !is_infill(key)) {
-            match FINGER.iter().find(|(name, _, _)| name == key) {
-                Some(&(key, number, unit)) => *number(&mut finger) = checked(key, value)? * unit,
-                None => of_task.push((key, value)),
+        let (of_finger, of_task): (Vec<_>, Vec<_>) = design
+            .0
+            .iter()
+            .map(|(key, &value)| (key.as_str(), value))
+            .filter(|(key, _)| !is_infill(key))
+            .partition(|(key, _)| finger_keys().contains(key));
+        let task = self.changed(&of_task)?;
+        let direction = design.get(DIRECTION_KEY);
+        if task.finger.rcc.varies() && direction.is_none() {
+            let problem = "is missing: the task's finger.rcc_mm depends on it";
+            return Check { file: DESIGN }.fail(DIRECTION_KEY, problem);
+        }
+        let mut finger = task.finger.shape(finger, direction.unwrap_or_default());
+        for (key, number, unit) in FINGER {
+            if let Some((_, value)) = of_finger.iter().find(|(name, _)| *name == key) {
+                *number(&mut finger) = checked(key, *value)? * unit;
             }
         }
+        Ok((task, finger))
+    }
+
+    /// The task with these numbers in place of its own.
+    fn changed(&self, of_task: &[(&str, f64)]) -> Result<Task, InputError> {
         if of_task.is_empty() {
-            return Ok((self.task.clone(), finger));
+            return Ok(self.task.clone());
         }
         let mut table = self.table.clone();
         let mut numbers = numbers(TASK, &mut table);
-        for (key, value) in of_task {
+        for &(key, value) in of_task {
             let mut found = numbers.iter_mut().filter(|(name, _)| name == key);
             match (found.next(), found.next()) {
                 (Some((_, number)), None) => **number = toml::Value::Float(value),
@@ -119,8 +135,8 @@ impl Template {
                 (None, _) => return self.unknown(key),
             }
         }
-        let toml::Value::Table(table) = table else { return Ok((self.task.clone(), finger)) };
-        Ok((Task::from_table(table, &self.file)?, finger))
+        let toml::Value::Table(table) = table else { return Ok(self.task.clone()) };
+        Task::from_table(table, &self.file)
     }
 
     fn unknown<T>(&self, key: &str) -> Result<T, InputError> {

@@ -65,7 +65,9 @@ impl Template {
 
     fn possible(&self, design: &Design, fits: &Fits<'_>) -> Result<(), Impossible> {
         // Any stiffness: it takes no part in the checks.
-        let (task, _) = self.apply(design, Finger::new(1.0, 1.0))?;
+        let mut design = design.clone();
+        design.0.entry(DIRECTION_KEY.to_owned()).or_insert(0.0);
+        let (task, _) = self.apply(&design, Finger::new(1.0, 1.0))?;
         Ok(fits(&task)?)
     }
 }

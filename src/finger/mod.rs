@@ -1,10 +1,14 @@
 //! One printed finger as the paper models it: six springs about a remote
 //! centre of compliance (RCC), Sec. "Stiffness model" and Table "Simulation Inputs".
 
-use crate::scene::{Geom, Inertia, Pose, Shape, Spring};
+mod model;
+
+pub use model::{Coupling, FingerModel, Rcc};
+
+use crate::scene::{Axis, Coupled, Geom, Inertia, Pose, Shape, Spring, Springs};
 use crate::task::Friction;
 use crate::units::{GRAM, MM, N_PER_MM};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix6, Point3, Vector3};
 
 /// One finger, in SI units; both fingers of a gripper are alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +29,8 @@ pub struct Finger {
     pub damping: f64,
     /// Rotational damping of the springs, N m s/rad.
     pub rotational_damping: f64,
+    /// How the springs pull at one another; they do not in the paper.
+    pub coupling: Option<Coupling>,
 }
 
 impl Finger {
@@ -40,6 +46,7 @@ impl Finger {
             mass: 2.0 * GRAM,
             damping: 10.0,
             rotational_damping: 0.02,
+            coupling: None,
         }
     }
 }
@@ -77,6 +84,20 @@ impl Finger {
             rotation(ry),
             rotation(rz),
         ]
+    }
+}
+
+impl Finger {
+    /// What ties the finger to its jaw at the RCC; `side` as of [`tip`].
+    pub fn mounted(&self, side: f64) -> Springs {
+        let springs = self.springs();
+        match &self.coupling {
+            None => Springs::Axes(springs.map(Axis::Sprung)),
+            Some(coupling) => Springs::Coupled(Coupled {
+                stiffness: coupling.stiffness(springs.map(|spring| spring.stiffness), side),
+                damping: Matrix6::from_diagonal(&springs.map(|spring| spring.damping).into()),
+            }),
+        }
     }
 }
 

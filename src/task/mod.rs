@@ -2,9 +2,11 @@
 
 pub(crate) mod geometry;
 mod raw;
+mod raw_finger;
 
 pub use geometry::{Part, Solid};
 
+use crate::finger::FingerModel;
 use crate::input::InputError;
 
 /// A checked task, in SI units, in the task frame: origin at the centre of the
@@ -28,6 +30,8 @@ pub struct Task {
     pub grip: Grip,
     /// Coefficients of friction.
     pub friction: Friction,
+    /// What the fingers are like beside their measured stiffness.
+    pub finger: FingerModel,
     /// How the plug is brought in.
     pub strategy: Strategy,
     /// What counts as inserted.

@@ -1,6 +1,7 @@
 //! The task file as written, and the checks that turn it into a [`Task`].
 
 use super::geometry::{Part, Solid};
+use super::raw_finger::RawFinger;
 use super::{Ending, Friction, Grip, Hold, Phase, Plug, Stage, Strategy, Success, Task};
 use crate::input::{Check, InputError, read};
 use crate::units::{DEG, GRAM, MM};
@@ -18,6 +19,8 @@ struct RawTask {
     socket: RawSocket,
     grip: RawGrip,
     friction: RawFriction,
+    #[serde(default)]
+    finger: RawFinger,
     strategy: RawStrategy,
     success: RawSuccess,
 }
@@ -172,6 +175,7 @@ fn check(raw: RawTask, file: &str) -> Result<Task, InputError> {
             )? * MM,
             plug_socket: check.friction("friction.plug_socket", raw.friction.plug_socket)?,
         },
+        finger: check.finger(&raw.finger)?,
         strategy: check.strategy(&raw.strategy)?,
         success: Success {
             depth: check.positive("success.depth_mm", raw.success.depth_mm)? * MM,

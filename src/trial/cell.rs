@@ -244,7 +244,7 @@ fn hand(
         child: body,
         in_parent: rcc,
         in_child: rcc,
-        springs: Springs::Axes(finger.springs().map(Axis::Sprung)),
+        springs: finger.mounted(side),
     });
     Hand { jaw, finger: body, slide, zero_y }
 }

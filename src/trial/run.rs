@@ -69,7 +69,7 @@ impl EngineRig {
             RigError::Robot { robot: robot.name.clone(), task: task.name.clone(), error }
         })?;
         // What a scene needs does not depend on how stiff its fingers are.
-        let any = Finger::new(N_PER_MM, N_PER_MM);
+        let any = task.finger.shape(Finger::new(N_PER_MM, N_PER_MM), 0.0);
         engine.supports(&cell::build(&task, &mounted, &any).scene)?;
         Ok(EngineRig { task, robot: mounted, engine })
     }

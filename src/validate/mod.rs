@@ -15,7 +15,7 @@ pub use targets::{Target, targets};
 pub use text::text;
 
 use crate::evaluation::{FailureClass, Outcome, Window};
-use crate::finger::Finger;
+use crate::finger::{Finger, FingerModel};
 use crate::surrogate::Measurement;
 use published::{Origin, Published};
 
@@ -155,6 +155,6 @@ impl TaskTable {
 }
 
 /// The finger of a measured design: its measured stiffness, not the surrogate's.
-pub fn finger(design: &Measurement) -> Finger {
-    Finger::new(design.compliance, design.assembly)
+pub fn finger(model: &FingerModel, design: &Measurement) -> Finger {
+    model.shape(Finger::new(design.compliance, design.assembly), design.direction_deg)
 }

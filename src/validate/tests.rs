@@ -1,6 +1,7 @@
 //! Tables from windows that are known.
 
 use super::*;
+use crate::finger::FingerModel;
 use crate::tolerance::{Search, evaluate};
 use crate::trial::fake::FakeRig;
 
@@ -18,8 +19,9 @@ fn window([negative, positive]: [i32; 2], ends: [FailureClass; 2]) -> Window {
 /// Every measured design on a task, by the closed form.
 fn table(task: &str) -> TaskTable {
     let measured = published::designs();
-    let window =
-        |m: &Measurement| evaluate(&FakeRig::default(), &finger(m), Search::Strides).window;
+    let window = |m: &Measurement| {
+        evaluate(&FakeRig::default(), &finger(&FingerModel::default(), m), Search::Strides).window
+    };
     TaskTable::new(task, measured.iter().map(|m| (*m, window(m))))
 }
 

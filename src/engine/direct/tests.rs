@@ -3,8 +3,10 @@
 use super::Settings;
 use super::world::DirectWorld;
 use crate::engine::World;
+use crate::finger::Coupling;
 use crate::scene::{
-    Axis, Body, BodyId, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Shape, Spring, Springs,
+    Axis, Body, BodyId, Coupled, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Shape, Spring,
+    Springs,
 };
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
@@ -101,6 +103,31 @@ fn sprung(springs: [f64; 6], gravity: Vector3<f64>, arm: Vector3<f64>) -> Scene 
         })),
     });
     scene
+}
+
+/// Coupled springs: a load along one axis displaces all, by the inverse of the matrix.
+#[test]
+fn coupled_springs_give_by_their_inverse() {
+    let coefficients = Coupling::new([(1, 2, 0.4), (1, 3, -0.5), (0, 4, 0.3)]).unwrap();
+    let stiffness = coefficients.stiffness([1e5, 2e3, 4e4, 1.0, 10.0, 10.0], -1.0);
+    let damping = nalgebra::Matrix6::from_diagonal(&[20.0, 20.0, 20.0, 0.02, 0.02, 0.02].into());
+    let mut scene = sprung([1.0; 6], Vector3::zeros(), Vector3::zeros());
+    scene.joints[0].springs = Springs::Coupled(Coupled { stiffness, damping });
+    for axis in 0..6 {
+        let load = nalgebra::Vector6::ith(axis, if axis < 3 { 0.5 } else { 2e-3 });
+        let mut world = world(&scene, 5e-4);
+        let [force, moment] = [load.fixed_rows::<3>(0), load.fixed_rows::<3>(3)];
+        world.push(BodyId(1), force.into_owned(), moment.into_owned());
+        run(&mut world, 2.0);
+        let Pose { translation, rotation } = world.pose(BodyId(1));
+        let found: Vec<f64> =
+            translation.vector.iter().chain(rotation.scaled_axis().iter()).copied().collect();
+        let found = nalgebra::Vector6::from_column_slice(&found);
+        let expected = stiffness.try_inverse().unwrap() * load;
+        // The moment is about fixed axes, the coordinate is a rotation vector: they differ
+        // at second order in the angle.
+        assert!((found - expected).norm() < 1e-3 * expected.norm(), "{axis}: {found} {expected}");
+    }
 }
 
 /// Torsional friction: a face of friction mu and patch radius rho resists a turn

@@ -1,13 +1,16 @@
 //! Every figure is drawn, for all tasks and for one.
 
 use super::*;
+use crate::finger::FingerModel;
 use crate::tolerance::{Search, evaluate};
 use crate::trial::fake::FakeRig;
 use crate::validate::{finger, published};
 
 fn tables(tasks: &[&str]) -> Vec<TaskTable> {
     let designs = published::designs();
-    let window = |m: &_| evaluate(&FakeRig::default(), &finger(m), Search::Strides).window;
+    let window = |m: &_| {
+        evaluate(&FakeRig::default(), &finger(&FingerModel::default(), m), Search::Strides).window
+    };
     let table = |task: &&str| TaskTable::new(task, designs.iter().map(|m| (*m, window(m))));
     tasks.iter().map(table).collect()
 }

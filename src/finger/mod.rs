@@ -33,6 +33,11 @@ pub struct Finger {
     pub coupling: Option<Coupling>,
 }
 
+/// Rotational spring about x, N m/rad: the upper end of the range in the paper's
+/// Table "Simulation Inputs" (0.5 .. 2), of which the paper itself used 1; why is
+/// in `docs/calibration.md`.
+const TILTING: f64 = 2.0;
+
 impl Finger {
     /// A finger of the given compliance and assembly stiffness (N/m, per
     /// finger), everything else as in the paper.
@@ -41,7 +46,7 @@ impl Finger {
             compliance,
             assembly,
             depth: 100.0 * N_PER_MM,
-            rotation: [1.0, 10.0, 10.0],
+            rotation: [TILTING, 10.0, 10.0],
             rcc: 21.0 * MM,
             mass: 2.0 * GRAM,
             damping: 10.0,

@@ -1,6 +1,7 @@
 //! The rules that turn what happened into an outcome, in one place.
 //!
-//! 1. The part is seated (its tip in the opening, deep and upright enough): inserted.
+//! 1. The part is seated (its tip in the opening, deep and upright enough) and held
+//!    at rest after the assembly push, or where the force limit ended it: inserted.
 //! 2. The part left the grasp (both fingers off, or slipped beyond the task's
 //!    limit) before the search began: class 1; later: class 4.
 //! 3. Its leading edge never entered the opening before the assembly push: class 2.
@@ -12,7 +13,7 @@ use crate::task::Stage;
 /// What the rules look at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Facts {
-    /// In the opening, deep and upright enough.
+    /// In the opening, deep and upright enough, at the end.
     pub seated: bool,
     /// The stage in which the part left the grasp.
     pub lost_in: Option<Stage>,

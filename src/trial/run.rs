@@ -112,7 +112,6 @@ impl Grasped for Ready<'_> {
 /// Why a run ends early.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stop {
-    Seated,
     Lost,
     ForceLimit,
     Diverged,
@@ -307,7 +306,7 @@ impl<'a> Run<'a> {
         self.peak_force = self.peak_force.max(self.force.norm());
         self.phase_peak = self.phase_peak.max(self.force.norm());
         self.watch_grasp(dt)?;
-        self.watch_depth()?;
+        self.watch_entry();
         if self.rig.robot.stops(&self.force) { Err(Stop::ForceLimit) } else { Ok(()) }
     }
 
@@ -332,23 +331,19 @@ impl<'a> Run<'a> {
         if self.loose_for > LOSS_TIME || slipped { Err(Stop::Lost) } else { Ok(()) }
     }
 
-    fn watch_depth(&mut self) -> Result<(), Stop> {
-        match self.stage {
-            Stage::Approach => Ok(()),
-            Stage::Search => {
-                self.entered = self.entered || self.leading_edge_inside();
-                Ok(())
-            }
-            Stage::Assembly => {
-                let success = self.task.success;
-                let tip = self.tip();
-                // Deep beside the socket is not inserted.
-                let inside =
-                    within(tip.x, self.task.opening[0]) && within(tip.y, self.task.opening[1]);
-                let deep = -tip.z >= success.depth && self.tilt() <= success.tilt;
-                if deep && inside { Err(Stop::Seated) } else { Ok(()) }
-            }
+    fn watch_entry(&mut self) {
+        if self.stage == Stage::Search {
+            self.entered = self.entered || self.leading_edge_inside();
         }
+    }
+
+    /// Whether the part lies where it belongs now.
+    fn seated(&self) -> bool {
+        let success = self.task.success;
+        let tip = self.tip();
+        // Deep beside the socket is not inserted.
+        let inside = within(tip.x, self.task.opening[0]) && within(tip.y, self.task.opening[1]);
+        inside && -tip.z >= success.depth && self.tilt() <= success.tilt
     }
 
     /// A body in the task frame: as if the start, not the socket, were shifted and turned.
@@ -415,8 +410,11 @@ impl<'a> Run<'a> {
     }
 
     fn result(self, end: Result<(), Stop>) -> Trial {
+        // Judged at rest after the push, or where a bottomed part stopped the robot:
+        // a part that only passes through a good pose may tip on.
+        let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
         let facts = Facts {
-            seated: end == Err(Stop::Seated),
+            seated: held && self.stage == Stage::Assembly && self.seated(),
             lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
             entered: self.entered,
         };

@@ -34,14 +34,14 @@ pub struct Settings {
     /// Gap at which a contact is foreseen, m: farther than anything moves in a step.
     pub prediction: f64,
     /// Stiffness of a contact point, N/m, whatever the masses. It stands for the
-    /// give of real edges, which the exact boxes lack: 3 N/um is a loaded edge of
-    /// plastic, and makes the forces of a redundant contact unique. It decides
-    /// whether a key wedges: at 10 N/um and above most ket8 starts do.
+    /// give of loaded edges, socket and board, which the exact boxes lack, and
+    /// makes the forces of a redundant contact unique. It decides when a key
+    /// wedges: `docs/calibration.md`.
     pub contact_stiffness: f64,
-    /// Damping of a contact point, N s/m: about twice critical for a 40 g key
-    /// (published damping ratios are 0.5 and 1). Without it only the numerical
-    /// damping of the step, stiffness times step, is left; below 0.1 ms contacts
-    /// then chatter, lose friction and let wedged keys through.
+    /// Damping of a contact point, N s/m, above critical for a 40 g key
+    /// (published damping ratios are 0.5 and 1). With less, a released wedge
+    /// rebounds and check T5 is missed; with little, contacts chatter at small
+    /// steps, lose friction and let wedged keys through.
     pub contact_damping: f64,
     /// How friction holds a sticking point, N s/m: a force F creeps at F over it
     /// (5 N: 2.5 um/s), whatever the masses and the step.
@@ -55,7 +55,7 @@ impl Default for Settings {
         Settings {
             step_s: 5e-4,
             prediction: 0.2e-3,
-            contact_stiffness: 3e6,
+            contact_stiffness: 3e5,
             contact_damping: 1500.0,
             stick_damping: 2e6,
             push_out: 0.2,

@@ -10,7 +10,7 @@
 //! Both run the 11 measured designs of `data/measured_stiffness.csv`, at their
 //! measured stiffness, on the 4 tasks with the robot `servo`. `searches` compares
 //! the default search with the scan, `settings` the production settings with steps
-//! of 25 us and the scan. A summary goes to standard error. `maps` prints the outcome
+//! of 25 us. A summary goes to standard error. `maps` prints the outcome
 //! of every offset from 0.5 mm below to 0.5 mm above the window of the default search,
 //! `steps` the window of one design at several steps.
 
@@ -151,19 +151,13 @@ fn searches(task: &Task, robot: &Robot, finger: &Finger) -> Pair {
     }
 }
 
-/// The production settings, and the scan at fine steps.
+/// The production settings, and the same search at fine steps: the searches agree.
 fn settings(task: &Task, robot: &Robot, finger: &Finger) -> Pair {
     let (tried, trusted) = (rig(task, robot, None), rig(task, robot, Some(REFERENCE_STEP_S)));
-    let trusted = Remembering { rig: &trusted, known: Mutex::default() };
-    let pair = Pair {
+    Pair {
         tried: tolerance::evaluate(&tried, finger, Search::default()),
-        trusted: tolerance::evaluate(&trusted, finger, Search::Walk),
-    };
-    // Which part of a difference is the search's, not the step's.
-    let fine = tolerance::evaluate(&trusted, finger, Search::default()).window;
-    let (from, to) = (fine.negative_mm(), fine.positive_mm());
-    eprintln!("{} {finger:?}: default search at the fine step: {from:.1} {to:.1}", task.name);
-    pair
+        trusted: tolerance::evaluate(&trusted, finger, Search::default()),
+    }
 }
 
 /// One row for each pair: the first offset, and a character for each offset.

@@ -16,9 +16,9 @@ pub struct Arguments {
     setup: SetupArguments,
     #[command(flatten)]
     finger: FingerArguments,
-    /// Look every 0.5 mm and bisect: a third of the trials, but it may step over gaps
+    /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
     #[arg(long)]
-    strides: bool,
+    walk: bool,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -29,7 +29,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
     let clock = Instant::now();
-    let search = if arguments.strides { Search::Strides } else { Search::Walk };
+    let search = if arguments.walk { Search::Walk } else { Search::Strides };
     let rig = setup.rig(&chosen.task).map_err(Failure::input)?;
     let evaluation = tolerance::evaluate(&*rig, &chosen.finger, search);
     let wall_s = clock.elapsed().as_secs_f64();

@@ -64,7 +64,7 @@ fn proposals(c: &mut Criterion) {
     for _ in 0..12 {
         let observed = |point: finger_opt::space::GridPoint| {
             let value = space().design(&point).get("infill_density_percent");
-            Observation { point, value }
+            Observation::new(point, value)
         };
         let told: Vec<Observation> = gp.ask(4).into_iter().map(observed).collect();
         gp.tell(&told);

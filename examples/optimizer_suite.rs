@@ -106,7 +106,7 @@ fn grid_evaluations(
         if value < target {
             return Some(evaluation);
         }
-        optimizer.tell(&[Observation { point, value: Some(-value) }]);
+        optimizer.tell(&[Observation::new(point, Some(-value))]);
     }
     None
 }
@@ -169,7 +169,7 @@ fn gp(seeds: u64) {
             (0..seeds).map(|s| grid_evaluations(&mut *make(s), &grid, f, goal)).collect()
         };
         let exact = |s| -> Box<dyn Optimizer + Send> {
-            Box::new(GpOptimizer::with_noise_floor(grid.clone(), s, 0.0))
+            Box::new(GpOptimizer::with_noise_floors(grid.clone(), s, &[]))
         };
         row(&format!("{name}, gp without noise floor"), &runs(&exact));
         for kind in OptimizerKind::ALL {
@@ -205,7 +205,10 @@ fn time() {
             };
             let told: Vec<_> = points
                 .into_iter()
-                .map(|point| Observation { value: Some(value(&point)), point })
+                .map(|point| {
+                    let value = value(&point);
+                    Observation::new(point, Some(value))
+                })
                 .collect();
             let started = seconds(origin);
             optimizer.tell(&told);

@@ -22,6 +22,7 @@ pub mod finger;
 pub mod input;
 pub mod objective;
 pub mod optimizer;
+pub mod pareto;
 pub mod report;
 pub mod robot;
 pub mod robustness;

@@ -162,7 +162,7 @@ impl Optimizer for Walk {
     }
 
     fn tell(&mut self, observations: &[Observation]) {
-        let values = observations.iter().filter_map(|observation| observation.value);
+        let values = observations.iter().filter_map(Observation::value);
         self.stride = 1 + (values.sum::<f64>() * 10.0) as u32 % 7;
     }
 

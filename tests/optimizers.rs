@@ -1,6 +1,7 @@
 //! One suite for every optimizer: what the trait promises, checked for all of them.
 
 use finger_opt::optimizer::{Grid, Observation, Optimizer, OptimizerKind, StopReason, build};
+use finger_opt::pareto::hypervolume;
 use finger_opt::space::GridPoint;
 use std::collections::BTreeSet;
 
@@ -49,9 +50,8 @@ fn run(
         let told: Vec<Observation> = points
             .iter()
             .enumerate()
-            .map(|(i, point)| Observation {
-                point: point.clone(),
-                value: objective(grid, point, history.len() + i),
+            .map(|(i, point)| {
+                Observation::new(point.clone(), objective(grid, point, history.len() + i))
             })
             .collect();
         optimizer.tell(&told);
@@ -138,10 +138,8 @@ fn a_history_told_again_leads_to_the_same_proposals() {
         let mut second = build(kind, grid.clone(), 5);
         for batch in history.chunks(4) {
             assert_eq!(second.ask(4), batch, "{kind}");
-            let told: Vec<_> = batch
-                .iter()
-                .map(|p| Observation { point: p.clone(), value: hill(&grid, p, 0) })
-                .collect();
+            let told: Vec<_> =
+                batch.iter().map(|p| Observation::new(p.clone(), hill(&grid, p, 0))).collect();
             second.tell(&told);
         }
         assert_eq!(first.ask(7), second.ask(7), "{kind}");
@@ -170,7 +168,7 @@ fn observations_of_unknown_or_impossible_points_are_survived() {
     each(|kind| {
         let grid = Grid::new(vec![9, 9]);
         let mut optimizer = build(kind, grid.clone(), 1);
-        let tell = |levels: Vec<u32>| Observation { point: GridPoint(levels), value: Some(1.0) };
+        let tell = |levels: Vec<u32>| Observation::new(GridPoint(levels), Some(1.0));
         optimizer.tell(&[tell(vec![9, 0]), tell(vec![]), tell(vec![1, 2, 3]), tell(vec![4, 4])]);
         optimizer.tell(&[tell(vec![4, 4])]);
         let points = run(&mut *optimizer, &grid, hill, (5, 4));
@@ -191,4 +189,111 @@ fn those_that_learn_find_the_hill_and_those_that_spread_come_near_it() {
         };
         assert!(best > -enough, "{kind}: {best}");
     });
+}
+
+/// Runs an optimizer on a problem of its own; gives everything it was told.
+fn told(
+    optimizer: &mut dyn Optimizer,
+    problem: &dyn Fn(&GridPoint) -> Observation,
+    evaluations: usize,
+) -> Vec<Observation> {
+    let mut told = Vec::new();
+    while told.len() < evaluations {
+        let observed: Vec<Observation> = optimizer.ask(4).iter().map(problem).collect();
+        if observed.is_empty() {
+            break;
+        }
+        optimizer.tell(&observed);
+        told.extend(observed);
+    }
+    told
+}
+
+/// `x + y` is to be large and `x^2 + y^2` at most 1/2: best at (1/2, 1/2), where the
+/// constraint binds. Most of the square violates it.
+#[test]
+fn a_constraint_that_binds_is_kept_by_the_best_and_does_not_keep_it_away() {
+    let grid = Grid::new(vec![41, 41]);
+    let problem = |point: &GridPoint| {
+        let unit = grid.unit(point);
+        let violations = vec![unit[0].powi(2) + unit[1].powi(2) - 0.5];
+        Observation { violations, ..Observation::new(point.clone(), Some(unit[0] + unit[1])) }
+    };
+    let kinds = [OptimizerKind::Gp, OptimizerKind::CmaEs, OptimizerKind::NelderMead];
+    for (kind, evaluations) in kinds.into_iter().zip([32, 200, 200]) {
+        for seed in 0..5 {
+            let mut optimizer = build(kind, grid.clone(), seed);
+            let told = told(&mut *optimizer, &problem, evaluations);
+            let feasible = told.iter().filter(|o| o.feasible()).filter_map(Observation::value);
+            let best = feasible.fold(0.0, f64::max);
+            assert!(best > 0.97, "{kind}, seed {seed}: {best}");
+        }
+    }
+}
+
+/// Nothing is feasible but a corner: the model is led there by the violations alone.
+#[test]
+fn the_feasible_corner_is_found_when_no_first_point_lies_in_it() {
+    let grid = Grid::new(vec![41, 41]);
+    let problem = |point: &GridPoint| {
+        let unit = grid.unit(point);
+        let violations = vec![0.95 - unit[0], 0.95 - unit[1]];
+        Observation { violations, ..Observation::new(point.clone(), Some(-unit[0])) }
+    };
+    for seed in 0..5 {
+        let mut optimizer = build(OptimizerKind::Gp, grid.clone(), seed);
+        let told = told(&mut *optimizer, &problem, 24);
+        assert!(told.iter().any(Observation::feasible), "seed {seed}");
+    }
+}
+
+/// Two peaks: what is nearer to one is farther from the other, so the front is the line
+/// between them.
+fn two_peaks(grid: &Grid, point: &GridPoint) -> Vec<f64> {
+    let unit = grid.unit(point);
+    let from = |x: f64, y: f64| -((unit[0] - x).powi(2) + (unit[1] - y).powi(2));
+    vec![from(0.2, 0.3), from(0.8, 0.6)]
+}
+
+#[test]
+fn the_front_of_two_objectives_is_found_with_few_evaluations() {
+    let grid = Grid::new(vec![41, 41]);
+    let problem = |point: &GridPoint| Observation {
+        values: two_peaks(&grid, point),
+        ..Observation::new(point.clone(), None)
+    };
+    let volume = |told: &[Observation]| {
+        let values: Vec<Vec<f64>> = told.iter().map(|o| o.values.clone()).collect();
+        hypervolume(&values, &[-0.5, -0.5])
+    };
+    let every = told(&mut *build(OptimizerKind::Grid, grid.clone(), 0), &problem, 41 * 41);
+    let whole = volume(&every);
+    for seed in 0..5 {
+        let share =
+            |kind| volume(&told(&mut *build(kind, grid.clone(), seed), &problem, 40)) / whole;
+        let (gp, random) = (share(OptimizerKind::Gp), share(OptimizerKind::Random));
+        // So few points cannot fill it: each leaves a corner to the next.
+        assert!(gp > 0.97 && gp > random + 0.03, "seed {seed}: {gp} and {random}");
+    }
+}
+
+#[test]
+fn several_objectives_and_constraints_keep_the_contract() {
+    let grid = Grid::new(vec![9, 7]);
+    let problem = |point: &GridPoint| {
+        let broken = point.0[0] == 3;
+        let values = if broken { Vec::new() } else { two_peaks(&grid, point) };
+        let violations = if broken { Vec::new() } else { vec![f64::from(point.0[1]) - 4.0] };
+        Observation { point: point.clone(), values, violations }
+    };
+    for kind in OptimizerKind::ALL.into_iter().filter(|kind| kind.takes_several_objectives()) {
+        let run = || {
+            let told = told(&mut *build(kind, grid.clone(), 2), &problem, 60);
+            told.into_iter().map(|o| o.point).collect::<Vec<_>>()
+        };
+        let (points, again) = (run(), run());
+        assert_eq!(points, again, "{kind}");
+        assert_eq!(points.iter().collect::<BTreeSet<_>>().len(), points.len(), "{kind}");
+        assert!(points.iter().all(|point| grid.contains(point)), "{kind}");
+    }
 }

@@ -75,6 +75,6 @@ impl Batch {
     pub fn observations(&self) -> Vec<Observation> {
         let value = |id| self.values.get(&id).copied().flatten();
         let numbered = (self.first..).zip(&self.points);
-        numbered.map(|(id, point)| Observation { point: point.clone(), value: value(id) }).collect()
+        numbered.map(|(id, point)| Observation::new(point.clone(), value(id))).collect()
     }
 }

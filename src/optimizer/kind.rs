@@ -1,7 +1,7 @@
 //! Optimizers by name.
 
 use super::cmaes::CmaEsOptimizer;
-use super::gp::GpOptimizer;
+use super::gp::{DEFAULT_NOISE_FLOOR, GpOptimizer};
 use super::{Grid, GridSearch, NelderMeadOptimizer, Optimizer, RandomSearch, SobolSearch};
 use std::fmt;
 use std::str::FromStr;
@@ -39,6 +39,12 @@ impl OptimizerKind {
             Self::Grid => "grid",
         }
     }
+
+    /// Whether it can look for a front of several objectives: it models each of them, or
+    /// looks everywhere alike.
+    pub fn takes_several_objectives(self) -> bool {
+        !matches!(self, Self::CmaEs | Self::NelderMead)
+    }
 }
 
 impl fmt::Display for OptimizerKind {
@@ -70,8 +76,19 @@ impl FromStr for OptimizerKind {
 
 /// The optimizer of that kind over `grid`, with its default settings.
 pub fn build(kind: OptimizerKind, grid: Grid, seed: u64) -> Box<dyn Optimizer + Send> {
+    build_for(kind, grid, seed, &[DEFAULT_NOISE_FLOOR])
+}
+
+/// The same for objectives of which rounding or the like makes so much noise: a standard
+/// deviation each, in the objective's unit.
+pub fn build_for(
+    kind: OptimizerKind,
+    grid: Grid,
+    seed: u64,
+    noise_floors: &[f64],
+) -> Box<dyn Optimizer + Send> {
     match kind {
-        OptimizerKind::Gp => Box::new(GpOptimizer::new(grid, seed)),
+        OptimizerKind::Gp => Box::new(GpOptimizer::with_noise_floors(grid, seed, noise_floors)),
         OptimizerKind::CmaEs => Box::new(CmaEsOptimizer::new(grid, seed)),
         OptimizerKind::NelderMead => Box::new(NelderMeadOptimizer::new(grid, seed)),
         OptimizerKind::Random => Box::new(RandomSearch::new(grid, seed)),

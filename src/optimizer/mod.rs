@@ -14,7 +14,7 @@ mod random;
 mod simplex;
 mod sobol;
 
-pub use kind::{OptimizerKind, UnknownOptimizer, build};
+pub use kind::{OptimizerKind, UnknownOptimizer, build, build_for};
 pub use lattice::GridSearch;
 pub use neldermead::NelderMeadOptimizer;
 pub use polish::Polished;
@@ -85,9 +85,42 @@ impl Grid {
 pub struct Observation {
     /// The point.
     pub point: GridPoint,
-    /// The objective, larger is better; `None` if the evaluation gave no value
+    /// The objectives, larger is better; none if the evaluation gave no value
     /// (it diverged, or broke): known to be bad, not known how bad.
-    pub value: Option<f64>,
+    pub values: Vec<f64>,
+    /// How far each constraint is violated; 0 or below where it is kept.
+    pub violations: Vec<f64>,
+}
+
+/// Merit of what violates constraints, before its violation is taken off: below
+/// whatever an objective may be.
+const INFEASIBLE: f64 = -1e9;
+
+impl Observation {
+    /// Of one objective without constraints.
+    pub fn new(point: GridPoint, value: Option<f64>) -> Self {
+        Observation { point, values: value.into_iter().collect(), violations: Vec::new() }
+    }
+
+    /// The only objective, or the first of several.
+    pub fn value(&self) -> Option<f64> {
+        self.values.first().copied()
+    }
+
+    /// Whether it has a value and keeps all constraints.
+    pub fn feasible(&self) -> bool {
+        !self.values.is_empty() && self.violations.iter().all(|&violation| violation <= 0.0)
+    }
+
+    /// One number for optimizers that know no constraints (K. Deb 2000, Comput. Methods
+    /// Appl. Mech. Eng. 186:311): of two feasible points the one with the larger value is
+    /// better, a feasible one is better than one that is not, and of two that are not the one
+    /// that violates less, all constraints added up.
+    pub fn merit(&self) -> Option<f64> {
+        let violation: f64 = self.violations.iter().map(|violation| violation.max(0.0)).sum();
+        let value = self.value()?;
+        Some(if violation > 0.0 { INFEASIBLE - violation } else { value })
+    }
 }
 
 /// Why an optimizer has nothing more to propose.
@@ -115,4 +148,31 @@ pub trait Optimizer {
 
     /// Why there is nothing more to ask for, if so.
     fn stop(&self) -> Option<StopReason>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn merit_puts_feasible_points_first_and_then_the_smaller_violation() {
+        let of = |value: Option<f64>, violations: &[f64]| Observation {
+            violations: violations.to_vec(),
+            ..Observation::new(GridPoint(vec![0]), value)
+        };
+        let ordered = [
+            of(Some(3.0), &[-1.0, 0.0]),
+            of(Some(-1e6), &[]),
+            of(Some(9.0), &[0.1, -5.0]),
+            of(Some(9.0), &[0.1, 0.1]),
+        ];
+        let merits: Vec<f64> = ordered.iter().filter_map(Observation::merit).collect();
+        assert_eq!(merits.len(), 4);
+        assert!(merits.windows(2).all(|pair| pair[0] > pair[1]), "{merits:?}");
+        assert_eq!(merits[0], 3.0);
+        assert_eq!(of(None, &[]).merit(), None);
+        let feasible: Vec<bool> = ordered.iter().map(Observation::feasible).collect();
+        assert_eq!(feasible, [true, true, false, false]);
+        assert!(!of(None, &[-1.0]).feasible());
+    }
 }

@@ -218,7 +218,7 @@ impl Optimizer for NelderMeadOptimizer {
             if !self.proposed.grid().contains(&o.point) {
                 continue;
             }
-            let value = o.value.filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
+            let value = o.merit().filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
             self.proposed.insert(&o.point);
             self.values.insert(o.point.clone(), value);
         }
@@ -248,9 +248,12 @@ mod tests {
         };
         let mut best = f64::NEG_INFINITY;
         for _ in 0..evaluations / n {
-            let tell = |p: GridPoint| Observation { value: Some(value(&p)), point: p };
+            let tell = |p: GridPoint| {
+                let value = value(&p);
+                Observation::new(p, Some(value))
+            };
             let told: Vec<Observation> = optimizer.ask(n).into_iter().map(tell).collect();
-            best = told.iter().filter_map(|o| o.value).fold(best, f64::max);
+            best = told.iter().filter_map(Observation::value).fold(best, f64::max);
             optimizer.tell(&told);
         }
         best

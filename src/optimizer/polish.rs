@@ -99,11 +99,10 @@ mod tests {
             if points.is_empty() {
                 return all;
             }
-            let tell =
-                |p: &GridPoint| Observation { point: p.clone(), value: Some(valley(&grid(), p)) };
+            let tell = |p: &GridPoint| Observation::new(p.clone(), Some(valley(&grid(), p)));
             let told: Vec<Observation> = points.iter().map(tell).collect();
             optimizer.tell(&told);
-            all.extend(points.into_iter().zip(told.iter().filter_map(|o| o.value)));
+            all.extend(points.into_iter().zip(told.iter().filter_map(Observation::value)));
         }
     }
 
@@ -134,8 +133,8 @@ mod tests {
         while all.stop().is_none() && asked < 10_000 {
             let points = all.ask(4);
             asked += points.len();
-            let tell = |p: GridPoint| Observation { value: Some(valley(&grid(), &p)), point: p };
-            let told: Vec<Observation> = points.into_iter().map(tell).collect();
+            let tell = |p: &GridPoint| Observation::new(p.clone(), Some(valley(&grid(), p)));
+            let told: Vec<Observation> = points.iter().map(tell).collect();
             all.tell(&told);
         }
         assert_eq!(all.stop(), Some(StopReason::Converged));
@@ -146,8 +145,7 @@ mod tests {
     fn without_any_value_there_is_nothing_to_polish() {
         let mut none = Polished::new(build(OptimizerKind::Random, grid(), 5), grid(), 4, 20);
         let points = none.ask(4);
-        let told: Vec<_> =
-            points.into_iter().map(|point| Observation { point, value: None }).collect();
+        let told: Vec<_> = points.into_iter().map(|point| Observation::new(point, None)).collect();
         none.tell(&told);
         assert!(none.ask(4).is_empty());
         assert_eq!(none.stop(), Some(StopReason::Converged));

@@ -93,7 +93,7 @@ impl Runner<'_> {
             let told: Vec<Observation> = points
                 .into_iter()
                 .zip(values)
-                .map(|(point, value)| Observation { point, value })
+                .map(|(point, value)| Observation::new(point, value))
                 .collect();
             optimizer.tell(&told);
             begun += wanted;

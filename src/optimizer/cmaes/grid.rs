@@ -164,7 +164,7 @@ impl Optimizer for CmaEsOptimizer {
             if !self.proposed.grid().contains(&o.point) {
                 continue;
             }
-            let value = o.value.filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
+            let value = o.merit().filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
             self.proposed.insert(&o.point);
             self.values.insert(o.point.clone(), value);
         }
@@ -196,7 +196,10 @@ mod tests {
             let points = cma.ask(4);
             let value = |p: &GridPoint| p.0[0] + p.0[2];
             best = points.iter().map(value).max().unwrap_or(0).max(best);
-            let tell = |p: GridPoint| Observation { value: Some(f64::from(value(&p))), point: p };
+            let tell = |p: GridPoint| {
+                let value = f64::from(value(&p));
+                Observation::new(p, Some(value))
+            };
             cma.tell(&points.into_iter().map(tell).collect::<Vec<_>>());
         }
         assert_eq!(best, 200);

@@ -9,6 +9,8 @@ pub struct Standardised {
     pub values: Vec<f64>,
     /// The noise floor as a variance in the same units, in [1e-8, 1].
     pub noise_floor: f64,
+    /// Zero of the values given, in the model's units.
+    pub zero: f64,
 }
 
 /// Standardises `values`; `noise_floor` is a standard deviation in objective units.
@@ -27,20 +29,26 @@ pub fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<Standardi
     let mean = filled.iter().sum::<f64>() / n;
     let deviation = (filled.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
     if deviation < 1e-13 {
-        return Some(Standardised { values: vec![0.0; filled.len()], noise_floor: 1e-6 });
+        return Some(Standardised {
+            values: vec![0.0; filled.len()],
+            noise_floor: 1e-6,
+            zero: -mean,
+        });
     }
     let floor = noise_floor / unit / deviation;
     let values = filled.iter().map(|v| (v - mean) / deviation).collect();
-    Some(Standardised { values, noise_floor: (floor * floor).clamp(1e-8, 1.0) })
+    let noise_floor = (floor * floor).clamp(1e-8, 1.0);
+    Some(Standardised { values, noise_floor, zero: -mean / deviation })
 }
 
 impl Standardised {
     /// The same values under the power transformation that makes them most nearly normal, with
-    /// the noise floor at the scale's average slope; unchanged if there is none.
+    /// the noise floor at the scale's average slope; unchanged if there is none. The zero has
+    /// no meaning then.
     pub fn warped(self) -> Self {
         let Some(warped) = warp(&self.values) else { return self };
         let noise_floor = (self.noise_floor * warped.slope * warped.slope).clamp(1e-8, 1.0);
-        Standardised { values: warped.values, noise_floor }
+        Standardised { values: warped.values, noise_floor, zero: f64::NAN }
     }
 }
 
@@ -54,6 +62,7 @@ mod tests {
         assert!(s.values.iter().sum::<f64>().abs() < 1e-14);
         assert!((s.values.iter().map(|v| v * v).sum::<f64>() / 3.0 - 1.0).abs() < 1e-14);
         assert!((s.noise_floor - 0.01 / (14.0 / 3.0)).abs() < 1e-12);
+        assert!((s.zero - (s.values[0] - (s.values[1] - s.values[0]))).abs() < 1e-12);
     }
 
     #[test]

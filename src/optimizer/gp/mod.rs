@@ -2,7 +2,9 @@
 //!
 //! Values standardised and warped; Matern 5/2 with one length scale per axis, constant mean, fitted noise; hyperparameters by
 //! maximum a posteriori; log expected improvement (Ament et al. 2023, arXiv 2310.20708)
-//! maximised over the grid; batches by the kriging believer.
+//! maximised over the grid; batches by the kriging believer. With constraints a model for each of
+//! them, and the improvement times the probability of keeping them; with several objectives a
+//! model for each, and the expected hypervolume improvement.
 //!
 //! The linear algebra is our own and plain: libraries that choose their kernels by the CPU at
 //! hand would let the proposals depend on the machine.
@@ -17,9 +19,10 @@ mod linalg;
 mod model;
 mod optimizer;
 mod search;
+mod trained;
 mod warp;
 
-pub use acquisition::{log_expected_improvement, log_h};
+pub use acquisition::{log_expected_improvement, log_expected_volume, log_h};
 pub use fit::{FitEffort, fit};
 pub use kernel::Hyperparameters;
 pub use likelihood::{Posterior, log_posterior};

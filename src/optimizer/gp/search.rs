@@ -1,7 +1,6 @@
 //! Where on the grid the acquisition is largest.
 
-use super::acquisition::log_expected_improvement;
-use super::model::Gp;
+use super::trained::Trained;
 use crate::optimizer::sobol::SobolSequence;
 use crate::optimizer::{Grid, Proposed};
 use crate::space::GridPoint;
@@ -18,12 +17,10 @@ const STARTS: usize = 6;
 
 /// One search for the best unseen point.
 pub(super) struct Search<'a> {
-    pub gp: &'a Gp,
+    pub trained: &'a Trained,
     pub proposed: &'a Proposed,
     /// Axes with more than one level: the model's axes.
     pub free: &'a [usize],
-    /// The value to improve on, in the model's units.
-    pub best: f64,
     /// Good points to start from, best first.
     pub incumbents: &'a [GridPoint],
     /// Names the streams.
@@ -31,11 +28,11 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The unseen grid point with the largest log expected improvement found; `None` if no
-    /// unseen point was met or none has a finite one.
+    /// The unseen grid point found with the largest promise; `None` if no unseen point was
+    /// met or none has a finite one.
     pub fn maximise(&self) -> Option<GridPoint> {
-        let size = self.grid().size();
-        if size <= EXHAUSTIVE && size.saturating_mul(self.gp.len() as u64) <= EXHAUSTIVE_WORK {
+        let (size, known) = (self.grid().size(), self.trained.len() * self.trained.models());
+        if size <= EXHAUSTIVE && size.saturating_mul(known as u64) <= EXHAUSTIVE_WORK {
             return self.exhaustive();
         }
         self.sampled()
@@ -51,12 +48,8 @@ impl Search<'_> {
         self.free.iter().map(|&a| unit[a]).collect()
     }
 
-    fn log_ei(&self, mean: f64, variance: f64) -> f64 {
-        log_expected_improvement(mean, variance.sqrt(), self.best)
-    }
-
     /// Every unseen point, exactly: log expected improvement grows with the variance, so a bound
-    /// of the variance bounds it. Points are taken by falling bound until the bound is
+    /// of the variance bounds it, and constraints only take away from it. Points are taken by falling bound until the bound is
     /// below the best found, and few need the triangular solve.
     fn exhaustive(&self) -> Option<GridPoint> {
         let mut k = Vec::new();
@@ -64,9 +57,7 @@ impl Search<'_> {
         let mut point = GridPoint(vec![0; self.grid().dimension()]);
         loop {
             if !self.proposed.contains(&point) {
-                self.gp.cross(&self.unit(&point), &mut k);
-                let glance = self.gp.glance(&k);
-                bounds.push((self.log_ei(glance.mean, glance.variance_bound), point.clone()));
+                bounds.push((self.trained.bound(&self.unit(&point), &mut k), point.clone()));
             }
             if !advance(&mut point, self.grid().levels()) {
                 break;
@@ -80,12 +71,8 @@ impl Search<'_> {
             if bound <= record {
                 break;
             }
-            self.gp.cross(&self.unit(&point), &mut k);
-            let mean = self.gp.glance(&k).mean;
-            let hopeless = |variance| self.log_ei(mean, variance) <= record;
-            let Some(variance) = self.gp.variance(&k, hopeless) else { continue };
-            let value = self.log_ei(mean, variance);
-            if value > record {
+            let promise = self.trained.promise_above(record, &self.unit(&point), &mut k);
+            if let Some(value) = promise.filter(|value| *value > record) {
                 best = Some((value, point));
             }
         }
@@ -95,9 +82,9 @@ impl Search<'_> {
     /// Sobol points and perturbations of the incumbents, the best of them improved by a
     /// coordinate search on the lattice with halving steps.
     fn sampled(&self) -> Option<GridPoint> {
-        let n = self.gp.len();
+        let (n, models) = (self.trained.len(), self.trained.models().max(1));
         // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
-        let mut budget = (6_000_000 / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
+        let mut budget = (6_000_000 / models / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
         let mut memory: BTreeMap<GridPoint, f64> = BTreeMap::new();
         let spread = budget / 3;
         let mut candidates = self.candidates(spread);
@@ -141,8 +128,7 @@ impl Search<'_> {
         if let Some(&value) = memory.get(point) {
             return value;
         }
-        let (mean, variance) = self.gp.predict(&self.unit(point));
-        let value = self.log_ei(mean, variance);
+        let value = self.trained.promise(&self.unit(point));
         memory.insert(point.clone(), value);
         value
     }
@@ -207,6 +193,8 @@ fn advance(point: &mut GridPoint, levels: &[u32]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::kernel::Hyperparameters;
+    use super::super::model::Gp;
+    use super::super::trained::Goal;
     use super::*;
 
     #[test]
@@ -224,8 +212,10 @@ mod tests {
         }
         let best = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let free = [0, 2];
-        let search =
-            Search { gp: &gp, proposed: &proposed, free: &free, best, incumbents: &[], seed: 0 };
+        let trained =
+            Trained { objectives: vec![gp], margins: Vec::new(), goal: Goal::Improve(best) };
+        let (proposed, free) = (&proposed, &free);
+        let search = Search { trained: &trained, proposed, free, incumbents: &[], seed: 0 };
         let found = search.exhaustive().unwrap();
         let mut memory = BTreeMap::new();
         let value = search.value(&found, &mut memory);

@@ -1,0 +1,160 @@
+//! Pareto fronts and the volume they dominate, for vectors of which every
+//! component is better larger.
+
+/// Whether `a` is at least as good as `b` everywhere and better somewhere.
+pub fn dominates(a: &[f64], b: &[f64]) -> bool {
+    let pairs = || a.iter().zip(b);
+    pairs().all(|(a, b)| a >= b) && pairs().any(|(a, b)| a > b)
+}
+
+/// Indices of the points that no other point dominates, ascending; of equal
+/// points the first.
+pub fn front(points: &[Vec<f64>]) -> Vec<usize> {
+    let beaten = |i: usize| {
+        let by = |(j, other): (usize, &Vec<f64>)| {
+            dominates(other, &points[i]) || (j < i && *other == points[i])
+        };
+        points.iter().enumerate().any(by)
+    };
+    (0..points.len()).filter(|&i| !beaten(i)).collect()
+}
+
+/// A box with sides along the axes; `high` may be infinite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    /// Smallest corner.
+    pub low: Vec<f64>,
+    /// Largest corner.
+    pub high: Vec<f64>,
+}
+
+/// Cuts the region that `points` do not dominate, above `reference` in every
+/// component, into cells that do not overlap: what a new point `y` adds to the
+/// volume is the sum over the cells of the product of `min(y, high) - low`,
+/// where that is positive in every component.
+///
+/// By slices along the last component (the hypervolume by slicing objectives of
+/// While et al. 2006, IEEE Trans. Evol. Comput. 10:29, with the complement kept).
+/// Points that are not above the reference in every component count for nothing.
+pub fn undominated(points: &[Vec<f64>], reference: &[f64]) -> Vec<Cell> {
+    let above = |point: &&Vec<f64>| point.iter().zip(reference).all(|(p, r)| p > r);
+    let points: Vec<&[f64]> = points.iter().filter(above).map(Vec::as_slice).collect();
+    slices(&points, reference)
+}
+
+fn slices(points: &[&[f64]], reference: &[f64]) -> Vec<Cell> {
+    let Some((&floor, lower)) = reference.split_last() else {
+        // Nothing left to differ in: one cell, unless something is there already.
+        let free = Cell { low: Vec::new(), high: Vec::new() };
+        return if points.is_empty() { vec![free] } else { Vec::new() };
+    };
+    let last = lower.len();
+    let mut cuts: Vec<f64> = points.iter().map(|point| point[last]).collect();
+    cuts.push(floor);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    let mut cells = Vec::new();
+    for (i, &low) in cuts.iter().enumerate() {
+        let high = cuts.get(i + 1).copied().unwrap_or(f64::INFINITY);
+        let reaching: Vec<&[f64]> =
+            points.iter().filter(|point| point[last] >= high).copied().collect();
+        for mut cell in slices(&reaching, lower) {
+            cell.low.push(low);
+            cell.high.push(high);
+            cells.push(cell);
+        }
+    }
+    cells
+}
+
+/// Volume between the reference and the points: what they dominate above it.
+pub fn hypervolume(points: &[Vec<f64>], reference: &[f64]) -> f64 {
+    let above = |point: &&Vec<f64>| point.iter().zip(reference).all(|(p, r)| p > r);
+    let points: Vec<&[f64]> = points.iter().filter(above).map(Vec::as_slice).collect();
+    volume(&points, reference)
+}
+
+fn volume(points: &[&[f64]], reference: &[f64]) -> f64 {
+    let Some((&floor, lower)) = reference.split_last() else {
+        return if points.is_empty() { 0.0 } else { 1.0 };
+    };
+    let last = lower.len();
+    let mut cuts: Vec<f64> = points.iter().map(|point| point[last]).collect();
+    cuts.push(floor);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    let slice = |pair: &[f64]| {
+        let reaching: Vec<&[f64]> =
+            points.iter().filter(|point| point[last] >= pair[1]).copied().collect();
+        (pair[1] - pair[0]) * volume(&reaching, lower)
+    };
+    cuts.windows(2).map(slice).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::stream;
+    use rand::RngExt;
+
+    fn points(seed: u64, count: usize, dimension: usize) -> Vec<Vec<f64>> {
+        let mut random = stream(seed, 0, "pareto test");
+        // Tenths, so that ties are common.
+        let mut draw = || f64::from(random.random_range(0..10u8)) / 10.0;
+        (0..count).map(|_| (0..dimension).map(|_| draw()).collect()).collect()
+    }
+
+    #[test]
+    fn the_front_is_what_nothing_dominates() {
+        let given = [[1.0, 3.0], [2.0, 2.0], [1.0, 2.0], [2.0, 2.0], [3.0, 0.0]].map(Vec::from);
+        assert_eq!(front(&given), [0, 1, 4]);
+        assert_eq!(front(&[]), [0; 0]);
+        assert!(!dominates(&[1.0, 2.0], &[1.0, 2.0]));
+    }
+
+    #[test]
+    fn a_volume_worked_by_hand() {
+        // 3 x 1 and 1 x 3 above (0, 0), less the common unit square.
+        let two = [[3.0, 1.0], [1.0, 3.0]].map(Vec::from);
+        assert_eq!(hypervolume(&two, &[0.0, 0.0]), 5.0);
+        // Below the reference in one component: nothing.
+        assert_eq!(hypervolume(&two, &[0.0, 2.0]), 1.0);
+        let box3 = [vec![1.0, 2.0, 3.0]];
+        assert_eq!(hypervolume(&box3, &[0.0; 3]), 6.0);
+        assert_eq!(hypervolume(&[], &[0.0; 3]), 0.0);
+    }
+
+    /// What the cells say a point adds.
+    fn added(cells: &[Cell], point: &[f64]) -> f64 {
+        let side = |i: usize, cell: &Cell| (point[i].min(cell.high[i]) - cell.low[i]).max(0.0);
+        cells.iter().map(|cell| (0..point.len()).map(|i| side(i, cell)).product::<f64>()).sum()
+    }
+
+    #[test]
+    fn the_cells_say_what_a_point_adds_to_the_volume() {
+        for dimension in 1..=4 {
+            let reference = vec![0.15; dimension];
+            for seed in 0..20 {
+                let known = points(seed, 7, dimension);
+                let cells = undominated(&known, &reference);
+                for point in points(seed + 100, 5, dimension) {
+                    let before = hypervolume(&known, &reference);
+                    let after =
+                        hypervolume(&[known.clone(), vec![point.clone()]].concat(), &reference);
+                    let found = added(&cells, &point);
+                    assert!((found - (after - before)).abs() < 1e-12, "{known:?} and {point:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn dominated_points_change_no_volume() {
+        let all = points(1, 30, 3);
+        let best: Vec<Vec<f64>> = front(&all).into_iter().map(|i| all[i].clone()).collect();
+        assert!(best.len() < all.len());
+        let reference = [-0.1; 3];
+        let (a, b) = (hypervolume(&all, &reference), hypervolume(&best, &reference));
+        assert!((a - b).abs() < 1e-12 && a > 0.0);
+    }
+}

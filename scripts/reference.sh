@@ -16,7 +16,7 @@ trap 'rm -rf "$studies"' EXIT
 for task in usb ket8 ket12 rj45; do
     mkdir -p "$reference/$task"
     /usr/bin/env time -f "%e s wall, %U s processor, %M KiB" -o "$reference/$task/time.txt" \
-        "$optimize" --task "$task" --budget 200 --no-cache --out "$studies/$task" --quiet --no-cache \
+        "$optimize" --task "$task" --budget 200 --no-cache --out "$studies/$task" --quiet \
         > "$reference/$task/summary.txt"
     sed -i '/^study /d' "$reference/$task/summary.txt"
     for file in report.html convergence.svg evaluations.csv study.toml; do

@@ -197,8 +197,8 @@ mod tests {
         };
         min.x = -2.0 * MM;
         assert_eq!(task, expected);
-        let [rx, ry, rz] = finger().rotation;
-        assert_eq!(changed, Finger { rcc: 15.0 * MM, rotation: [1.5 * rx, ry, rz], ..finger() });
+        let [_, ry, rz] = finger().rotation;
+        assert_eq!(changed, Finger { rcc: 15.0 * MM, rotation: [1.5, ry, rz], ..finger() });
     }
 
     #[test]

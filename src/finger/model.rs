@@ -125,6 +125,6 @@ mod tests {
         let Springs::Coupled(coupled) = finger.mounted(-1.0) else { panic!("coupled") };
         let damping = finger.springs().map(|Spring { damping, .. }| damping);
         assert_eq!(coupled.damping, Matrix6::from_diagonal(&damping.into()));
-        assert_eq!(coupled.stiffness[(1, 3)], 0.5 * (2e3_f64 * 1.0).sqrt());
+        assert_eq!(coupled.stiffness[(1, 3)], 0.5 * (2e3 * finger.rotation[0]).sqrt());
     }
 }

@@ -43,7 +43,11 @@ fn a_given_stiffness_bypasses_the_surrogate() {
     let result = fake(&[&evaluate[..], &stiffness].concat()).json();
     assert_eq!(result["range_mm"], 4.7);
     assert_eq!(result["failure_negative"], 3);
-    assert_eq!(result["failure_counts"], serde_json::json!([0, 1, 2, 0]), "one strided, one bisected");
+    assert_eq!(
+        result["failure_counts"],
+        serde_json::json!([0, 1, 2, 0]),
+        "one strided, one bisected"
+    );
     assert_eq!(result["stiffness"]["compliance_n_per_mm"], 3.0);
 }
 

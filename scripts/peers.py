@@ -1,19 +1,39 @@
 #!/usr/bin/env python3
-"""Measures the peers on the functions of examples/optimizer_suite.rs.
+"""Measures other optimizers on the problems of `optimize bench optimizers`.
 
-    python3 -m venv venv && venv/bin/pip install cma==4.5.0 optuna==5.0.0
-    venv/bin/python scripts/peers.py cma [seeds]      # pycma, BIPOP, to 1e-8
-    venv/bin/python scripts/peers.py optuna [seeds]   # TPE; GPSampler too if torch is installed
+    python3 -m venv venv
+    venv/bin/pip install cma==4.5.0 optuna==5.0.0 botorch==0.18.1 torch==2.15.0 scipy==1.17.1
+    venv/bin/python scripts/peers.py run pycma --csv pycma.csv
+    venv/bin/python scripts/peers.py run tpe gpsampler botorch --csv peers.csv \\
+        --landscape results/reference/landscapes/{usb,ket8,ket12,rj45}.csv
+    target/release/optimize bench optimizers --csv ours.csv
+    venv/bin/python scripts/peers.py ratios ours.csv pycma.csv peers.csv
 
-Prints the same Markdown table as the example.
+`run` prints a line per problem and adds every run to the CSV (columns as those of
+`optimize bench optimizers --csv`); `ratios` prints Markdown. pycma needs neither
+optuna nor torch, tpe no torch.
 """
-import sys
+import argparse
+import csv
+import itertools
+import os
+import random
+import statistics
+import time
 import warnings
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Callable
 
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 warnings.filterwarnings("ignore")
 import numpy as np
 
-CMA_LIMIT = 1_000_000
+PINNED = {"cma": "4.5.0", "optuna": "5.0.0", "botorch": "0.18.1"}
+LEVELS = 1001
+CMA_LIMIT, CMA_TARGET = 1_000_000, 1e-8
+LANDSCAPE_LIMIT, SHORTFALL_MM = 100, 0.1
 
 
 def sphere(x):
@@ -54,30 +74,126 @@ def hartmann6(u):
     return float(-np.sum(ALPHA * np.exp(-np.sum(A * (np.asarray(u) - P) ** 2, axis=1))))
 
 
-def row(name, runs):
-    done = [r for r in runs if r is not None]
-    ordered = sorted(float("inf") if r is None else r for r in runs)
-
-    def quantile(q):
-        value = ordered[min(len(ordered) * q // 4, len(ordered) - 1)]
-        return "-" if value == float("inf") else str(value)
-
-    mean = sum(done) / max(len(done), 1)
-    cells = " | ".join(quantile(q) for q in (1, 2, 3, 4))
-    print(f"| {name} | {len(done)}/{len(runs)} | {mean:.0f} | {cells} |", flush=True)
+UNBOUNDED = {"sphere": sphere, "rosenbrock": rosenbrock,
+             "ellipsoid": ellipsoid, "rastrigin": rastrigin}
 
 
-def header(title):
-    print(f"\n{title}\n")
-    print("| function | reached | mean | lower quartile | median | upper quartile | worst |")
-    print("| --- | --- | --- | --- | --- | --- | --- |", flush=True)
+@dataclass
+class Problem:
+    """To be maximised on a grid of whole numbers, up to a target."""
+
+    name: str
+    levels: list
+    value: Callable
+    target: float
+    limit: int
+
+    def unit(self, point):
+        return [k / (n - 1) for k, n in zip(point, self.levels)]
+
+
+def functions():
+    def problem(name, function, dimension, minimum, regret, limit):
+        levels = [LEVELS] * dimension
+        value = lambda point: -function([k / (LEVELS - 1) for k in point])
+        return Problem(name, levels, value, -minimum - regret, limit)
+
+    return [problem("branin to 1 %", branin, 2, 0.397887, 3.0773, 200),
+            problem("branin to 0.004", branin, 2, 0.397887, 0.00397887, 200),
+            problem("hartmann6 to 1 %", hartmann6, 6, -3.32237, 0.0332237, 60)]
+
+
+def landscape(file):
+    lines = [line for line in Path(file).read_text().splitlines() if not line.startswith("#")]
+    rows = list(csv.reader(lines))
+    axes = rows[0].index("range_mm")
+    at = lambda row: tuple(float(cell) for cell in row[:axes])
+    steps = [sorted({at(row)[axis] for row in rows[1:]}) for axis in range(axes)]
+    values = {tuple(s.index(v) for s, v in zip(steps, at(row))): float(row[axes]) for row in rows[1:]}
+    return Problem(f"{Path(file).stem} landscape", [len(s) for s in steps], values.__getitem__,
+                   max(values.values()) - SHORTFALL_MM - 1e-9, LANDSCAPE_LIMIT)
+
+
+def optuna_run(make, problem, seed):
+    import optuna
+
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    study = optuna.create_study(direction="maximize", sampler=make(optuna.samplers, seed))
+    for evaluation in range(1, problem.limit + 1):
+        trial = study.ask()
+        point = tuple(trial.suggest_int(f"x{i}", 0, n - 1) for i, n in enumerate(problem.levels))
+        value = problem.value(point)
+        if value >= problem.target:
+            return evaluation
+        study.tell(trial, value)
+    return None
+
+
+def botorch_run(problem, seed):
+    """SingleTaskGP and LogExpectedImprovement with their defaults, after a Sobol start.
+
+    On a small grid the acquisition is maximised over all points not evaluated yet; else over
+    the cube, and the best of its maxima that is new on the grid is taken.
+    """
+    import torch
+    from botorch.acquisition import LogExpectedImprovement
+    from botorch.fit import fit_gpytorch_mll
+    from botorch.models import SingleTaskGP
+    from botorch.optim import optimize_acqf, optimize_acqf_discrete
+    from gpytorch.mlls import ExactMarginalLogLikelihood
+
+    torch.set_num_threads(1)
+    torch.manual_seed(seed)
+    d = len(problem.levels)
+    top = torch.tensor(problem.levels, dtype=torch.double) - 1
+    start = torch.quasirandom.SobolEngine(d, scramble=True, seed=seed).draw(max(5, 2 * d))
+    waiting = [tuple(int(v) for v in row) for row in torch.round(start.double() * top)]
+    small = np.prod(problem.levels) <= 20_000
+    grid = [tuple(p) for p in itertools.product(*map(range, problem.levels))] if small else []
+    bounds = torch.tensor([[0.0] * d, [1.0] * d], dtype=torch.double)
+    points, values = [], []
+    for evaluation in range(1, problem.limit + 1):
+        if waiting:
+            point = waiting.pop(0)
+        else:
+            x = torch.tensor(points, dtype=torch.double) / top
+            y = torch.tensor(values, dtype=torch.double).unsqueeze(-1)
+            model = SingleTaskGP(x, y)
+            fit_gpytorch_mll(ExactMarginalLogLikelihood(model.likelihood, model))
+            acquisition = LogExpectedImprovement(model, best_f=y.max())
+            if small:
+                seen = set(points)
+                unseen = torch.tensor([p for p in grid if p not in seen], dtype=torch.double) / top
+                found, _ = optimize_acqf_discrete(acquisition, q=1, choices=unseen)
+            else:
+                found, promise = optimize_acqf(acquisition, bounds, q=1, num_restarts=10,
+                                               raw_samples=512, return_best_only=False)
+                ranked = found.reshape(-1, d)[promise.reshape(-1).argsort(descending=True)]
+                new = [row for row in ranked
+                       if tuple(int(v) for v in torch.round(row * top)) not in set(points)]
+                found = (new or [ranked[0]])[0]
+            point = tuple(int(v) for v in torch.round(found.reshape(-1) * top))
+        value = problem.value(point)
+        if value >= problem.target:
+            return evaluation
+        points.append(point)
+        values.append(value)
+    return None
+
+
+GRID_METHODS = {
+    "tpe": lambda p, s: optuna_run(lambda samplers, seed: samplers.TPESampler(seed=seed), p, s),
+    "gpsampler": lambda p, s: optuna_run(
+        lambda samplers, seed: samplers.GPSampler(seed=seed, deterministic_objective=True), p, s),
+    "botorch": botorch_run,
+}
 
 
 class Reached(Exception):
     pass
 
 
-def cma_evaluations(f, n, seed):
+def pycma_run(f, n, seed):
     import cma
 
     count = 0
@@ -86,13 +202,16 @@ def cma_evaluations(f, n, seed):
         nonlocal count
         count += 1
         value = f(x)
-        if value < 1e-8:
+        if value < CMA_TARGET:
             raise Reached
         return value
 
-    np.random.seed(seed + 1)
+    # pycma adds 1 to its seed at each restart: with seeds side by side the runs of one
+    # would be, from the second on, those of the next.
+    first = 1 + 1000 * seed
+    np.random.seed(first)
     start = lambda: np.random.uniform(-4, 4, n)
-    options = {"verbose": -9, "seed": seed + 1, "maxfevals": CMA_LIMIT}
+    options = {"verbose": -9, "seed": first, "maxfevals": CMA_LIMIT}
     try:
         cma.fmin2(counted, start, 2, options, restarts=9, bipop=True)
     except Reached:
@@ -100,52 +219,101 @@ def cma_evaluations(f, n, seed):
     return None
 
 
-def run_cma(seeds):
-    import cma
-
-    header(f"pycma {cma.__version__}, BIPOP, evaluations to 1e-8, start uniform in [-4, 4], sigma 2")
-    for f, name in ((sphere, "sphere"), (rosenbrock, "Rosenbrock"),
-                    (ellipsoid, "ellipsoid"), (rastrigin, "Rastrigin")):
-        for n in (2, 5):
-            row(f"{name} {n}-D", [cma_evaluations(f, n, s) for s in range(seeds)])
-
-
-def optuna_evaluations(sampler, f, n, target, limit):
-    import optuna
-
-    study = optuna.create_study(sampler=sampler)
-    for evaluation in range(1, limit + 1):
-        trial = study.ask()
-        u = [trial.suggest_int(f"x{i}", 0, 1000) / 1000 for i in range(n)]
-        value = f(u)
-        if value < target:
-            return evaluation
-        study.tell(trial, value)
-    return None
+def work(methods, problems):
+    """Yields problem, method and what runs a seed."""
+    if "pycma" in methods:
+        for (name, f), n in itertools.product(UNBOUNDED.items(), (2, 5)):
+            yield f"{name} {n}-D to 1e-8", "pycma", lambda s, f=f, n=n: pycma_run(f, n, s)
+    for problem, method in itertools.product(problems, methods):
+        if method in GRID_METHODS:
+            run = GRID_METHODS[method]
+            yield problem.name, method, lambda s, run=run, problem=problem: run(problem, s)
 
 
-def run_optuna(seeds):
-    import optuna
+def run(arguments):
+    need = {"pycma": "cma", "tpe": "optuna", "gpsampler": "optuna", "botorch": "botorch"}
+    for package in {need[method] for method in arguments.methods}:
+        found = version(package)
+        assert found == PINNED[package], f"{package} {PINNED[package]} is wanted, not {found}"
+    problems = functions() + [landscape(file) for file in arguments.landscape]
+    new = not Path(arguments.csv).exists()
+    with open(arguments.csv, "a", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        if new:
+            out.writerow(["problem", "method", "seed", "evaluations"])
+        for name, method, of_seed in work(arguments.methods, problems):
+            if arguments.only and arguments.only not in name:
+                continue
+            begun = time.process_time()
+            runs = [of_seed(seed) for seed in range(arguments.seeds)]
+            out.writerows([name, method, s, "" if r is None else r] for s, r in enumerate(runs))
+            file.flush()
+            done = sum(r is not None for r in runs)
+            print(f"{name}, {method}: {done}/{len(runs)}, median {median(runs)}, "
+                  f"{time.process_time() - begun:.0f} s of processor", flush=True)
 
-    optuna.logging.set_verbosity(optuna.logging.ERROR)
-    samplers = {"TPE": lambda s: optuna.samplers.TPESampler(seed=s)}
-    try:
-        import torch  # noqa: F401  (GPSampler needs it)
-        import scipy  # noqa: F401
-        samplers["GPSampler"] = lambda s: optuna.samplers.GPSampler(seed=s)
-    except ImportError:
-        print("GPSampler left out: torch or scipy is not installed", file=sys.stderr)
-    header(f"Optuna {optuna.__version__}, 1001 levels per axis, "
-           "evaluations to 1 % of the range (limit 200, Hartmann-6 60)")
-    for name, f, n, target, limit in (("Branin", branin, 2, 0.397887 + 3.0773, 200),
-                               ("Branin to 0.004", branin, 2, 0.397887 + 0.00397887, 200),
-                               ("Hartmann-6", hartmann6, 6, -3.32237 + 0.0332237, 60)):
-        for sampler, make in samplers.items():
-            row(f"{name}, {sampler}",
-                [optuna_evaluations(make(s), f, n, target, limit) for s in range(seeds)])
+
+def median(runs):
+    """The upper of the two middle ones; a failed run is worse than all others."""
+    return sorted(float("inf") if r is None else r for r in runs)[len(runs) // 2]
+
+
+def mean(runs):
+    return float("inf") if None in runs else statistics.fmean(runs)
+
+
+def interval(ours, theirs, of):
+    """Of the ratio, 95 %, by 2000 bootstrap samples of the runs of both."""
+    draw = random.Random(0)
+    ratios = sorted(ratio(of(draw.choices(ours, k=len(ours))), of(draw.choices(theirs, k=len(theirs))))
+                    for _ in range(2000))
+    return ratios[50], ratios[1949]
+
+
+def ratio(ours, theirs):
+    if theirs == float("inf"):
+        return 0.0 if ours < theirs else float("nan")
+    return ours / theirs
+
+
+def ratios(arguments):
+    runs = {}
+    for name in arguments.csv:
+        with open(name, newline="") as file:
+            for row in csv.DictReader(file):
+                cell = int(row["evaluations"]) if row["evaluations"] else None
+                runs.setdefault(row["problem"], {}).setdefault(row["method"], []).append(cell)
+    show = lambda v: "-" if v == float("inf") else f"{v:.0f}"
+    print("| problem | ours | peers, best first | ours / best peer (95 % interval) |")
+    print("| --- | --- | --- | --- |")
+    for problem, methods in runs.items():
+        ours_name, of = ("cma-es", mean) if "pycma" in methods else ("gp", median)
+        peers = {m: r for m, r in methods.items() if m == "pycma" or m in GRID_METHODS}
+        if not peers or ours_name not in methods:
+            continue
+        reached = lambda r: "" if None not in r else f" ({sum(v is not None for v in r)}/{len(r)})"
+        text = lambda m, r: f"{m} {show(of(r))}{reached(r)}"
+        ours = methods[ours_name]
+        best_first = sorted(peers.items(), key=lambda p: (of(p[1]), p[1].count(None) / len(p[1])))
+        best = best_first[0][1]
+        low, high = interval(ours, best, of)
+        print(f"| {problem} | {text(ours_name, ours)} | "
+              f"{', '.join(text(m, r) for m, r in best_first)} | "
+              f"{ratio(of(ours), of(best)):.2f} ({low:.2f} to {high:.2f}) |")
 
 
 if __name__ == "__main__":
-    part = sys.argv[1] if len(sys.argv) > 1 else "cma"
-    number = int(sys.argv[2]) if len(sys.argv) > 2 else 20
-    {"cma": run_cma, "optuna": run_optuna}[part](number)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    commands = parser.add_subparsers(required=True)
+    command = commands.add_parser("run")
+    command.add_argument("methods", nargs="+", choices=["pycma", *GRID_METHODS])
+    command.add_argument("--csv", required=True)
+    command.add_argument("--seeds", type=int, default=20)
+    command.add_argument("--landscape", nargs="*", default=[])
+    command.add_argument("--only", help="problems with this in their name")
+    command.set_defaults(run=run)
+    command = commands.add_parser("ratios")
+    command.add_argument("csv", nargs="+")
+    command.set_defaults(run=ratios)
+    arguments = parser.parse_args()
+    arguments.run(arguments)

@@ -31,6 +31,7 @@ pub mod shipped;
 pub mod space;
 pub mod stream;
 pub mod study;
+pub mod suite;
 pub mod surrogate;
 pub mod task;
 pub mod tolerance;

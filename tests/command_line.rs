@@ -308,3 +308,30 @@ fn a_co_design_study_names_its_parameters_everywhere() {
     studies.resume("s").succeeds();
     assert_eq!(studies.journal("s"), journal);
 }
+
+#[test]
+fn the_optimizers_are_counted_on_functions_and_recorded_landscapes() {
+    let studies = Studies::new();
+    let (landscape, runs) = (studies.dir("hill.csv"), studies.dir("runs.csv"));
+    let rows: String = (0..8)
+        .flat_map(|a| (0..9).map(move |b| (a, b)))
+        .map(|(a, b)| format!("{a},{b},{}.0,x\n", 20 - (a - 6i32).abs() - (b - 2i32).abs()))
+        .collect();
+    fs::write(&landscape, format!("a,b,range_mm,more\n{rows}")).unwrap();
+    let (landscape, runs) = (landscape.to_str().unwrap(), runs.to_str().unwrap());
+    let bench = ["bench", "optimizers", "--seeds", "3", "--landscape", landscape, "--csv", runs];
+    let table = optimize(&[&bench[..], &["--optimizers", "gp,grid"]].concat());
+    let rows: Vec<&str> = table.succeeds().lines().skip(2).collect();
+    assert!(rows[0].starts_with("| hill landscape | gp | 3/3 |"), "{rows:?}");
+    assert!(rows[1].starts_with("| hill landscape | grid | 3/3 |") && rows.len() == 2);
+    let runs = fs::read_to_string(runs).unwrap();
+    assert_eq!(runs.lines().count(), 1 + 2 * 3);
+    // Without a landscape all functions are meant, with one none, and both can be named.
+    let named =
+        optimize(&[&bench[..], &["--functions", "sphere", "--optimizers", "cma-es"]].concat());
+    assert!(named.succeeds().contains("| sphere 5-D to 1e-8 | cma-es | 3/3 |"));
+    optimize(&["bench", "optimizers", "--functions", "cube"]).fails(2, &["hartmann6"]);
+    optimize(&["bench", "optimizers", "--landscape", "no.csv"]).fails(2, &["no.csv", "landscape"]);
+    fs::write(landscape, "a,range_mm\n1,1\n1,1\n").unwrap();
+    optimize(&bench).fails(2, &["hill.csv", "2 rows for a grid of 1"]);
+}

@@ -1,8 +1,9 @@
 //! `optimize bench`: how fast this machine simulates.
 
+use super::bench_optimizers;
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
 use super::{Failure, print, print_json};
-use clap::Args;
+use clap::{Args, Subcommand};
 use finger_opt::finger::Finger;
 use finger_opt::robot::Robot;
 use finger_opt::shipped::{self, ROBOTS, TASKS};
@@ -25,7 +26,10 @@ const ASSEMBLY: f64 = 45.0;
 /// One finger is evaluated on every task, on as many threads as a study would
 /// use; the time of a study is estimated from it. Close other programs first.
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct Arguments {
+    #[command(subcommand)]
+    other: Option<Other>,
     /// Robot: see `optimize tasks`, or the path of a robot file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     robot: String,
@@ -38,6 +42,12 @@ pub struct Arguments {
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
+}
+
+/// What else can be measured.
+#[derive(Debug, Subcommand)]
+enum Other {
+    Optimizers(bench_optimizers::Arguments),
 }
 
 /// What one task took.
@@ -56,6 +66,9 @@ impl Row {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(Other::Optimizers(arguments)) = &arguments.other {
+        return bench_optimizers::run(arguments);
+    }
     let source = shipped::resolve("robot", ROBOTS, &arguments.robot).map_err(Failure::input)?;
     let robot = Robot::parse(&source.text, &source.file).map_err(Failure::input)?;
     let rows = TASKS

@@ -2,6 +2,7 @@
 
 pub mod ask_tell;
 pub mod bench;
+mod bench_optimizers;
 pub mod check;
 pub mod compare;
 pub mod evaluate;

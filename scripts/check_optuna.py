@@ -1,35 +1,37 @@
-"""Checks that Optuna itself reads one of our journals as it is.
+#!/usr/bin/env python3
+"""Checks that Optuna and its dashboard read one of our journals as it is.
 
-    python3 -m venv /tmp/optuna && /tmp/optuna/bin/pip install optuna==5.0.0
-    /tmp/optuna/bin/python scripts/check_optuna.py results/usb-gp-seed0
+    python3 -m venv venv && venv/bin/pip install optuna==5.0.0 optuna-dashboard==0.21.0
+    venv/bin/python scripts/check_optuna.py results/usb-gp-seed0
 
-Compares what Optuna loads with the lines of the journal, and exits with 1 at
-the first difference.
+Compares what `optuna.load_study` returns, and what the dashboard answers on the
+loopback, with the lines of the journal; ends with an error at the first difference.
+The journal is not changed.
 """
-
 import json
+import socket
+import subprocess
 import sys
+import time
+import urllib.request
+from importlib.metadata import version
 from pathlib import Path
 
 import optuna
 from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 
-PINNED = "5.0.0"
+PINNED = {"optuna": "5.0.0", "optuna-dashboard": "0.21.0"}
+DASHBOARD_S = 60
+STATES = ["Running", "Complete", "Pruned", "Fail", "Waiting"]
 
 
-def main(folder: str) -> None:
-    assert optuna.__version__ == PINNED, f"made for optuna {PINNED}, not {optuna.__version__}"
-    path = Path(folder) / "journal.jsonl"
-    lines = [json.loads(line) for line in path.read_text().splitlines()]
-    create, attributes, trials = lines[0], lines[1], lines[2:]
-
+def check_library(path, create, attributes, trials):
     storage = JournalStorage(JournalFileBackend(str(path)))
     study = optuna.load_study(study_name=create["study_name"], storage=storage)
-    assert study.directions == [optuna.study.StudyDirection.MAXIMIZE]
+    assert [int(direction) for direction in study.directions] == create["directions"]
     assert study.user_attrs == attributes["user_attr"]
     assert len(study.trials) == len(trials), (len(study.trials), len(trials))
-
     for ours, theirs in zip(trials, study.trials):
         assert theirs.number == ours["evaluation"]
         assert int(theirs.state) == ours["state"]
@@ -39,14 +41,63 @@ def main(folder: str) -> None:
         assert theirs.datetime_complete >= theirs.datetime_start
         for key, value in theirs.params.items():
             assert theirs.distributions[key]._contains(value), (key, value)
+    if len(create["directions"]) == 1:
+        values = [line["values"][0] for line in trials if line["values"]]
+        assert not values or study.best_value == max(values)
+    return sum(trial.state == optuna.trial.TrialState.COMPLETE for trial in study.trials)
 
-    values = [line["values"][0] for line in trials if line["values"]]
-    if values:
-        assert study.best_value == max(values)
-    # A sampler of Optuna's can go on from here: it accepts the trials as history.
-    completed = sum(trial.state == optuna.trial.TrialState.COMPLETE for trial in study.trials)
-    best = study.best_trial if values else None
-    print(f"optuna {PINNED} reads {path}: {len(trials)} trials, {completed} complete, best {best and best.value} at {best and best.params}")
+
+def get(port, path):
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=DASHBOARD_S) as answer:
+        return json.load(answer)
+
+
+def wait_for(port, server):
+    end = time.monotonic() + DASHBOARD_S
+    while time.monotonic() < end:
+        assert server.poll() is None, "the dashboard ended by itself"
+        try:
+            return get(port, "/api/studies")
+        except OSError:
+            time.sleep(0.2)
+    raise TimeoutError(f"the dashboard does not answer within {DASHBOARD_S} s")
+
+
+def check_dashboard(path, create, trials):
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    command = [str(Path(sys.executable).with_name("optuna-dashboard")), str(path)]
+    command += ["--host", "127.0.0.1", "--port", str(port)]
+    server = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        studies = wait_for(port, server)["study_summaries"]
+        assert [study["study_name"] for study in studies] == [create["study_name"]]
+        shown = get(port, f"/api/studies/{studies[0]['study_id']}?after=0")["trials"]
+    finally:
+        server.terminate()
+        server.wait()
+    assert len(shown) == len(trials), (len(shown), len(trials))
+    for ours, theirs in zip(trials, shown):
+        assert theirs["number"] == ours["evaluation"]
+        assert theirs["state"] == STATES[ours["state"]], theirs["state"]
+        assert theirs.get("values") == ours["values"], (theirs.get("values"), ours["values"])
+        params = {p["name"]: p["param_internal_value"] for p in theirs["params"]}
+        assert params == ours["params"], (params, ours["params"])
+
+
+def main(folder):
+    for package, pinned in PINNED.items():
+        assert version(package) == pinned, f"{package} {pinned} is wanted, not {version(package)}"
+    path = Path(folder) / "journal.jsonl"
+    before = path.read_bytes()
+    lines = [json.loads(line) for line in before.splitlines()]
+    create, attributes, trials = lines[0], lines[1], lines[2:]
+    complete = check_library(path, create, attributes, trials)
+    print(f"optuna reads {path}: {len(trials)} trials, {complete} complete")
+    check_dashboard(path, create, trials)
+    print(f"optuna-dashboard shows {path}: {len(trials)} trials")
+    assert path.read_bytes() == before, "the journal was changed"
 
 
 if __name__ == "__main__":

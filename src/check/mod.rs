@@ -15,13 +15,15 @@
 //! | T11 | static deflection of the arm's TCP under its servos |
 //!
 //! (T9 compares two engines on trials.) Every expected value is computed from
-//! its formula, which the check's file gives with its source.
+//! its formula, which the check's file gives with its source. [`convergence`] asks
+//! what no formula answers: whether the windows depend on the step.
 
 use crate::engine::{Diverged, Engine};
 
 pub mod arm;
 mod build;
 pub mod chamfer;
+pub mod convergence;
 pub mod edge;
 pub mod incline;
 pub mod jamming;

@@ -1,6 +1,7 @@
 //! `optimize evaluate`: the tolerance window of one finger.
 
 use super::finger::FingerArguments;
+use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
 use super::summary::{self, evaluation_json, merge};
 use super::{Failure, print, print_json};
@@ -19,6 +20,8 @@ pub struct Arguments {
     /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
     #[arg(long)]
     walk: bool,
+    #[command(flatten)]
+    repeat: RepeatArguments,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -33,16 +36,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rig = setup.rig(&chosen.task).map_err(Failure::input)?;
     let evaluation = tolerance::evaluate(&*rig, &chosen.finger, search);
     let wall_s = clock.elapsed().as_secs_f64();
+    let bands = arguments.repeat.bands(&setup, &chosen, &evaluation.window)?;
     if arguments.json {
         let mut fields = chosen.json(&setup, &arguments.finger);
         merge(&mut fields, evaluation_json(&evaluation));
         merge(&mut fields, json!({"wall_s": wall_s}));
+        if let Some(bands) = bands {
+            merge(&mut fields, json!({"bands": repeat::bands_json(&bands)}));
+        }
         return print_json(&fields);
     }
     let counts = evaluation.failure_counts;
     print(&format!(
         "task          {}\n{}\nrange         {:.1} mm\n{}\nfailures      {} of class 1, {} of 2, {} of 3, \
-         {} of 4, {} diverged in {} trials\npeak force    {:.1} N\ntime          {wall_s:.1} s\n",
+         {} of 4, {} diverged in {} trials\npeak force    {:.1} N\n{}time          {wall_s:.1} s\n",
         chosen.task.name,
         chosen.text(),
         evaluation.window.range_mm(),
@@ -54,5 +61,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         evaluation.diverged,
         evaluation.trials,
         evaluation.peak_force_n,
+        bands.as_ref().map(repeat::bands_text).unwrap_or_default(),
     ))
 }

@@ -9,6 +9,7 @@ pub mod evaluate;
 mod failure;
 mod finger;
 mod progress;
+mod repeat;
 pub mod report;
 pub mod resume;
 mod session;

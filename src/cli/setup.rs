@@ -168,6 +168,11 @@ impl Setup {
     pub fn rig(&self, task: &Task) -> Result<Box<dyn Rig>, RigError> {
         rig(self.engine, task, &self.robot)
     }
+
+    /// The same with the engine's step times `factor`.
+    pub fn rig_at(&self, task: &Task, factor: f64) -> Result<Box<dyn Rig>, RigError> {
+        rig_at(self.engine, task, &self.robot, factor)
+    }
 }
 
 /// One of the inputs kept in a study's folder.
@@ -188,9 +193,24 @@ pub fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Sourc
     shipped::resolve(kind, shipped, name).map_err(Failure::input)
 }
 
+/// The robot of that name, or of the file at that path.
+pub fn robot(name: &str) -> Result<Robot, Failure> {
+    let source = find("robot", ROBOTS, name)?;
+    Robot::parse(&source.text, &source.file).map_err(Failure::input)
+}
+
 /// Where trials of one task with one robot are run, if the three go together.
 pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Result<Box<dyn Rig>, RigError> {
-    if let Some(engine) = engine.build(1.0) {
+    rig_at(engine, task, robot, 1.0)
+}
+
+fn rig_at(
+    engine: EngineKind,
+    task: &Task,
+    robot: &Robot,
+    factor: f64,
+) -> Result<Box<dyn Rig>, RigError> {
+    if let Some(engine) = engine.build(factor) {
         return Ok(Box::new(EngineRig::new(task.clone(), robot, engine)?));
     }
     let delay = std::env::var(FAKE_DELAY).ok().and_then(|text| text.parse().ok());

@@ -1,6 +1,7 @@
 //! `optimize trial`: one simulated insertion.
 
 use super::finger::FingerArguments;
+use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
 use super::summary::{failure, merge, outcome_word};
 use super::{Failure, print, print_json};
@@ -25,6 +26,8 @@ pub struct Arguments {
     #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0,
           value_parser = offset)]
     offset_mm: f64,
+    #[command(flatten)]
+    repeat: RepeatArguments,
     /// Draw plug, fingertips and socket at the end of each phase
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<std::path::PathBuf>,
@@ -42,6 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(file) = &arguments.svg {
         write_file(file, &picture::svg(&chosen.task, &trial))?;
     }
+    let repeats = arguments.repeat.outcomes(&setup, &chosen, arguments.offset_mm * MM)?;
     if arguments.json {
         let mut fields = chosen.json(&setup, &arguments.finger);
         merge(
@@ -55,12 +59,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "peak_force_n": trial.peak_force_n,
                 "slip_mm": trial.slip_mm,
                 "simulated_s": trial.simulated_s,
+                "retried_at_half_step": trial.retried,
                 "phases": trial.phases,
             }),
         );
+        if let Some(counts) = repeats {
+            merge(&mut fields, json!({ "repeats": counts }));
+        }
         return print_json(&fields);
     }
-    print(&format!("{}\n{}", chosen.text(), text(&trial)))
+    let repeats = repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
+    print(&format!("{}\n{}{repeats}", chosen.text(), text(&trial)))
 }
 
 fn text(trial: &Trial) -> String {

@@ -6,7 +6,7 @@ use clap::Args;
 use finger_opt::evaluation::Window;
 use finger_opt::report::validation;
 use finger_opt::robot::Robot;
-use finger_opt::shipped::{ROBOTS, TASKS};
+use finger_opt::shipped::TASKS;
 use finger_opt::study::write_file;
 use finger_opt::task::Task;
 use finger_opt::tolerance::{self, Search};
@@ -44,9 +44,8 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let tasks = arguments.tasks()?;
-    let robot = setup::find("robot", ROBOTS, &arguments.robot)?;
-    let robot = Robot::parse(&robot.text, &robot.file).map_err(Failure::input)?;
+    let tasks = tasks(&arguments.task)?;
+    let robot = setup::robot(&arguments.robot)?;
     let tables = arguments.measure(&tasks, &robot)?;
     write(&arguments.out, &tables)?;
     if arguments.json {
@@ -66,15 +65,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     ))
 }
 
-impl Arguments {
-    fn tasks(&self) -> Result<Vec<Task>, Failure> {
-        let names = match self.task.as_str() {
-            "all" => TASKS.iter().map(|shipped| shipped.name).collect(),
-            name => vec![name],
-        };
-        names.into_iter().map(task).collect()
-    }
+/// The task of that name, or `all` of them; only such of which something is published.
+pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
+    let names = match name {
+        "all" => TASKS.iter().map(|shipped| shipped.name).collect(),
+        name => vec![name],
+    };
+    names.into_iter().map(task).collect()
+}
 
+impl Arguments {
     /// All windows, in parallel over tasks and designs; collected in order, so
     /// the number of threads changes nothing.
     fn measure(&self, tasks: &[Task], robot: &Robot) -> Result<Vec<TaskTable>, Failure> {

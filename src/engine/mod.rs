@@ -18,6 +18,14 @@ pub trait Engine: Send + Sync {
 
     /// A world at time zero, of a scene that it [supports](Engine::supports).
     fn world(&self, scene: &Scene) -> Box<dyn World>;
+
+    /// The same engine with half the step, for what diverged.
+    fn halved(&self) -> Box<dyn Engine>;
+
+    /// The same engine, finer in one way each, and what that way is: for convergence studies.
+    fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
+        vec![("half the step", self.halved())]
+    }
 }
 
 /// An engine lacks what a scene needs.

@@ -73,6 +73,20 @@ impl Engine for Rapier {
         }
         Box::new(RapierWorld::new(scene, &self.settings))
     }
+
+    fn halved(&self) -> Box<dyn Engine> {
+        let step_s = 0.5 * self.settings.step_s;
+        Box::new(Rapier { settings: Settings { step_s, ..self.settings } })
+    }
+
+    fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
+        let substeps = 2 * self.settings.substeps;
+        let settings = Settings { substeps, ..self.settings };
+        vec![
+            ("half the step", self.halved()),
+            ("twice the substeps", Box::new(Rapier { settings })),
+        ]
+    }
 }
 
 struct RapierWorld {

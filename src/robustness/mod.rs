@@ -2,6 +2,7 @@
 //! says: trials and windows under drawn errors.
 
 mod range;
+pub mod repeat;
 mod success;
 
 use crate::evaluation::Evaluation;

@@ -113,6 +113,7 @@ impl Grasped for Stopped {
             slip_mm: f64::NAN,
             phases: Vec::new(),
             simulated_s: 0.0,
+            retried: false,
         }
     }
 }

@@ -68,6 +68,7 @@ impl Grasped for FakeGrasp {
             slip_mm: 0.1,
             phases: Vec::new(),
             simulated_s: 1.0,
+            retried: false,
         }
     }
 }

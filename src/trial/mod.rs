@@ -5,6 +5,7 @@ use crate::finger::Finger;
 use crate::scene::Pose;
 use serde::Serialize;
 
+mod attempt;
 pub mod cell;
 pub mod classify;
 pub mod conditions;
@@ -61,6 +62,8 @@ pub struct Trial {
     pub phases: Vec<PhaseEnd>,
     /// Simulated time, s.
     pub simulated_s: f64,
+    /// Whether it diverged at first and was run again at half the step.
+    pub retried: bool,
 }
 
 /// A place where trials are run: one task, one robot, one engine.
@@ -76,7 +79,7 @@ pub trait Rig: Send + Sync {
 }
 
 /// A part held and tilted, ready for a trial at any offset.
-pub trait Grasped: Sync {
+pub trait Grasped: Send + Sync {
     /// One trial with the start shifted by `offset` metres along y.
     fn trial(&self, offset: f64) -> Trial;
 }

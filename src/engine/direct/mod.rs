@@ -78,4 +78,9 @@ impl Engine for Direct {
     fn world(&self, scene: &Scene) -> Box<dyn World> {
         Box::new(world::DirectWorld::new(scene, &self.settings))
     }
+
+    fn halved(&self) -> Box<dyn Engine> {
+        let step_s = 0.5 * self.settings.step_s;
+        Box::new(Direct { settings: Settings { step_s, ..self.settings } })
+    }
 }

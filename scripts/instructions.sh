@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Counts the instructions of one trial and compares them with the committed count: a number
+# that is the same on a busy machine, unlike a time.
+#
+#     scripts/instructions.sh          exit 1 if it is off by more than the margin
+#     scripts/instructions.sh --renew  writes the count of this compiler
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+committed=results/reference/instructions.txt
+# Percent. Linking order and small changes of the compiler move the count by about 1 %.
+margin=5
+# The program that `cargo test` has built.
+cargo build --quiet
+program=${CARGO_TARGET_DIR:-target}/debug/optimize
+out=$(mktemp)
+trap 'rm -f "$out"' EXIT
+
+if ! command -v valgrind > /dev/null; then
+    echo "valgrind is missing: install the package valgrind" >&2
+    exit 1
+fi
+if ! valgrind --tool=callgrind --callgrind-out-file=/dev/null "$program" trial --task usb \
+    --stiffness-compliance 2.6 --stiffness-assembly 45 > "$out" 2>&1; then
+    cat "$out" >&2
+    exit 1
+fi
+count=$(awk '/Collected/ { print $NF }' "$out")
+compiler=$(rustc --version)
+
+if [ "${1:-}" = --renew ]; then
+    printf 'instructions %s\ncompiler %s\n' "$count" "$compiler" > "$committed"
+    cat "$committed"
+    exit
+fi
+expected=$(awk '/^instructions/ { print $2 }' "$committed")
+change=$(awk -v a="$count" -v b="$expected" 'BEGIN { printf "%+.2f", 100 * (a / b - 1) }')
+echo "one usb trial: $count instructions, committed $expected, $change % (margin $margin %)"
+echo "compiled by $compiler; the committed count by $(sed -n 's/^compiler //p' "$committed")"
+if awk -v c="$change" -v m="$margin" 'BEGIN { exit !(c > m || c < -m) }'; then
+    echo "the trial costs another number of instructions than committed; if that is meant," \
+        "run scripts/instructions.sh --renew and say why in the commit" >&2
+    exit 1
+fi

@@ -11,8 +11,13 @@ trap 'rm -rf "$studies"' EXIT
 
 "$optimize" stiffness --svg "$reference/stiffness.svg" > "$reference/stiffness.txt"
 "$optimize" check > "$reference/check.txt"
+"$optimize" check --convergence > "$reference/convergence.txt"
 "$optimize" trial --task usb --density 20 --direction 10 --svg "$reference/trial-usb.svg" \
     > "$reference/trial-usb.txt"
+for task in ket8 ket12 rj45; do
+    "$optimize" trial --task "$task" --stiffness-compliance 2.6 --stiffness-assembly 45 \
+        --svg "$reference/trial-$task.svg" > /dev/null
+done
 for task in usb ket8 ket12 rj45; do
     mkdir -p "$reference/$task"
     /usr/bin/env time -f "%e s wall, %U s processor, %M KiB" -o "$reference/$task/time.txt" \

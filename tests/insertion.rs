@@ -179,6 +179,30 @@ fn a_stiffer_finger_keeps_the_plug_tilted_and_tolerates_less() {
     assert!(range(&soft) > range(&stiff) + 2.0, "{} and {} mm", range(&soft), range(&stiff));
 }
 
+/// Why ket8 loses range with infill direction, which lowers the assembly stiffness: a
+/// softer spring presses the key less deep into its slot, so the side move leaves it more
+/// tilted at the wall, and the push tips it over instead of in.
+#[test]
+fn a_finger_soft_in_assembly_presses_the_key_less_deep_and_tolerates_less() {
+    let rig = direct("ket8");
+    let (soft, stiff) = (finger(2.6, 25.0), finger(2.6, 75.0));
+    let trials = |offset_mm: f64| [&soft, &stiff].map(|finger| trial(&rig, finger, offset_mm));
+    let side = |trial: &Trial| {
+        let end = trial.phases.iter().find(|phase| phase.name == "side").unwrap();
+        (-end.tip_mm[2], end.tilt_deg)
+    };
+    let inside = trials(1.5);
+    assert!(inside.iter().all(|trial| trial.outcome == Outcome::Inserted));
+    let [soft, stiff] = trials(2.2);
+    for [soft, stiff] in [[&inside[0], &inside[1]], [&soft, &stiff]].map(|pair| pair.map(side)) {
+        assert!(soft.0 < stiff.0 - 0.02, "{} and {} mm deep", soft.0, stiff.0);
+        assert!(soft.1 > stiff.1, "{} and {} deg", soft.1, stiff.1);
+    }
+    assert_eq!(soft.outcome, Outcome::Failed(FailureClass::Jammed));
+    assert!(soft.tilt_deg > 10.0, "{} deg", soft.tilt_deg);
+    assert_eq!(stiff.outcome, Outcome::Inserted);
+}
+
 #[test]
 fn yaw_turns_the_socket_about_its_middle_and_too_much_of_it_keeps_a_key_out() {
     let rig = direct("ket8");

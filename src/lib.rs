@@ -20,6 +20,7 @@ pub mod engine;
 pub mod evaluation;
 pub mod finger;
 pub mod input;
+pub mod mjcf;
 pub mod objective;
 pub mod optimizer;
 pub mod pareto;

@@ -34,6 +34,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Check(arguments)) => cli::check::run(&arguments),
         Some(Command::Validate(arguments)) => cli::validate::run(&arguments),
         Some(Command::Bench(arguments)) => cli::bench::run(&arguments),
+        Some(Command::Export(arguments)) => cli::export::run(&arguments),
         Some(Command::AskTell(arguments)) => cli::ask_tell::run(&arguments),
         Some(Command::Tasks(arguments)) => cli::tasks::run(&arguments),
     }

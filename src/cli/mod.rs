@@ -6,6 +6,7 @@ mod bench_optimizers;
 pub mod check;
 pub mod compare;
 pub mod evaluate;
+pub mod export;
 mod failure;
 mod finger;
 mod progress;
@@ -92,6 +93,7 @@ pub enum Command {
     Check(check::Arguments),
     Validate(validate::Arguments),
     Bench(bench::Arguments),
+    Export(export::Arguments),
     /// Optimize anything: JSON lines on standard input and output
     AskTell(ask_tell::Arguments),
     /// List tasks, spaces and robots

@@ -6,6 +6,8 @@ use clap::ValueEnum;
 use finger_opt::codesign::Template;
 use finger_opt::engine::Engine;
 use finger_opt::engine::direct::Direct;
+#[cfg(feature = "mujoco")]
+use finger_opt::engine::mujoco::Mujoco;
 use finger_opt::engine::rapier::Rapier;
 use finger_opt::optimizer::{self, Grid, Optimizer, Polished};
 use finger_opt::robot::Robot;
@@ -29,6 +31,9 @@ pub const DEFAULT_ENGINE: &str = "direct";
 pub const DEFAULT_SPACE: &str = "infill";
 /// The contact engine's version, as pinned in Cargo.toml.
 const RAPIER_VERSION: &str = "0.36.1";
+/// MuJoCo's version, as pinned in Cargo.toml and scripts/mujoco.sh.
+#[cfg(feature = "mujoco")]
+const MUJOCO_VERSION: &str = "3.17.0";
 /// Microseconds each trial of the fake engine takes, for tests that interrupt studies.
 const FAKE_DELAY: &str = "FINGER_OPT_FAKE_DELAY_US";
 
@@ -39,6 +44,9 @@ pub enum EngineKind {
     Rapier,
     /// Implicit stepper made for sprung fingers and rigid contacts
     Direct,
+    /// MuJoCo 3.17.0, as a second opinion
+    #[cfg(feature = "mujoco")]
+    Mujoco,
     /// A closed formula, for tests
     #[value(hide = true)]
     Fake,
@@ -50,6 +58,8 @@ impl EngineKind {
         match self {
             EngineKind::Rapier => "rapier",
             EngineKind::Direct => "direct",
+            #[cfg(feature = "mujoco")]
+            EngineKind::Mujoco => "mujoco",
             EngineKind::Fake => "fake",
         }
     }
@@ -67,6 +77,12 @@ impl EngineKind {
                 engine.settings.step_s *= factor;
                 Some(Box::new(engine))
             }
+            #[cfg(feature = "mujoco")]
+            EngineKind::Mujoco => {
+                let mut engine = Mujoco::default();
+                engine.settings.step_s *= factor;
+                Some(Box::new(engine))
+            }
             EngineKind::Fake => None,
         }
     }
@@ -76,6 +92,8 @@ impl EngineKind {
         match self {
             EngineKind::Rapier => format!("{:?}", Rapier::default()),
             EngineKind::Direct => format!("{:?}", Direct::default()),
+            #[cfg(feature = "mujoco")]
+            EngineKind::Mujoco => format!("{:?}", Mujoco::default()),
             EngineKind::Fake => self.name().to_owned(),
         }
     }
@@ -84,6 +102,8 @@ impl EngineKind {
     pub fn versions(self) -> Versions {
         let engine = match self {
             EngineKind::Rapier | EngineKind::Direct => RAPIER_VERSION,
+            #[cfg(feature = "mujoco")]
+            EngineKind::Mujoco => MUJOCO_VERSION,
             EngineKind::Fake => "1",
         };
         Versions { program: env!("CARGO_PKG_VERSION").to_owned(), engine: engine.to_owned() }

@@ -4,6 +4,8 @@ use crate::scene::{Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Sp
 use nalgebra::Vector3;
 
 pub mod direct;
+#[cfg(feature = "mujoco")]
+pub mod mujoco;
 pub mod rapier;
 
 /// Builds worlds from scenes.

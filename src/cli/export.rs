@@ -1,0 +1,53 @@
+//! `optimize export`: the scene of a trial for other programs.
+
+use super::Failure;
+use super::finger::FingerArguments;
+use super::setup::{Setup, SetupArguments};
+use clap::{Args, Subcommand};
+use finger_opt::mjcf::{self, Settings};
+use finger_opt::study::write_file;
+use finger_opt::trial::cell;
+use std::path::PathBuf;
+
+/// Write the scene of a trial for other programs
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    format: Format,
+}
+
+#[derive(Debug, Subcommand)]
+enum Format {
+    Mjcf(MjcfArguments),
+}
+
+/// As MJCF, the model format of MuJoCo and its viewer
+///
+/// The part stands at its pick-up place and the jaws are open. In the viewer the
+/// sliders move the robot's command and close the jaws. Needs no MuJoCo.
+#[derive(Debug, Args)]
+#[command(mut_arg("engine", |engine| engine.hide(true)))]
+struct MjcfArguments {
+    #[command(flatten)]
+    setup: SetupArguments,
+    #[command(flatten)]
+    finger: FingerArguments,
+    /// File to write
+    #[arg(long, value_name = "FILE.xml")]
+    out: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Format::Mjcf(arguments) = &arguments.format;
+    let setup = Setup::from_arguments(&arguments.setup)?;
+    let chosen = arguments.finger.choose(&setup)?;
+    let task = &chosen.task;
+    let mounted = setup.robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
+    let scene = cell::build(task, &mounted, &chosen.finger).scene;
+    let text = mjcf::write(&scene, &task.name, &Settings::default()).map_err(|error| {
+        Failure::usage(format!("{error}; --robot servo and --robot rigid need none of it"))
+    })?;
+    write_file(&arguments.out, &text)?;
+    Ok(())
+}

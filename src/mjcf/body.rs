@@ -1,0 +1,160 @@
+//! The tree of bodies with their joints and geoms.
+
+use super::xml::Element;
+use super::{AXES, HEAVY, axis_name, driven_axis_name, geom_names, mesh_name};
+use crate::scene::{Axis, Body, BodyId, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Springs};
+use nalgebra::{Point3, Vector3};
+
+/// Colours of the bodies in turn, red, green, blue; fixed ones are see-through.
+const COLOURS: [[f64; 3]; 6] = [
+    [0.30, 0.45, 0.69],
+    [0.87, 0.52, 0.32],
+    [0.33, 0.66, 0.41],
+    [0.77, 0.31, 0.32],
+    [0.51, 0.45, 0.70],
+    [0.55, 0.55, 0.55],
+];
+/// Opacity of fixed bodies.
+const SEE_THROUGH: f64 = 0.5;
+
+/// All bodies, those on joints inside the ones that carry them.
+pub(super) fn world(scene: &Scene) -> Element {
+    let names = geom_names(scene);
+    let is_root = |body: &usize| !scene.joints.iter().any(|joint| joint.child.0 == *body);
+    let roots = (0..scene.bodies.len()).filter(is_root);
+    let light =
+        Element::new("light").numbers("pos", [0.1, -0.2, 0.5]).numbers("dir", [-0.2, 0.4, -1.0]);
+    let list = roots.map(|body| {
+        let placed = placed(element(scene, body), &scene.bodies[body].pose);
+        let rooted = match scene.bodies[body].motion {
+            // Movable, since the trial shifts the socket and takes the stand away.
+            Motion::Fixed => placed.with("mocap", "true"),
+            Motion::Driven => placed.holding(driven_joints(&scene.bodies[body])),
+            _ => placed.holding([Element::new("freejoint")]),
+        };
+        rooted.holding(inside(scene, body, &names))
+    });
+    Element::new("worldbody").holding([light]).holding(list)
+}
+
+/// What a body holds after its joints: inertia, geoms and the bodies it carries.
+fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
+    let mut list: Vec<Element> = inertial(&scene.bodies[body].motion).into_iter().collect();
+    let geoms = scene.bodies[body].geoms.iter().zip(&names[body]);
+    list.extend(geoms.map(|(geom, name)| geom_element(scene, body, geom, name)));
+    for joint in scene.joints.iter().filter(|joint| joint.parent.0 == body) {
+        let child = joint.child.0;
+        let carried = placed(element(scene, child), &zero(joint));
+        list.push(carried.holding(joints(joint)).holding(inside(scene, child, names)));
+    }
+    list
+}
+
+/// The child's frame in the parent's where all coordinates are zero.
+pub(super) fn zero(joint: &Joint) -> Pose {
+    joint.in_parent * joint.in_child.inverse()
+}
+
+fn element(scene: &Scene, body: usize) -> Element {
+    let Body { name, motion, .. } = &scene.bodies[body];
+    let element = Element::new("body").with("name", name);
+    match motion {
+        Motion::Carried(_) | Motion::Driven => element.with("gravcomp", 1),
+        Motion::Fixed | Motion::Free(_) | Motion::Mechanism(_) => element,
+    }
+}
+
+fn placed(element: Element, pose: &Pose) -> Element {
+    let (at, q) = (pose.translation.vector, pose.rotation.coords);
+    let placed = element.numbers("pos", [at.x, at.y, at.z]);
+    // The identity, as mostly, is left out.
+    if q.xyz() == Vector3::zeros() { placed } else { placed.numbers("quat", [q.w, q.x, q.y, q.z]) }
+}
+
+fn inertial(motion: &Motion) -> Option<Element> {
+    let inertia = match motion {
+        Motion::Fixed | Motion::Mechanism(_) => return None,
+        // Nothing that it touches moves it.
+        Motion::Driven => {
+            Inertia { mass: HEAVY, centre: Point3::origin(), moments: Vector3::repeat(HEAVY) }
+        }
+        Motion::Free(inertia) | Motion::Carried(inertia) => *inertia,
+    };
+    let element = Element::new("inertial").numbers("pos", inertia.centre.iter().copied());
+    let element = element.with("mass", inertia.mass);
+    Some(element.numbers("diaginertia", inertia.moments.iter().copied()))
+}
+
+/// Slides along and hinges about the axes of the body's first pose.
+fn driven_joints(body: &Body) -> Vec<Element> {
+    (0..6).map(|axis| joint(&driven_axis_name(body, axis), &Pose::identity(), axis)).collect()
+}
+
+/// First the slides, so that their axes are the parent's.
+fn joints(tie: &Joint) -> Vec<Element> {
+    // Coupled springs are refused before.
+    let Springs::Axes(axes) = &tie.springs else { return Vec::new() };
+    let sprung = axes.iter().enumerate().filter_map(|(i, axis)| match axis {
+        Axis::Locked => None,
+        Axis::Sprung(spring) => Some((i, spring)),
+    });
+    let element = |(i, spring): (usize, &crate::scene::Spring)| {
+        let element = joint(&axis_name(tie, i), &tie.in_child, i);
+        // A servo is an actuator.
+        if spring.limit.is_finite() {
+            return element;
+        }
+        let element = element.with("stiffness", spring.stiffness).with("damping", spring.damping);
+        if spring.target == 0.0 { element } else { element.with("springref", spring.target) }
+    };
+    sprung.map(element).collect()
+}
+
+fn joint(name: &str, frame: &Pose, axis: usize) -> Element {
+    let along = frame.rotation * Vector3::from(std::array::from_fn(|i| f64::from(i == axis % 3)));
+    let kind = if axis < AXES.len() / 2 { "slide" } else { "hinge" };
+    let element = Element::new("joint").with("name", name).with("type", kind);
+    let element = element.numbers("axis", along.iter().copied());
+    if kind == "slide" {
+        return element;
+    }
+    element.numbers("pos", frame.translation.vector.iter().copied())
+}
+
+fn geom_element(scene: &Scene, body: usize, geom: &Geom, name: &str) -> Element {
+    let element = placed(Element::new("geom").with("name", name), &geom.pose);
+    let element = match &geom.shape {
+        Shape::Box { half } => element.with("type", "box").numbers("size", half.iter().copied()),
+        Shape::Cylinder { half_height, radius } => {
+            element.with("type", "cylinder").numbers("size", [*radius, *half_height])
+        }
+        Shape::Hull { .. } => element.with("type", "mesh").with("mesh", mesh_name(name)),
+    };
+    let [r, g, b] = COLOURS[body % COLOURS.len()];
+    let fixed = scene.bodies[body].motion == Motion::Fixed;
+    element.numbers("rgba", [r, g, b, if fixed { SEE_THROUGH } else { 1.0 }])
+}
+
+/// The corners of the hulls.
+pub(super) fn assets(scene: &Scene) -> Element {
+    let names = geom_names(scene);
+    let geoms =
+        scene.bodies.iter().zip(&names).flat_map(|(body, names)| body.geoms.iter().zip(names));
+    let hulls = geoms.filter_map(|(geom, name)| match &geom.shape {
+        Shape::Hull { points } => Some((points, name)),
+        Shape::Box { .. } | Shape::Cylinder { .. } => None,
+    });
+    let mesh = |(points, name): (&Vec<Point3<f64>>, &String)| {
+        let corners =
+            points.iter().flat_map(|point| point.coords.iter().copied().collect::<Vec<_>>());
+        Element::new("mesh").with("name", mesh_name(name)).numbers("vertex", corners)
+    };
+    Element::new("asset").holding(hulls.map(mesh))
+}
+
+/// Whether a joint's bodies stand where its coordinates are zero.
+pub(super) fn at_zero(scene: &Scene, joint: &Joint) -> bool {
+    let pose = |body: BodyId| scene.bodies[body.0].pose;
+    let off = (pose(joint.parent) * zero(joint)).inv_mul(&pose(joint.child));
+    off.translation.vector.norm() < 1e-9 && off.rotation.angle() < 1e-9
+}

@@ -1,0 +1,96 @@
+//! Contact pairs: friction, and the give of a contact point in MuJoCo's terms.
+//!
+//! MuJoCo solves for the acceleration `a` of a contact point (along its normal,
+//! apart) and the force `f` with `R f = -k x - b v - a`: `x` is the gap, `v` its
+//! rate, `R = A (1 - d)/d` with the impedance `d`, and `A` the inverse mass that
+//! MuJoCo itself gives the pair (Todorov 2014, ICRA; MuJoCo documentation,
+//! "Solver parameters"). So a contact is a spring `k/R` and a damper `b/R`, and
+//! a mass `1/R` that is felt only while the surfaces move against each other.
+//! With one `d` for all pairs, as is the custom, the same `solref` is a hundred
+//! times stiffer on a steel key than on a fingertip. Here every pair gets the
+//! `d` that makes `R` the same, and so the same stiffness and damping, whatever
+//! the masses.
+//!
+//! The friction rows have `R/impratio` and a `b` of their own, `b_f`: a sticking
+//! point creeps under a force `F` at `F R/(impratio b_f)`. A sliding one floats:
+//! the convex cone lifts it until `k x = mu b_f v` (the surfaces then touch on and
+//! off, with the right force on average), so `b_f` must be small. With MuJoCo's
+//! choice, `b_f = b`, a plug that slides at 100 mm/s with friction 0.2 would
+//! float at 0.1 mm, as much as a connector's clearance; here at 0.03 mm.
+
+use super::{HEAVY, Settings, geom_names, xml::Element};
+use crate::scene::{Axis, Body, BodyId, Geom, Motion, Scene, Springs};
+
+/// Depth over which MuJoCo lets an impedance vary, m; ours does not.
+const WIDTH: f64 = 1e-3;
+/// The impedances that MuJoCo can represent.
+const IMPEDANCES: [f64; 2] = [1e-4, 0.9999];
+
+/// How much harder than the normal a sticking point is held.
+pub(super) fn impratio(settings: &Settings) -> f64 {
+    settings.stick_damping / (settings.friction_rate * settings.contact_mass)
+}
+
+/// All pairs of geoms that may touch.
+pub(super) fn pairs(scene: &Scene, settings: &Settings) -> Element {
+    let names = geom_names(scene);
+    let mut list = Vec::new();
+    for &(a, b) in &scene.contacts {
+        let weight = inverse_weight(scene, a) + inverse_weight(scene, b);
+        for (first, name) in scene.bodies[a.0].geoms.iter().zip(&names[a.0]) {
+            for (second, other) in scene.bodies[b.0].geoms.iter().zip(&names[b.0]) {
+                let pair = Element::new("pair").with("geom1", name).with("geom2", other);
+                list.push(soft(rough(pair, first, second), weight, settings));
+            }
+        }
+    }
+    Element::new("contact").holding(list)
+}
+
+/// Friction of two geoms: of each kind the smaller.
+fn rough(pair: Element, first: &Geom, second: &Geom) -> Element {
+    let friction = first.friction.min(second.friction);
+    let patch = first.patch.min(second.patch);
+    if friction <= 0.0 {
+        return pair.with("condim", 1);
+    }
+    if patch <= 0.0 || patch.is_infinite() {
+        return pair.with("condim", 3).numbers("friction", [friction, friction]);
+    }
+    // A moment about the normal of at most `patch` times the friction force.
+    pair.with("condim", 4).numbers("friction", [friction, friction, friction * patch])
+}
+
+/// Stiffness and damping of two geoms of bodies of this inverse mass, 1/kg.
+fn soft(pair: Element, weight: f64, settings: &Settings) -> Element {
+    let share = settings.contact_mass * weight;
+    let impedance = (share / (1.0 + share)).clamp(IMPEDANCES[0], IMPEDANCES[1]);
+    // MuJoCo divides both by the impedance.
+    let scale = impedance / settings.contact_mass;
+    let solref = [settings.contact_stiffness, settings.contact_damping].map(|by| -by * scale);
+    // Friction knows no gap; its stiffness only has to be negative, too.
+    let friction = [solref[0], -settings.friction_rate * impedance];
+    pair.numbers("solref", solref)
+        .numbers("solreffriction", friction)
+        .numbers("solimp", [impedance, impedance, WIDTH])
+}
+
+/// The inverse mass that MuJoCo gives a body, 1/kg: the mean over the three
+/// axes of the inverse mass at its centre of mass, which an axis that is locked to
+/// the parent is taken to have none of.
+pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
+    let Body { motion, .. } = &scene.bodies[body.0];
+    let inertia = match motion {
+        Motion::Fixed | Motion::Mechanism(_) => return 0.0,
+        Motion::Driven => return 1.0 / HEAVY,
+        Motion::Free(inertia) | Motion::Carried(inertia) => inertia,
+    };
+    let joint = scene.joints.iter().find(|joint| joint.child == body);
+    let free = match joint.map(|joint| &joint.springs) {
+        Some(Springs::Axes(axes)) => {
+            axes[..3].iter().filter(|axis| matches!(axis, Axis::Sprung(_))).count()
+        }
+        Some(Springs::Coupled(_)) | None => 3,
+    };
+    free as f64 / 3.0 / inertia.mass
+}

@@ -16,6 +16,7 @@ pub mod arm;
 pub mod ask_tell;
 pub mod check;
 pub mod codesign;
+pub mod cross_check;
 pub mod engine;
 pub mod evaluation;
 pub mod finger;

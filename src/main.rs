@@ -32,6 +32,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Stiffness(arguments)) => cli::stiffness::run(&arguments),
         Some(Command::Compare(arguments)) => cli::compare::run(&arguments),
         Some(Command::Check(arguments)) => cli::check::run(&arguments),
+        Some(Command::CrossCheck(arguments)) => cli::cross_check::run(&arguments),
         Some(Command::Validate(arguments)) => cli::validate::run(&arguments),
         Some(Command::Bench(arguments)) => cli::bench::run(&arguments),
         Some(Command::Export(arguments)) => cli::export::run(&arguments),

@@ -5,6 +5,7 @@ pub mod bench;
 mod bench_optimizers;
 pub mod check;
 pub mod compare;
+pub mod cross_check;
 pub mod evaluate;
 pub mod export;
 mod failure;
@@ -91,6 +92,7 @@ pub enum Command {
     /// Compare optimizers over studies of the same task and objective
     Compare(compare::Arguments),
     Check(check::Arguments),
+    CrossCheck(cross_check::Arguments),
     Validate(validate::Arguments),
     Bench(bench::Arguments),
     Export(export::Arguments),

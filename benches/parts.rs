@@ -5,9 +5,10 @@ use finger_opt::codesign::Template;
 use finger_opt::engine::Engine;
 use finger_opt::engine::direct::Direct;
 use finger_opt::finger::Finger;
-use finger_opt::objective::Objective;
+use finger_opt::objective::{Goals, Measure, Objectives};
 use finger_opt::optimizer::{Grid, Observation, OptimizerKind, build};
 use finger_opt::robot::Robot;
+use finger_opt::robustness::Plan;
 use finger_opt::shipped::{ROBOTS, SPACES, STIFFNESS, TASKS};
 use finger_opt::space::Space;
 use finger_opt::study::{
@@ -75,10 +76,14 @@ fn proposals(c: &mut Criterion) {
 fn config(budget: u64) -> StudyConfig {
     StudyConfig {
         task: "usb".into(),
+        other_tasks: Vec::new(),
         robot: "servo".into(),
         engine: "fake".into(),
         optimizer: "random".into(),
-        objective: Objective::Range.to_string(),
+        objective: Objectives::of(Measure::Range),
+        constraints: Vec::new(),
+        aggregate: None,
+        uncertainty: None,
         seed: 0,
         budget,
         polish: 0,
@@ -106,8 +111,16 @@ fn study(dir: &Path, model: &Model) -> Study {
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let runner = Runner {
-        evaluator: &Simulated { predict, template: &template, rig: fake, stop: &stop, cache: None },
-        objective: Objective::Range,
+        evaluator: &Simulated {
+            predict,
+            template: &template,
+            other_templates: &[],
+            plan: &Plan::WINDOW,
+            rig: fake,
+            stop: &stop,
+            cache: None,
+        },
+        goals: &Goals::of(Measure::Range),
         pool: &pool,
         stop: &stop,
     };

@@ -19,6 +19,30 @@ pub fn front(points: &[Vec<f64>]) -> Vec<usize> {
     (0..points.len()).filter(|&i| !beaten(i)).collect()
 }
 
+/// The front of points that come one after the other.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Archive {
+    points: Vec<Vec<f64>>,
+}
+
+impl Archive {
+    /// Adds a point, and drops what it dominates; whether it is on the front now. Of equal
+    /// points only the first is.
+    pub fn add(&mut self, point: Vec<f64>) -> bool {
+        if self.points.iter().any(|known| *known == point || dominates(known, &point)) {
+            return false;
+        }
+        self.points.retain(|known| !dominates(&point, known));
+        self.points.push(point);
+        true
+    }
+
+    /// The front, in the order in which its points came.
+    pub fn points(&self) -> &[Vec<f64>] {
+        &self.points
+    }
+}
+
 /// A box with sides along the axes; `high` may be infinite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
@@ -110,6 +134,18 @@ mod tests {
         assert_eq!(front(&given), [0, 1, 4]);
         assert_eq!(front(&[]), [0; 0]);
         assert!(!dominates(&[1.0, 2.0], &[1.0, 2.0]));
+    }
+
+    #[test]
+    fn points_one_after_the_other_leave_the_same_front() {
+        for seed in 0..20 {
+            let all = points(seed, 40, 2 + seed as usize % 2);
+            let mut archive = Archive::default();
+            let added: Vec<bool> = all.iter().map(|point| archive.add(point.clone())).collect();
+            let expected: Vec<Vec<f64>> = front(&all).into_iter().map(|i| all[i].clone()).collect();
+            assert_eq!(archive.points(), expected);
+            assert!(added[0] && added.contains(&false));
+        }
     }
 
     #[test]

@@ -6,8 +6,9 @@ use common::{Studies, read};
 use finger_opt::codesign::Template;
 use finger_opt::evaluation::{Evaluation, FailureClass, Outcome, RobustRange, SuccessRate, Window};
 use finger_opt::finger::Finger;
-use finger_opt::objective::Objective;
+use finger_opt::objective::{Goals, Measure, Score};
 use finger_opt::optimizer::{Grid, Observation, Optimizer, StopReason};
+use finger_opt::robustness::Plan;
 use finger_opt::space::{Design, GridPoint, Space};
 use finger_opt::study::{
     Ending, Evaluate, Measured, Recorded, Runner, Simulated, Store, Study, StudyError, StudyRecord,
@@ -90,26 +91,34 @@ fn evaluation() -> impl Strategy<Value = Evaluation> {
     })
 }
 
+fn score() -> impl Strategy<Value = Score> {
+    let numbers = |least| prop::collection::vec(finite(), least..4);
+    (numbers(1), numbers(0)).prop_map(|(values, violations)| Score { values, violations })
+}
+
 fn recorded() -> impl Strategy<Value = Recorded> {
     let design = [finite(), finite()];
     let stiffness = [finite(), finite(), finite(), finite(), finite()];
-    (any::<u64>(), design, prop::option::of(finite()), stiffness, evaluation(), 0.0..1e9f64)
-        .prop_map(|(index, [density, direction], value, k, evaluation, wall_s)| Recorded {
+    let evaluations = (evaluation(), prop::collection::vec(evaluation(), 0..3));
+    (any::<u64>(), design, prop::option::of(score()), stiffness, evaluations, 0.0..1e9f64).prop_map(
+        |(index, [density, direction], score, k, evaluations, wall_s)| Recorded {
             index,
             design: Design::infill(density, direction),
-            value,
+            score,
             stiffness: Prediction {
                 compliance: Estimate { mean: k[0], sd: k[1] },
                 assembly: Estimate { mean: k[2], sd: k[3] },
                 hull_distance: k[4],
             },
-            evaluation,
+            evaluation: evaluations.0,
+            other_tasks: evaluations.1,
             timing: Timing {
                 datetime_start: "2026-01-02T03:04:05.678901".to_owned(),
                 datetime_complete: "2026-01-02T03:04:06.000000".to_owned(),
                 wall_s,
             },
-        })
+        },
+    )
 }
 
 proptest! {
@@ -222,8 +231,16 @@ fn run(dir: &Path, store: Failing) -> Result<Ending, StudyError> {
     let stop = AtomicBool::new(false);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     let runner = Runner {
-        evaluator: &Simulated { predict, template: &template, rig, stop: &stop, cache: None },
-        objective: Objective::Range,
+        evaluator: &Simulated {
+            predict,
+            template: &template,
+            other_templates: &[],
+            plan: &Plan::WINDOW,
+            rig,
+            stop: &stop,
+            cache: None,
+        },
+        goals: &Goals::of(Measure::Range),
         pool: &pool,
         stop: &stop,
     };
@@ -278,6 +295,7 @@ impl Evaluate for Impossible {
         Ok(Measured {
             stiffness: Prediction { compliance: one, assembly: one, hull_distance: 0.0 },
             evaluation: evaluate(&FakeRig::default(), &finger, Search::Walk),
+            other_tasks: Vec::new(),
         })
     }
 }
@@ -293,7 +311,7 @@ fn a_design_that_cannot_be_stops_the_study_and_is_named() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let runner = Runner {
         evaluator: &Impossible,
-        objective: Objective::Range,
+        goals: &Goals::of(Measure::Range),
         pool: &pool,
         stop: &AtomicBool::new(false),
     };
@@ -328,14 +346,14 @@ fn a_study_of_schema_version_1_is_read() {
     assert_eq!((record.config.task.as_str(), record.config.budget), ("usb", 10));
     assert_eq!(record.evaluations.len(), 10);
     let best = record.best().unwrap();
-    assert_eq!((best.index, best.value), (4, Some(6.7)));
+    assert_eq!((best.index, best.value()), (4, Some(6.7)));
     assert_eq!(best.design, Design::infill(11.0, 6.0));
     assert_eq!(best.evaluation.window.negative_mm(), -4.8);
     assert_eq!(best.evaluation.failure_counts, [0, 1, 1, 0]);
     let stiffness = best.stiffness;
     assert_eq!((stiffness.compliance.mean, stiffness.assembly.sd), (1410.0000000000002, 2000.0));
     let diverged = &record.evaluations[6];
-    assert_eq!((diverged.value, diverged.evaluation.diverged), (None, 1));
+    assert_eq!((diverged.value(), diverged.evaluation.diverged), (None, 1));
     assert_eq!(diverged.evaluation.window.nominal, Outcome::Diverged);
     assert!(diverged.evaluation.peak_force_n.is_nan());
 }

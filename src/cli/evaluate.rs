@@ -1,12 +1,15 @@
 //! `optimize evaluate`: the tolerance window of one finger.
 
-use super::finger::FingerArguments;
+use super::finger::{Chosen, FingerArguments};
 use super::repeat::{self, RepeatArguments};
-use super::setup::{Setup, SetupArguments};
-use super::summary::{self, evaluation_json, merge};
+use super::setup::{self, Setup, SetupArguments};
+use super::words::{self, evaluation_json, merge};
 use super::{Failure, print, print_json};
 use clap::Args;
-use finger_opt::tolerance::{self, Search};
+use finger_opt::evaluation::Evaluation;
+use finger_opt::robustness;
+use finger_opt::shipped::UNCERTAINTIES;
+use finger_opt::tolerance::Search;
 use serde_json::json;
 use std::time::Instant;
 
@@ -20,6 +23,12 @@ pub struct Arguments {
     /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
     #[arg(long)]
     walk: bool,
+    /// Success rate and robust range under these errors, too: typical, or the path of a file
+    #[arg(long, value_name = "NAME")]
+    uncertainty: Option<String>,
+    /// Seed of the drawn errors: those of the study with this seed
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "uncertainty")]
+    seed: u64,
     #[command(flatten)]
     repeat: RepeatArguments,
     /// Print the result as JSON
@@ -29,12 +38,17 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let setup = Setup::from_arguments(&arguments.setup)?;
+    let mut setup = Setup::from_arguments(&arguments.setup)?;
+    if let Some(name) = &arguments.uncertainty {
+        setup = setup.under(setup::find("uncertainty", UNCERTAINTIES, name)?)?;
+    }
     let chosen = arguments.finger.choose(&setup)?;
     let clock = Instant::now();
     let search = if arguments.walk { Search::Walk } else { Search::Strides };
     let rig = setup.rig(&chosen.task).map_err(Failure::input)?;
-    let evaluation = tolerance::evaluate(&*rig, &chosen.finger, search);
+    let plan = setup.plan(arguments.seed, |_| setup.uncertainty.is_some())?;
+    let evaluation =
+        robustness::evaluate(&*rig, &chosen.finger, &chosen.stiffness(), search, &plan);
     let wall_s = clock.elapsed().as_secs_f64();
     let bands = arguments.repeat.bands(&setup, &chosen, &evaluation.window)?;
     if arguments.json {
@@ -46,21 +60,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         return print_json(&fields);
     }
-    let counts = evaluation.failure_counts;
-    print(&format!(
-        "task          {}\n{}\nrange         {:.1} mm\n{}\nfailures      {} of class 1, {} of 2, {} of 3, \
-         {} of 4, {} diverged in {} trials\npeak force    {:.1} N\n{}time          {wall_s:.1} s\n",
-        chosen.task.name,
+    let bands = bands.as_ref().map(repeat::bands_text).unwrap_or_default();
+    print(&format!("{}{bands}time          {wall_s:.1} s\n", text(&chosen, &evaluation)))
+}
+
+fn text(chosen: &Chosen, evaluation: &Evaluation) -> String {
+    let [c1, c2, c3, c4] = evaluation.failure_counts;
+    let mut lines = vec![
+        format!("task          {}", chosen.task.name),
         chosen.text(),
-        evaluation.window.range_mm(),
-        summary::window(&evaluation),
-        counts[0],
-        counts[1],
-        counts[2],
-        counts[3],
-        evaluation.diverged,
-        evaluation.trials,
-        evaluation.peak_force_n,
-        bands.as_ref().map(repeat::bands_text).unwrap_or_default(),
-    ))
+        format!("range         {:.1} mm", evaluation.window.range_mm()),
+        words::window(evaluation),
+        format!(
+            "failures      {c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",
+            evaluation.diverged, evaluation.trials
+        ),
+        format!("peak force    {:.1} N", evaluation.peak_force_n),
+    ];
+    lines.extend(words::drawn_text(evaluation));
+    lines.join("\n") + "\n"
 }

@@ -2,11 +2,11 @@
 
 use super::Failure;
 use super::setup::Setup;
-use super::summary::{self, stiffness_json};
+use super::words::{self, stiffness_json};
 use clap::Args;
 use finger_opt::finger::Finger;
 use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use finger_opt::surrogate::Prediction;
+use finger_opt::surrogate::{Estimate, Prediction};
 use finger_opt::task::Task;
 use finger_opt::units::{MM, N_PER_MM};
 use serde_json::{Value, json};
@@ -56,6 +56,9 @@ pub struct Chosen {
 impl FingerArguments {
     /// The finger, checked against the space.
     pub fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
+        if !setup.other_templates.is_empty() {
+            return Err(Failure::usage("give one --task; only a study may have several"));
+        }
         for (flag, key, value) in [
             ("--density", DENSITY_KEY, self.density),
             ("--direction", DIRECTION_KEY, self.direction),
@@ -108,6 +111,16 @@ impl FingerArguments {
 }
 
 impl Chosen {
+    /// The predicted stiffness; one that was given has no error.
+    pub fn stiffness(&self) -> Prediction {
+        let exact = |mean| Estimate { mean, sd: 0.0 };
+        self.prediction.unwrap_or(Prediction {
+            compliance: exact(self.finger.compliance),
+            assembly: exact(self.finger.assembly),
+            hull_distance: 0.0,
+        })
+    }
+
     /// The keys that say what was measured.
     pub fn json(&self, setup: &Setup, arguments: &FingerArguments) -> Value {
         json!({
@@ -131,7 +144,7 @@ impl Chosen {
     pub fn text(&self) -> String {
         let (compliance, assembly) = (self.finger.compliance, self.finger.assembly);
         let stiffness = match &self.prediction {
-            Some(prediction) => summary::stiffness(prediction),
+            Some(prediction) => words::stiffness(prediction),
             None => format!(
                 "stiffness     compliance {} N/mm, assembly {} N/mm, as given",
                 compliance / N_PER_MM,

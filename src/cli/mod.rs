@@ -22,6 +22,7 @@ mod summary;
 pub mod tasks;
 pub mod trial;
 pub mod validate;
+mod words;
 
 pub use failure::Failure;
 
@@ -98,7 +99,7 @@ pub enum Command {
     Export(export::Arguments),
     /// Optimize anything: JSON lines on standard input and output
     AskTell(ask_tell::Arguments),
-    /// List tasks, spaces and robots
+    /// List tasks, spaces, robots and uncertainties
     Tasks(tasks::Arguments),
 }
 

@@ -1,5 +1,7 @@
 //! Progress of a study on standard error: a bar on a terminal, lines elsewhere.
 
+use finger_opt::objective::Goals;
+use finger_opt::pareto::Archive;
 use finger_opt::study::{Recorded, Study};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
@@ -13,7 +15,9 @@ pub struct Progress {
     begun: Instant,
     done_before: u64,
     budget: u64,
-    best: Option<f64>,
+    goals: Goals,
+    /// Front of the designs that keep all constraints, larger is better.
+    front: Archive,
 }
 
 impl Progress {
@@ -23,20 +27,43 @@ impl Progress {
         let budget = study.config.evaluations();
         let shown = !quiet && done < budget;
         let bar = (shown && stderr().is_terminal()).then(|| bar(done, budget));
-        Progress {
+        let mut progress = Progress {
             line_every: (shown && bar.is_none()).then_some(study.config.batch),
             bar,
             begun: Instant::now(),
             done_before: done,
             budget,
-            best: finger_opt::study::best(&study.evaluations).and_then(|best| best.value),
+            goals: study.config.goals(),
+            front: Archive::default(),
+        };
+        study.evaluations.iter().for_each(|recorded| progress.add(recorded));
+        progress
+    }
+
+    fn add(&mut self, recorded: &Recorded) {
+        if let Some(values) = recorded.feasible() {
+            self.front.add(self.goals.gains(values));
+        }
+    }
+
+    /// The best value, or how many designs there are on the front.
+    fn best(&self) -> String {
+        match (self.goals.objectives.single(), self.front.points()) {
+            (_, []) if self.goals.constraints.is_empty() => "no value yet".to_owned(),
+            (_, []) => "nothing keeps the constraints yet".to_owned(),
+            // The sign that makes gains of values makes values of gains.
+            (Some(measure), [gains, ..]) => {
+                let values = self.goals.gains(gains);
+                format!("best {}", values.first().map_or(String::new(), |&v| measure.show(v)))
+            }
+            (None, front) => format!("front of {}", front.len()),
         }
     }
 
     /// One more evaluation is written down.
     pub fn measured(&mut self, recorded: &Recorded) {
-        self.best = [self.best, recorded.value].into_iter().flatten().reduce(f64::max);
-        let best = self.best.map_or("no value yet".to_owned(), |best| format!("best {best:.1} mm"));
+        self.add(recorded);
+        let best = self.best();
         let done = recorded.index + 1;
         if let Some(bar) = &self.bar {
             bar.set_message(best);

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::finger::Chosen;
 use super::setup::Setup;
-use super::summary::outcome_word;
+use super::words::outcome_word;
 use clap::Args;
 use finger_opt::evaluation::{Outcome, Window};
 use finger_opt::robustness::repeat::{Band, Bands, Repeats};

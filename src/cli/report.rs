@@ -38,6 +38,9 @@ pub fn write(
     let drawn = |error: report::ReportError| Failure::running(error.to_string());
     write_evaluations_csv(dir, record)?;
     write_file(&dir.join("convergence.svg"), &report::convergence_svg(record).map_err(drawn)?)?;
+    if let Some(front) = report::front_svg(record).map_err(drawn)? {
+        write_file(&dir.join("front.svg"), &front)?;
+    }
     write_file(&dir.join(PAGE), &report::html(record, measurements).map_err(drawn)?)?;
     Ok(())
 }

@@ -4,7 +4,6 @@ use super::progress::Progress;
 use super::setup::{self, EngineKind, OptimizerKind, Setup};
 use super::{Failure, report, summary};
 use clap::Args;
-use finger_opt::objective::Objective;
 use finger_opt::study::{Cache, Ending, Runner, Simulated, Study};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -37,7 +36,8 @@ pub struct SessionArguments {
 pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Result<(), Failure> {
     let config = study.config.clone();
     let kind: OptimizerKind = config.optimizer.parse().map_err(bad_config)?;
-    let objective: Objective = config.objective.parse().map_err(bad_config)?;
+    let goals = config.goals();
+    let plan = setup.plan(config.seed, |measure| goals.need(measure))?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(usize::from(arguments.threads.unwrap_or(0)))
         .build()
@@ -47,12 +47,14 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     let evaluator = Simulated {
         predict: |design: &_| setup.surrogate.predict(design),
         template: &setup.template,
+        other_templates: &setup.other_templates,
+        plan: &plan,
         rig: |task: &_| setup.rig(task),
         stop: &stop,
         cache: cache.as_ref(),
     };
-    let runner = Runner { evaluator: &evaluator, objective, pool: &pool, stop: &stop };
-    let mut optimizer = setup::optimizer(kind, &setup.space, &config);
+    let runner = Runner { evaluator: &evaluator, goals: &goals, pool: &pool, stop: &stop };
+    let mut optimizer = setup::optimizer(kind, setup, &config);
     let mut progress = Progress::new(&study, arguments.quiet);
     let ended =
         runner.run(&mut study, &mut *optimizer, &mut |recorded| progress.measured(recorded));

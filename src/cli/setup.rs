@@ -9,8 +9,11 @@ use finger_opt::engine::direct::Direct;
 #[cfg(feature = "mujoco")]
 use finger_opt::engine::mujoco::Mujoco;
 use finger_opt::engine::rapier::Rapier;
+use finger_opt::objective::Measure;
+use finger_opt::optimizer::gp::DEFAULT_NOISE_FLOOR;
 use finger_opt::optimizer::{self, Grid, Optimizer, Polished};
 use finger_opt::robot::Robot;
+use finger_opt::robustness::Plan;
 use finger_opt::shipped::{self, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
 use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use finger_opt::study::{Inputs, StudyConfig, Versions};
@@ -19,6 +22,7 @@ use finger_opt::task::Task;
 use finger_opt::trial::Rig;
 use finger_opt::trial::fake::FakeRig;
 use finger_opt::trial::run::{EngineRig, RigError};
+use finger_opt::uncertainty::Uncertainty;
 use std::time::Duration;
 
 pub use finger_opt::optimizer::OptimizerKind;
@@ -113,7 +117,7 @@ impl EngineKind {
 /// What a trial, an evaluation and a study have in common on the command line.
 #[derive(Debug, Clone, clap::Args)]
 pub struct SetupArguments {
-    /// Task: ket8, ket12, rj45, usb, or the path of a task file
+    /// Task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas
     #[arg(long, value_name = "NAME")]
     pub task: String,
     /// Search space: infill, codesign, or the path of a space file
@@ -134,10 +138,14 @@ pub struct SetupArguments {
 pub struct Setup {
     /// The task, whose numbers a design may set.
     pub template: Template,
+    /// The tasks beside it.
+    pub other_templates: Vec<Template>,
     pub robot: Robot,
     pub space: Space,
     pub engine: EngineKind,
     pub surrogate: Surrogate,
+    /// The errors under which designs are measured, if they are.
+    pub uncertainty: Option<Uncertainty>,
     /// The texts all this was read from.
     pub inputs: Inputs,
 }
@@ -145,43 +153,81 @@ pub struct Setup {
 impl Setup {
     /// Reads and checks the files the arguments name.
     pub fn from_arguments(arguments: &SetupArguments) -> Result<Self, Failure> {
-        let task = find("task", TASKS, &arguments.task)?;
+        let names = arguments.task.split(',').map(str::trim);
+        let tasks = names.map(|name| find("task", TASKS, name)).collect::<Result<_, _>>()?;
         let space = find("space", SPACES, &arguments.space)?;
         let robot = find("robot", ROBOTS, &arguments.robot)?;
         let stiffness = stiffness_data(arguments.stiffness_data.as_deref())?;
-        Setup::parse([task, space, robot, stiffness], arguments.engine)
+        Setup::parse(tasks, [space, robot, stiffness], arguments.engine)
     }
 
     /// The same from the copies kept in a study's folder.
     pub fn from_inputs(inputs: &Inputs, engine: &str) -> Result<Self, Failure> {
         let engine = EngineKind::from_str(engine, false)
             .map_err(|_| Failure::usage(format!("study.toml: no engine is called `{engine}`")))?;
-        let [task, space, robot, stiffness] =
-            ["task", "space", "robot", "stiffness"].map(|role| input(inputs, role));
-        Setup::parse([task?, space?, robot?, stiffness?], engine)
+        let first = input(inputs, TASK)?;
+        let others = (2..).map(other_task).take_while(|role| inputs.contains_key(role));
+        let others = others.map(|role| input(inputs, &role));
+        let tasks = std::iter::once(Ok(first)).chain(others).collect::<Result<_, _>>()?;
+        let [space, robot, stiffness] = OTHERS.map(|role| input(inputs, role));
+        let setup = Setup::parse(tasks, [space?, robot?, stiffness?], engine)?;
+        match inputs.contains_key(UNCERTAINTY) {
+            true => setup.under(input(inputs, UNCERTAINTY)?),
+            false => Ok(setup),
+        }
     }
 
-    fn parse(sources: [Source; 4], engine: EngineKind) -> Result<Self, Failure> {
-        let [task, space, robot, stiffness] = &sources;
+    fn parse(tasks: Vec<Source>, others: [Source; 3], engine: EngineKind) -> Result<Self, Failure> {
+        let [space, robot, stiffness] = &others;
         let file = &space.file;
         let space = Space::parse(&space.text, file).map_err(Failure::input)?;
-        let template = Template::parse(&task.text, &task.file).map_err(Failure::input)?;
         let robot = Robot::parse(&robot.text, &robot.file).map_err(Failure::input)?;
         let fits = |task: &Task| rig(engine, task, &robot).map(|_| ());
-        fits(template.task()).map_err(Failure::input)?;
-        template.check(&space, file, &fits).map_err(Failure::input)?;
+        let template = |task: &Source| {
+            let template = Template::parse(&task.text, &task.file).map_err(Failure::input)?;
+            fits(template.task()).map_err(Failure::input)?;
+            template.check(&space, file, &fits).map_err(Failure::input)?;
+            Ok(template)
+        };
+        let mut templates = tasks.iter().map(template).collect::<Result<Vec<_>, Failure>>()?;
+        different(&templates)?;
+        let roles = std::iter::once(TASK.to_owned()).chain((2..).map(other_task)).zip(&tasks);
+        let others = OTHERS.map(str::to_owned).into_iter().zip(&others);
+        let inputs = roles.chain(others).map(|(role, source)| (role, source.text.clone()));
         Ok(Setup {
-            template,
-            robot,
-            space,
+            // A list split at commas has at least one entry.
+            template: templates.remove(0),
+            other_templates: templates,
             surrogate: surrogate(stiffness)?,
             engine,
-            inputs: ["task", "space", "robot", "stiffness"]
-                .map(str::to_owned)
-                .into_iter()
-                .zip(sources.iter().map(|source| source.text.clone()))
-                .collect(),
+            uncertainty: None,
+            inputs: inputs.collect(),
+            robot,
+            space,
         })
+    }
+
+    /// The same with errors under which designs are measured.
+    pub fn under(mut self, errors: Source) -> Result<Self, Failure> {
+        let uncertainty = Uncertainty::parse(&errors.text, &errors.file).map_err(Failure::input)?;
+        self.uncertainty = Some(uncertainty);
+        self.inputs.insert(UNCERTAINTY.to_owned(), errors.text);
+        Ok(self)
+    }
+
+    /// All templates, in the order of the tasks.
+    pub fn templates(&self) -> impl Iterator<Item = &Template> {
+        std::iter::once(&self.template).chain(&self.other_templates)
+    }
+
+    /// What is measured beside the window, with the draws of this seed; `wanted` says which.
+    pub fn plan(&self, seed: u64, wanted: impl Fn(Measure) -> bool) -> Result<Plan, Failure> {
+        let (success, robust) = (wanted(Measure::SuccessRate), wanted(Measure::RobustRange));
+        match &self.uncertainty {
+            Some(uncertainty) => Ok(Plan::new(uncertainty, seed, success, robust)),
+            None if success || robust => Err(missing(UNCERTAINTY)),
+            None => Ok(Plan::WINDOW),
+        }
     }
 
     /// Where trials of a task with this robot are run.
@@ -195,11 +241,36 @@ impl Setup {
     }
 }
 
+/// Roles of the input files: the first task, those beside task and errors, and the errors.
+const TASK: &str = "task";
+const OTHERS: [&str; 3] = ["space", "robot", "stiffness"];
+const UNCERTAINTY: &str = "uncertainty";
+
+/// The role of the second task and so on.
+fn other_task(number: usize) -> String {
+    format!("{TASK}_{number}")
+}
+
+/// A task that is given twice would count twice.
+fn different(templates: &[Template]) -> Result<(), Failure> {
+    let names: Vec<&str> = templates.iter().map(|template| &*template.task().name).collect();
+    match names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+        None => Ok(()),
+        Some((_, twice)) => {
+            Err(Failure::usage(format!("two tasks are called `{twice}`; give each task once")))
+        }
+    }
+}
+
+fn missing(role: &str) -> Failure {
+    Failure::usage(format!("study.toml: input_sha256 has no `{role}`"))
+}
+
 /// One of the inputs kept in a study's folder.
 pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
     match inputs.get(role) {
         Some(text) => Ok(Source { file: format!("inputs/{role}"), text: text.clone() }),
-        None => Err(Failure::usage(format!("study.toml: input_sha256 has no `{role}`"))),
+        None => Err(missing(role)),
     }
 }
 
@@ -259,14 +330,30 @@ pub fn surrogate(data: &Source) -> Result<Surrogate, Failure> {
 /// The optimizer of a study.
 pub fn optimizer(
     kind: OptimizerKind,
-    space: &Space,
+    setup: &Setup,
     config: &StudyConfig,
 ) -> Box<dyn Optimizer + Send> {
-    let grid = Grid::new(space.levels());
-    let search = optimizer::build(kind, grid.clone(), config.seed);
+    let grid = Grid::new(setup.space.levels());
+    let measures = config.objective.measures().iter();
+    let floors: Vec<f64> =
+        measures.map(|&measure| noise_floor(measure, setup.uncertainty.as_ref())).collect();
+    let search = optimizer::build_for(kind, grid.clone(), config.seed, &floors);
     match config.polish {
         0 => search,
         polish => Box::new(Polished::new(search, grid, config.budget, polish)),
+    }
+}
+
+/// Standard deviation of what a measure's steps round off, in its unit: ranges have steps of
+/// 0.1 mm, success rates of one trial, forces and slips none.
+fn noise_floor(measure: Measure, uncertainty: Option<&Uncertainty>) -> f64 {
+    match measure {
+        Measure::PeakForce | Measure::Slip => 0.0,
+        Measure::Range | Measure::CentredRange | Measure::RobustRange => DEFAULT_NOISE_FLOOR,
+        Measure::SuccessRate => {
+            let trials = uncertainty.map_or(1, |errors| errors.success.trials);
+            1.0 / f64::from(trials) / 12f64.sqrt()
+        }
     }
 }
 

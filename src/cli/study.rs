@@ -2,14 +2,29 @@
 
 use super::Failure;
 use super::session::{self, SessionArguments};
-use super::setup::{OptimizerKind, Setup, SetupArguments};
-use clap::Args;
-use finger_opt::objective::Objective;
+use super::setup::{self, OptimizerKind, Setup, SetupArguments};
+use clap::{Args, ValueEnum};
+use finger_opt::objective::{Aggregate, Constraint, Measure, Objectives};
+use finger_opt::shipped::UNCERTAINTIES;
 use finger_opt::study::{Study, StudyConfig, sha256, study_name};
 use std::path::{Path, PathBuf};
 
 /// Largest seed: TOML, in which studies keep theirs, has no larger whole numbers.
 const LARGEST_SEED: u64 = i64::MAX as u64;
+
+/// Errors used unless others are named.
+const DEFAULT_UNCERTAINTY: &str = "typical";
+
+/// What is made of the values of several tasks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum AggregateKind {
+    /// The worst of them
+    Min,
+    /// Their mean, not scaled: a task with wide windows counts for more
+    Mean,
+    /// Their mean with --weights
+    Weighted,
+}
 
 /// Run a study.
 #[derive(Debug, Args)]
@@ -27,9 +42,23 @@ pub struct Arguments {
     /// Optimizer: gp, cma-es, nelder-mead, random, sobol or grid
     #[arg(long, value_name = "NAME", default_value = "gp")]
     optimizer: OptimizerKind,
-    /// What is made large: range, or centred-range
+    /// What is optimized: range, centred-range, success-rate, robust-range, peak-force or slip;
+    /// two or three, by commas, give a front
     #[arg(long, value_name = "NAME", default_value = "range")]
-    objective: Objective,
+    objective: Objectives,
+    /// What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'; may be given
+    /// several times
+    #[arg(long, value_name = "LIMIT")]
+    constraint: Vec<Constraint>,
+    /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
+    #[arg(long, value_name = "NAME")]
+    uncertainty: Option<String>,
+    /// What is made of the values of several tasks [default: min]
+    #[arg(long, value_enum)]
+    aggregate: Option<AggregateKind>,
+    /// Weight of each task, by commas, for --aggregate weighted
+    #[arg(long, value_name = "W,W..", value_delimiter = ',', allow_negative_numbers = true)]
+    weights: Vec<f64>,
     /// Seed; the same seed gives the same study
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
           value_parser = clap::value_parser!(u64).range(..=LARGEST_SEED))]
@@ -51,21 +80,64 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let setup = Setup::from_arguments(&arguments.setup)?;
-    let config = arguments.config(&setup);
+    let setup = arguments.under_errors(Setup::from_arguments(&arguments.setup)?)?;
+    let config = arguments.config(&setup)?;
+    check(arguments.optimizer, &config)?;
     let dir = arguments.out.clone().unwrap_or_else(|| default_folder(&config));
     let study = Study::create_or_continue(&dir, &config, &setup.inputs)?;
     session::run(study, &setup, &arguments.session)
 }
 
 impl Arguments {
-    fn config(&self, setup: &Setup) -> StudyConfig {
-        StudyConfig {
+    /// With the errors that the goals need.
+    fn under_errors(&self, setup: Setup) -> Result<Setup, Failure> {
+        let constrained = self.constraint.iter().map(|constraint| constraint.measure);
+        let mut measures = self.objective.measures().iter().copied().chain(constrained);
+        match (measures.any(Measure::is_drawn), &self.uncertainty) {
+            (false, None) => Ok(setup),
+            (false, Some(_)) => Err(Failure::usage(
+                "--uncertainty is for success-rate and robust-range; make one of them an \
+                 --objective or a --constraint",
+            )),
+            (true, name) => {
+                let name = name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY);
+                setup.under(setup::find("uncertainty", UNCERTAINTIES, name)?)
+            }
+        }
+    }
+
+    /// How the values of several tasks become one; `None` for one task.
+    fn aggregate(&self, tasks: usize) -> Result<Option<Aggregate>, Failure> {
+        let given = self.aggregate.unwrap_or(AggregateKind::Min);
+        if tasks == 1 && (self.aggregate.is_some() || !self.weights.is_empty()) {
+            return Err(Failure::usage(
+                "--aggregate and --weights are for several tasks, as in --task usb,rj45",
+            ));
+        }
+        if given != AggregateKind::Weighted && !self.weights.is_empty() {
+            return Err(Failure::usage("--weights goes with --aggregate weighted"));
+        }
+        let aggregate = match given {
+            AggregateKind::Min => Aggregate::Min,
+            AggregateKind::Mean => Aggregate::Mean,
+            AggregateKind::Weighted => Aggregate::weighted(self.weights.clone(), tasks)
+                .map_err(|problem| Failure::usage(format!("--weights: {problem}")))?,
+        };
+        Ok((tasks > 1).then_some(aggregate))
+    }
+
+    fn config(&self, setup: &Setup) -> Result<StudyConfig, Failure> {
+        let names = setup.other_templates.iter().map(|template| template.task().name.clone());
+        Ok(StudyConfig {
             task: setup.template.task().name.clone(),
+            other_tasks: names.collect(),
             robot: setup.robot.name.clone(),
             engine: setup.engine.name().to_owned(),
             optimizer: self.optimizer.to_string(),
-            objective: self.objective.to_string(),
+            objective: self.objective.clone(),
+            constraints: self.constraint.clone(),
+            aggregate: self.aggregate(setup.templates().count())?,
+            uncertainty: setup.uncertainty.as_ref().map(|errors| errors.name.clone()),
             seed: self.seed,
             budget: self.budget,
             polish: self.polish,
@@ -73,13 +145,35 @@ impl Arguments {
             versions: setup.engine.versions(),
             input_sha256: sha256(&setup.inputs),
             space: setup.space.clone(),
-        }
+        })
     }
+}
+
+/// Whether the optimizer can do what is asked for.
+fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
+    if config.objective.single().is_some() {
+        return Ok(());
+    }
+    if !kind.takes_several_objectives() {
+        let able = OptimizerKind::ALL.into_iter().filter(|kind| kind.takes_several_objectives());
+        let able: Vec<&str> = able.map(OptimizerKind::name).collect();
+        return Err(Failure::usage(format!(
+            "{kind} knows one objective only; for {} give --optimizer {}",
+            config.objective,
+            able.join(", ")
+        )));
+    }
+    if config.polish > 0 {
+        return Err(Failure::usage("--polish knows one objective only; leave it out"));
+    }
+    Ok(())
 }
 
 /// `results/<task>-<optimizer>-seed<seed>`; a task of one's own may be named with anything.
 fn default_folder(config: &StudyConfig) -> PathBuf {
     let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-    let task: String = config.task.chars().map(safe).collect();
+    // The plus sign stands between tasks.
+    let task = |name: &str| name.chars().map(safe).collect::<String>();
+    let task = config.tasks().map(task).collect::<Vec<_>>().join("+");
     Path::new("results").join(study_name(&task, &config.method(), config.seed))
 }

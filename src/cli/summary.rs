@@ -1,109 +1,113 @@
-//! What is printed of an evaluation and of a whole study.
+//! What is printed of a whole study.
 
+use super::words::{drawn_text, evaluation_json, merge, stiffness, stiffness_json, window};
 use super::{Failure, print, print_json};
-use finger_opt::evaluation::{Evaluation, Outcome};
-use finger_opt::study::{Ending, Recorded, Study};
-use finger_opt::surrogate::Prediction;
-use finger_opt::units::N_PER_MM;
+use finger_opt::report::volume_unit;
+use finger_opt::study::{Ending, Recorded, Study, StudyRecord, nearest, volume};
 use serde_json::{Value, json};
-use std::fmt::Write;
 
 /// Prints the result of a study, `known` evaluations of which were in the cache.
 pub fn show(study: &Study, ending: Ending, known: u64, as_json: bool) -> Result<(), Failure> {
     if as_json {
         return print_json(&to_json(study, ending, known));
     }
-    print_text(study, ending, known)
+    print(&text(study, ending, known))
 }
 
-fn print_text(study: &Study, ending: Ending, known: u64) -> Result<(), Failure> {
-    let (config, done) = (&study.config, study.evaluations.len());
-    let mut text = String::new();
-    let mut line = |line: String| {
-        text.push_str(&line);
-        text.push('\n');
-    };
+fn text(study: &Study, ending: Ending, known: u64) -> String {
+    let (config, record) = (&study.config, study.record());
+    let done = record.evaluations.len();
     let end = match ending {
         Ending::SpaceExhausted => ": every design of the space",
         Ending::Converged => ": the polish has converged",
         Ending::BudgetSpent | Ending::Interrupted => "",
     };
-    line(format!("{} with {}: {done} evaluations{end}", config.task, config.method()));
-    match finger_opt::study::best(&study.evaluations) {
-        None => line("no evaluation gave a value".to_owned()),
-        Some(best) => {
-            line(format!("best design   {} (evaluation {})", best.design, best.index));
-            if let Some(value) = best.value {
-                line(format!("{:<13} {value:.1} mm", config.objective));
-            }
-            line(window(&best.evaluation));
-            line(stiffness(&best.stiffness));
-        }
+    let (task, method) = (config.task_name(), config.method());
+    let mut lines = vec![format!("{task} with {method}: {done} evaluations{end}")];
+    match (record.best(), config.objective.single()) {
+        (None, _) => lines.push(none(&record)),
+        (Some(best), Some(_)) => lines.extend(best_lines(&record, best)),
+        (Some(_), None) => lines.extend(front_lines(&record)),
     }
     if known > 0 {
-        line(format!("cache         {known} evaluations were known from other studies"));
+        lines.push(format!("cache         {known} evaluations were known from other studies"));
     }
     let page = study.dir().join(super::report::PAGE);
-    line(format!("study         {} (see {})", study.dir().display(), page.display()));
-    print(&text)
+    lines.push(format!("study         {} (see {})", study.dir().display(), page.display()));
+    lines.join("\n") + "\n"
 }
 
-/// The window of an evaluation and what ended it.
-pub fn window(evaluation: &Evaluation) -> String {
-    let window = &evaluation.window;
-    if window.nominal != Outcome::Inserted {
-        return format!(
-            "window        none: the nominal start ends with {}",
-            end(Some(window.nominal))
-        );
-    }
+/// Why no design is recommended.
+fn none(record: &StudyRecord) -> String {
+    let Some(nearest) = nearest(&record.evaluations) else {
+        return "no evaluation gave a value".to_owned();
+    };
+    let tasks = nearest.tasks();
+    let words = record.config.constraints.iter().map(|constraint| constraint.words(&tasks));
     format!(
-        "window        {:.1} to {:+.1} mm; ends: {} below, {} above",
-        window.negative_mm(),
-        window.positive_mm(),
-        end(window.end_negative),
-        end(window.end_positive)
+        "no design keeps all constraints, so none is recommended\nnearest       {} (evaluation {}): {}",
+        nearest.design,
+        nearest.index,
+        words.collect::<Vec<_>>().join("; ")
     )
 }
 
-fn end(outcome: Option<Outcome>) -> String {
-    match outcome {
-        None => "limit of the search".to_owned(),
-        Some(Outcome::Inserted) => "inserted".to_owned(),
-        Some(Outcome::Failed(class)) => class.label().to_owned(),
-        Some(Outcome::Diverged) => "diverged".to_owned(),
+fn best_lines(record: &StudyRecord, best: &Recorded) -> Vec<String> {
+    let config = &record.config;
+    let mut lines = vec![format!("best design   {} (evaluation {})", best.design, best.index)];
+    if let (Some(measure), Some(value)) = (config.objective.single(), best.value()) {
+        let of =
+            config.aggregate.as_ref().map_or(String::new(), |a| format!(" ({a} of the tasks)"));
+        lines.push(format!("{measure:<13} {}{of}", measure.show(value)));
     }
+    let tasks = best.tasks();
+    let constraints = config.constraints.iter();
+    lines.extend(constraints.map(|c| format!("constraint    {} {}", c.measure, c.words(&tasks))));
+    for (name, evaluation) in config.tasks().zip(&tasks) {
+        if !config.other_tasks.is_empty() {
+            lines.push(format!("task          {name}"));
+        }
+        lines.push(window(evaluation));
+        lines.extend(drawn_text(evaluation));
+    }
+    lines.push(stiffness(&best.stiffness));
+    lines
 }
 
-/// Predicted stiffness, its uncertainty, and whether it is an extrapolation.
-pub fn stiffness(prediction: &Prediction) -> String {
-    let mut text = String::from("stiffness    ");
-    for (axis, estimate) in
-        [("compliance", prediction.compliance), ("assembly", prediction.assembly)]
-    {
-        let (mean, sd) = (estimate.mean / N_PER_MM, estimate.sd / N_PER_MM);
-        // Writing to a String cannot fail.
-        let _ = write!(text, " {axis} {mean:.2} ± {sd:.2} N/mm,");
-    }
-    if prediction.inside_hull() {
-        text.push_str(" inside the measured designs");
-    } else {
-        let distance = prediction.hull_distance;
-        let _ = write!(text, " {distance:.2} spans OUTSIDE the measured designs");
-    }
-    text
+fn front_lines(record: &StudyRecord) -> Vec<String> {
+    let (front, goals) = (record.front(), record.config.goals());
+    let objectives = &goals.objectives;
+    let line = |recorded: &&Recorded| {
+        let values = objectives.show(recorded.feasible().unwrap_or_default());
+        format!("              {values}: {} (evaluation {})", recorded.design, recorded.index)
+    };
+    let mut lines = vec![format!(
+        "front         {} designs; none is at least as good as another in all objectives",
+        front.len()
+    )];
+    lines.extend(front.iter().map(line));
+    let found = volume(&goals, &record.evaluations);
+    lines.push(format!(
+        "hypervolume   {:.3} {} from the reference {}",
+        found.hypervolume,
+        volume_unit(objectives),
+        objectives.show(&found.reference)
+    ));
+    lines
 }
 
 fn to_json(study: &Study, ending: Ending, known: u64) -> Value {
-    let config = &study.config;
+    let (config, record) = (&study.config, study.record());
     let ending = match ending {
         Ending::BudgetSpent => "budget_spent",
         Ending::SpaceExhausted => "space_exhausted",
         Ending::Converged => "converged",
         Ending::Interrupted => "interrupted",
     };
-    json!({
-        "task": config.task,
+    let single = config.objective.single();
+    let best = record.best().filter(|_| single.is_some());
+    let mut fields = json!({
+        "task": config.task_name(),
         "space": config.space.name(),
         "robot": config.robot,
         "engine": config.engine,
@@ -112,76 +116,61 @@ fn to_json(study: &Study, ending: Ending, known: u64) -> Value {
         "seed": config.seed,
         "budget": config.budget,
         "polish": config.polish,
-        "evaluations": study.evaluations.len(),
+        "evaluations": record.evaluations.len(),
         "cached": known,
         "ending": ending,
-        "best": finger_opt::study::best(&study.evaluations).map(recorded_json),
+        "best": best.map(|best| recorded_json(&record, best)),
         "study": study.dir(),
-    })
-}
-
-fn recorded_json(recorded: &Recorded) -> Value {
-    let mut fields = json!({
-        "evaluation": recorded.index,
-        "objective_mm": recorded.value,
-        "stiffness": stiffness_json(&recorded.stiffness),
     });
-    merge(&mut fields, json!(recorded.design));
-    merge(&mut fields, evaluation_json(&recorded.evaluation));
+    if !config.constraints.is_empty() {
+        let feasible = record.evaluations.iter().filter(|r| r.feasible().is_some()).count();
+        merge(&mut fields, json!({"constraints": config.constraints, "feasible": feasible}));
+    }
+    if let Some(aggregate) = &config.aggregate {
+        merge(&mut fields, json!({"aggregate": aggregate}));
+    }
+    if single.is_none() {
+        let found = volume(&config.goals(), &record.evaluations);
+        let front = record.front();
+        let front: Vec<Value> = front.iter().map(|r| recorded_json(&record, r)).collect();
+        let keys = config.objective.keys();
+        let reference: serde_json::Map<_, _> =
+            keys.into_iter().zip(found.reference.iter().map(|&value| json!(value))).collect();
+        let volume = json!({
+            "front": front,
+            "hypervolume": found.hypervolume,
+            "hypervolume_reference": reference,
+        });
+        merge(&mut fields, volume);
+    }
     fields
 }
 
-/// The keys every evaluation is printed with.
-pub fn evaluation_json(evaluation: &Evaluation) -> Value {
-    let window = &evaluation.window;
-    json!({
-        "range_mm": window.range_mm(),
-        "negative_mm": window.negative_mm(),
-        "positive_mm": window.positive_mm(),
-        "nominal": outcome_word(window.nominal),
-        "failure_negative": failure(window.end_negative),
-        "failure_positive": failure(window.end_positive),
-        "failure_counts": evaluation.failure_counts,
-        "diverged": evaluation.diverged,
-        "peak_force_n": evaluation.peak_force_n,
-        "slip_mm": evaluation.slip_mm,
-        "trials": evaluation.trials,
-        "simulated_s": evaluation.simulated_s,
-    })
-}
-
-/// A prediction with its uncertainty.
-pub fn stiffness_json(prediction: &Prediction) -> Value {
-    json!({
-        "compliance_n_per_mm": prediction.compliance.mean / N_PER_MM,
-        "compliance_sd_n_per_mm": prediction.compliance.sd / N_PER_MM,
-        "assembly_n_per_mm": prediction.assembly.mean / N_PER_MM,
-        "assembly_sd_n_per_mm": prediction.assembly.sd / N_PER_MM,
-        "hull_distance": prediction.hull_distance,
-        "inside_hull": prediction.inside_hull(),
-    })
-}
-
-/// `inserted`, `failed` or `diverged`.
-pub fn outcome_word(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Inserted => "inserted",
-        Outcome::Failed(_) => "failed",
-        Outcome::Diverged => "diverged",
+fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
+    let config = &record.config;
+    let mut fields = json!({
+        "evaluation": recorded.index,
+        "stiffness": stiffness_json(&recorded.stiffness),
+    });
+    if let Some(score) = &recorded.score {
+        let keys = config.objective.keys().into_iter();
+        let values = keys.zip(score.values.iter().map(|&value| json!(value)));
+        merge(&mut fields, Value::Object(values.collect()));
+        if !score.violations.is_empty() {
+            merge(&mut fields, json!({"violations": score.violations}));
+        }
     }
-}
-
-/// The failure class, 1 to 4, if it was a failure.
-pub fn failure(outcome: Option<Outcome>) -> Option<u8> {
-    match outcome {
-        Some(Outcome::Failed(class)) => Some(class.number()),
-        _ => None,
+    merge(&mut fields, json!(recorded.design));
+    if config.other_tasks.is_empty() {
+        merge(&mut fields, evaluation_json(&recorded.evaluation));
+    } else {
+        let of = |(task, evaluation)| {
+            let mut fields = json!({"task": task});
+            merge(&mut fields, evaluation_json(evaluation));
+            fields
+        };
+        let tasks: Vec<Value> = config.tasks().zip(recorded.tasks()).map(of).collect();
+        merge(&mut fields, json!({"tasks": tasks}));
     }
-}
-
-/// Adds the fields of one JSON object to another.
-pub fn merge(fields: &mut Value, more: Value) {
-    if let (Value::Object(fields), Value::Object(more)) = (fields, more) {
-        fields.extend(more);
-    }
+    fields
 }

@@ -4,9 +4,10 @@ use super::{Failure, print, print_json};
 use clap::Args;
 use finger_opt::input::InputError;
 use finger_opt::robot::Robot;
-use finger_opt::shipped::{ROBOTS, SPACES, Shipped, TASKS};
+use finger_opt::shipped::{ROBOTS, SPACES, Shipped, TASKS, UNCERTAINTIES};
 use finger_opt::space::Space;
 use finger_opt::task::Task;
+use finger_opt::uncertainty::Uncertainty;
 use serde_json::json;
 
 /// List what is shipped.
@@ -35,17 +36,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 type Entries = Vec<(&'static str, String)>;
 
-fn lists_of_shipped() -> Result<[(&'static str, Entries); 3], Failure> {
+fn lists_of_shipped() -> Result<[(&'static str, Entries); 4], Failure> {
     let task = |file: &Shipped| Ok::<_, InputError>(Task::parse(file.text, file.file)?.description);
     let space = |file: &Shipped| {
         Ok::<_, InputError>(Space::parse(file.text, file.file)?.description().to_owned())
     };
     let robot =
         |file: &Shipped| Ok::<_, InputError>(Robot::parse(file.text, file.file)?.description);
+    let uncertainty =
+        |file: &Shipped| Ok::<_, InputError>(Uncertainty::parse(file.text, file.file)?.description);
     Ok([
         ("tasks", described(TASKS, task).map_err(Failure::input)?),
         ("spaces", described(SPACES, space).map_err(Failure::input)?),
         ("robots", described(ROBOTS, robot).map_err(Failure::input)?),
+        ("uncertainties", described(UNCERTAINTIES, uncertainty).map_err(Failure::input)?),
     ])
 }
 

@@ -3,7 +3,7 @@
 use super::finger::FingerArguments;
 use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
-use super::summary::{failure, merge, outcome_word};
+use super::words::{failure, merge, outcome_word};
 use super::{Failure, print, print_json};
 use clap::Args;
 use finger_opt::evaluation::Outcome;

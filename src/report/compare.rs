@@ -1,6 +1,7 @@
 //! Studies of the same problem beside each other: optimizers against evaluations.
 
 use super::convergence::best_so_far;
+use crate::objective::{Aggregate, Constraint};
 use crate::study::{StudyConfig, StudyRecord};
 use std::collections::BTreeMap;
 
@@ -43,6 +44,17 @@ pub enum CompareError {
         optimizer: String,
         /// Their seed.
         seed: u64,
+    },
+    /// The target would mean nothing.
+    #[error(
+        "{name} has the objective {objective}; only studies of one objective in mm that is to be \
+         large can be compared: range, centred-range or robust-range"
+    )]
+    Objective {
+        /// The study.
+        name: String,
+        /// Its objective.
+        objective: String,
     },
     /// No study holds a value.
     #[error("no evaluation of these studies has a value: there is nothing to compare")]
@@ -101,6 +113,11 @@ impl Group {
 pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, CompareError> {
     let (first, _) = studies.split_first().ok_or(CompareError::Nothing)?;
     studies.iter().try_for_each(|study| alike(first, study))?;
+    let objective = &first.1.config.objective;
+    if !objective.single().is_some_and(|measure| measure.key() == "mm" && measure.sense() > 0.0) {
+        let (name, objective) = (first.0.clone(), objective.to_string());
+        return Err(CompareError::Objective { name, objective });
+    }
     let mut groups: BTreeMap<(String, u64), Vec<&(String, StudyRecord)>> = BTreeMap::new();
     for study in studies {
         let config = &study.1.config;
@@ -115,7 +132,7 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, CompareE
         }
         group.push(study);
     }
-    let best = studies.iter().filter_map(|(_, record)| record.best()?.value).reduce(f64::max);
+    let best = studies.iter().filter_map(|(_, record)| record.best()?.value()).reduce(f64::max);
     let best_known_mm = best.ok_or(CompareError::NoValue)?;
     let group =
         |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| Group {
@@ -129,11 +146,16 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, CompareE
                 .collect(),
         };
     Ok(Comparison {
-        task: first.1.config.task.clone(),
-        objective: first.1.config.objective.clone(),
+        task: first.1.config.task_name(),
+        objective: objective.to_string(),
         best_known_mm,
         groups: groups.into_iter().map(group).collect(),
     })
+}
+
+fn constraints(config: &StudyConfig) -> String {
+    let constraints: Vec<String> = config.constraints.iter().map(Constraint::to_string).collect();
+    if constraints.is_empty() { "none".to_owned() } else { constraints.join(", ") }
 }
 
 /// Whether two studies measure the same.
@@ -143,13 +165,18 @@ fn alike(
 ) -> Result<(), CompareError> {
     let fields = |config: &StudyConfig| {
         let mut fields: Vec<(String, String)> = [
-            ("task", &config.task),
-            ("objective", &config.objective),
-            ("robot", &config.robot),
-            ("engine", &config.engine),
-            ("engine version", &config.versions.engine),
+            ("task", config.task_name()),
+            ("objective", config.objective.to_string()),
+            ("constraints", constraints(config)),
+            (
+                "aggregate",
+                config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string),
+            ),
+            ("robot", config.robot.clone()),
+            ("engine", config.engine.clone()),
+            ("engine version", config.versions.engine.clone()),
         ]
-        .map(|(what, value)| (what.to_owned(), value.clone()))
+        .map(|(what, value)| (what.to_owned(), value))
         .into();
         fields.push(("space".to_owned(), config.space.name().to_owned()));
         let files = config.input_sha256.iter();
@@ -168,7 +195,7 @@ fn alike(
 
 /// Evaluations until a value of at least `target`, mm.
 fn reached(record: &StudyRecord, target: f64) -> Option<u64> {
-    let values = record.evaluations.iter().map(|r| r.value);
+    let values = record.evaluations.iter().map(|r| r.feasible()?.first().copied());
     let place = values.into_iter().position(|v| v.is_some_and(|v| v >= target - ROUNDING_MM));
     place.map(|index| index as u64 + 1)
 }

@@ -2,7 +2,8 @@
 
 use super::text::escape;
 use super::theme::{inline, variables};
-use super::{ReportError, best, convergence, map, others, scatter, sections, windows};
+use super::{ReportError, best, convergence, front, map, others, scatter, sections, windows};
+use crate::objective::Measure;
 use crate::study::StudyRecord;
 use crate::surrogate::Measurement;
 
@@ -17,14 +18,18 @@ const PLOT: (u32, u32) = (560, 400);
 /// If the drawing library refuses.
 pub fn html(record: &StudyRecord, measurements: &[Measurement]) -> Result<String, ReportError> {
     let config = &record.config;
-    let title = format!("{} with {}, seed {}", config.task, config.method(), config.seed);
+    let title = format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed);
+    let map_title = format!("{} over density and direction", capital(record));
+    let windows = |task| windows_part(record, task);
+    let published = |task| published_part(record, task);
     let body = [
         section("best", "Best design", &best::section(record)),
         section("convergence", "Convergence", &convergence_part(record)?),
-        section("map", "Range over density and direction", &map_part(record, measurements)?),
+        front_part(record)?,
+        section("map", &map_title, &map_part(record, measurements)?),
         others_part(record)?,
-        section("windows", "Tolerance windows of the best designs", &windows_part(record)?),
-        section("published", "Published ranges beside ours", &published_part(record)?),
+        section("windows", "Tolerance windows of the best designs", &each_task(record, windows)?),
+        section("published", "Published ranges beside ours", &each_task(record, published)?),
         section("failures", "How the trials ended", &sections::failures(record)),
         section("limits", "What this does not say", &sections::limits(record)),
         section("provenance", "Provenance", &sections::provenance(record)),
@@ -56,54 +61,102 @@ fn figure(svg: &str, label: &str, caption: &str) -> String {
 
 fn convergence_part(record: &StudyRecord) -> Result<String, ReportError> {
     let svg = convergence::svg(record, PLOT)?;
-    let caption = "Value of each evaluation, and the best so far, against the number of \
-                   evaluations. Values are multiples of the 0.1 mm grid.";
+    let caption = match record.config.objective.single() {
+        Some(Measure::Range | Measure::CentredRange) => {
+            "Value of each evaluation, and the best so far, against the number of \
+             evaluations. Values are multiples of the 0.1 mm grid."
+        }
+        Some(_) => {
+            "Value of each evaluation, and the best so far, against the number of evaluations."
+        }
+        None => {
+            "Hypervolume of the front against the number of evaluations, from the reference \
+             stated with the front."
+        }
+    };
     Ok(figure(&svg, "best value against evaluations", caption))
 }
 
+/// A whole section, or nothing for a single objective.
+fn front_part(record: &StudyRecord) -> Result<String, ReportError> {
+    if record.config.objective.single().is_some() {
+        return Ok(String::new());
+    }
+    let caption = "All evaluated designs by their first two objectives. Rings: the designs \
+                   among which nothing but preference decides.";
+    let plot = front::svg(record, PLOT)?
+        .map_or(String::new(), |svg| figure(&svg, "the front and all evaluations", caption));
+    Ok(section("front", "Between the objectives", &(plot + &front::section(record))))
+}
+
 fn map_part(record: &StudyRecord, measurements: &[Measurement]) -> Result<String, ReportError> {
-    let caption = "Coloured cells: evaluated designs, by range. Rings: designs whose stiffness \
-                   was measured. Cross in a frame: the best design. Red outline: no value. \
-                   Outside the rings' hull the stiffness is extrapolated. Of designs with the \
-                   same infill the best is on top.";
+    let caption = format!(
+        "Coloured cells: evaluated designs, by {}. Rings: designs whose stiffness was measured. \
+         Cross in a frame: the best design. Red outline: no value. Grey outline: violates a \
+         constraint. Outside the rings' hull the stiffness is extrapolated. Of designs with the \
+         same infill the best is on top.",
+        record.config.objective.first()
+    );
     Ok(match map::svg(record, measurements, (560, 500))? {
-        Some(svg) => figure(&svg, "map of the range over infill density and direction", caption),
+        Some(svg) => figure(&svg, "map over infill density and direction", &caption),
         None => "<p>The space of this study has no infill density and direction.</p>\n".to_owned(),
     })
 }
 
 /// A whole section, or nothing if the space is the infill alone.
 fn others_part(record: &StudyRecord) -> Result<String, ReportError> {
-    let caption = "Range of each evaluated design against one number each of task and finger; \
-                   all others differ as well. Cross: the best design.";
+    let first = capital(record);
+    let caption = format!(
+        "{first} of each evaluated design against one number each of task and finger; all others \
+         differ as well. Cross: the best design."
+    );
     Ok(match others::svg(record, PLOT.0)? {
         Some(svg) => {
-            let figure = figure(&svg, "range against the other parameters", caption);
-            section("others", "Range over the other parameters", &figure)
+            let figure = figure(&svg, "objective against the other parameters", &caption);
+            section("others", &format!("{first} over the other parameters"), &figure)
         }
         None => String::new(),
     })
 }
 
-fn windows_part(record: &StudyRecord) -> Result<String, ReportError> {
+/// The first objective as a sentence begins.
+fn capital(record: &StudyRecord) -> String {
+    let name = record.config.objective.first().name();
+    name[..1].to_uppercase() + &name[1..]
+}
+
+/// A part for each task, under its name if there are several.
+fn each_task(
+    record: &StudyRecord,
+    part: impl Fn(usize) -> Result<String, ReportError>,
+) -> Result<String, ReportError> {
+    let alone = record.config.other_tasks.is_empty();
+    let titled = |(task, name): (usize, &str)| {
+        let title = if alone { String::new() } else { format!("<h3>{}</h3>\n", escape(name)) };
+        Ok(title + &part(task)?)
+    };
+    record.config.tasks().enumerate().map(titled).collect()
+}
+
+fn windows_part(record: &StudyRecord, task: usize) -> Result<String, ReportError> {
     let caption = "Offsets that insert, about the nominal start (line at 0 mm), each end to \
                    within 0.1 mm. At each end the failure met there: 1 contact loss before the \
                    search, 2 plug missed, 3 jammed, 4 contact loss in insertion.";
-    Ok(match windows::svg(record, PLOT.0)? {
+    Ok(match windows::svg(record, task, PLOT.0)? {
         Some(svg) => {
             figure(&svg, "tolerance windows of the best designs", caption)
-                + &sections::best_ten(record)
+                + &sections::best_ten(record, task)
         }
-        None => "<p>No evaluation has a value.</p>\n".to_owned(),
+        None => "<p>No evaluation has a value and keeps all constraints.</p>\n".to_owned(),
     })
 }
 
-fn published_part(record: &StudyRecord) -> Result<String, ReportError> {
+fn published_part(record: &StudyRecord, task: usize) -> Result<String, ReportError> {
     let caption = "Range against the compliance stiffness of one finger: predicted for our \
                    designs, measured for the published ones.";
-    let plot = scatter::svg(record, PLOT)?
+    let plot = scatter::svg(record, task, PLOT)?
         .map_or(String::new(), |svg| figure(&svg, "range against compliance stiffness", caption));
-    Ok(sections::published(record) + &plot)
+    Ok(sections::published(record, task) + &plot)
 }
 
 fn style() -> String {

@@ -1,8 +1,9 @@
-//! Map of the range over infill density and direction.
+//! Map of the (first) objective over infill density and direction.
 
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, axes, message, sheet, words};
 use super::theme::{Colour, INK, LINES, MUTED, ORANGE, RED, SCALE};
+use crate::objective::Measure;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Space};
 use crate::study::{Recorded, StudyRecord};
 use crate::surrogate::Measurement;
@@ -46,27 +47,30 @@ impl Side {
     }
 }
 
-/// Ranges (mm) and the colours between them.
+/// Values and the colours between them.
 struct Scale {
+    measure: Measure,
     low: f64,
     high: f64,
 }
 
 impl Scale {
     fn of(record: &StudyRecord) -> Self {
-        let ranges = || record.evaluations.iter().map(|r| r.evaluation.window.range_mm());
-        let low = ranges().fold(f64::INFINITY, f64::min);
-        let high = ranges().fold(f64::NEG_INFINITY, f64::max);
-        match (low < high, high.is_finite()) {
-            (true, _) => Scale { low, high },
+        let measure = record.config.objective.first();
+        let values = || record.evaluations.iter().filter_map(Recorded::value);
+        let low = values().fold(f64::INFINITY, f64::min);
+        let high = values().fold(f64::NEG_INFINITY, f64::max);
+        let (low, high) = match (low < high, high.is_finite()) {
+            (true, _) => (low, high),
             // All alike, or none at all: a scale that ends with what there is.
-            (false, true) => Scale { low: high - 1.0, high: high.max(0.1) },
-            (false, false) => Scale { low: 0.0, high: 1.0 },
-        }
+            (false, true) => (high - 1.0, high.max(0.1)),
+            (false, false) => (0.0, 1.0),
+        };
+        Scale { measure, low, high }
     }
 
-    fn colour(&self, range: f64) -> Colour {
-        let share = (range - self.low) / (self.high - self.low);
+    fn colour(&self, value: f64) -> Colour {
+        let share = (value - self.low) / (self.high - self.low);
         SCALE[((share * SCALE.len() as f64) as usize).min(SCALE.len() - 1)]
     }
 }
@@ -92,17 +96,19 @@ fn draw(
     };
     // Best last: it stays visible where designs differ in more than the infill.
     let mut evaluations: Vec<_> = record.evaluations.iter().collect();
-    let value = |r: &Recorded| r.value.unwrap_or(f64::NEG_INFINITY);
-    evaluations.sort_by(|a, b| value(a).total_cmp(&value(b)));
+    let sense = scale.measure.sense();
+    let merit = |r: &Recorded| r.value().map_or(f64::NEG_INFINITY, |value| sense * value);
+    evaluations.sort_by(|a, b| merit(a).total_cmp(&merit(b)));
     for recorded in evaluations {
         let (Some(density), Some(direction)) =
             (recorded.design.get(DENSITY_KEY), recorded.design.get(DIRECTION_KEY))
         else {
             continue;
         };
-        let style = match recorded.value {
-            Some(_) => scale.colour(recorded.evaluation.window.range_mm()).rgb().filled(),
-            None => RED.rgb().stroke_width(1),
+        let style = match (recorded.value(), recorded.feasible()) {
+            (Some(value), Some(_)) => scale.colour(value).rgb().filled(),
+            (Some(_), None) => MUTED.rgb().stroke_width(1),
+            (None, _) => RED.rgb().stroke_width(1),
         };
         chart.draw_series([cell(density, direction, style)]).map_err(message)?;
     }
@@ -133,10 +139,12 @@ fn draw_key(area: &Area<'_>, scale: &Scale) -> Drawn {
         area.draw(&Rectangle::new(corners, LINES.rgb())).map_err(message)?;
     }
     let style = |h| words(15, INK, h, VPos::Top);
-    let low = format!("{:.1} mm", scale.low.max(0.0));
-    let high = format!("{:.1} mm", scale.high);
+    // Only a scale without a spread begins below what can be.
+    let least = if scale.measure == Measure::RobustRange { f64::NEG_INFINITY } else { 0.0 };
+    let low = scale.measure.show(scale.low.max(least));
+    let high = scale.measure.show(scale.high);
     area.draw_text(&low, &style(HPos::Left), (left, 24)).map_err(message)?;
     area.draw_text(&high, &style(HPos::Right), (right, 24)).map_err(message)?;
     let middle = words(15, MUTED, HPos::Center, VPos::Top);
-    area.draw_text("tolerable range", &middle, ((left + right) / 2, 24)).map_err(message)
+    area.draw_text(scale.measure.name(), &middle, ((left + right) / 2, 24)).map_err(message)
 }

@@ -6,6 +6,7 @@ mod chart;
 pub mod compare;
 mod compare_plot;
 mod convergence;
+mod front;
 mod html;
 mod map;
 mod others;
@@ -23,6 +24,7 @@ use crate::study::StudyRecord;
 
 pub use compare_plot::svg as compare_svg;
 pub use html::html;
+pub use text::volume_unit;
 
 /// Why a plot could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -37,11 +39,20 @@ pub enum ReportError {
     },
 }
 
-/// `convergence.svg`: value of each evaluation and best so far (mm) against the
-/// number of evaluations, on a white ground.
+/// `convergence.svg`: value of each evaluation and best so far (of several objectives the
+/// hypervolume) against the number of evaluations, on a white ground.
 ///
 /// # Errors
 /// If the drawing library refuses.
 pub fn convergence_svg(record: &StudyRecord) -> Result<String, ReportError> {
     convergence::svg(record, (880, 480))
+}
+
+/// `front.svg`: the first two objectives of all evaluations and the front, on a white ground;
+/// `None` if there is one objective only or nothing has values.
+///
+/// # Errors
+/// If the drawing library refuses.
+pub fn front_svg(record: &StudyRecord) -> Result<Option<String>, ReportError> {
+    front::svg(record, (880, 480))
 }

@@ -1,9 +1,10 @@
-//! Range over each parameter beside the infill.
+//! The (first) objective over each parameter beside the infill.
 
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, message, sheet};
 use super::text::is_infill;
 use super::theme::{BLUE, INK};
+use crate::objective::Measure;
 use crate::space::Parameter;
 use crate::study::{Recorded, StudyRecord};
 use plotters::prelude::*;
@@ -23,19 +24,21 @@ pub(super) fn svg(record: &StudyRecord, width: u32) -> Result<Option<String>, Re
         areas
             .iter()
             .zip(&others)
-            .try_for_each(|(area, parameter)| draw(area, parameter, &record.evaluations, best))
+            .try_for_each(|(area, parameter)| draw(area, parameter, record, best))
     });
     drawn.map(Some)
 }
 
-fn draw(area: &Area<'_>, of: &Parameter, evaluations: &[Recorded], best: &Recorded) -> Drawn {
-    let point = |r: &Recorded| Some((r.design.get(&of.key)?, r.evaluation.window.range_mm()));
-    let points: Vec<(f64, f64)> =
-        evaluations.iter().filter(|r| r.value.is_some()).filter_map(point).collect();
+fn draw(area: &Area<'_>, of: &Parameter, record: &StudyRecord, best: &Recorded) -> Drawn {
+    let measure = record.config.objective.first();
+    let point = |r: &Recorded| Some((r.design.get(&of.key)?, r.value()?));
+    let points: Vec<(f64, f64)> = record.evaluations.iter().filter_map(point).collect();
     let mut range = around(points.iter().map(|p| p.1).chain([0.0]), 0.1);
-    range.start = 0.0;
+    if measure != Measure::RobustRange {
+        range.start = 0.0;
+    }
     let x = AxisOf { label: &of.key, range: of.low - of.step..of.high + of.step };
-    let mut chart = axes(area, "", x, AxisOf { label: "range (mm)", range })?;
+    let mut chart = axes(area, "", x, AxisOf { label: &measure.label(), range })?;
     let dots = points.iter().map(|&p| Circle::new(p, 3, BLUE.rgb().mix(0.6).filled()));
     chart.draw_series(dots).map_err(message)?;
     let cross = point(best).map(|p| Cross::new(p, 7, INK.rgb().stroke_width(2)));

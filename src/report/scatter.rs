@@ -3,14 +3,20 @@
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet};
 use super::theme::{BLUE, GREEN, ORANGE};
-use crate::study::StudyRecord;
+use crate::objective::Measure;
+use crate::study::{Recorded, StudyRecord};
 use crate::units::N_PER_MM;
 use crate::validate::published::{Origin, designs, of_task};
 use plotters::prelude::*;
 
-/// The plot, `size` pixels; `None` if there is nothing to show.
-pub(super) fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
-    let points = Points::of(record);
+/// The plot of one task, by its place among the tasks, `size` pixels; `None` if there is
+/// nothing to show.
+pub(super) fn svg(
+    record: &StudyRecord,
+    task: usize,
+    size: (u32, u32),
+) -> Result<Option<String>, ReportError> {
+    let points = Points::of(record, task);
     if points.all().next().is_none() {
         return Ok(None);
     }
@@ -25,15 +31,16 @@ struct Points {
 }
 
 impl Points {
-    fn of(record: &StudyRecord) -> Self {
-        let ours = record
-            .evaluations
-            .iter()
-            .filter(|r| r.value.is_some())
-            .map(|r| (r.stiffness.compliance.mean / N_PER_MM, r.evaluation.window.range_mm()));
+    fn of(record: &StudyRecord, task: usize) -> Self {
+        let point = |r: &Recorded| {
+            let range = Measure::Range.value(r.on(task)?)?;
+            Some((r.stiffness.compliance.mean / N_PER_MM, range))
+        };
+        let ours = record.evaluations.iter().filter_map(point);
         let measured = designs();
+        let name = record.config.tasks().nth(task).unwrap_or_default();
         let published = |origin| {
-            let rows = of_task(&record.config.task, origin);
+            let rows = of_task(name, origin);
             let point = |row: &crate::validate::published::Published| {
                 let design = measured.iter().find(|m| m.design == row.design)?;
                 Some((design.compliance / N_PER_MM, row.tolerable_range_mm?))

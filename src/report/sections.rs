@@ -1,8 +1,9 @@
 //! The page's tables and texts.
 
-use super::text::{design, escape, outcome_words};
+use super::text::{design, escape, outcome_words, values};
 use super::windows;
-use crate::evaluation::{FailureClass, Outcome, Window};
+use crate::evaluation::{Evaluation, FailureClass, Outcome, Window};
+use crate::objective::Measure;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY};
 use crate::study::{Recorded, StudyRecord};
 use crate::surrogate::Measurement;
@@ -17,7 +18,7 @@ pub(super) fn definitions(rows: &[(String, String)]) -> String {
 }
 
 /// A table; cells are escaped.
-fn table(head: &[&str], rows: &[Vec<String>]) -> String {
+pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> String {
     let cells = |tag: &str, cells: &mut dyn Iterator<Item = String>| -> String {
         cells.map(|cell| format!("<{tag}>{}</{tag}>", escape(&cell))).collect()
     };
@@ -51,9 +52,9 @@ fn of_design<'a>(record: &'a StudyRecord, m: &Measurement) -> Option<&'a Recorde
     })
 }
 
-/// Published ranges of the task beside ours.
-pub(super) fn published(record: &StudyRecord) -> String {
-    let task = &record.config.task;
+/// Published ranges of a task, by its place among the tasks, beside ours.
+pub(super) fn published(record: &StudyRecord, place: usize) -> String {
+    let task = record.config.tasks().nth(place).unwrap_or_default();
     let simulation = of_task(task, Origin::Simulation);
     let in_situ = of_task(task, Origin::InSitu);
     if simulation.is_empty() && in_situ.is_empty() {
@@ -68,7 +69,9 @@ pub(super) fn published(record: &StudyRecord) -> String {
             vec![
                 m.design.to_string(),
                 format!("{} %, {}°", m.density_percent, m.direction_deg),
-                of_design(record, m).map_or(String::new(), |found| ours(&found.evaluation.window)),
+                of_design(record, m)
+                    .and_then(|found| found.on(place))
+                    .map_or(String::new(), |found| ours(&found.window)),
                 cell(&simulation, m.design),
                 cell(&in_situ, m.design),
             ]
@@ -83,20 +86,20 @@ pub(super) fn published(record: &StudyRecord) -> String {
     )
 }
 
-/// Windows of the best designs as a table, for those who cannot see the bars.
-pub(super) fn best_ten(record: &StudyRecord) -> String {
+/// Windows of the best designs on one task as a table, for those who cannot see the bars.
+pub(super) fn best_ten(record: &StudyRecord, task: usize) -> String {
     let rows: Vec<Vec<String>> = windows::best(record)
         .iter()
-        .map(|(r, value)| {
-            let window = &r.evaluation.window;
-            vec![
+        .filter_map(|(r, found)| {
+            let window = &r.on(task)?.window;
+            Some(vec![
                 r.index.to_string(),
                 design(&r.design),
-                format!("{value:.1} mm"),
+                values(&record.config.objective, found),
                 format!("{:+.1} to {:+.1} mm", window.negative_mm(), window.positive_mm()),
                 super::text::stiffness(r.stiffness.compliance),
                 if r.stiffness.inside_hull() { "inside" } else { "outside" }.to_owned(),
-            ]
+            ])
         })
         .collect();
     let head =
@@ -106,10 +109,11 @@ pub(super) fn best_ten(record: &StudyRecord) -> String {
 
 /// How the trials of the study ended.
 pub(super) fn failures(record: &StudyRecord) -> String {
-    let sum = |of: &dyn Fn(&Recorded) -> u32| -> u64 {
-        record.evaluations.iter().map(|r| u64::from(of(r))).sum()
+    let windows = || record.evaluations.iter().flat_map(Recorded::tasks);
+    let sum = |of: &dyn Fn(&Evaluation) -> u32| -> u64 {
+        windows().map(|evaluation| u64::from(of(evaluation))).sum()
     };
-    let trials = sum(&|r| r.evaluation.trials);
+    let trials = sum(&|found| found.trials);
     let share = |count: u64| {
         if trials == 0 {
             "–".to_owned()
@@ -120,29 +124,22 @@ pub(super) fn failures(record: &StudyRecord) -> String {
     let mut rows: Vec<Vec<String>> = FailureClass::ALL
         .into_iter()
         .map(|class| {
-            let count = sum(&|r| r.evaluation.failure_counts[class as usize]);
+            let count = sum(&|found| found.failure_counts[class as usize]);
             let name = format!("{} {}", class.number(), class.label());
             vec![name, count.to_string(), share(count)]
         })
         .collect();
-    let diverged = sum(&|r| r.evaluation.diverged);
+    let diverged = sum(&|found| found.diverged);
     rows.push(vec!["simulation diverged".to_owned(), diverged.to_string(), share(diverged)]);
-    let failed: u64 = diverged
-        + record
-            .evaluations
-            .iter()
-            .flat_map(|r| r.evaluation.failure_counts)
-            .map(u64::from)
-            .sum::<u64>();
+    let failed = diverged + sum(&|found| found.failure_counts.iter().sum());
     let inserted = trials.saturating_sub(failed);
     rows.push(vec!["inserted".to_owned(), inserted.to_string(), share(inserted)]);
-    let at_nominal =
-        record.evaluations.iter().filter(|r| r.evaluation.window.nominal != Outcome::Inserted);
+    let at_nominal = windows().filter(|found| found.window.nominal != Outcome::Inserted);
     format!(
-        "<p>{trials} trials in {} evaluations. {} of them do not insert at the nominal \
+        "<p>{trials} trials in {} window searches. {} of them do not insert at the nominal \
          start. A window search stops at the first failure on each side, so failures count \
          window ends, not how likely a failure is.</p>\n{}",
-        record.evaluations.len(),
+        windows().count(),
         at_nominal.count(),
         table(&["how the trial ended", "trials", "share"], &rows)
     )
@@ -153,10 +150,10 @@ pub(super) fn provenance(record: &StudyRecord) -> String {
     let config = &record.config;
     let mut rows: Vec<(String, String)> = [
         ("study", config.name()),
-        ("task", config.task.clone()),
+        ("task", config.task_name()),
         ("robot", config.robot.clone()),
         ("optimizer", config.method()),
-        ("objective", config.objective.clone()),
+        ("objective", config.objective.to_string()),
         ("seed", config.seed.to_string()),
         ("evaluations", format!("{} of {}", record.evaluations.len(), config.evaluations())),
         ("designs proposed at a time", config.batch.to_string()),
@@ -165,13 +162,20 @@ pub(super) fn provenance(record: &StudyRecord) -> String {
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .into();
+    rows.extend(config.constraints.iter().map(|c| ("constraint".to_owned(), c.to_string())));
+    rows.extend(config.aggregate.iter().map(|a| {
+        let value = format!("{a}, of values that are not scaled");
+        ("objective over the tasks".to_owned(), value)
+    }));
+    rows.extend(config.uncertainty.iter().map(|u| ("drawn errors".to_owned(), u.clone())));
     for p in config.space.parameters() {
         let value = format!("{} to {} in steps of {}", p.low, p.high, p.step);
         rows.push((format!("{}: {}", config.space.name(), p.key), value));
     }
-    let simulated: f64 = record.evaluations.iter().map(|r| r.evaluation.simulated_s).sum();
+    let windows = record.evaluations.iter().flat_map(Recorded::tasks);
+    let simulated: f64 = windows.map(|found| found.simulated_s).sum();
     let wall: f64 = record.evaluations.iter().map(|r| r.timing.wall_s).sum();
-    rows.push(("simulated time".to_owned(), format!("{simulated:.0} s")));
+    rows.push(("simulated time of the window searches".to_owned(), format!("{simulated:.0} s")));
     rows.push(("wall-clock time, summed over evaluations".to_owned(), format!("{wall:.0} s")));
     for (role, hash) in &config.input_sha256 {
         rows.push((format!("SHA-256 of the {role} file"), hash.clone()));
@@ -181,21 +185,40 @@ pub(super) fn provenance(record: &StudyRecord) -> String {
 
 /// What the numbers do not say.
 pub(super) fn limits(record: &StudyRecord) -> String {
-    let task = &record.config.task;
-    let here = rank_correlation(task).map_or(String::new(), |(r, n)| {
-        format!(
-            " On this task the rank correlation between published simulated and in-situ \
+    let here = |task: &str| {
+        let (r, n) = rank_correlation(task)?;
+        Some(format!(
+            " On {task} the rank correlation between published simulated and in-situ \
              ranges is {r:+.2} over {n} designs (+1: same order, −1: opposite order)."
-        )
-    });
+        ))
+    };
+    let here: String = record.config.tasks().filter_map(here).collect();
+    let goals = record.config.goals();
+    let carried = match goals.need(Measure::RobustRange) {
+        true => {
+            "The windows shown are those of fingers of exactly the predicted stiffness. The \
+                 robust range alone carries the stiffness error."
+        }
+        false => {
+            "The range is that of a finger of exactly the predicted stiffness. The stiffness \
+                  error above is not carried into the range."
+        }
+    };
+    let drawn = match goals.need_draws() {
+        true => {
+            "<li>Success rate and robust range are those of the assumed errors, not of your \
+                 cell. All designs meet the same draws, so differences between designs are surer \
+                 than the values.</li>\n"
+        }
+        false => "",
+    };
     format!(
         "<ul>\n\
          <li>These are results of a contact simulation. No finger was printed for this study.</li>\n\
          <li>In the published simulation of these tasks, ranges rank the designs in the opposite \
          order to the robot on two of four tasks.{here} Confirm the best design, and a very \
          different one, on the robot.</li>\n\
-         <li>The range is that of a finger of exactly the predicted stiffness. The stiffness \
-         error above is not carried into the range.</li>\n\
+         <li>{carried}</li>\n{drawn}\
          <li>The centre of rotation of the finger is fixed in the model. In truth it moves with \
          the infill direction, which matters for long, slender plugs.</li>\n\
          <li>Differences of 0.2 mm between designs are at the resolution of the window search.</li>\n\

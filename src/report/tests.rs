@@ -1,6 +1,7 @@
 use super::*;
 use crate::evaluation::{Evaluation, FailureClass, Outcome, Window};
 use crate::finger::Finger;
+use crate::objective::{Goals, Measure, Objectives};
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use crate::study::{Recorded, StudyConfig, Timing, Versions};
 use crate::surrogate::{Measurement, Model, SHIPPED_CSV, SHIPPED_FILE, fit, parse};
@@ -19,10 +20,14 @@ fn model() -> Model {
 fn config(task: &str) -> StudyConfig {
     StudyConfig {
         task: task.to_owned(),
+        other_tasks: Vec::new(),
         robot: "rigid".to_owned(),
         engine: "fake".to_owned(),
         optimizer: "gp".to_owned(),
-        objective: "range".to_owned(),
+        objective: Objectives::of(Measure::Range),
+        constraints: Vec::new(),
+        aggregate: None,
+        uncertainty: None,
         seed: 7,
         budget: 200,
         polish: 0,
@@ -57,12 +62,10 @@ fn recorded(
     stiffness: crate::surrogate::Prediction,
     evaluation: Evaluation,
 ) -> Recorded {
-    let value = match evaluation.window.nominal {
-        Outcome::Diverged => None,
-        _ => Some(evaluation.window.range_mm()),
-    };
+    let score = Goals::of(Measure::Range).score(&[&evaluation]);
     let design = Design::infill(infill[0], infill[1]);
-    Recorded { index, design, value, stiffness, evaluation, timing: Timing::default() }
+    let (other_tasks, timing) = (Vec::new(), Timing::default());
+    Recorded { index, design, score, stiffness, evaluation, other_tasks, timing }
 }
 
 /// An evaluation whose nominal start already ends so.
@@ -187,12 +190,12 @@ fn empty_failed_and_diverged_studies_still_have_a_page() {
 fn what_comes_from_files_is_escaped_and_unknown_tasks_are_told() {
     let mut study = study();
     study.config.task = "<img onerror=x>&\"'".to_owned();
-    study.config.objective = "<b>range".to_owned();
+    study.config.uncertainty = Some("<b>errors".to_owned());
     study.evaluations[0].design.0.insert("<i>key".to_owned(), 1.0);
     study.config.input_sha256.insert("<u>".to_owned(), "<s>".to_owned());
     let page = html(&study, &measured()).unwrap();
     check_page(&page);
-    for raw in ["<img", "<b>range", "<i>", "<u>", "<s>"] {
+    for raw in ["<img", "<b>errors", "<i>", "<u>", "<s>"] {
         assert!(!page.contains(raw), "{raw}");
     }
     assert!(page.contains("No ranges are published for the task &lt;img"));
@@ -203,7 +206,7 @@ fn convergence_never_falls_and_ends_at_the_best() {
     let study = study();
     let steps = convergence::best_so_far(&study);
     assert!(steps.windows(2).all(|pair| pair[0].1 <= pair[1].1));
-    assert_eq!(steps.last().map(|s| s.1), study.best().and_then(|r| r.value));
+    assert_eq!(steps.last().map(|s| s.1), study.best().and_then(Recorded::value));
     let svg = convergence_svg(&study).unwrap();
     for word in ["best so far", "range (mm)", "each evaluation"] {
         assert!(svg.contains(word), "{word}");

@@ -1,6 +1,7 @@
 //! Words and numbers of reports; every number with its unit.
 
 use crate::evaluation::{FailureClass, Outcome};
+use crate::objective::Objectives;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::surrogate::Estimate;
 use crate::units::N_PER_MM;
@@ -67,6 +68,20 @@ pub(super) fn design(design: &Design) -> String {
     parts.retain(|infill| !infill.is_empty());
     parts.extend(others.map(|(key, value)| format!("{key} {value}")));
     parts.join(", ")
+}
+
+/// The objectives' values: a single one without its name.
+pub(super) fn values(objectives: &Objectives, values: &[f64]) -> String {
+    match (objectives.single(), values) {
+        (Some(measure), [value]) => measure.show(*value),
+        _ => objectives.show(values),
+    }
+}
+
+/// Unit of a hypervolume: `mm N`.
+pub fn volume_unit(objectives: &Objectives) -> String {
+    let units = objectives.measures().iter().map(|measure| measure.unit());
+    units.filter(|unit| !unit.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 /// Whether a key names the infill.

@@ -4,7 +4,7 @@ use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, message, sheet, tick, words};
 use super::text;
 use super::theme::{BLUE, INK, LINES, MUTED, RED};
-use crate::evaluation::Outcome;
+use crate::evaluation::{Outcome, Window};
 use crate::study::{Recorded, StudyRecord};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -12,18 +12,42 @@ use plotters::style::text_anchor::{HPos, VPos};
 /// How many designs are shown.
 pub(super) const SHOWN: usize = 10;
 
-/// The best evaluations, best first; equals in the order they were measured.
-pub(super) fn best(record: &StudyRecord) -> Vec<(&Recorded, f64)> {
-    let mut with_value: Vec<(&Recorded, f64)> =
-        record.evaluations.iter().filter_map(|r| Some((r, r.value?))).collect();
-    with_value.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.index.cmp(&b.0.index)));
-    with_value.truncate(SHOWN);
-    with_value
+/// The best evaluations that keep all constraints, best first; equals in the order they were
+/// measured. Of several objectives those on the front.
+pub(super) fn best(record: &StudyRecord) -> Vec<(&Recorded, &[f64])> {
+    let goals = record.config.goals();
+    let mut best: Vec<(&Recorded, &[f64])> = match goals.objectives.single() {
+        Some(_) => record.evaluations.iter().filter_map(|r| Some((r, r.feasible()?))).collect(),
+        None => record.front().into_iter().filter_map(|r| Some((r, r.feasible()?))).collect(),
+    };
+    // Stable, so that equals stay in their order.
+    best.sort_by(|a, b| goals.order(b.1, a.1));
+    best.truncate(SHOWN);
+    best
 }
 
-/// The bars, as wide as `width` pixels; `None` if no evaluation has a value.
-pub(super) fn svg(record: &StudyRecord, width: u32) -> Result<Option<String>, ReportError> {
-    let shown = best(record);
+/// A row of the plot.
+struct Row<'a> {
+    title: String,
+    window: &'a Window,
+}
+
+/// The bars on one task, by its place among the tasks, as wide as `width` pixels; `None` if
+/// no evaluation has a value.
+pub(super) fn svg(
+    record: &StudyRecord,
+    task: usize,
+    width: u32,
+) -> Result<Option<String>, ReportError> {
+    let shown: Vec<Row<'_>> = best(record)
+        .into_iter()
+        .zip(1..)
+        .filter_map(|((recorded, values), place)| {
+            let value = text::values(&record.config.objective, values);
+            let title = format!("{place}.  {}   {value}", name(recorded));
+            Some(Row { title, window: &recorded.on(task)?.window })
+        })
+        .collect();
     if shown.is_empty() {
         return Ok(None);
     }
@@ -41,10 +65,9 @@ fn name(recorded: &Recorded) -> String {
     format!("{infill}, evaluation {}", recorded.index)
 }
 
-fn draw(area: &Area<'_>, shown: &[(&Recorded, f64)]) -> Drawn {
-    let window = |r: &Recorded| r.evaluation.window.clone();
-    let low = shown.iter().map(|(r, _)| window(r).negative_mm()).fold(0.0, f64::min);
-    let high = shown.iter().map(|(r, _)| window(r).positive_mm()).fold(0.0, f64::max);
+fn draw(area: &Area<'_>, shown: &[Row<'_>]) -> Drawn {
+    let low = shown.iter().map(|row| row.window.negative_mm()).fold(0.0, f64::min);
+    let high = shown.iter().map(|row| row.window.positive_mm()).fold(0.0, f64::max);
     // Room for the labels at both ends.
     let room = (0.32 * (high - low)).max(0.6);
     let x = AxisOf { label: "offset of the start along y (mm)", range: low - room..high + room };
@@ -71,11 +94,14 @@ fn draw(area: &Area<'_>, shown: &[(&Recorded, f64)]) -> Drawn {
         |words_: String, at: (f64, f64), style: TextStyle<'static>| Text::new(words_, at, style);
     let mut labels = Vec::new();
     let mut bars = Vec::new();
-    for (row, (recorded, value)) in shown.iter().enumerate() {
-        let (row, window) = (row as f64, window(recorded));
-        let title = format!("{}.  {}   {value:.1} mm", row + 1.0, name(recorded));
+    for (row, Row { title, window }) in shown.iter().enumerate() {
+        let row = row as f64;
         let middle = (low + high) / 2.0;
-        labels.push(text(title, (middle, row + 0.24), words(15, INK, HPos::Center, VPos::Center)));
+        labels.push(text(
+            title.clone(),
+            (middle, row + 0.24),
+            words(15, INK, HPos::Center, VPos::Center),
+        ));
         let y = row + 0.68;
         let (mut left, mut right) = (window.end_negative, window.end_positive);
         if window.nominal != Outcome::Inserted {

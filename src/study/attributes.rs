@@ -7,6 +7,29 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// User attributes of a trial.
 #[derive(Serialize, Deserialize)]
 pub struct Attributes {
+    #[serde(flatten)]
+    measured: MeasuredLine,
+    stiffness: StiffnessLine,
+    #[serde(deserialize_with = "null_is_nan")]
+    hull_distance: f64,
+    #[serde(flatten)]
+    drawn: DrawnLine,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    other_tasks: Vec<TaskLine>,
+}
+
+/// The evaluation on a task beside the first one.
+#[derive(Serialize, Deserialize)]
+struct TaskLine {
+    #[serde(flatten)]
+    measured: MeasuredLine,
+    #[serde(flatten)]
+    drawn: DrawnLine,
+}
+
+/// What the window search measured.
+#[derive(Serialize, Deserialize)]
+struct MeasuredLine {
     window: WindowLine,
     failure_counts: [u32; 4],
     diverged: u32,
@@ -17,9 +40,11 @@ pub struct Attributes {
     slip_mm: f64,
     #[serde(deserialize_with = "null_is_nan")]
     simulated_s: f64,
-    stiffness: StiffnessLine,
-    #[serde(deserialize_with = "null_is_nan")]
-    hull_distance: f64,
+}
+
+/// What was measured under drawn errors.
+#[derive(Serialize, Deserialize)]
+struct DrawnLine {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     success_rate: Option<SuccessLine>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -114,24 +139,61 @@ fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Err
     Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
-impl Attributes {
-    /// Of an evaluation and the stiffness it was made with.
-    pub fn new(evaluation: &Evaluation, stiffness: &Prediction) -> Self {
+impl From<&Evaluation> for TaskLine {
+    fn from(evaluation: &Evaluation) -> Self {
         let window = &evaluation.window;
-        Attributes {
-            window: WindowLine {
-                nominal: window.nominal,
-                negative_mm: window.negative_mm(),
-                positive_mm: window.positive_mm(),
-                end_negative: window.end_negative,
-                end_positive: window.end_positive,
+        TaskLine {
+            measured: MeasuredLine {
+                window: WindowLine {
+                    nominal: window.nominal,
+                    negative_mm: window.negative_mm(),
+                    positive_mm: window.positive_mm(),
+                    end_negative: window.end_negative,
+                    end_positive: window.end_positive,
+                },
+                failure_counts: evaluation.failure_counts,
+                diverged: evaluation.diverged,
+                trials: evaluation.trials,
+                peak_force_n: evaluation.peak_force_n,
+                slip_mm: evaluation.slip_mm,
+                simulated_s: evaluation.simulated_s,
             },
-            failure_counts: evaluation.failure_counts,
-            diverged: evaluation.diverged,
-            trials: evaluation.trials,
-            peak_force_n: evaluation.peak_force_n,
-            slip_mm: evaluation.slip_mm,
-            simulated_s: evaluation.simulated_s,
+            drawn: DrawnLine {
+                success_rate: evaluation.success.as_ref().map(SuccessLine::from),
+                robust_range: evaluation.robust.as_ref().map(RobustLine::from),
+            },
+        }
+    }
+}
+
+fn evaluation(found: &MeasuredLine, drawn: &DrawnLine) -> Evaluation {
+    let window = &found.window;
+    let steps = |mm: f64| (mm / grid_mm(1)).round() as i32;
+    Evaluation {
+        window: Window {
+            nominal: window.nominal,
+            negative_steps: steps(window.negative_mm),
+            positive_steps: steps(window.positive_mm),
+            end_negative: window.end_negative,
+            end_positive: window.end_positive,
+        },
+        failure_counts: found.failure_counts,
+        diverged: found.diverged,
+        trials: found.trials,
+        peak_force_n: found.peak_force_n,
+        slip_mm: found.slip_mm,
+        simulated_s: found.simulated_s,
+        success: drawn.success_rate.as_ref().map(SuccessRate::from),
+        robust: drawn.robust_range.as_ref().map(RobustRange::from),
+    }
+}
+
+impl Attributes {
+    /// Of an evaluation on one task and the stiffness it was made with.
+    pub fn new(evaluation: &Evaluation, stiffness: &Prediction) -> Self {
+        let TaskLine { measured, drawn } = TaskLine::from(evaluation);
+        Attributes {
+            measured,
             stiffness: StiffnessLine {
                 compliance_n_per_m: stiffness.compliance.mean,
                 compliance_sd_n_per_m: stiffness.compliance.sd,
@@ -139,32 +201,24 @@ impl Attributes {
                 assembly_sd_n_per_m: stiffness.assembly.sd,
             },
             hull_distance: stiffness.hull_distance,
-            success_rate: evaluation.success.as_ref().map(SuccessLine::from),
-            robust_range: evaluation.robust.as_ref().map(RobustLine::from),
+            drawn,
+            other_tasks: Vec::new(),
         }
     }
 
-    /// The evaluation.
+    /// The same with the evaluations on other tasks.
+    pub fn with_other_tasks(self, other_tasks: &[Evaluation]) -> Self {
+        Attributes { other_tasks: other_tasks.iter().map(TaskLine::from).collect(), ..self }
+    }
+
+    /// The evaluation on the first task.
     pub fn evaluation(&self) -> Evaluation {
-        let window = &self.window;
-        let steps = |mm: f64| (mm / grid_mm(1)).round() as i32;
-        Evaluation {
-            window: Window {
-                nominal: window.nominal,
-                negative_steps: steps(window.negative_mm),
-                positive_steps: steps(window.positive_mm),
-                end_negative: window.end_negative,
-                end_positive: window.end_positive,
-            },
-            failure_counts: self.failure_counts,
-            diverged: self.diverged,
-            trials: self.trials,
-            peak_force_n: self.peak_force_n,
-            slip_mm: self.slip_mm,
-            simulated_s: self.simulated_s,
-            success: self.success_rate.as_ref().map(SuccessRate::from),
-            robust: self.robust_range.as_ref().map(RobustRange::from),
-        }
+        evaluation(&self.measured, &self.drawn)
+    }
+
+    /// The evaluations on the other tasks.
+    pub fn other_tasks(&self) -> Vec<Evaluation> {
+        self.other_tasks.iter().map(|task| evaluation(&task.measured, &task.drawn)).collect()
     }
 
     /// The stiffness.

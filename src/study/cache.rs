@@ -10,9 +10,10 @@
 //! that is torn or damaged fails its check and is measured and written again.
 
 use super::attributes::Attributes;
-use super::evaluator::Measured;
 use super::seal::{seal, unseal};
+use crate::evaluation::Evaluation;
 use crate::robot::Robot;
+use crate::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Debug;
@@ -64,7 +65,7 @@ impl Cache {
     }
 
     /// The evaluation of that name, if a whole one is there.
-    pub fn get(&self, key: &Key) -> Option<Measured> {
+    pub fn get(&self, key: &Key) -> Option<Evaluation> {
         let text = fs::read_to_string(self.path(key)).ok()?;
         let (content, _) = unseal(text.strip_suffix('\n')?).ok()?;
         let entry: Entry = serde_json::from_str(&content).ok()?;
@@ -72,14 +73,13 @@ impl Cache {
             return None;
         }
         self.found.fetch_add(1, Ordering::Relaxed);
-        let found = &entry.measured;
-        Some(Measured { stiffness: found.prediction(), evaluation: found.evaluation() })
+        Some(entry.measured.evaluation())
     }
 
-    /// Keeps an evaluation. What cannot be kept is measured again next time, so a failure is
-    /// only noted ([`problem`](Self::problem)).
-    pub fn put(&self, key: &Key, measured: &Measured) {
-        if let Err(error) = self.write(key, measured)
+    /// Keeps an evaluation and the stiffness it was made with. What cannot be kept is measured
+    /// again next time, so a failure is only noted ([`problem`](Self::problem)).
+    pub fn put(&self, key: &Key, evaluation: &Evaluation, stiffness: &Prediction) {
+        if let Err(error) = self.write(key, Attributes::new(evaluation, stiffness))
             && let Ok(mut problem) = self.problem.lock()
         {
             problem.get_or_insert(error);
@@ -102,9 +102,8 @@ impl Cache {
         self.dir.join(folder).join(format!("{name}.json"))
     }
 
-    fn write(&self, key: &Key, measured: &Measured) -> io::Result<()> {
-        let attributes = Attributes::new(&measured.evaluation, &measured.stiffness);
-        let entry = Entry { key: key.0.clone(), measured: attributes };
+    fn write(&self, key: &Key, measured: Attributes) -> io::Result<()> {
+        let entry = Entry { key: key.0.clone(), measured };
         let text = seal(&entry, None::<&()>)?;
         let path = self.path(key);
         let folder = path.parent().unwrap_or(&self.dir);
@@ -126,7 +125,7 @@ mod tests {
     use super::*;
     use crate::finger::Finger;
     use crate::shipped::ROBOTS;
-    use crate::surrogate::{Estimate, Prediction};
+    use crate::surrogate::Estimate;
     use crate::tolerance::{Search, evaluate};
     use crate::trial::fake::FakeRig;
 
@@ -135,17 +134,14 @@ mod tests {
         Cache::new(dir, &robot, "fake")
     }
 
-    fn measured(compliance: f64) -> Measured {
+    fn measured(compliance: f64) -> Evaluation {
         let finger = Finger::new(compliance, 2e4);
-        let of = |mean| Estimate { mean, sd: 0.1 };
-        Measured {
-            stiffness: Prediction {
-                compliance: of(compliance),
-                assembly: of(2e4),
-                hull_distance: 0.0,
-            },
-            evaluation: evaluate(&FakeRig::default(), &finger, Search::Walk),
-        }
+        evaluate(&FakeRig::default(), &finger, Search::Walk)
+    }
+
+    fn stiffness() -> Prediction {
+        let one = Estimate { mean: 2e3, sd: 0.1 };
+        Prediction { compliance: one, assembly: one, hull_distance: 0.0 }
     }
 
     fn files(dir: &Path) -> Vec<PathBuf> {
@@ -161,7 +157,7 @@ mod tests {
         let cache = cache(dir.path());
         let (a, b) = (cache.key(&0.1), cache.key(&(0.1 + f64::EPSILON)));
         assert_eq!(cache.get(&a), None);
-        cache.put(&a, &measured(3e3));
+        cache.put(&a, &measured(3e3), &stiffness());
         assert_eq!(cache.get(&a), Some(measured(3e3)));
         assert_eq!((cache.get(&b), cache.found(), cache.problem()), (None, 1, None));
         let robot = Robot::parse(ROBOTS[1].text, ROBOTS[1].file).unwrap();
@@ -180,7 +176,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let cache = cache(dir.path());
         let (key, found) = (cache.key(&1), measured(3e3));
-        cache.put(&key, &found);
+        cache.put(&key, &found, &stiffness());
         let [file] = &files(dir.path())[..] else { panic!("one file") };
         let whole = fs::read(file).unwrap();
         for torn in 0..whole.len() {
@@ -195,10 +191,10 @@ mod tests {
         }
         // Another evaluation's file under this name.
         let other = cache.key(&2);
-        cache.put(&other, &measured(2e3));
+        cache.put(&other, &measured(2e3), &stiffness());
         fs::copy(cache.path(&other), file).unwrap();
         assert_eq!(cache.get(&key), None);
-        cache.put(&key, &found);
+        cache.put(&key, &found, &stiffness());
         assert_eq!(cache.get(&key), Some(found));
     }
 
@@ -207,12 +203,12 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let caches = [cache(dir.path()), cache(dir.path())];
         let key = caches[0].key(&1);
-        caches[0].put(&key, &measured(3e3));
+        caches[0].put(&key, &measured(3e3), &stiffness());
         std::thread::scope(|scope| {
             for cache in caches.iter().cycle().take(8) {
                 scope.spawn(|| {
                     for _ in 0..200 {
-                        cache.put(&key, &measured(3e3));
+                        cache.put(&key, &measured(3e3), &stiffness());
                         assert_eq!(cache.get(&key), Some(measured(3e3)));
                     }
                 });
@@ -229,7 +225,7 @@ mod tests {
         fs::write(&file, "").unwrap();
         let cache = cache(&file);
         let key = cache.key(&1);
-        cache.put(&key, &measured(3e3));
+        cache.put(&key, &measured(3e3), &stiffness());
         assert_eq!(cache.get(&key), None);
         assert!(cache.problem().unwrap().contains("file: "));
     }

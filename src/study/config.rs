@@ -1,5 +1,6 @@
 //! The resolved configuration of a study, as `study.toml` keeps it.
 
+use crate::objective::{Aggregate, Constraint, Goals, Objectives};
 use crate::space::Space;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,16 +10,28 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyConfig {
-    /// Name of the task.
+    /// Name of the task, or of the first of several.
     pub task: String,
+    /// Names of the tasks beside it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub other_tasks: Vec<String>,
     /// Name of the robot.
     pub robot: String,
     /// Name of the contact engine.
     pub engine: String,
     /// Name of the optimizer.
     pub optimizer: String,
-    /// Name of the objective.
-    pub objective: String,
+    /// What is optimized.
+    pub objective: Objectives,
+    /// What a design must keep to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub constraints: Vec<Constraint>,
+    /// How the values of several tasks become one; there are several if it is there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub aggregate: Option<Aggregate>,
+    /// Name of the distribution of errors, if the goals need one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<String>,
     /// Seed of every random stream of the study.
     pub seed: u64,
     /// Evaluations that the optimizer has; the one field that may be raised later, unless
@@ -31,7 +44,8 @@ pub struct StudyConfig {
     pub batch: u64,
     /// Versions of what computed the results.
     pub versions: Versions,
-    /// SHA-256 of each input file by its role (`task`, `space`, `robot`, `stiffness`), in hexadecimal.
+    /// SHA-256 of each input file by its role (`task`, `space`, `robot`, `stiffness`; where
+    /// there are such: `task_2` and so on, `uncertainty`), in hexadecimal.
     pub input_sha256: BTreeMap<String, String>,
     /// The search space in full.
     pub space: Space,
@@ -50,7 +64,26 @@ pub struct Versions {
 impl StudyConfig {
     /// The study's name: its default folder under `results/`, and its name in Optuna.
     pub fn name(&self) -> String {
-        study_name(&self.task, &self.method(), self.seed)
+        study_name(&self.task_name(), &self.method(), self.seed)
+    }
+
+    /// Names of all tasks, in their order.
+    pub fn tasks(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(&self.task).chain(&self.other_tasks).map(String::as_str)
+    }
+
+    /// The tasks in one word: `usb+rj45`.
+    pub fn task_name(&self) -> String {
+        self.tasks().collect::<Vec<_>>().join("+")
+    }
+
+    /// What is asked of a design.
+    pub fn goals(&self) -> Goals {
+        Goals {
+            objectives: self.objective.clone(),
+            constraints: self.constraints.clone(),
+            aggregate: self.aggregate.clone().unwrap_or_default(),
+        }
     }
 
     /// The optimizer with its polish, if it has one: `gp`, `gp+polish20`.

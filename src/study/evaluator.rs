@@ -4,10 +4,11 @@ use super::cache::Cache;
 use crate::codesign::{Impossible, Template};
 use crate::evaluation::{Evaluation, Outcome};
 use crate::finger::Finger;
+use crate::robustness::{self, Plan};
 use crate::space::Design;
 use crate::surrogate::Prediction;
 use crate::task::Task;
-use crate::tolerance::{self, Search};
+use crate::tolerance::Search;
 use crate::trial::run::RigError;
 use crate::trial::{Conditions, Grasped, Rig, Trial};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,8 +18,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Measured {
     /// Stiffness predicted for it.
     pub stiffness: Prediction,
-    /// What the simulation of a finger of that stiffness measured.
+    /// What the simulation of a finger of that stiffness measured, on the first task.
     pub evaluation: Evaluation,
+    /// The same on the other tasks, in their order.
+    pub other_tasks: Vec<Evaluation>,
 }
 
 /// Evaluates designs, several at a time.
@@ -36,6 +39,10 @@ pub struct Simulated<'a, P, R> {
     pub predict: P,
     /// Puts what else a design sets into task and finger.
     pub template: &'a Template,
+    /// The same for the tasks beside the first.
+    pub other_templates: &'a [Template],
+    /// What is measured beside the window.
+    pub plan: &'a Plan,
     /// Makes the place where trials of a task are run.
     pub rig: R,
     /// Set when the study is to stop: trials then end at once.
@@ -51,22 +58,39 @@ where
 {
     fn evaluate(&self, design: &Design) -> Result<Measured, Impossible> {
         let stiffness = (self.predict)(design);
+        let on = |template| self.on_task(template, design, &stiffness);
+        let evaluation = on(self.template)?;
+        let other_tasks = self.other_templates.iter().map(on).collect::<Result<_, _>>()?;
+        Ok(Measured { stiffness, evaluation, other_tasks })
+    }
+}
+
+impl<P, R> Simulated<'_, P, R>
+where
+    R: Fn(&Task) -> Result<Box<dyn Rig>, RigError>,
+{
+    fn on_task(
+        &self,
+        template: &Template,
+        design: &Design,
+        stiffness: &Prediction,
+    ) -> Result<Evaluation, Impossible> {
         let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-        let (task, finger) = self.template.apply(design, finger)?;
-        let search = Search::default();
-        let keep = self.cache.map(|cache| (cache, cache.key(&(stiffness, &task, finger, search))));
+        let (task, finger) = template.apply(design, finger)?;
+        let (search, plan) = (Search::default(), self.plan);
+        let inputs = (stiffness, &task, finger, search, plan);
+        let keep = self.cache.map(|cache| (cache, cache.key(&inputs)));
         if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
             return Ok(found);
         }
         let rig = (self.rig)(&task)?;
         let rig = Stoppable { rig: &*rig, stop: self.stop };
-        let measured =
-            Measured { stiffness, evaluation: tolerance::evaluate(&rig, &finger, search) };
+        let evaluation = robustness::evaluate(&rig, &finger, stiffness, search, plan);
         // Once it is set trials may have been skipped.
         if let Some((cache, key)) = keep.filter(|_| !self.stop.load(Ordering::SeqCst)) {
-            cache.put(&key, &measured);
+            cache.put(&key, &evaluation, stiffness);
         }
-        Ok(measured)
+        Ok(evaluation)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::config::{StudyConfig, Versions, differences};
 use super::line::WORKER;
 use super::seal::{seal, unseal};
+use crate::objective::{Aggregate, Constraint, Measure, Objectives};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -11,6 +12,7 @@ pub const SCHEMA_VERSION: u64 = 1;
 
 const CREATE_STUDY: u8 = 0;
 const STUDY_USER_ATTRIBUTE: u8 = 2;
+const MINIMISE: u8 = 1;
 const MAXIMISE: u8 = 2;
 
 #[derive(Serialize)]
@@ -18,7 +20,7 @@ struct CreateStudy<'a> {
     op_code: u8,
     worker_id: &'a str,
     study_name: &'a str,
-    directions: [u8; 1],
+    directions: Vec<u8>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -40,11 +42,19 @@ struct UserAttribute {
 struct Identity {
     schema_version: u64,
     task: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    other_tasks: Vec<String>,
     space: String,
     robot: String,
     engine: String,
     optimizer: String,
-    objective: String,
+    objective: Objectives,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    constraints: Vec<Constraint>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    aggregate: Option<Aggregate>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    uncertainty: Option<String>,
     seed: u64,
     batch: u64,
     /// With a polish the budget decides where it begins.
@@ -65,11 +75,15 @@ impl From<&StudyConfig> for Identity {
         Identity {
             schema_version: SCHEMA_VERSION,
             task: config.task.clone(),
+            other_tasks: config.other_tasks.clone(),
             space: config.space.name().to_owned(),
             robot: config.robot.clone(),
             engine: config.engine.clone(),
             optimizer: config.optimizer.clone(),
             objective: config.objective.clone(),
+            constraints: config.constraints.clone(),
+            aggregate: config.aggregate.clone(),
+            uncertainty: config.uncertainty.clone(),
             seed: config.seed,
             batch: config.batch,
             polish: (config.polish > 0)
@@ -82,11 +96,12 @@ impl From<&StudyConfig> for Identity {
 
 /// The two lines a journal of this configuration begins with.
 pub fn encode(config: &StudyConfig) -> Result<String, serde_json::Error> {
+    let direction = |measure: &Measure| if measure.sense() > 0.0 { MAXIMISE } else { MINIMISE };
     let create = CreateStudy {
         op_code: CREATE_STUDY,
         worker_id: WORKER,
         study_name: &config.name(),
-        directions: [MAXIMISE],
+        directions: config.objective.measures().iter().map(direction).collect(),
     };
     let attributes = StudyAttributes {
         op_code: STUDY_USER_ATTRIBUTE,

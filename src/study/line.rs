@@ -13,6 +13,7 @@ use super::attributes::Attributes;
 use super::record::{Recorded, Timing};
 use super::seal::{seal, unseal};
 use super::time::is_timestamp;
+use crate::objective::Score;
 use crate::space::{Design, Parameter, Space};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -55,8 +56,15 @@ struct TrialLine {
     params: BTreeMap<String, f64>,
     distributions: BTreeMap<String, String>,
     user_attrs: Attributes,
-    system_attrs: Empty,
+    system_attrs: SystemAttributes,
     intermediate_values: Empty,
+}
+
+/// Optuna's samplers look for constraints here, and take 0 and below as kept.
+#[derive(Serialize, Deserialize)]
+struct SystemAttributes {
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    constraints: Vec<f64>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -85,18 +93,21 @@ struct Times {
 
 /// The line of one evaluation, with its newline.
 pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::Error> {
-    let value = recorded.value.filter(|value| value.is_finite());
+    let score = recorded.score.as_ref();
     let content = TrialLine {
         op_code: CREATE_TRIAL,
         worker_id: WORKER.to_owned(),
         study_id: 0,
         evaluation: recorded.index,
-        state: if value.is_some() { COMPLETE } else { FAIL },
-        values: value.map(|value| vec![value]),
+        state: if score.is_some() { COMPLETE } else { FAIL },
+        values: score.map(|score| score.values.clone()),
         params: recorded.design.0.clone(),
         distributions: space.parameters().iter().map(distribution).collect::<Result<_, _>>()?,
-        user_attrs: Attributes::new(&recorded.evaluation, &recorded.stiffness),
-        system_attrs: Empty {},
+        user_attrs: Attributes::new(&recorded.evaluation, &recorded.stiffness)
+            .with_other_tasks(&recorded.other_tasks),
+        system_attrs: SystemAttributes {
+            constraints: score.map_or_else(Vec::new, |score| score.violations.clone()),
+        },
         intermediate_values: Empty {},
     };
     let times = Times {
@@ -126,10 +137,13 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
     }
     Ok(Recorded {
         index: trial.evaluation,
-        value: trial.values.and_then(|values| values.first().copied()),
+        score: trial
+            .values
+            .map(|values| Score { values, violations: trial.system_attrs.constraints }),
         design: Design(trial.params),
         stiffness: trial.user_attrs.prediction(),
         evaluation: trial.user_attrs.evaluation(),
+        other_tasks: trial.user_attrs.other_tasks(),
         timing: Timing {
             datetime_start: times.datetime_start,
             datetime_complete: times.datetime_complete,

@@ -27,7 +27,7 @@ pub use folder::{
 pub use header::SCHEMA_VERSION;
 pub use journal::Journal;
 pub use line::{LineError, decode, encode};
-pub use record::{Recorded, StudyRecord, Timing, best};
+pub use record::{Recorded, StudyRecord, Timing, Volume, best, front, nearest, volume};
 pub use runner::{Ending, Runner};
 pub use seal::strip_times;
 pub use store::{FileStore, Store};

@@ -2,6 +2,8 @@
 
 use super::StudyConfig;
 use crate::evaluation::Evaluation;
+use crate::objective::{Goals, Measure, Score};
+use crate::pareto;
 use crate::space::Design;
 use crate::surrogate::Prediction;
 
@@ -21,13 +23,14 @@ pub struct Recorded {
     pub index: u64,
     /// The design, in the units its keys carry.
     pub design: Design,
-    /// The objective, larger is better (for `range` and `centred-range` in mm);
-    /// `None` if the evaluation gave no value.
-    pub value: Option<f64>,
+    /// The objectives and constraints; `None` if any of them has no value.
+    pub score: Option<Score>,
     /// Stiffness the surrogate predicted for the design, N/m.
     pub stiffness: Prediction,
-    /// What the simulation measured.
+    /// What the simulation measured, on the first task.
     pub evaluation: Evaluation,
+    /// The same on the other tasks, in their order.
+    pub other_tasks: Vec<Evaluation>,
     /// When it was measured; the only part that differs between equal runs.
     pub timing: Timing,
 }
@@ -43,22 +46,109 @@ pub struct Timing {
     pub wall_s: f64,
 }
 
-impl StudyRecord {
-    /// The evaluation with the largest value, the earliest of equals.
-    pub fn best(&self) -> Option<&Recorded> {
-        best(&self.evaluations)
+impl Recorded {
+    /// The value of the first objective, in its unit and sense.
+    pub fn value(&self) -> Option<f64> {
+        self.score.as_ref()?.values.first().copied()
+    }
+
+    /// The objectives of a design that keeps all constraints.
+    pub fn feasible(&self) -> Option<&[f64]> {
+        self.score.as_ref().filter(|score| score.feasible()).map(|score| &score.values[..])
+    }
+
+    /// What was measured on a task, by its place among the tasks.
+    pub fn on(&self, task: usize) -> Option<&Evaluation> {
+        match task.checked_sub(1) {
+            None => Some(&self.evaluation),
+            Some(other) => self.other_tasks.get(other),
+        }
+    }
+
+    /// What was measured on each task.
+    pub fn tasks(&self) -> Vec<&Evaluation> {
+        std::iter::once(&self.evaluation).chain(&self.other_tasks).collect()
     }
 }
 
-/// The evaluation with the largest value, the earliest of equals.
-pub fn best(evaluations: &[Recorded]) -> Option<&Recorded> {
-    let mut best: Option<(&Recorded, f64)> = None;
-    for recorded in evaluations {
-        if let Some(value) = recorded.value
-            && best.is_none_or(|(_, found)| value > found)
+impl StudyRecord {
+    /// See [`best`].
+    pub fn best(&self) -> Option<&Recorded> {
+        best(&self.config.goals(), &self.evaluations)
+    }
+
+    /// See [`front`].
+    pub fn front(&self) -> Vec<&Recorded> {
+        front(&self.config.goals(), &self.evaluations)
+    }
+}
+
+/// The evaluation that violates the constraints least, all added up, the earliest of equals:
+/// what there is where none keeps them.
+pub fn nearest(evaluations: &[Recorded]) -> Option<&Recorded> {
+    let violation = |recorded: &Recorded| -> Option<f64> {
+        let score = recorded.score.as_ref()?;
+        Some(score.violations.iter().map(|violation| violation.max(0.0)).sum())
+    };
+    let known = evaluations.iter().filter_map(|r| Some((r, violation(r)?)));
+    known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(recorded, _)| recorded)
+}
+
+/// The volume of a front, and the point above which it is taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Volume {
+    /// In the product of the objectives' units.
+    pub hypervolume: f64,
+    /// A value for each objective: 0 for what is to be large, the largest value of the study
+    /// (of feasible designs or not) for what is to be small.
+    pub reference: Vec<f64>,
+    /// The hypervolume after each evaluation.
+    pub so_far: Vec<f64>,
+}
+
+/// The volume that the evaluations which keep all constraints dominate.
+pub fn volume(goals: &Goals, evaluations: &[Recorded]) -> Volume {
+    let scores = || evaluations.iter().filter_map(|recorded| recorded.score.as_ref());
+    let least = |(i, measure): (usize, &Measure)| match measure.sense() > 0.0 {
+        true => 0.0,
+        false => scores().filter_map(|score| score.values.get(i).copied()).fold(0.0, f64::max),
+    };
+    let reference: Vec<f64> = goals.objectives.measures().iter().enumerate().map(least).collect();
+    let floor = goals.gains(&reference);
+    let (mut archive, mut last) = (pareto::Archive::default(), 0.0);
+    let mut step = |recorded: &Recorded| {
+        if let Some(values) = recorded.feasible()
+            && archive.add(goals.gains(values))
         {
-            best = Some((recorded, value));
+            last = pareto::hypervolume(archive.points(), &floor);
+        }
+        last
+    };
+    let so_far: Vec<f64> = evaluations.iter().map(&mut step).collect();
+    Volume { hypervolume: last, reference, so_far }
+}
+
+/// Of the evaluations that keep all constraints the one with the best first objective (of
+/// equals the better in the next, and then the earliest).
+pub fn best<'a>(goals: &Goals, evaluations: &'a [Recorded]) -> Option<&'a Recorded> {
+    let mut best: Option<(&Recorded, &[f64])> = None;
+    for recorded in evaluations {
+        if let Some(values) = recorded.feasible()
+            && best.is_none_or(|(_, found)| goals.order(values, found).is_gt())
+        {
+            best = Some((recorded, values));
         }
     }
     best.map(|(recorded, _)| recorded)
+}
+
+/// The evaluations that keep all constraints and that no other such one beats in all
+/// objectives, best in the first objective first.
+pub fn front<'a>(goals: &Goals, evaluations: &'a [Recorded]) -> Vec<&'a Recorded> {
+    let known: Vec<(&Recorded, &[f64])> =
+        evaluations.iter().filter_map(|recorded| Some((recorded, recorded.feasible()?))).collect();
+    let gains: Vec<Vec<f64>> = known.iter().map(|(_, values)| goals.gains(values)).collect();
+    let mut front: Vec<_> = pareto::front(&gains).into_iter().map(|i| known[i]).collect();
+    front.sort_by(|(_, a), (_, b)| goals.order(b, a));
+    front.into_iter().map(|(recorded, _)| recorded).collect()
 }

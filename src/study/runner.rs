@@ -21,9 +21,9 @@ use super::folder::Study;
 use super::journal::Journal;
 use super::record::{Recorded, Timing};
 use super::time;
-use crate::objective::Objective;
+use crate::objective::Goals;
 use crate::optimizer::{Observation, Optimizer, StopReason};
-use crate::space::Design;
+use crate::space::{Design, GridPoint};
 use rayon::ThreadPool;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -47,8 +47,8 @@ pub enum Ending {
 pub struct Runner<'a> {
     /// Measures designs. It should end early once `stop` is set.
     pub evaluator: &'a dyn Evaluate,
-    /// What is to be maximised.
-    pub objective: Objective,
+    /// What is asked of a design.
+    pub goals: &'a Goals,
     /// Does the measuring; the calling thread, outside of it, writes.
     pub pool: &'a ThreadPool,
     /// Set (by Ctrl-C) when the run is to stop soon; also set by the runner
@@ -89,16 +89,27 @@ impl Runner<'_> {
             if wanted < designs.len() {
                 break;
             }
-            let values = study.evaluations[begun..].iter().map(|recorded| recorded.value);
+            let found = study.evaluations[begun..].iter();
             let told: Vec<Observation> = points
                 .into_iter()
-                .zip(values)
-                .map(|(point, value)| Observation::new(point, value))
+                .zip(found)
+                .map(|(point, recorded)| self.observation(point, recorded))
                 .collect();
             optimizer.tell(&told);
             begun += wanted;
         }
         Ok(Ending::BudgetSpent)
+    }
+
+    fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {
+        match &recorded.score {
+            None => Observation::new(point, None),
+            Some(score) => Observation {
+                point,
+                values: self.goals.gains(&score.values),
+                violations: score.violations.clone(),
+            },
+        }
     }
 
     /// Evaluates designs in parallel and writes them down in their order,
@@ -149,7 +160,7 @@ impl Runner<'_> {
         if self.stop.load(Ordering::SeqCst) {
             return Ok(None);
         }
-        let Measured { stiffness, evaluation } = measured.map_err(|source| {
+        let Measured { stiffness, evaluation, other_tasks } = measured.map_err(|source| {
             StudyError::Impossible { index, design: design.to_string(), source }
         })?;
         let timing = Timing {
@@ -157,9 +168,11 @@ impl Runner<'_> {
             datetime_complete: time::now(),
             wall_s: clock.elapsed().as_secs_f64(),
         };
-        let value = self.objective.value(&evaluation);
         let design = design.clone();
-        Ok(Some(Recorded { index, design, value, stiffness, evaluation, timing }))
+        let mut recorded =
+            Recorded { index, design, score: None, stiffness, evaluation, other_tasks, timing };
+        recorded.score = self.goals.score(&recorded.tasks());
+        Ok(Some(recorded))
     }
 }
 

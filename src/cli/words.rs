@@ -1,0 +1,173 @@
+//! What is printed of an evaluation.
+
+use finger_opt::evaluation::{Evaluation, Outcome};
+use finger_opt::surrogate::Prediction;
+use finger_opt::units::N_PER_MM;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// The window of an evaluation and what ended it.
+pub fn window(evaluation: &Evaluation) -> String {
+    let window = &evaluation.window;
+    if window.nominal != Outcome::Inserted {
+        return format!(
+            "window        none: the nominal start ends with {}",
+            end(Some(window.nominal))
+        );
+    }
+    format!(
+        "window        {:.1} to {:+.1} mm; ends: {} below, {} above",
+        window.negative_mm(),
+        window.positive_mm(),
+        end(window.end_negative),
+        end(window.end_positive)
+    )
+}
+
+fn end(outcome: Option<Outcome>) -> String {
+    match outcome {
+        None => "limit of the search".to_owned(),
+        Some(Outcome::Inserted) => "inserted".to_owned(),
+        Some(Outcome::Failed(class)) => class.label().to_owned(),
+        Some(Outcome::Diverged) => "diverged".to_owned(),
+    }
+}
+
+/// Predicted stiffness, its uncertainty, and whether it is an extrapolation.
+pub fn stiffness(prediction: &Prediction) -> String {
+    let mut text = String::from("stiffness    ");
+    for (axis, estimate) in
+        [("compliance", prediction.compliance), ("assembly", prediction.assembly)]
+    {
+        let (mean, sd) = (estimate.mean / N_PER_MM, estimate.sd / N_PER_MM);
+        // Writing to a String cannot fail.
+        let _ = write!(text, " {axis} {mean:.2} ± {sd:.2} N/mm,");
+    }
+    if prediction.inside_hull() {
+        text.push_str(" inside the measured designs");
+    } else {
+        let distance = prediction.hull_distance;
+        let _ = write!(text, " {distance:.2} spans OUTSIDE the measured designs");
+    }
+    text
+}
+
+/// The keys every evaluation is printed with.
+pub fn evaluation_json(evaluation: &Evaluation) -> Value {
+    let window = &evaluation.window;
+    let mut fields = json!({
+        "range_mm": window.range_mm(),
+        "negative_mm": window.negative_mm(),
+        "positive_mm": window.positive_mm(),
+        "nominal": outcome_word(window.nominal),
+        "failure_negative": failure(window.end_negative),
+        "failure_positive": failure(window.end_positive),
+        "failure_counts": evaluation.failure_counts,
+        "diverged": evaluation.diverged,
+        "peak_force_n": evaluation.peak_force_n,
+        "slip_mm": evaluation.slip_mm,
+        "trials": evaluation.trials,
+        "simulated_s": evaluation.simulated_s,
+    });
+    merge(&mut fields, drawn_json(evaluation));
+    fields
+}
+
+/// Success rate and robust range, a line each, as far as they were measured.
+pub fn drawn_text(evaluation: &Evaluation) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(success) = &evaluation.success {
+        let rate = success.rate().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
+        let [low, high] = success.interval();
+        let [c1, c2, c3, c4] = success.failure_counts;
+        lines.push(format!(
+            "success rate  {rate}, {} % interval {low:.3} to {high:.3}: {} of {} trials; failures \
+             {c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged",
+            100.0 * success.confidence,
+            success.inserted,
+            success.counted(),
+            success.diverged
+        ));
+    }
+    if let Some(robust) = &evaluation.robust {
+        let value = robust.value_mm.map_or("none".to_owned(), |value| format!("{value:.2} mm"));
+        lines.push(format!(
+            "robust range  {value}: {} windows of mean {:.2} mm, standard deviation {:.2} mm, {} \
+             diverged",
+            robust.ranges_mm.len(),
+            robust.mean_mm(),
+            robust.sd_mm(),
+            robust.diverged
+        ));
+    }
+    lines
+}
+
+fn drawn_json(evaluation: &Evaluation) -> Value {
+    let mut fields = json!({});
+    if let Some(success) = &evaluation.success {
+        let [low, high] = success.interval();
+        merge(
+            &mut fields,
+            json!({
+                "success_rate": success.rate(),
+                "success_low": low,
+                "success_high": high,
+                "success_confidence": success.confidence,
+                "success_inserted": success.inserted,
+                "success_failure_counts": success.failure_counts,
+                "success_diverged": success.diverged,
+            }),
+        );
+    }
+    if let Some(robust) = &evaluation.robust {
+        merge(
+            &mut fields,
+            json!({
+                "robust_range_mm": robust.value_mm,
+                "robust_mean_mm": robust.mean_mm(),
+                "robust_sd_mm": robust.sd_mm(),
+                "robust_ranges_mm": robust.ranges_mm,
+                "robust_diverged": robust.diverged,
+                "robust_trials": robust.trials,
+            }),
+        );
+    }
+    fields
+}
+
+/// A prediction with its uncertainty.
+pub fn stiffness_json(prediction: &Prediction) -> Value {
+    json!({
+        "compliance_n_per_mm": prediction.compliance.mean / N_PER_MM,
+        "compliance_sd_n_per_mm": prediction.compliance.sd / N_PER_MM,
+        "assembly_n_per_mm": prediction.assembly.mean / N_PER_MM,
+        "assembly_sd_n_per_mm": prediction.assembly.sd / N_PER_MM,
+        "hull_distance": prediction.hull_distance,
+        "inside_hull": prediction.inside_hull(),
+    })
+}
+
+/// `inserted`, `failed` or `diverged`.
+pub fn outcome_word(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Inserted => "inserted",
+        Outcome::Failed(_) => "failed",
+        Outcome::Diverged => "diverged",
+    }
+}
+
+/// The failure class, 1 to 4, if it was a failure.
+pub fn failure(outcome: Option<Outcome>) -> Option<u8> {
+    match outcome {
+        Some(Outcome::Failed(class)) => Some(class.number()),
+        _ => None,
+    }
+}
+
+/// Adds the fields of one JSON object to another.
+pub fn merge(fields: &mut Value, more: Value) {
+    if let (Value::Object(fields), Value::Object(more)) = (fields, more) {
+        fields.extend(more);
+    }
+}

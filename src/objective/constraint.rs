@@ -1,0 +1,143 @@
+//! Limits a design must keep to, as written: `peak-force<=30`.
+
+use super::Measure;
+use crate::evaluation::Evaluation;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// On which side of its limit a measure must be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bound {
+    /// `<=`
+    AtMost,
+    /// `>=`
+    AtLeast,
+}
+
+/// A measure and its limit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct Constraint {
+    /// What is limited.
+    pub measure: Measure,
+    /// On which side.
+    pub bound: Bound,
+    /// The limit, in the measure's unit.
+    pub limit: f64,
+}
+
+impl Constraint {
+    /// The measure on the task where it is worst; `None` if it has no value on one of them.
+    pub fn worst(&self, tasks: &[&Evaluation]) -> Option<f64> {
+        let worse: fn(f64, f64) -> f64 = match self.bound {
+            Bound::AtMost => f64::max,
+            Bound::AtLeast => f64::min,
+        };
+        let values: Option<Vec<f64>> =
+            tasks.iter().map(|evaluation| self.measure.value(evaluation)).collect();
+        values?.into_iter().reduce(worse)
+    }
+
+    /// The same in words: `31.2 N, violates peak-force<=30`.
+    pub fn words(&self, tasks: &[&Evaluation]) -> String {
+        match self.worst(tasks) {
+            None => format!("no value for {self}"),
+            Some(value) => {
+                let verb = if self.violation(value) <= 0.0 { "keeps" } else { "violates" };
+                format!("{}, {verb} {self}", self.measure.show(value))
+            }
+        }
+    }
+
+    /// How far a value is on the wrong side, as a share of the limit (of 1 if that is 0), so
+    /// that constraints in different units add up; 0 or below on the right side.
+    pub fn violation(&self, value: f64) -> f64 {
+        let beyond = match self.bound {
+            Bound::AtMost => value - self.limit,
+            Bound::AtLeast => self.limit - value,
+        };
+        let share = if self.limit == 0.0 { beyond } else { beyond / self.limit.abs() };
+        // A limit next to 0 would make it infinite.
+        share.clamp(f64::MIN, f64::MAX)
+    }
+}
+
+impl fmt::Display for Constraint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = match self.bound {
+            Bound::AtMost => "<=",
+            Bound::AtLeast => ">=",
+        };
+        f.pad(&format!("{}{sign}{}", self.measure, self.limit))
+    }
+}
+
+impl FromStr for Constraint {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = [("<=", Bound::AtMost), (">=", Bound::AtLeast)]
+            .into_iter()
+            .find_map(|(sign, bound)| Some((text.split_once(sign)?, bound)));
+        let Some(((name, limit), bound)) = parts else {
+            return Err("a constraint is MEASURE<=NUMBER or MEASURE>=NUMBER, as in \
+                        'peak-force<=30'"
+                .to_owned());
+        };
+        let measure: Measure = name.trim().parse()?;
+        match limit.trim().parse() {
+            Ok(limit) if f64::is_finite(limit) => Ok(Constraint { measure, bound, limit }),
+            _ => Err(format!(
+                "`{}` is not a number; give the limit of {} without its unit",
+                limit.trim(),
+                measure.label()
+            )),
+        }
+    }
+}
+
+impl From<Constraint> for String {
+    fn from(constraint: Constraint) -> String {
+        constraint.to_string()
+    }
+}
+
+impl TryFrom<String> for Constraint {
+    type Error = String;
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn violations_are_shares_of_the_limit() {
+        let of = |text: &str, value| text.parse::<Constraint>().unwrap().violation(value);
+        assert_eq!(of("peak-force<=30", 36.0), 0.2);
+        assert_eq!(of("peak-force <= 30", 30.0), 0.0);
+        assert_eq!(of("success-rate>=0.5", 0.75), -0.5);
+        assert_eq!(of("slip<=0", 0.25), 0.25);
+        assert_eq!(of("robust-range>=-2", -3.0), 0.5);
+    }
+
+    #[test]
+    fn constraints_read_back_and_bad_ones_are_answered_with_what_would_be_right() {
+        for text in ["peak-force<=30", "success-rate>=0.95"] {
+            assert_eq!(text.parse::<Constraint>().unwrap().to_string(), text);
+        }
+        for (bad, word) in [
+            ("peak-force<30", "'peak-force<=30'"),
+            ("peak-force", "MEASURE>=NUMBER"),
+            ("force<=3", "range, centred-range"),
+            ("peak-force<=30N", "peak-force (N) without its unit"),
+            ("slip<=inf", "not a number"),
+            ("slip<=", "not a number"),
+        ] {
+            let error = bad.parse::<Constraint>().unwrap_err();
+            assert!(error.contains(word), "{error}");
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! One objective or several, as written: `range,peak-force`.
+
+use super::Measure;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// Most objectives: a front of more is no help in choosing.
+const MOST: usize = 3;
+
+/// What is optimized, one to three different measures in the order in which they are given.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct Objectives {
+    first: Measure,
+    all: Vec<Measure>,
+}
+
+impl Objectives {
+    /// One objective.
+    pub fn of(measure: Measure) -> Self {
+        Objectives { first: measure, all: vec![measure] }
+    }
+
+    /// All objectives, at least one.
+    pub fn measures(&self) -> &[Measure] {
+        &self.all
+    }
+
+    /// The first one: what plots show.
+    pub fn first(&self) -> Measure {
+        self.first
+    }
+
+    /// The only one, `None` if there are several.
+    pub fn single(&self) -> Option<Measure> {
+        (self.all.len() == 1).then_some(self.first)
+    }
+
+    /// A key for each in tables and JSON: `objective_mm`; `objective_1_mm`, `objective_2_n`.
+    pub fn keys(&self) -> Vec<String> {
+        match self.single() {
+            Some(measure) => vec![format!("objective_{}", measure.key())],
+            None => {
+                let numbered = (1..).zip(&self.all);
+                numbered.map(|(n, measure)| format!("objective_{n}_{}", measure.key())).collect()
+            }
+        }
+    }
+
+    /// Values with their names and units: `range 4.7 mm, peak-force 5.0 N`.
+    pub fn show(&self, values: &[f64]) -> String {
+        let shown = self.all.iter().zip(values);
+        let words: Vec<String> =
+            shown.map(|(measure, &value)| format!("{measure} {}", measure.show(value))).collect();
+        words.join(", ")
+    }
+}
+
+impl fmt::Display for Objectives {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.all.iter().map(|measure| measure.name()).collect::<Vec<_>>().join(","))
+    }
+}
+
+impl FromStr for Objectives {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let all: Vec<Measure> =
+            text.split(',').map(|name| name.trim().parse()).collect::<Result<_, _>>()?;
+        if let Some(twice) = all.iter().enumerate().find(|(i, measure)| all[..*i].contains(measure))
+        {
+            return Err(format!("{} is given twice; give each objective once", twice.1));
+        }
+        match all.first() {
+            Some(&first) if all.len() <= MOST => Ok(Objectives { first, all }),
+            _ => Err(format!("there are {} objectives; give at most {MOST}", all.len())),
+        }
+    }
+}
+
+impl From<Objectives> for String {
+    fn from(objectives: Objectives) -> String {
+        objectives.to_string()
+    }
+}
+
+impl TryFrom<String> for Objectives {
+    type Error = String;
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_read_back_and_have_keys_with_units() {
+        let two: Objectives = "range, peak-force".parse().unwrap();
+        assert_eq!((two.first(), two.single()), (Measure::Range, None));
+        assert_eq!(two.to_string().parse(), Ok(two.clone()));
+        assert_eq!(two.keys(), ["objective_1_mm", "objective_2_n"]);
+        assert_eq!(two.show(&[4.0, 5.25]), "range 4.0 mm, peak-force 5.2 N");
+        assert_eq!(Objectives::of(Measure::SuccessRate).keys(), ["objective_share"]);
+        for (bad, word) in [
+            ("range,range", "range is given twice"),
+            ("range,", "`` "),
+            ("range,slip,peak-force,success-rate", "at most 3"),
+            ("size", "range, centred-range"),
+        ] {
+            let error = bad.parse::<Objectives>().unwrap_err();
+            assert!(error.contains(word.trim()), "{error}");
+        }
+    }
+}

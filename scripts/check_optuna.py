@@ -23,7 +23,18 @@ from optuna.storages.journal import JournalFileBackend
 
 PINNED = {"optuna": "5.0.0", "optuna-dashboard": "0.21.0"}
 DASHBOARD_S = 60
+MAXIMIZE = 2
 STATES = ["Running", "Complete", "Pruned", "Fail", "Waiting"]
+
+
+def check_best(study, directions, trials):
+    """Optuna's best trials are those that keep all constraints and that no other such one beats."""
+    kept = [line for line in trials if line["values"] is not None
+            and all(c <= 0 for c in line["system_attrs"].get("constraints", []))]
+    gains = [[v if d == MAXIMIZE else -v for v, d in zip(line["values"], directions)] for line in kept]
+    beaten = lambda a: any(all(x >= y for x, y in zip(b, a)) and b != a for b in gains)
+    front = {line["evaluation"] for line, gain in zip(kept, gains) if not beaten(gain)}
+    assert {trial.number for trial in study.best_trials} == front
 
 
 def check_library(path, create, attributes, trials):
@@ -41,9 +52,9 @@ def check_library(path, create, attributes, trials):
         assert theirs.datetime_complete >= theirs.datetime_start
         for key, value in theirs.params.items():
             assert theirs.distributions[key]._contains(value), (key, value)
-    if len(create["directions"]) == 1:
-        values = [line["values"][0] for line in trials if line["values"]]
-        assert not values or study.best_value == max(values)
+        constraints = ours["system_attrs"].get("constraints", [])
+        assert list(theirs.constraints.values()) == constraints, (theirs.constraints, constraints)
+    check_best(study, create["directions"], trials)
     return sum(trial.state == optuna.trial.TrialState.COMPLETE for trial in study.trials)
 
 

@@ -67,10 +67,14 @@ impl Studies {
         self.0.path().join(name)
     }
 
-    /// A quiet study on the fake engine, not yet started; `more` comes last.
+    /// A quiet study on the fake engine, of usb unless `more` names a task, not yet started;
+    /// `more` comes last.
     pub fn command(&self, name: &str, budget: u32, more: &[&str]) -> Command {
         let (budget, dir) = (budget.to_string(), self.dir(name));
-        let mut command = command(&["--task", "usb", "--engine", "fake", "--quiet"]);
+        let mut command = command(&["--engine", "fake", "--quiet"]);
+        if !more.contains(&"--task") {
+            command.args(["--task", "usb"]);
+        }
         command.args(["--budget", &budget]).arg("--out").arg(dir).args(more);
         command
     }

@@ -1,0 +1,373 @@
+//! Objectives, constraints, fronts and several tasks, through the real binary on the fake engine.
+
+mod common;
+
+use common::{Ran, Studies, optimize, read, run};
+use serde_json::Value;
+use std::fs;
+
+/// A journal's evaluations, without its header.
+fn evaluations(studies: &Studies, name: &str) -> Vec<Value> {
+    let journal = read(&studies.dir(name).join("journal.jsonl"));
+    journal.lines().skip(2).map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+/// Cells of a column of a study's table.
+fn column(studies: &Studies, name: &str, key: &str) -> Vec<String> {
+    let mut reader = csv::Reader::from_path(studies.dir(name).join("evaluations.csv")).unwrap();
+    let at = reader.headers().unwrap().iter().position(|header| header == key);
+    let at = at.unwrap_or_else(|| panic!("no column {key}"));
+    reader.records().map(|row| row.unwrap()[at].to_owned()).collect()
+}
+
+fn report(studies: &Studies, name: &str) -> String {
+    read(&studies.dir(name).join("report.html"))
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+fn evaluate(density: u32, direction: u32, more: &[&str]) -> Ran {
+    let (density, direction) = (density.to_string(), direction.to_string());
+    let finger = ["--density", &density, "--direction", &direction];
+    let task = ["evaluate", "--task", "usb", "--engine", "fake"];
+    optimize(&[&task[..], &finger, more].concat())
+}
+
+/// The journal depends on no thread count, and on no interruption.
+fn is_durable(studies: &Studies, name: &str, budget: u32, more: &[&str]) {
+    studies.study(name, budget, more).succeeds();
+    let expected = studies.journal(name);
+    for threads in ["1", "2", "8"] {
+        let other = format!("{name}-{threads}");
+        studies.study(&other, budget, &[more, &["--threads", threads]].concat()).succeeds();
+        assert_eq!(studies.journal(&other), expected, "{threads} threads");
+    }
+    let path = studies.dir(name).join("journal.jsonl");
+    let whole = read(&path);
+    for kept in [whole.len() / 3, whole.len() * 2 / 3, whole.len() - 1] {
+        fs::write(&path, &whole.as_bytes()[..kept]).unwrap();
+        studies.resume(name).succeeds();
+        assert_eq!(studies.journal(name), expected, "{kept} bytes kept");
+    }
+}
+
+#[test]
+fn a_success_rate_is_that_of_the_evaluation_with_the_studys_seed() {
+    let studies = Studies::new();
+    let result = studies.study("s", 12, &["--objective", "success-rate", "--json"]).json();
+    let best = &result["best"];
+    let infill = |key: &str| number(&best[key]) as u32;
+    let (density, direction) = (infill("infill_density_percent"), infill("infill_direction_deg"));
+    let errors = ["--uncertainty", "typical", "--json"];
+    let alone = evaluate(density, direction, &errors).json();
+    for key in ["success_rate", "success_low", "success_high", "success_failure_counts"] {
+        assert_eq!(best[key], alone[key], "{key}");
+    }
+    assert_eq!(best["objective_share"], alone["success_rate"]);
+    let counts = alone["success_failure_counts"].as_array().unwrap();
+    let failed: u64 = counts.iter().filter_map(Value::as_u64).sum();
+    assert_eq!(alone["success_inserted"].as_u64().unwrap() + failed, 100);
+    let other = evaluate(density, direction, &[&errors[..], &["--seed", "1"]].concat()).json();
+    assert_ne!(other["success_failure_counts"], alone["success_failure_counts"]);
+    let rates = column(&studies, "s", "success_rate");
+    assert_eq!(rates, column(&studies, "s", "objective_share"));
+    assert!(report(&studies, "s").contains("success rate under drawn errors"));
+    let text = studies.study("s", 12, &["--objective", "success-rate"]);
+    assert!(text.succeeds().contains("95 % interval"), "{}", text.stdout);
+}
+
+#[test]
+fn errors_from_a_file_are_kept_with_the_study() {
+    let studies = Studies::new();
+    let file = studies.dir("errors.toml");
+    let text = include_str!("../uncertainties/typical.toml");
+    let text = text.replace("samples = 12", "samples = 5").replace("\"typical\"", "\"mine\"");
+    fs::write(&file, &text).unwrap();
+    let more = ["--objective", "robust-range", "--uncertainty", file.to_str().unwrap()];
+    is_durable(&studies, "s", 10, &more);
+    for line in evaluations(&studies, "s") {
+        let robust = &line["user_attrs"]["robust_range"];
+        assert_eq!(robust["ranges_mm"].as_array().map(Vec::len), Some(5));
+        assert_eq!(line["values"][0], robust["value_mm"]);
+        assert!(line["user_attrs"].get("success_rate").is_none(), "not asked for");
+    }
+    fs::remove_file(&file).unwrap();
+    studies.resume("s").succeeds();
+    assert_eq!(read(&studies.dir("s").join("inputs/uncertainty.toml")), text);
+    let config = read(&studies.dir("s").join("study.toml"));
+    assert!(config.contains("uncertainty = \"mine\""), "{config}");
+    fs::write(studies.dir("s").join("inputs/uncertainty.toml"), "").unwrap();
+    studies.resume("s").fails(2, &["uncertainty.toml", "was changed"]);
+}
+
+#[test]
+fn draws_belong_to_the_cached_evaluation() {
+    let studies = Studies::new();
+    let dir = studies.dir("cache").to_str().unwrap().to_owned();
+    let cached = |name: &str, more: &[&str]| {
+        let cache = ["--optimizer", "sobol", "--cache", &dir, "--json"];
+        studies.study(name, 8, &[&cache[..], more].concat()).json()["cached"].clone()
+    };
+    assert_eq!(cached("range", &[]), 0);
+    assert_eq!(cached("rate", &["--objective", "success-rate"]), 0);
+    assert_eq!(cached("again", &["--objective", "success-rate"]), 8);
+    assert_eq!(studies.journal("rate"), studies.journal("again"));
+    // Another order of the same designs, other draws.
+    let all = ["--objective", "success-rate", "--seed", "1"];
+    assert_eq!(cached("seed", &all), 0);
+    // Peak force is measured with every window; a second task is another evaluation.
+    assert_eq!(cached("front", &["--objective", "range,peak-force"]), 8);
+    assert_eq!(cached("two", &["--task", "usb,rj45"]), 8);
+}
+
+#[test]
+fn only_a_design_that_keeps_the_constraints_is_recommended() {
+    let studies = Studies::new();
+    let constraint = ["--constraint", "peak-force<=8.6", "--constraint", "slip <= 0.2"];
+    is_durable(&studies, "s", 24, &constraint);
+    let free = studies.study("free", 24, &["--json"]).json();
+    assert!(number(&free["best"]["peak_force_n"]) > 8.6);
+    let result = studies.study("s", 24, &[&constraint[..], &["--json"]].concat()).json();
+    assert_eq!(result["constraints"], serde_json::json!(["peak-force<=8.6", "slip<=0.2"]));
+    let lines = evaluations(&studies, "s");
+    let violation = |line: &Value| number(&line["system_attrs"]["constraints"][0]);
+    let range = |line: &Value| number(&line["values"][0]);
+    for line in &lines {
+        let force = number(&line["user_attrs"]["peak_force_n"]);
+        assert!((violation(line) - (force - 8.6) / 8.6).abs() < 1e-12);
+        assert_eq!(line["system_attrs"]["constraints"][1], (0.1 - 0.2) / 0.2);
+    }
+    let kept: Vec<&Value> = lines.iter().filter(|line| violation(line) <= 0.0).collect();
+    assert!(!kept.is_empty() && kept.len() < lines.len(), "{} of {}", kept.len(), lines.len());
+    let best = kept.iter().map(|line| range(line)).fold(0.0, f64::max);
+    assert_eq!(number(&result["best"]["objective_mm"]), best);
+    assert!(number(&result["best"]["peak_force_n"]) <= 8.6);
+    assert_eq!(result["feasible"], kept.len());
+    let text = studies.study("s", 24, &constraint);
+    let shown = format!("keeps peak-force<={}", 8.6);
+    assert!(text.succeeds().contains(&shown), "{}", text.stdout);
+    let page = report(&studies, "s");
+    assert!(page.contains("keeps peak-force&lt;=8.6") && page.contains("violates a constraint"));
+    assert_eq!(column(&studies, "s", "violation slip<=0.2").len(), 24);
+}
+
+#[test]
+fn where_nothing_keeps_the_constraints_nothing_is_recommended() {
+    let studies = Studies::new();
+    for optimizer in ["gp", "cma-es", "nelder-mead"] {
+        let more = ["--constraint", "peak-force<=3", "--optimizer", optimizer];
+        let text = studies.study(optimizer, 16, &more);
+        let words = "no design keeps all constraints, so none is recommended";
+        assert!(text.succeeds().contains(words), "{}", text.stdout);
+        let result = studies.study(optimizer, 16, &[&more[..], &["--json"]].concat()).json();
+        assert_eq!((&result["best"], &result["feasible"]), (&Value::Null, &0.into()));
+        let page = report(&studies, optimizer);
+        assert!(page.contains("No design keeps all constraints, so none is recommended"));
+        // The one named violates least.
+        let forces = column(&studies, optimizer, "peak_force_n");
+        let least = forces.iter().map(|n| n.parse().unwrap()).fold(f64::INFINITY, f64::min);
+        let nearest = format!("{least:.1} N, violates peak-force<=3");
+        assert!(text.stdout.contains(&nearest), "{nearest}: {}", text.stdout);
+        // The shortest reach there is has 8 N: towards there the model went.
+        assert!(optimizer != "gp" || least < 8.1, "{least}");
+    }
+}
+
+#[test]
+fn two_objectives_give_a_front() {
+    let studies = Studies::new();
+    let more = ["--objective", "range,peak-force"];
+    is_durable(&studies, "s", 30, &more);
+    let first = read(&studies.dir("s").join("journal.jsonl"));
+    assert!(first.lines().next().unwrap().contains("\"directions\":[2,1]"), "{first}");
+    let result = studies.study("s", 30, &[&more[..], &["--json"]].concat()).json();
+    let front = result["front"].as_array().unwrap();
+    let pair = |of: &Value| (number(&of["objective_1_mm"]), number(&of["objective_2_n"]));
+    let all: Vec<(f64, f64)> = evaluations(&studies, "s")
+        .iter()
+        .map(|line| (number(&line["values"][0]), number(&line["values"][1])))
+        .collect();
+    assert!(front.len() > 3 && result["best"].is_null(), "{result}");
+    for design in front {
+        let (range, force) = pair(design);
+        let beats = |&(r, f): &(f64, f64)| r >= range && f <= force && (r, f) != (range, force);
+        assert!(!all.iter().any(beats), "{range} mm with {force} N is beaten");
+    }
+    // The staircase under the front, by hand.
+    let reference = number(&result["hypervolume_reference"]["objective_2_n"]);
+    assert_eq!(reference, all.iter().map(|(_, force)| *force).fold(0.0, f64::max));
+    let (mut area, mut done) = (0.0, 0.0);
+    for (range, force) in front.iter().map(pair).rev().collect::<Vec<_>>() {
+        area += (range - done) * (reference - force);
+        done = range;
+    }
+    assert!((number(&result["hypervolume"]) - area).abs() < 1e-9, "{area}");
+    let text = studies.study("s", 30, &more);
+    assert!(text.succeeds().contains("from the reference range 0.0 mm, peak-force"));
+    let page = report(&studies, "s");
+    assert!(page.contains("<section id=\"front\">") && page.contains("hypervolume"));
+    assert!(read(&studies.dir("s").join("front.svg")).contains("peak-force (N)"));
+    assert_eq!(column(&studies, "s", "objective_2_n"), column(&studies, "s", "peak_force_n"));
+}
+
+#[test]
+fn constraints_bound_the_front_and_three_objectives_are_possible() {
+    let studies = Studies::new();
+    let more = ["--objective", "range,peak-force,slip", "--constraint", "range>=6"];
+    let result = studies.study("s", 24, &[&more[..], &["--json"]].concat()).json();
+    let front = result["front"].as_array().unwrap();
+    assert!(!front.is_empty());
+    assert!(front.iter().all(|design| number(&design["objective_1_mm"]) >= 6.0), "{result}");
+    let sense = read(&studies.dir("s").join("journal.jsonl"));
+    assert!(sense.contains("\"directions\":[2,1,1]"));
+    for optimizer in ["random", "sobol", "grid"] {
+        let more = ["--objective", "range,peak-force", "--optimizer", optimizer];
+        studies.study(optimizer, 9, &more).succeeds();
+    }
+}
+
+#[test]
+fn a_force_is_made_small() {
+    let studies = Studies::new();
+    let result = studies.study("s", 20, &["--objective", "peak-force", "--json"]).json();
+    let forces = column(&studies, "s", "objective_n");
+    let least = forces.iter().map(|n| n.parse().unwrap()).fold(f64::INFINITY, f64::min);
+    assert_eq!(number(&result["best"]["objective_n"]), least);
+    assert_eq!(least, 8.0, "the shortest reach there is");
+    assert!(read(&studies.dir("s").join("journal.jsonl")).contains("\"directions\":[1]"));
+}
+
+/// A second task for the closed form: usb with the remote centre elsewhere.
+fn far(studies: &Studies) -> String {
+    let text = include_str!("../tasks/usb.toml").replace("name = \"usb\"", "name = \"far\"");
+    let file = studies.dir("far.toml");
+    fs::write(&file, text.replace("[friction]", "[finger]\nrcc_mm = 29.0\n[friction]")).unwrap();
+    file.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn several_tasks_are_evaluated_and_aggregated() {
+    let studies = Studies::new();
+    let tasks = format!("usb,{}", far(&studies));
+    let of = |name: &str, more: &[&str]| {
+        let more = [&["--task", &tasks, "--optimizer", "sobol"][..], more].concat();
+        studies.study(name, 6, &more).succeeds();
+        evaluations(&studies, name)
+    };
+    let range = |window: &Value| {
+        let end = |key: &str| number(&window["window"][key]);
+        end("positive_mm") - end("negative_mm")
+    };
+    let alone: Vec<f64> = {
+        studies.study("usb", 6, &["--optimizer", "sobol"]).succeeds();
+        evaluations(&studies, "usb").iter().map(|line| number(&line["values"][0])).collect()
+    };
+    let weighted = ["--aggregate", "weighted", "--weights", "3,1"];
+    for (name, more, expected) in [
+        ("min", &[][..], (|_, far| far) as fn(f64, f64) -> f64),
+        ("mean", &["--aggregate", "mean"], |usb, far| (usb + far) / 2.0),
+        ("weighted", &weighted, |usb, far| (3.0 * usb + far) / 4.0),
+    ] {
+        for (line, usb) in of(name, more).iter().zip(&alone) {
+            let far = range(&line["user_attrs"]["other_tasks"][0]);
+            assert!((range(&line["user_attrs"]) - usb).abs() < 1e-9);
+            // 8 mm farther out costs 0.8 mm.
+            assert!((usb - far - 0.8).abs() < 0.11, "{usb} and {far}");
+            assert!((number(&line["values"][0]) - expected(*usb, far)).abs() < 1e-9, "{name}");
+        }
+    }
+    let page = report(&studies, "mean");
+    assert!(page.contains("<h3>usb</h3>") && page.contains("<h3>far</h3>"));
+    assert!(page.contains("mean, of values that are not scaled"));
+    assert_eq!(column(&studies, "mean", "usb.range_mm").len(), 6);
+    assert_ne!(column(&studies, "mean", "far.range_mm"), column(&studies, "mean", "usb.range_mm"));
+    let more = ["--task", &tasks, "--optimizer", "sobol", "--json"];
+    let best = studies.study("min", 6, &more).json()["best"]["tasks"].clone();
+    assert_eq!((&best[0]["task"], &best[1]["task"]), (&"usb".into(), &"far".into()));
+}
+
+#[test]
+fn a_study_of_several_tasks_is_durable_and_has_its_own_folder() {
+    let studies = Studies::new();
+    let file = far(&studies);
+    let tasks = format!("usb,{file}");
+    let more = ["--task", &tasks, "--objective", "success-rate", "--constraint", "range>=5"];
+    is_durable(&studies, "s", 12, &more);
+    fs::remove_file(file).unwrap();
+    studies.resume("s").succeeds();
+    assert!(read(&studies.dir("s").join("inputs/task_2.toml")).contains("\"far\""));
+    optimize(&["report", studies.dir("s").to_str().unwrap()]).succeeds();
+    let line = &evaluations(&studies, "s")[0];
+    let rate = |of: &Value| number(&of["success_rate"]["rate"]);
+    let (usb, far) = (rate(&line["user_attrs"]), rate(&line["user_attrs"]["other_tasks"][0]));
+    assert_eq!(number(&line["values"][0]), usb.min(far));
+    let mut named = common::command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);
+    run(named.current_dir(&studies.0)).succeeds();
+    assert!(studies.dir("results/usb+rj45-gp-seed0/report.html").exists());
+}
+
+#[test]
+fn bad_goals_are_answered_with_2_and_what_would_be_right() {
+    let finger = ["--density", "20", "--direction", "10"];
+    for (arguments, parts) in [
+        (&["--objective", "rnage"][..], &["success-rate, robust-range, peak-force, slip"][..]),
+        (&["--objective", "range,range"], &["range is given twice"]),
+        (&["--objective", "range,slip,peak-force,success-rate"], &["at most 3"]),
+        (&["--constraint", "peak-force<30"], &["MEASURE<=NUMBER", "'peak-force<=30'"]),
+        (&["--constraint", "force<=30"], &["`force`", "peak-force"]),
+        (&["--constraint", "peak-force<=30N"], &["30N", "without its unit"]),
+        (&["--uncertainty", "typical"], &["--uncertainty", "success-rate", "--objective"]),
+        (&["--objective", "success-rate", "--uncertainty", "tipical"], &["did you mean `typical`"]),
+        (&["--objective", "range,slip", "--optimizer", "cma-es"], &["cma-es", "gp, random, sobol"]),
+        (&["--objective", "range,slip", "--optimizer", "nelder-mead"], &["one objective only"]),
+        (&["--objective", "range,slip", "--polish"], &["--polish", "one objective only"]),
+        (&["--aggregate", "mean"], &["several tasks", "--task usb,rj45"]),
+        (&["--task", "usb,usb"], &["two tasks are called `usb`"]),
+        (&["--task", "usb,usbb"], &["usbb", "ket8, ket12"]),
+        (&["--task", "usb,"], &["ket8, ket12"]),
+        (&["--task", "usb,rj45", "--aggregate", "max"], &["min, mean, weighted"]),
+        (&["--task", "usb,rj45", "--aggregate", "weighted"], &["0 weights for 2 tasks"]),
+        (&["--task", "usb,rj45", "--weights", "1,2"], &["--aggregate weighted"]),
+        (
+            &["--task", "usb,rj45", "--aggregate", "weighted", "--weights", "1"],
+            &["1 weights for 2 tasks"],
+        ),
+        (
+            &["--task", "usb,rj45", "--aggregate", "weighted", "--weights", "1,-1"],
+            &["--weights", "above 0"],
+        ),
+    ] {
+        let studies = Studies::new();
+        let given = if arguments.contains(&"--task") { &[][..] } else { &["--task", "usb"] };
+        let dir = studies.dir("s");
+        let study = ["--engine", "fake", "--budget", "4", "--out", dir.to_str().unwrap()];
+        optimize(&[&study[..], given, arguments].concat()).fails(2, parts);
+        assert!(!dir.exists(), "bad usage leaves no folder behind");
+    }
+    optimize(&[&["evaluate", "--task", "usb,rj45"], &finger[..]].concat())
+        .fails(2, &["one --task"]);
+    evaluate(20, 10, &["--seed", "1"]).fails(2, &["--uncertainty"]);
+}
+
+#[test]
+fn changed_goals_are_another_study_and_odd_ones_are_not_compared() {
+    let studies = Studies::new();
+    studies.study("s", 4, &["--constraint", "slip<=1"]).succeeds();
+    studies
+        .study("s", 4, &[])
+        .fails(2, &["constraints.0: the study has \"slip<=1\", now has nothing"]);
+    studies.study("s", 4, &["--task", "usb,rj45"]).fails(2, &["other_tasks.0"]);
+    studies.study("front", 4, &["--objective", "range,slip"]).succeeds();
+    let dir = |name| studies.dir(name).to_str().unwrap().to_owned();
+    optimize(&["compare", &dir("front")]).fails(2, &["range,slip", "one objective in mm"]);
+    optimize(&["compare", &dir("s"), &dir("front")]).fails(2, &["objective"]);
+    optimize(&["compare", &dir("s")]).succeeds();
+}
+
+#[test]
+fn the_shipped_errors_are_listed() {
+    let tasks = optimize(&["tasks"]);
+    assert!(tasks.succeeds().contains("uncertainties\n  typical"), "{}", tasks.stdout);
+}

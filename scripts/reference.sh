@@ -28,3 +28,21 @@ for task in usb ket8 ket12 rj45; do
         cp "$studies/$task/$file" "$reference/$task/"
     done
 done
+
+# Objectives, constraints and tasks of docs/objectives.md.
+objectives="$reference/objectives"
+mkdir -p "$objectives"
+few="$studies/few.toml"
+sed -e 's/samples = 12/samples = 6/' -e 's/search = "walk"/search = "strides"/' \
+    -e 's/name = "typical"/name = "few"/' uncertainties/typical.toml > "$few"
+run() {
+    "$optimize" "${@:2}" --no-cache --out "$studies/$1" --quiet > "$objectives/$1.txt"
+    sed -i '/^study /d' "$objectives/$1.txt"
+}
+run front --task usb --objective range,peak-force --budget 60
+cp "$studies/front/front.svg" "$objectives/"
+run constrained --task usb --constraint 'peak-force<=110' --budget 24
+run robust --task usb --objective robust-range --uncertainty "$few" --budget 12
+run tasks --task ket8,rj45 --budget 12
+"$optimize" evaluate --task rj45 --density 10 --direction 0 --uncertainty typical \
+    > "$objectives/evaluate.txt"

@@ -1,7 +1,7 @@
 use super::*;
 use crate::evaluation::{Evaluation, FailureClass, Outcome, Window};
 use crate::finger::Finger;
-use crate::objective::{Goals, Measure, Objectives};
+use crate::objective::{Aggregate, Goals, Measure, Objectives};
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use crate::study::{Recorded, StudyConfig, Timing, Versions};
 use crate::surrogate::{Measurement, Model, SHIPPED_CSV, SHIPPED_FILE, fit, parse};
@@ -134,7 +134,7 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
         assert!(page.contains(&number), "{number}");
     }
     let trials: u32 = study.evaluations.iter().map(|r| r.evaluation.trials).sum();
-    assert!(page.contains(&format!("{trials} trials in 60 evaluations")));
+    assert!(page.contains(&format!("{trials} trials in 60 window searches")));
     assert!(page.contains("9.0 mm (4 | 3)") && page.contains("4.7 mm (4 | 4)"));
     assert_eq!(page.matches("<svg ").count(), 4);
 }
@@ -199,6 +199,39 @@ fn what_comes_from_files_is_escaped_and_unknown_tasks_are_told() {
         assert!(!page.contains(raw), "{raw}");
     }
     assert!(page.contains("No ranges are published for the task &lt;img"));
+}
+
+/// Two objectives and a constraint on two tasks that measure the same.
+#[test]
+fn fronts_constraints_and_tasks_have_their_places_on_the_page() {
+    let mut study = study();
+    study.config.objective = "range,peak-force".parse().unwrap();
+    study.config.constraints = vec!["range<=6".parse().unwrap()];
+    study.config.other_tasks = vec!["<s>other".to_owned()];
+    study.config.aggregate = Some(Aggregate::Mean);
+    let goals = study.config.goals();
+    for recorded in &mut study.evaluations {
+        recorded.other_tasks = vec![recorded.evaluation.clone()];
+        recorded.score = goals.score(&recorded.tasks());
+    }
+    let page = html(&study, &measured()).unwrap();
+    check_page(&page);
+    assert!(page.contains("<h3>&lt;s&gt;other</h3>") && !page.contains("<s>other"));
+    assert!(page.contains("keeps range&lt;=6") && page.contains("violates a constraint"));
+    let front = study.front();
+    let ranges: Vec<f64> = front.iter().filter_map(|recorded| recorded.value()).collect();
+    assert!(ranges.is_sorted_by(|a, b| a > b) && ranges[0] <= 6.0, "{ranges:?}");
+    assert!(page.contains(&format!("{} of 60 evaluated designs are on the front", front.len())));
+    assert!(front_svg(&study).unwrap().unwrap().contains("range (mm)"));
+    let volumes = convergence::best_so_far(&study);
+    assert!(volumes.len() == 60 && volumes.windows(2).all(|pair| pair[0].1 <= pair[1].1));
+    for recorded in &mut study.evaluations {
+        recorded.score.as_mut().unwrap().violations = vec![1.0 + recorded.index as f64];
+    }
+    let page = html(&study, &measured()).unwrap();
+    assert!(page.contains("No design keeps all constraints, so none is recommended"));
+    assert!(page.contains("evaluations number 1, "), "the one that violates least");
+    assert!(study.best().is_none() && study.front().is_empty());
 }
 
 #[test]

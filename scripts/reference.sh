@@ -42,6 +42,7 @@ run() {
 run front --task usb --objective range,peak-force --budget 60
 cp "$studies/front/front.svg" "$objectives/"
 run constrained --task usb --constraint 'peak-force<=110' --budget 24
+run none --task usb --constraint 'peak-force<=60' --budget 8
 run robust --task usb --objective robust-range --uncertainty "$few" --budget 12
 run tasks --task ket8,rj45 --budget 12
 "$optimize" evaluate --task rj45 --density 10 --direction 0 --uncertainty typical \

@@ -86,19 +86,6 @@ impl FromStr for Aggregate {
     }
 }
 
-impl From<Aggregate> for String {
-    fn from(aggregate: Aggregate) -> String {
-        aggregate.to_string()
-    }
-}
-
-impl TryFrom<String> for Aggregate {
-    type Error = String;
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

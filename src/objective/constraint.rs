@@ -96,19 +96,6 @@ impl FromStr for Constraint {
     }
 }
 
-impl From<Constraint> for String {
-    fn from(constraint: Constraint) -> String {
-        constraint.to_string()
-    }
-}
-
-impl TryFrom<String> for Constraint {
-    type Error = String;
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

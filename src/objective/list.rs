@@ -79,19 +79,6 @@ impl FromStr for Objectives {
     }
 }
 
-impl From<Objectives> for String {
-    fn from(objectives: Objectives) -> String {
-        objectives.to_string()
-    }
-}
-
-impl TryFrom<String> for Objectives {
-    type Error = String;
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,6 +14,26 @@ pub use measure::Measure;
 use crate::evaluation::Evaluation;
 use std::cmp::Ordering;
 
+/// Study files keep these as they are written on the command line.
+macro_rules! kept_as_text {
+    ($($kept:ty),*) => {$(
+        impl From<$kept> for String {
+            fn from(value: $kept) -> String {
+                value.to_string()
+            }
+        }
+
+        impl TryFrom<String> for $kept {
+            type Error = String;
+            fn try_from(text: String) -> Result<Self, String> {
+                text.parse()
+            }
+        }
+    )*};
+}
+
+kept_as_text!(Aggregate, Constraint, Objectives);
+
 /// Objectives and constraints of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Goals {

@@ -138,6 +138,11 @@ pub struct Evaluation {
     pub slip_mm: f64,
     /// Simulated time over all trials, s.
     pub simulated_s: f64,
+    /// Where the outcome turns within the grid step beyond each end (negative, positive), as
+    /// a share of it, 0 to 1: interpolated over [`Trial::margin`](crate::trial::Trial::margin).
+    /// If the nominal start fails, its margin, -1 to 0. `None` in studies from before it was
+    /// recorded.
+    pub end_shares: Option<[f64; 2]>,
     /// How often the design inserts under errors, if that was measured.
     pub success: Option<SuccessRate>,
     /// How its range holds under errors, if that was measured.

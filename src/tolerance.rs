@@ -58,51 +58,75 @@ pub fn evaluate_in(
             end_negative: Some(nominal.outcome),
             end_positive: Some(nominal.outcome),
         };
-        return log.evaluation(window);
+        return log.evaluation(window, [nominal.margin; 2]);
     }
     let ((negative, log_negative), (positive, log_positive)) = rayon::join(
-        || find_end(&*grasped, -1, search.stride()),
-        || find_end(&*grasped, 1, search.stride()),
+        || find_end(&*grasped, nominal.margin, -1, search.stride()),
+        || find_end(&*grasped, nominal.margin, 1, search.stride()),
     );
     log.merge(&log_negative);
     log.merge(&log_positive);
-    log.evaluation(Window {
+    let window = Window {
         nominal: nominal.outcome,
-        negative_steps: -negative.0,
-        positive_steps: positive.0,
-        end_negative: negative.1,
-        end_positive: positive.1,
-    })
+        negative_steps: -negative.step,
+        positive_steps: positive.step,
+        end_negative: negative.failure,
+        end_positive: positive.failure,
+    };
+    log.evaluation(window, [negative.share, positive.share])
 }
 
-/// The last inserting step in one direction and what the next one did.
+/// One end of a window.
+struct End {
+    /// The last inserting step.
+    step: OffsetStep,
+    /// What the next one did.
+    failure: Option<Outcome>,
+    /// Where between the two the outcome turns, 0 to 1.
+    share: f64,
+}
+
+/// A step that was tried: where, how it ended and how clearly.
+#[derive(Clone, Copy)]
+struct Tried {
+    step: OffsetStep,
+    outcome: Outcome,
+    margin: f64,
+}
+
+/// One end, looked for from the nominal start, of that margin, outward.
 fn find_end(
     grasped: &dyn Grasped,
+    nominal_margin: f64,
     sign: OffsetStep,
     stride: OffsetStep,
-) -> ((OffsetStep, Option<Outcome>), Log) {
+) -> (End, Log) {
     let mut log = Log::default();
-    let mut trial = |step: OffsetStep| {
+    let mut inside = Tried { step: 0, outcome: Outcome::Inserted, margin: nominal_margin };
+    let mut outside: Option<Tried> = None;
+    loop {
+        let step = match outside {
+            None if inside.step >= OFFSET_LIMIT_STEPS => break,
+            None => (inside.step + stride).min(OFFSET_LIMIT_STEPS),
+            Some(outside) if outside.step - inside.step <= 1 => break,
+            Some(outside) => (inside.step + outside.step) / 2,
+        };
         let trial = grasped.trial(offset(sign * step));
         log.add(&trial);
-        trial.outcome
-    };
-    let (mut inside, mut outside) = (0, None);
-    while outside.is_none() && inside < OFFSET_LIMIT_STEPS {
-        let step = (inside + stride).min(OFFSET_LIMIT_STEPS);
-        match trial(step) {
-            Outcome::Inserted => inside = step,
-            failure => outside = Some((step, failure)),
+        let tried = Tried { step, outcome: trial.outcome, margin: trial.margin };
+        match tried.outcome {
+            Outcome::Inserted => inside = tried,
+            Outcome::Failed(_) | Outcome::Diverged => outside = Some(tried),
         }
     }
-    while let Some((step, _)) = outside.filter(|(step, _)| step - inside > 1) {
-        let middle = (inside + step) / 2;
-        match trial(middle) {
-            Outcome::Inserted => inside = middle,
-            failure => outside = Some((middle, failure)),
-        }
-    }
-    ((inside, outside.map(|(_, failure)| failure)), log)
+    let share = outside.map_or(0.0, |outside| share(inside.margin, outside.margin));
+    (End { step: inside.step, failure: outside.map(|outside| outside.outcome), share }, log)
+}
+
+/// Where a line from a margin of 0 or above to one of 0 or below crosses 0, from 0 to 1.
+fn share(inside: f64, outside: f64) -> f64 {
+    let drop = inside - outside;
+    if drop > 0.0 { inside / drop } else { 0.0 }
 }
 
 /// The offset of a grid step, m.
@@ -145,7 +169,7 @@ impl Log {
         self.simulated_s += other.simulated_s;
     }
 
-    fn evaluation(self, window: Window) -> Evaluation {
+    fn evaluation(self, window: Window, end_shares: [f64; 2]) -> Evaluation {
         Evaluation {
             window,
             failure_counts: self.failure_counts,
@@ -154,6 +178,7 @@ impl Log {
             peak_force_n: self.peak_force_n,
             slip_mm: self.slip_mm,
             simulated_s: self.simulated_s,
+            end_shares: Some(end_shares),
             success: None,
             robust: None,
         }

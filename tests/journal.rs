@@ -72,11 +72,12 @@ fn evaluation() -> impl Strategy<Value = Evaluation> {
     let ends = (prop::option::of(outcome()), prop::option::of(outcome()));
     let window = (outcome(), -150..=0i32, 0..=150i32, ends);
     let counts = (any::<[u32; 4]>(), any::<u32>(), any::<u32>());
-    let measured = [finite(), finite(), finite()];
+    let shares = prop::option::of([finite(), finite()]);
+    let measured = ([finite(), finite(), finite()], shares);
     (window, counts, measured, drawn).prop_map(|(window, counts, measured, (success, robust))| {
         let (nominal, negative_steps, positive_steps, (end_negative, end_positive)) = window;
         let (failure_counts, diverged, trials) = counts;
-        let [peak_force_n, slip_mm, simulated_s] = measured;
+        let ([peak_force_n, slip_mm, simulated_s], end_shares) = measured;
         Evaluation {
             window: Window { nominal, negative_steps, positive_steps, end_negative, end_positive },
             failure_counts,
@@ -85,6 +86,7 @@ fn evaluation() -> impl Strategy<Value = Evaluation> {
             peak_force_n,
             slip_mm,
             simulated_s,
+            end_shares,
             success,
             robust,
         }

@@ -161,6 +161,7 @@ pub(super) mod tests {
             peak_force_n: 5.0,
             slip_mm: 0.1,
             simulated_s: 49.0,
+            end_shares: None,
             success: None,
             robust: None,
         }

@@ -5,6 +5,7 @@ mod aggregate;
 mod constraint;
 mod list;
 mod measure;
+mod plateau;
 
 pub use aggregate::Aggregate;
 pub use constraint::{Bound, Constraint};

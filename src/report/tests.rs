@@ -89,6 +89,7 @@ fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
         peak_force_n: 0.0,
         slip_mm: 0.0,
         simulated_s: 3.0,
+        end_shares: None,
         success: None,
         robust: None,
     };

@@ -40,6 +40,9 @@ struct MeasuredLine {
     slip_mm: f64,
     #[serde(deserialize_with = "null_is_nan")]
     simulated_s: f64,
+    /// Studies from before it was recorded have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    end_shares: Option<[f64; 2]>,
 }
 
 /// What was measured under drawn errors.
@@ -157,6 +160,7 @@ impl From<&Evaluation> for TaskLine {
                 peak_force_n: evaluation.peak_force_n,
                 slip_mm: evaluation.slip_mm,
                 simulated_s: evaluation.simulated_s,
+                end_shares: evaluation.end_shares,
             },
             drawn: DrawnLine {
                 success_rate: evaluation.success.as_ref().map(SuccessLine::from),
@@ -183,6 +187,7 @@ fn evaluation(found: &MeasuredLine, drawn: &DrawnLine) -> Evaluation {
         peak_force_n: found.peak_force_n,
         slip_mm: found.slip_mm,
         simulated_s: found.simulated_s,
+        end_shares: found.end_shares,
         success: drawn.success_rate.as_ref().map(SuccessRate::from),
         robust: drawn.robust_range.as_ref().map(RobustRange::from),
     }

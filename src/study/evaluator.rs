@@ -131,6 +131,7 @@ impl Grasped for Stopped {
     fn trial(&self, _offset: f64) -> Trial {
         Trial {
             outcome: Outcome::Diverged,
+            margin: 0.0,
             depth_mm: f64::NAN,
             tilt_deg: f64::NAN,
             peak_force_n: f64::NAN,

@@ -102,13 +102,11 @@ impl Runner<'_> {
     }
 
     fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {
-        match &recorded.score {
+        match recorded.score.as_ref().zip(self.goals.told(&recorded.tasks())) {
             None => Observation::new(point, None),
-            Some(score) => Observation {
-                point,
-                values: self.goals.gains(&score.values),
-                violations: score.violations.clone(),
-            },
+            Some((score, values)) => {
+                Observation { point, values, violations: score.violations.clone() }
+            }
         }
     }
 

@@ -5,7 +5,7 @@ use super::classify::{Facts, classify};
 use super::motion::{Move, Tcp};
 use super::{PhaseEnd, Poses, Trial};
 use crate::engine::{Diverged, World};
-use crate::evaluation::Outcome;
+use crate::evaluation::{FailureClass, Outcome};
 use crate::robot::Mounted;
 use crate::scene::{BodyId, Pose};
 use crate::task::{Ending, Hold, Phase, Stage, Task};
@@ -276,6 +276,21 @@ impl<'a> Run<'a> {
         inside && -tip.z >= success.depth && self.tilt() <= success.tilt
     }
 
+    /// How clearly it ended so; see [`Trial::margin`].
+    fn margin(&self, outcome: Outcome) -> f64 {
+        let success = self.task.success;
+        let deep = (-self.tip().z - success.depth) / success.depth;
+        let upright = (success.tilt - self.tilt()) / success.tilt;
+        let margin = deep.min(upright).clamp(-1.0, 1.0);
+        match outcome {
+            Outcome::Inserted => margin.max(0.0),
+            // Lost before it came to the socket: nothing is nearer to success for being deeper.
+            Outcome::Failed(FailureClass::ContactLossBeforeSearch) => -1.0,
+            Outcome::Failed(_) => margin.min(0.0),
+            Outcome::Diverged => 0.0,
+        }
+    }
+
     /// A body in the task frame: as if the start, not the socket, were shifted and turned.
     fn pose(&self, body: BodyId) -> Pose {
         self.socket * self.world.pose(body)
@@ -349,8 +364,10 @@ impl<'a> Run<'a> {
             entered: self.entered,
         };
         let diverged = end == Err(Stop::Diverged);
+        let outcome = if diverged { Outcome::Diverged } else { classify(facts) };
         Trial {
-            outcome: if diverged { Outcome::Diverged } else { classify(facts) },
+            outcome,
+            margin: self.margin(outcome),
             depth_mm: -self.tip().z / MM,
             tilt_deg: self.tilt() / DEG,
             peak_force_n: self.peak_force,

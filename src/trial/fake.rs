@@ -60,8 +60,11 @@ impl Grasped for FakeGrasp {
         } else {
             Outcome::Inserted
         };
+        // Distance in mm to the nearer end.
+        let margin = (offset_mm - self.low).min(self.high - offset_mm).clamp(-1.0, 1.0);
         Trial {
             outcome,
+            margin,
             depth_mm: if outcome == Outcome::Inserted { 12.0 } else { 0.0 },
             tilt_deg: 0.0,
             peak_force_n: 5.0 + offset_mm.abs(),

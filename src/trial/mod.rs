@@ -50,6 +50,9 @@ pub struct Poses {
 pub struct Trial {
     /// How it ended.
     pub outcome: Outcome,
+    /// How clearly, from -1 to 1: what it has beyond the success criterion that it meets
+    /// least, as a share of that criterion; below 0 if it failed, 0 if it diverged.
+    pub margin: f64,
     /// Depth of the plug's tip below the socket's top at the end, mm.
     pub depth_mm: f64,
     /// Angle between the plug's axis and z at the end, degrees.

@@ -13,7 +13,7 @@ fn mujoco(factor: f64) -> Box<dyn Engine> {
 
 /// What MuJoCo misses, and by how much: a block that slides askew at a friction of 1
 /// hops from corner to corner (`docs/simulation.md`, "Second engine").
-const MISSED: (&str, f64) = ("friction, mu 1, heading 37 deg", 0.015);
+const MISSED: (&str, f64) = ("friction, mu 1, heading 37 deg", 0.02);
 
 #[test]
 fn mujoco_passes_the_analytic_checks_but_one() {

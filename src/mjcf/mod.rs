@@ -26,8 +26,9 @@ use xml::Element;
 /// How finely and how stiffly MuJoCo is to simulate.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Settings {
-    /// Length of a step, s: the published one. Springs are explicit in MuJoCo, so
-    /// it must stay below `1.4 / omega` of the stiffest (a held jaw: 14 000 1/s).
+    /// Length of a step, s: the published one. MuJoCo knows a contact only once
+    /// the surfaces overlap; at twice the step a light plug that is suddenly pressed
+    /// with 70 N has by then sunk too far (check T10).
     pub step_s: f64,
     /// Stiffness of a contact point, N/m: that of the engine `direct`.
     pub contact_stiffness: f64,
@@ -35,15 +36,13 @@ pub struct Settings {
     pub contact_damping: f64,
     /// How friction holds a sticking point, N s/m: that of the engine `direct`.
     pub stick_damping: f64,
-    /// What a contact adds to the mass of the bodies that it brakes, kg: with less
-    /// the contact's damper would be too stiff for the length of a step, beyond
-    /// about `damping * step / mass = 1`.
+    /// What a contact adds to the mass of the bodies that it brakes, kg: so little
+    /// that T10 holds. With less the contact's damper would be too stiff for the
+    /// length of a step, beyond about `damping * step / mass = 1`.
     pub contact_mass: f64,
     /// Rate at which friction brakes a point that is to stick, 1/s. The higher it is,
     /// the higher a sliding point floats (see `contact.rs`); the lower, the more of
-    /// the contact's sinking is taken for sliding (check T10). At 1000 and at 10 000
-    /// check T2 is off by more than here, where a sliding block of 50 g keeps 99.6 %
-    /// of its friction of 0.3 and 98.7 % of one of 1.
+    /// the contact's sinking is taken for sliding (check T10).
     pub friction_rate: f64,
     /// Where MuJoCo's solver ends.
     pub tolerance: f64,
@@ -56,7 +55,7 @@ impl Default for Settings {
             contact_stiffness: 3e5,
             contact_damping: 1500.0,
             stick_damping: 2e6,
-            contact_mass: 0.15,
+            contact_mass: 0.1,
             friction_rate: 3000.0,
             tolerance: 1e-10,
         }
@@ -113,7 +112,8 @@ pub fn write(scene: &Scene, name: &str, settings: &Settings) -> Result<String, N
     let option = Element::new("option")
         .with("timestep", settings.step_s)
         .numbers("gravity", [g.x, g.y, g.z])
-        .with("integrator", "implicitfast")
+        // Springs and dampers are solved for together with the contacts.
+        .with("integrator", "discrete")
         .with("cone", "elliptic")
         .with("impratio", contact::impratio(settings))
         .with("solver", "Newton")

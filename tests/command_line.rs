@@ -335,3 +335,25 @@ fn the_optimizers_are_counted_on_functions_and_recorded_landscapes() {
     fs::write(landscape, "a,range_mm\n1,1\n1,1\n").unwrap();
     optimize(&bench).fails(2, &["hill.csv", "2 rows for a grid of 1"]);
 }
+
+#[test]
+fn a_scene_is_exported_for_mujoco_and_the_arm_is_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("scene.xml");
+    let path = file.to_str().expect("UTF-8");
+    let export = ["export", "mjcf", "--task", "usb", "--density", "20", "--direction", "10"];
+    optimize(&[&export[..], &["--out", path]].concat()).succeeds();
+    let text = fs::read_to_string(&file).expect("the file");
+    assert!(text.contains("<mujoco model=\"usb\">") && text.contains("</mujoco>"), "{text}");
+    optimize(&[&export[..], &["--out", path, "--robot", "ur5e"]].concat())
+        .fails(2, &["`flange`", "MJCF", "--robot servo"]);
+}
+
+#[test]
+fn an_engine_agrees_with_itself_in_the_cross_check() {
+    let check = ["cross-check", "--against", "fake", "--task", "ket8"];
+    let result = fake(&[&check[..], &["--json"]].concat()).json();
+    assert_eq!((&result["agreement"], &result["passed"]), (&1.0.into(), &true.into()));
+    assert!(result["trials"].as_array().is_some_and(|trials| trials.len() > 20), "{result}");
+    assert!(fake(&check).succeeds().contains("100.0 %"));
+}

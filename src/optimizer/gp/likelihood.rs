@@ -24,18 +24,42 @@ pub(super) fn priors(dimension: usize) -> Vec<(f64, f64)> {
     priors
 }
 
-/// The generalised least squares mean, `K^-1 (y - mean)` with it, and the quadratic form.
-pub(super) fn residual(factor: &Cholesky, y: &[f64]) -> (f64, Vec<f64>) {
-    let ones = factor.solve(&vec![1.0; y.len()]);
-    let sum: f64 = ones.iter().sum();
-    let mean = if sum > 0.0 { dot(&ones, y) / sum } else { 0.0 };
-    let centred: Vec<f64> = y.iter().map(|v| v - mean).collect();
-    let alpha = factor.solve(&centred);
-    (mean, alpha)
+/// What the values tell of the constant mean, which has a flat prior.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Drift {
+    /// `K^-1 1`.
+    pub weights: Vec<f64>,
+    /// `1' K^-1 1`: one over the variance of the mean; 0 without values.
+    pub precision: f64,
+}
+
+impl Drift {
+    /// Of as many values as `factor` has rows.
+    pub fn new(factor: &Cholesky, n: usize) -> Self {
+        let weights = factor.solve(&vec![1.0; n]);
+        let precision = weights.iter().sum::<f64>().max(0.0);
+        Drift { weights, precision }
+    }
+
+    /// The generalised least squares mean, and `K^-1 (y - mean)` with it.
+    pub fn residual(&self, factor: &Cholesky, y: &[f64]) -> (f64, Vec<f64>) {
+        let known = self.precision > 0.0;
+        let mean = if known { dot(&self.weights, y) / self.precision } else { 0.0 };
+        let centred: Vec<f64> = y.iter().map(|v| v - mean).collect();
+        (mean, factor.solve(&centred))
+    }
+
+    /// Variance that the unknown mean adds at a point with covariances `k`.
+    pub fn variance(&self, k: &[f64]) -> f64 {
+        let rest = 1.0 - dot(k, &self.weights);
+        if self.precision > 0.0 { rest * rest / self.precision } else { 0.0 }
+    }
 }
 
 /// Log posterior of `theta` for points `x` of the unit cube with standardised values `y`.
-/// The constant mean is profiled out, which leaves the gradient as it is at fixed mean.
+/// The constant mean is integrated out under a flat prior (the restricted likelihood;
+/// Rasmussen and Williams 2006, section 2.7): its least squares value taken for true, smooth
+/// data would be sure of what lies beyond them.
 /// `None` if the covariance is not positive definite.
 pub fn log_posterior(
     x: &[Vec<f64>],
@@ -57,18 +81,21 @@ pub fn log_posterior(
         k[offset(i) + i] += noise_floor + noise;
     }
     let factor = Cholesky::new(&k, n)?;
-    let (mean, alpha) = residual(&factor, y);
+    let drift = Drift::new(&factor, n);
+    let (mean, alpha) = drift.residual(&factor, y);
     let quadratic: f64 = alpha.iter().zip(y).map(|(a, y)| a * (y - mean)).sum();
-    let mut value = -0.5 * (quadratic + factor.log_determinant());
+    let precision = drift.precision.max(f64::MIN_POSITIVE);
+    let w: Vec<f64> = drift.weights.iter().map(|w| w / precision.sqrt()).collect();
+    let mut value = -0.5 * (quadratic + factor.log_determinant() + libm::log(precision));
 
-    // d LML / d theta = 1/2 sum_ij (alpha_i alpha_j - (K^-1)_ij) dK_ij / d theta.
+    // d value / d theta = 1/2 sum_ij (alpha_i alpha_j + w_i w_j - (K^-1)_ij) dK_ij / d theta.
     let inverse = factor.inverse();
     let mut gradient = vec![0.0; d + 2];
     let (mut through_k, mut trace) = (0.0, 0.0);
     for i in 0..n {
         let (ki, si, vi) = (row(&k, i), row(&slope, i), row(&inverse, i));
         for j in 0..i {
-            let weight = alpha[i] * alpha[j] - vi[j];
+            let weight = alpha[i] * alpha[j] + w[i] * w[j] - vi[j];
             through_k += weight * ki[j];
             let by_length = weight * si[j];
             for a in 0..d {
@@ -76,7 +103,7 @@ pub fn log_posterior(
                 gradient[a] += by_length * difference * difference;
             }
         }
-        trace += alpha[i] * alpha[i] - vi[i];
+        trace += alpha[i] * alpha[i] + w[i] * w[i] - vi[i];
     }
     gradient[d] = through_k + 0.5 * trace * signal;
     gradient[d + 1] = 0.5 * trace * noise;

@@ -1,7 +1,8 @@
 //! Bayesian optimization with an exact Gaussian process.
 //!
-//! Values standardised and warped; Matern 5/2 with one length scale per axis, constant mean, fitted noise; hyperparameters by
-//! maximum a posteriori; log expected improvement (Ament et al. 2023, arXiv 2310.20708)
+//! Values standardised and warped; Matern 5/2 with one length scale per axis; a constant mean,
+//! unknown and integrated out; fitted noise; hyperparameters by maximum a posteriori; log
+//! expected improvement (Ament et al. 2023, arXiv 2310.20708)
 //! maximised over the grid; batches by the kriging believer. With constraints a model for each of
 //! them, and the improvement times the probability of keeping them; with several objectives a
 //! model for each, and the expected hypervolume improvement.

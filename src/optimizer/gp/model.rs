@@ -1,7 +1,7 @@
 //! The trained Gaussian process.
 
 use super::kernel::{Hyperparameters, matern52};
-use super::likelihood::residual;
+use super::likelihood::Drift;
 use super::linalg::{Cholesky, dot, offset};
 
 /// A Gaussian process conditioned on observations. Inputs in the unit cube, outputs in the
@@ -19,13 +19,16 @@ pub struct Gp {
     factor: Cholesky,
     /// `K^-1 (y - mean)`; zero for believed points.
     alpha: Vec<f64>,
+    /// What is known of the mean.
+    drift: Drift,
 }
 
 /// What a candidate's covariances tell before any triangular solve.
 pub(super) struct Glance {
     /// Posterior mean.
     pub mean: f64,
-    /// A bound on the posterior variance: that given the most correlated observation alone.
+    /// A bound on the posterior variance: that given the most correlated observation alone,
+    /// and that of the mean.
     pub variance_bound: f64,
 }
 
@@ -53,6 +56,7 @@ impl Gp {
             columns,
             factor: Cholesky::default(),
             alpha: Vec::new(),
+            drift: Drift::default(),
         };
         let mut packed = Vec::with_capacity(offset(y.len()));
         let mut row = Vec::new();
@@ -64,7 +68,8 @@ impl Gp {
             let mut noisy = packed.clone();
             (0..y.len()).for_each(|i| noisy[offset(i) + i] += noise);
             if let Some(factor) = Cholesky::new(&noisy, y.len()) {
-                (gp.mean, gp.alpha) = residual(&factor, y);
+                gp.drift = Drift::new(&factor, y.len());
+                (gp.mean, gp.alpha) = gp.drift.residual(&factor, y);
                 (gp.factor, gp.noise) = (factor, noise);
                 let finite = gp.mean.is_finite() && gp.alpha.iter().all(|a| a.is_finite());
                 return finite.then_some(gp);
@@ -89,12 +94,14 @@ impl Gp {
         &self.theta
     }
 
-    /// Posterior mean and variance of the function (without noise) at a point.
+    /// Posterior mean and variance of the function (without noise) at a point; the variance
+    /// holds that of the constant mean (ordinary kriging).
     pub fn predict(&self, x: &[f64]) -> (f64, f64) {
         let mut k = Vec::new();
         self.covariances(&self.scale(x), self.len(), &mut k);
         let v = self.factor.forward(&k);
-        (self.mean + dot(&k, &self.alpha), (self.signal - dot(&v, &v)).max(0.0))
+        let variance = (self.signal - dot(&v, &v)).max(0.0) + self.drift.variance(&k);
+        (self.mean + dot(&k, &self.alpha), variance)
     }
 
     /// Takes the posterior mean at `x` for observed (kriging believer). The mean stays as it is,
@@ -106,15 +113,17 @@ impl Gp {
         if self.factor.append(&k, self.signal + self.noise) {
             self.columns.iter_mut().zip(&scaled).for_each(|(c, x)| c.push(*x));
             self.alpha.push(0.0);
+            self.drift = Drift::new(&self.factor, self.alpha.len());
         }
     }
 
     /// Posterior mean and a bound of the variance from the covariances `k` of a candidate.
     pub(super) fn glance(&self, k: &[f64]) -> Glance {
         let largest = k.iter().copied().fold(0.0, f64::max);
+        let alone = self.signal - largest * largest / (self.signal + self.noise);
         Glance {
             mean: self.mean + dot(k, &self.alpha),
-            variance_bound: self.signal - largest * largest / (self.signal + self.noise),
+            variance_bound: alone + self.drift.variance(k),
         }
     }
 
@@ -123,16 +132,17 @@ impl Gp {
     pub(super) fn variance(&self, k: &[f64], hopeless: impl Fn(f64) -> bool) -> Option<f64> {
         const BLOCK: usize = 32;
         let mut v: Vec<f64> = Vec::with_capacity(k.len());
+        let drift = self.drift.variance(k);
         let mut variance = self.signal;
         for (i, &b) in k.iter().enumerate() {
             let next = self.factor.forward_step(&v, b);
             variance -= next * next;
             v.push(next);
-            if i % BLOCK == BLOCK - 1 && hopeless(variance.max(0.0)) {
+            if i % BLOCK == BLOCK - 1 && hopeless(variance.max(0.0) + drift) {
                 return None;
             }
         }
-        Some(variance.max(0.0))
+        Some(variance.max(0.0) + drift)
     }
 
     /// Covariances of a candidate of the unit cube with all observations.
@@ -173,10 +183,15 @@ mod tests {
     fn one_observation_is_worked_by_hand() {
         let theta = Hyperparameters { log_length: vec![0.0], ..theta() };
         let gp = Gp::new(&[vec![0.0]], &[2.0], 0.5, theta).unwrap();
-        // The constant mean takes the value; the variance is 1 - k^2 / (1 + 0.5).
+        // The constant mean takes the value, with a variance of 1.5; that of the rest is
+        // 1 - k^2 / 1.5, and k / 1.5 of the mean is known from the value itself.
         let (mean, variance) = gp.predict(&[1.0]);
+        let k = matern52(1.0);
+        let expected = 1.0 - k * k / 1.5 + 1.5 * (1.0 - k / 1.5).powi(2);
         assert!((mean - 2.0).abs() < 1e-12);
-        assert!((variance - (1.0 - matern52(1.0).powi(2) / 1.5)).abs() < 1e-12);
+        assert!((variance - expected).abs() < 1e-12);
+        // Far off nothing is known but that the value was drawn about the same mean.
+        assert!((gp.predict(&[99.0]).1 - 2.5).abs() < 1e-12);
     }
 
     #[test]

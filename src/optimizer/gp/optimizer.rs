@@ -19,8 +19,8 @@ const INCUMBENTS: usize = 4;
 
 /// Bayesian optimization over a grid. **Maximises.**
 ///
-/// - *First design*: `max(5, d + 1)` points of a scrambled Sobol sequence, `d` the number of axes
-///   with more than one level.
+/// - *First design*: `d + 1` points of a scrambled Sobol sequence, at least 3, `d` the number of
+///   axes with more than one level.
 /// - *Then*: the unseen point with the largest log expected improvement over the best posterior
 ///   mean at an observed point. Hyperparameters are refitted when new values were told.
 /// - *Constraints*: each has a model of its own. What is maximised is the improvement over the
@@ -80,7 +80,7 @@ impl GpOptimizer {
     }
 
     fn design_size(&self) -> u64 {
-        (self.free.len() as u64 + 1).max(5)
+        (self.free.len() as u64 + 1).max(3)
     }
 
     fn unit(&self, point: &GridPoint) -> Vec<f64> {

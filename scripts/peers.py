@@ -236,11 +236,11 @@ def run(arguments):
         found = version(package)
         assert found == PINNED[package], f"{package} {PINNED[package]} is wanted, not {found}"
     problems = functions() + [landscape(file) for file in arguments.landscape]
-    new = not Path(arguments.csv).exists()
     with open(arguments.csv, "a", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
-        if new:
+        if file.tell() == 0:
             out.writerow(["problem", "method", "seed", "evaluations"])
+            file.flush()
         for name, method, of_seed in work(arguments.methods, problems):
             if arguments.only and arguments.only not in name:
                 continue

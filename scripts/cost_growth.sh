@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # How the time of a study grows: with the budget, the number of dimensions and the threads.
-# Prints Markdown tables. Close other programs first; about 6 minutes on 2 cores.
+# Prints Markdown tables. Close other programs first; about 20 minutes on 2 cores.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -9,10 +9,10 @@ optimize=$PWD/target/release/optimize
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Wall time of a study in s, and its processor time.
+# Wall time of a study in s, and its processor time; given up after 10 minutes.
 study() {
-    /usr/bin/env time -f "%e %U" -o "$work/time" "$optimize" "$@" --no-cache --quiet \
-        --out "$work/study" > /dev/null
+    /usr/bin/env time -q -f "%e %U" -o "$work/time" timeout 600 "$optimize" "$@" --no-cache --quiet \
+        --out "$work/study" > /dev/null || echo "over_600 -" > "$work/time"
     rm -rf "$work/study"
     cat "$work/time"
 }

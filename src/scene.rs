@@ -47,10 +47,11 @@ pub struct Geom {
     pub pose: Pose,
     /// Coefficient of friction; a pair of geoms has the smaller of its two.
     pub friction: f64,
-    /// Radius over which a face contact spreads its friction, m: its moment about
-    /// the normal is that times the friction force (torsional friction of a soft
-    /// surface). A pair has the smaller of its two; 0 leaves the contact points
-    /// where they are. Engines without it ignore it.
+    /// Radius of the soft patch that a contact point stands for, m: friction also
+    /// resists a turn about the normal, with at most that times the friction force,
+    /// and force and moment share an ellipsoid (Howe and Cutkosky 1996, Int. J. Robot.
+    /// Res. 15:557). A pair has the smaller of its two; at 0 a point turns freely.
+    /// Engines without it ignore it.
     pub patch: f64,
 }
 

@@ -86,3 +86,11 @@ fn t11_the_arm_deflects_as_its_joints_say() {
 fn t10_light_wedged_plug_does_not_sink() {
     on_both(check::peg::t10);
 }
+
+/// rapier's friction acts at the middle of a face, wherever the face is loaded, so only
+/// `direct` (and MuJoCo, tests/second_engine.rs) is held to it: docs/simulation.md, "Engines".
+#[test]
+fn t12_a_face_slides_and_turns_as_its_pressure_says() {
+    assert_passed(check::grasp::t12(&*direct(1.0)));
+    assert_eq!(check::grasp::t12(&*rapier(1.0)).len(), 2, "it has no torsional friction");
+}

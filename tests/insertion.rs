@@ -162,44 +162,45 @@ fn the_same_trial_gives_the_same_bits() {
     }
 }
 
-/// Why usb loses range with stiffness: at a negative shift the side move goes on
-/// after the plug has met the wall. A stiffer finger answers with more force, keeps
-/// the plug tilted while it goes down, and its body lands on the socket's rim.
+/// Why usb loses range with stiffness: the more the start is shifted to the negative side,
+/// the farther the seated plug stands aside of the gripper. One finger follows it by no
+/// more than the grasp force has bent it, F/k; beyond that only the other pushes. So a
+/// stiffer finger lets go earlier, and a firmer grasp makes up for it.
 #[test]
-fn a_stiffer_finger_keeps_the_plug_tilted_and_tolerates_less() {
-    let rig = direct("usb");
+fn a_stiffer_finger_lets_go_earlier_and_a_firmer_grasp_holds_on() {
+    let mut rig = direct("usb");
     let (soft, stiff) = (finger(1.2, 52.4), finger(3.84, 52.4));
-    let at = |finger| rig.grasp(finger).trial(-1.5 * MM);
-    let (upright, tilted) = (at(&soft), at(&stiff));
-    assert_eq!(upright.outcome, Outcome::Inserted);
-    assert_eq!(tilted.outcome, Outcome::Failed(FailureClass::Jammed));
-    let tilts = (upright.tilt_deg, tilted.tilt_deg);
-    assert!(tilts.1 > tilts.0 + 1.0, "{tilts:?} deg");
+    let at = |rig: &EngineRig, finger| trial(rig, finger, -1.5).outcome;
+    assert_eq!(at(&rig, &soft), Outcome::Inserted);
+    assert_eq!(at(&rig, &stiff), Outcome::Failed(FailureClass::ContactLossInInsertion));
     let range = |finger| evaluate(&rig, finger, Search::Strides).window.range_mm();
-    assert!(range(&soft) > range(&stiff) + 2.0, "{} and {} mm", range(&soft), range(&stiff));
+    assert!(range(&soft) > range(&stiff) + 1.0, "{} and {} mm", range(&soft), range(&stiff));
+    rig.task.grip.force *= 2.0;
+    assert_eq!(at(&rig, &stiff), Outcome::Inserted);
 }
 
 /// Why ket8 loses range with infill direction, which lowers the assembly stiffness: a
-/// softer spring presses the key less deep into its slot, so the side move leaves it more
-/// tilted at the wall, and the push tips it over instead of in.
+/// softer spring presses the key less deep into its slot, so the push begins with its edge
+/// at the rim, and jams it there.
 #[test]
 fn a_finger_soft_in_assembly_presses_the_key_less_deep_and_tolerates_less() {
     let rig = direct("ket8");
     let (soft, stiff) = (finger(2.6, 25.0), finger(2.6, 75.0));
     let trials = |offset_mm: f64| [&soft, &stiff].map(|finger| trial(&rig, finger, offset_mm));
-    let side = |trial: &Trial| {
+    let deep = |trial: &Trial| {
         let end = trial.phases.iter().find(|phase| phase.name == "side").unwrap();
-        (-end.tip_mm[2], end.tilt_deg)
+        -end.tip_mm[2]
     };
-    let inside = trials(1.5);
+    let inside = trials(-1.5);
     assert!(inside.iter().all(|trial| trial.outcome == Outcome::Inserted));
-    let [soft, stiff] = trials(2.2);
-    for [soft, stiff] in [[&inside[0], &inside[1]], [&soft, &stiff]].map(|pair| pair.map(side)) {
-        assert!(soft.0 < stiff.0 - 0.02, "{} and {} mm deep", soft.0, stiff.0);
-        assert!(soft.1 > stiff.1, "{} and {} deg", soft.1, stiff.1);
+    let outside = trials(-2.5);
+    for [soft, stiff] in [&inside, &outside].map(|[soft, stiff]| [deep(soft), deep(stiff)]) {
+        assert!(soft < stiff - 0.05, "{soft} and {stiff} mm deep");
     }
+    let [soft, stiff] = outside;
     assert_eq!(soft.outcome, Outcome::Failed(FailureClass::Jammed));
-    assert!(soft.tilt_deg > 10.0, "{} deg", soft.tilt_deg);
+    // Near the rim, pushed until the robot stops.
+    assert!(soft.depth_mm < 3.0 && soft.peak_force_n > 140.0, "{soft:?}");
     assert_eq!(stiff.outcome, Outcome::Inserted);
 }
 
@@ -252,7 +253,7 @@ fn the_success_rate_follows_the_window() {
         (found.window.range_mm(), success.rate().unwrap())
     };
     let (soft, stiff) = (rate(1.2), rate(3.84));
-    assert!(soft.0 > stiff.0 + 2.0 && soft.1 > stiff.1 + 0.1, "{soft:?} and {stiff:?}");
+    assert!(soft.0 > stiff.0 + 1.0 && soft.1 > stiff.1 + 0.05, "{soft:?} and {stiff:?}");
 }
 
 /// Errors cost range: a robust range lies below the range without them.

@@ -13,6 +13,7 @@
 //! | T8 | edge drop, convergence with the step, snapshots |
 //! | T10 | stiffness of a contact that wedges a light plug |
 //! | T11 | static deflection of the arm's TCP under its servos |
+//! | T12 | friction of a face that slides and turns, as in the grasp |
 //!
 //! (T9 compares two engines on trials.) Every expected value is computed from
 //! its formula, which the check's file gives with its source. [`convergence`] asks
@@ -25,6 +26,7 @@ mod build;
 pub mod chamfer;
 pub mod convergence;
 pub mod edge;
+pub mod grasp;
 pub mod incline;
 pub mod jamming;
 pub mod peg;
@@ -110,5 +112,6 @@ pub fn run(make: Make<'_>) -> Vec<Row> {
     rows.extend(step::t8(make));
     rows.extend(peg::t10(engine));
     rows.extend(arm::t11(engine));
+    rows.extend(grasp::t12(engine));
     rows
 }

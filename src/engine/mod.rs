@@ -18,6 +18,11 @@ pub trait Engine: Send + Sync {
         Ok(())
     }
 
+    /// Whether a face contact resists a turn about its normal by [`crate::scene::Geom::patch`].
+    fn turns_with_friction(&self) -> bool {
+        true
+    }
+
     /// A world at time zero, of a scene that it [supports](Engine::supports).
     fn world(&self, scene: &Scene) -> Box<dyn World>;
 

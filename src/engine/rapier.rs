@@ -61,6 +61,10 @@ impl Engine for Rapier {
         format!("rapier3d-f64 {}", rapier3d_f64::VERSION)
     }
 
+    fn turns_with_friction(&self) -> bool {
+        false
+    }
+
     fn supports(&self, scene: &Scene) -> Result<(), Unsupported> {
         refuse_coupling(self, scene)
     }

@@ -40,9 +40,9 @@ pub struct Settings {
     /// that T10 holds. With less the contact's damper would be too stiff for the
     /// length of a step, beyond about `damping * step / mass = 1`.
     pub contact_mass: f64,
-    /// Rate at which friction brakes a point that is to stick, 1/s. The higher it is,
-    /// the higher a sliding point floats (see `contact.rs`); the lower, the more of
-    /// the contact's sinking is taken for sliding (check T10).
+    /// Rate at which the friction of plug and socket brakes a point that is to stick,
+    /// 1/s. The higher it is, the higher a sliding point floats (see `contact.rs`, check
+    /// T12); the lower, the more of the contact's sinking is taken for sliding (T10).
     pub friction_rate: f64,
     /// Where MuJoCo's solver ends.
     pub tolerance: f64,
@@ -52,7 +52,7 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             step_s: 5e-5,
-            contact_stiffness: 3e5,
+            contact_stiffness: 5.5e5,
             contact_damping: 1500.0,
             stick_damping: 2e6,
             contact_mass: 0.1,

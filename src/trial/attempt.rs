@@ -17,7 +17,7 @@ use std::sync::Arc;
 const GRASP_TIME: f64 = 0.3;
 /// Time to lift, tilt and carry the part to the start, s.
 const CARRY_TIME: f64 = 0.2;
-/// Both fingers off for this long is contact lost, s: longer than a bounce.
+/// A finger that is off for this long has let go, s: longer than a bounce.
 const LOSS_TIME: f64 = 0.02;
 /// A finger that presses with less is off, N.
 const LOSS_FORCE: f64 = 0.01;
@@ -67,7 +67,8 @@ pub(super) struct Run<'a> {
     force: Vector3<f64>,
     peak_force: f64,
     phase_peak: f64,
-    loose_for: f64,
+    /// For how long each finger has been off, s.
+    loose_for: [f64; 2],
     entered: bool,
     corners: Vec<Point3<f64>>,
     phases: Vec<PhaseEnd>,
@@ -91,7 +92,7 @@ impl<'a> Run<'a> {
             force: Vector3::zeros(),
             peak_force: 0.0,
             phase_peak: 0.0,
-            loose_for: 0.0,
+            loose_for: [0.0; 2],
             entered: false,
             corners,
             phases: Vec::new(),
@@ -252,13 +253,13 @@ impl<'a> Run<'a> {
         if self.time < GRASP_TIME {
             return Ok(());
         }
-        let off = |hand: &cell::Hand| {
-            self.world.contact(hand.finger, self.cell.plug).normal_sum < LOSS_FORCE
-        };
-        let loose = self.cell.hands.iter().all(off);
-        self.loose_for = if loose { self.loose_for + dt } else { 0.0 };
+        for (hand, loose_for) in self.cell.hands.iter().zip(&mut self.loose_for) {
+            let pressed = self.world.contact(hand.finger, self.cell.plug).normal_sum;
+            *loose_for = if pressed < LOSS_FORCE { *loose_for + dt } else { 0.0 };
+        }
+        let dropped = self.loose_for.iter().all(|&time| time > LOSS_TIME);
         let slipped = !self.phases.is_empty() && self.slip() > self.task.grip.slip_limit;
-        if self.loose_for > LOSS_TIME || slipped { Err(Stop::Lost) } else { Ok(()) }
+        if dropped || slipped { Err(Stop::Lost) } else { Ok(()) }
     }
 
     fn watch_entry(&mut self) {
@@ -360,6 +361,7 @@ impl<'a> Run<'a> {
         let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
         let facts = Facts {
             seated: held && self.stage == Stage::Assembly && self.seated(),
+            gripped: self.loose_for.iter().all(|&time| time <= LOSS_TIME),
             lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
             entered: self.entered,
         };

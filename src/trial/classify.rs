@@ -1,11 +1,14 @@
 //! The rules that turn what happened into an outcome, in one place.
 //!
 //! 1. The part is seated (its tip in the opening, deep and upright enough) and held
-//!    at rest after the assembly push, or where the force limit ended it: inserted.
+//!    by both fingers at rest after the assembly push, or where the force limit ended
+//!    it: inserted.
 //! 2. The part left the grasp (both fingers off, or slipped beyond the task's
-//!    limit) before the search began: class 1; later: class 4.
+//!    limit) before the search began: class 1; later: class 4. So does a part that is
+//!    seated, but that one finger has let go of: pushed aside by more than twice the
+//!    grasp force, it stands where it is driven by the other finger alone.
 //! 3. Its leading edge never entered the opening before the assembly push: class 2.
-//! 4. Otherwise it entered, is not seated and is still held: class 3.
+//! 4. Otherwise it entered, is not seated and is still touched: class 3.
 
 use crate::evaluation::{FailureClass, Outcome};
 use crate::task::Stage;
@@ -15,6 +18,8 @@ use crate::task::Stage;
 pub struct Facts {
     /// In the opening, deep and upright enough, at the end.
     pub seated: bool,
+    /// Both fingers touch it at the end.
+    pub gripped: bool,
     /// The stage in which the part left the grasp.
     pub lost_in: Option<Stage>,
     /// The leading edge was inside the opening at some time before assembly.
@@ -24,7 +29,10 @@ pub struct Facts {
 /// The outcome of a trial that did not diverge.
 pub fn classify(facts: Facts) -> Outcome {
     match facts {
-        Facts { seated: true, .. } => Outcome::Inserted,
+        Facts { seated: true, gripped: true, .. } => Outcome::Inserted,
+        Facts { seated: true, gripped: false, .. } => {
+            Outcome::Failed(FailureClass::ContactLossInInsertion)
+        }
         Facts { lost_in: Some(Stage::Approach), .. } => {
             Outcome::Failed(FailureClass::ContactLossBeforeSearch)
         }
@@ -41,14 +49,25 @@ mod tests {
 
     #[test]
     fn every_rule_decides_in_its_order() {
-        let facts = |seated, lost_in, entered| Facts { seated, lost_in, entered };
+        let facts = |seated, gripped, lost_in, entered| Facts { seated, gripped, lost_in, entered };
         for (given, outcome) in [
-            (facts(true, Some(Stage::Assembly), true), Outcome::Inserted),
-            (facts(false, Some(Stage::Approach), false), Outcome::Failed(ContactLossBeforeSearch)),
-            (facts(false, Some(Stage::Search), false), Outcome::Failed(ContactLossInInsertion)),
-            (facts(false, Some(Stage::Assembly), true), Outcome::Failed(ContactLossInInsertion)),
-            (facts(false, None, false), Outcome::Failed(PlugMissed)),
-            (facts(false, None, true), Outcome::Failed(Jammed)),
+            (facts(true, true, Some(Stage::Assembly), true), Outcome::Inserted),
+            (facts(true, false, None, true), Outcome::Failed(ContactLossInInsertion)),
+            (
+                facts(false, false, Some(Stage::Approach), false),
+                Outcome::Failed(ContactLossBeforeSearch),
+            ),
+            (
+                facts(false, false, Some(Stage::Search), false),
+                Outcome::Failed(ContactLossInInsertion),
+            ),
+            (
+                facts(false, false, Some(Stage::Assembly), true),
+                Outcome::Failed(ContactLossInInsertion),
+            ),
+            (facts(false, true, None, false), Outcome::Failed(PlugMissed)),
+            // What jams is pushed aside, too: that it is let go of then is not the cause.
+            (facts(false, false, None, true), Outcome::Failed(Jammed)),
         ] {
             assert_eq!(classify(given), outcome, "{given:?}");
         }

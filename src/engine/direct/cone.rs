@@ -6,15 +6,20 @@
 //! cone `|l_t| <= mu l_n` nearest to `-(u + b)/e` in the metric of `e`: the
 //! gradient of a convex potential of `u` (MuJoCo, Todorov 2014, ICRA,
 //! "Convex and analytically-invertible dynamics with contacts").
+//!
+//! `u` and `l` have four components: along the world's axes, and about the normal as
+//! the patch radius `rho` makes it comparable, `u_4 = rho w_n` and `l_4 = m_n/rho`. So
+//! `|l_t| <= mu l_n` is the ellipsoid of a soft finger's friction, `(f/mu N)^2 +
+//! (m/mu N rho)^2 <= 1` (Howe and Cutkosky 1996, Int. J. Robot. Res. 15:557).
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix4, Vector4};
 
 /// Compliances of a contact, 1/kg: relative velocity per impulse.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Compliance {
     /// Along the normal.
     pub normal: f64,
-    /// In the tangent plane.
+    /// In the tangent plane, and about the normal at the patch radius.
     pub tangent: f64,
 }
 
@@ -31,8 +36,8 @@ pub(super) enum State {
 pub(super) struct Pull {
     /// `-(u + b)` along the normal, m/s.
     normal: f64,
-    /// `-u` in the tangent plane, m/s.
-    tangent: Vector3<f64>,
+    /// `-u` but for its part along the normal, m/s.
+    tangent: Vector4<f64>,
     /// Its length.
     speed: f64,
 }
@@ -40,7 +45,7 @@ pub(super) struct Pull {
 impl Pull {
     /// From the relative velocity, the unit normal and the normal's bias.
     #[inline]
-    pub fn new(velocity: &Vector3<f64>, normal: &Vector3<f64>, bias: f64) -> Self {
+    pub fn new(velocity: &Vector4<f64>, normal: &Vector4<f64>, bias: f64) -> Self {
         let along = velocity.dot(normal);
         let tangent = normal * along - velocity;
         Pull { normal: -(along + bias), tangent, speed: tangent.norm() }
@@ -80,11 +85,11 @@ impl Cone {
             / (self.compliance.normal * (1.0 + self.mu * self.mu * self.ratio()))
     }
 
-    /// Impulse on the second body, N s.
+    /// Impulse on the second body, N s; the fourth is its moment over the patch radius.
     #[inline]
-    pub fn impulse(&self, pull: &Pull, normal: &Vector3<f64>) -> Vector3<f64> {
+    pub fn impulse(&self, pull: &Pull, normal: &Vector4<f64>) -> Vector4<f64> {
         match self.state(pull) {
-            State::Apart => Vector3::zeros(),
+            State::Apart => Vector4::zeros(),
             State::Stick => {
                 normal * (pull.normal / self.compliance.normal)
                     + pull.tangent / self.compliance.tangent
@@ -99,22 +104,23 @@ impl Cone {
     /// Minus the derivative of the impulse by the velocity, kg: symmetric and
     /// positive semidefinite.
     #[inline]
-    pub fn stiffness(&self, pull: &Pull, normal: &Vector3<f64>) -> Matrix3<f64> {
+    pub fn stiffness(&self, pull: &Pull, normal: &Vector4<f64>) -> Matrix4<f64> {
         match self.state(pull) {
-            State::Apart => Matrix3::zeros(),
+            State::Apart => Matrix4::zeros(),
             State::Stick => {
                 let tangent = 1.0 / self.compliance.tangent;
                 let extra = 1.0 / self.compliance.normal - tangent;
-                Matrix3::from_diagonal_element(tangent) + (normal * extra) * normal.transpose()
+                Matrix4::from_diagonal_element(tangent) + (normal * extra) * normal.transpose()
             }
             State::Slide => {
                 let along = pull.tangent / pull.speed;
-                let across = normal.cross(&along);
                 let edge = normal + along * self.mu;
                 let weight =
                     1.0 / (self.compliance.normal * (1.0 + self.mu * self.mu * self.ratio()));
                 let turning = self.mu * self.sliding(pull) / pull.speed;
-                (edge * weight) * edge.transpose() + (across * turning) * across.transpose()
+                let across =
+                    Matrix4::identity() - normal * normal.transpose() - along * along.transpose();
+                (edge * weight) * edge.transpose() + across * turning
             }
         }
     }
@@ -123,32 +129,41 @@ impl Cone {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
 
     const CONE: Cone = Cone { mu: 0.3, compliance: Compliance { normal: 0.02, tangent: 0.001 } };
 
-    fn impulse(u: Vector3<f64>) -> Vector3<f64> {
-        CONE.impulse(&Pull::new(&u, &Vector3::z(), 0.0), &Vector3::z())
+    fn impulse(u: Vector4<f64>) -> Vector4<f64> {
+        CONE.impulse(&Pull::new(&u, &Vector4::z(), 0.0), &Vector4::z())
     }
 
     #[test]
     fn the_impulse_is_continuous_and_stays_in_the_cone() {
         for i in 0..2000 {
             let angle = f64::from(i) * 0.01;
-            let u = Vector3::new(0.02 * angle.sin(), 0.01, 0.05 * (1.7 * angle).cos());
+            let spin = 0.02 * (0.3 * angle).sin();
+            let u = Vector4::new(0.02 * angle.sin(), 0.01, 0.05 * (1.7 * angle).cos(), spin);
             let l = impulse(u);
-            assert!(l.z >= 0.0 && l.x.hypot(l.y) <= CONE.mu * l.z * (1.0 + 1e-12));
-            let step = impulse(u + Vector3::new(1e-9, 1e-9, 1e-9)) - l;
+            let friction = Vector3::new(l.x, l.y, l.w).norm();
+            assert!(l.z >= 0.0 && friction <= CONE.mu * l.z * (1.0 + 1e-12));
+            let step = impulse(u + Vector4::repeat(1e-9)) - l;
             assert!(step.norm() < 4e-9 / CONE.compliance.tangent);
         }
     }
 
     #[test]
     fn the_stiffness_is_the_derivative_of_the_impulse() {
-        for u in [[1e-4, 2e-4, -0.05], [0.02, -0.01, -0.02], [0.02, 0.0, 0.001], [0.0, 0.0, 0.1]] {
-            let u = Vector3::from(u);
-            let k = CONE.stiffness(&Pull::new(&u, &Vector3::z(), 0.0), &Vector3::z());
-            for axis in 0..3 {
-                let mut d = Vector3::zeros();
+        let moves = [
+            [1e-4, 2e-4, -0.05, -1e-4],
+            [0.02, -0.01, -0.02, 0.015],
+            [0.02, 0.0, 0.001, 0.0],
+            [0.0, 0.0, 0.1, 0.01],
+        ];
+        for u in moves {
+            let u = Vector4::from(u);
+            let k = CONE.stiffness(&Pull::new(&u, &Vector4::z(), 0.0), &Vector4::z());
+            for axis in 0..4 {
+                let mut d = Vector4::zeros();
                 d[axis] = 1e-7;
                 let slope = (impulse(u - d) - impulse(u + d)) / 2e-7;
                 assert!((slope - k.column(axis)).norm() < 1e-4 * (1.0 + k.norm()), "{u} {axis}");

@@ -17,9 +17,6 @@ const COVER: f64 = 20e-6;
 /// What a neighbour may be off by, m: more than contacts sink, less than any gap.
 const SEAM: f64 = 2e-6;
 
-/// Points nearer together than this are one point, m.
-const SMALLEST_FACE: f64 = 1e-5;
-
 /// A point of contact between two bodies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Touch {
@@ -33,8 +30,8 @@ pub(super) struct Touch {
     pub gap: f64,
     /// Coefficient of friction.
     pub friction: f64,
-    /// From the point to where its friction acts, world, m (see `Geom::patch`).
-    pub spread: Vector3<f64>,
+    /// Radius at which its friction resists a turn about the normal, m (see `Geom::patch`).
+    pub patch: f64,
 }
 
 /// A shape on a body.
@@ -101,7 +98,10 @@ impl Detector {
                 for second in of_body[b.0].clone() {
                     let friction = geoms[first].friction.min(geoms[second].friction);
                     let manifold = ContactManifold::new();
-                    let patch = geoms[first].patch.min(geoms[second].patch);
+                    // Two that leave it to the other have none.
+                    let patch = Some(geoms[first].patch.min(geoms[second].patch))
+                        .filter(|patch| patch.is_finite())
+                        .unwrap_or(0.0);
                     candidates.push(Candidate { pair, first, second, friction, patch, manifold });
                 }
             }
@@ -124,9 +124,7 @@ impl Detector {
             let other = bodies[second.body].pose * second.pose;
             candidate.meet(&pose, &other, (first, second), self.prediction);
             candidate.uncover(&self.geoms);
-            let from = found.len();
             candidate.report(&pose, self.prediction, found);
-            spread(&mut found[from..], candidate.patch);
         }
     }
 }
@@ -227,7 +225,7 @@ impl Candidate {
                 normal,
                 gap: self.manifold.points[i].dist / shapes::SCALE,
                 friction: self.friction,
-                spread: Vector3::zeros(),
+                patch: self.patch,
             });
         };
         let count = self.manifold.points.len();
@@ -245,25 +243,6 @@ impl Candidate {
             if k == 0 || chosen[k - 1] != i {
                 add(i);
             }
-        }
-    }
-}
-
-/// Spreads the friction of a face's points so that it acts, in the root mean
-/// square, at the radius `patch` from their middle (see `Geom::patch`). Points
-/// that lie farther apart, and a single point, are left alone.
-fn spread(points: &mut [Touch], patch: f64) {
-    let count = points.len() as f64;
-    let middle = points.iter().map(|p| p.point.coords).sum::<Vector3<f64>>() / count;
-    let from_middle = |p: &Touch| {
-        let arm = p.point.coords - middle;
-        arm - p.normal * arm.dot(&p.normal)
-    };
-    let square = points.iter().map(|p| from_middle(p).norm_squared()).sum::<f64>() / count;
-    let radius = square.sqrt();
-    if radius > SMALLEST_FACE && radius < patch {
-        for point in points {
-            point.spread = from_middle(point) * (patch / radius - 1.0);
         }
     }
 }

@@ -7,8 +7,7 @@
 //! that neither stiff springs nor light bodies limit the step, and a statically
 //! indeterminate grasp has one well-conditioned solution.
 //!
-//! Left out: restitution, torsional friction of a point, and the gyroscopic
-//! moment beyond first order in the step.
+//! Left out: restitution, and the gyroscopic moment beyond first order in the step.
 
 mod blocks;
 mod body;
@@ -55,7 +54,7 @@ impl Default for Settings {
         Settings {
             step_s: 5e-4,
             prediction: 0.2e-3,
-            contact_stiffness: 3e5,
+            contact_stiffness: 5.5e5,
             contact_damping: 1500.0,
             stick_damping: 2e6,
             push_out: 0.2,

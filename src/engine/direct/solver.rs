@@ -11,7 +11,7 @@
 use super::blocks::Vector6;
 use super::cone::{Cone, Pull, State};
 use super::dense;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
 
 /// Out-of-balance force at which an iteration ends, N (N per 10 mm for moments).
 const FORCE_TOLERANCE: f64 = 1e-4;
@@ -26,17 +26,33 @@ const SEARCHES: usize = 30;
 /// Rounds of the fixed point at most.
 const ROUNDS: usize = 6;
 
+/// What an angular velocity moves a point by that lies at `arm` from the centre of mass,
+/// m: along the world's axes `w x arm`, and `rho w_n` about the `patch` vector, the
+/// normal times the patch radius.
+pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> {
+    let mut lever = Matrix4x3::zeros();
+    lever.fixed_view_mut::<3, 3>(0, 0).copy_from(&-arm.cross_matrix());
+    lever.set_row(3, &patch.transpose());
+    lever
+}
+
+/// Velocity of a contact point of a body of this velocity, m/s.
+pub(super) fn relative(lever: &Matrix4x3<f64>, v: &Vector6) -> Vector4<f64> {
+    Vector4::new(v[0], v[1], v[2], 0.0) + lever * Vector3::new(v[3], v[4], v[5])
+}
+
 /// A contact as the solver sees it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contact {
     /// First and second body: place in the reduced system, if they move freely.
     pub place: [Option<usize>; 2],
-    /// On each side: relative velocity by the body's angular velocity, world, m.
-    pub lever: [Matrix3<f64>; 2],
-    /// Unit normal from the first to the second.
-    pub normal: Vector3<f64>,
-    /// Relative velocity by the bodies whose motion is given, m/s.
-    pub drift: Vector3<f64>,
+    /// On each side: relative velocity by the body's angular velocity, m; see [`lever`].
+    pub lever: [Matrix4x3<f64>; 2],
+    /// Unit normal from the first to the second; its fourth component is 0.
+    pub normal: Vector4<f64>,
+    /// Relative velocity by the bodies whose motion is given, m/s; of four components, as
+    /// all velocities and impulses here: see [`super::cone`].
+    pub drift: Vector4<f64>,
     /// Least approach velocity that the gap allows, `gap / h`, m/s.
     pub bias: f64,
     /// Law of contact.
@@ -44,26 +60,26 @@ pub(super) struct Contact {
     /// De Saxce's term, m/s.
     slide: f64,
     /// Relative velocity, m/s.
-    velocity: Vector3<f64>,
+    velocity: Vector4<f64>,
     /// Its change along the line of search.
-    change: Vector3<f64>,
+    change: Vector4<f64>,
     /// Impulse on the second body, N s.
-    pub impulse: Vector3<f64>,
+    pub impulse: Vector4<f64>,
 }
 
 impl Contact {
     /// A contact between bodies at these places with these levers.
     pub fn new(
         place: [Option<usize>; 2],
-        lever: [Matrix3<f64>; 2],
+        lever: [Matrix4x3<f64>; 2],
         normal: Vector3<f64>,
         cone: Cone,
     ) -> Self {
-        let zero = Vector3::zeros();
+        let zero = Vector4::zeros();
         Contact {
             place,
             lever,
-            normal,
+            normal: normal.push(0.0),
             drift: zero,
             bias: 0.0,
             cone,
@@ -75,14 +91,11 @@ impl Contact {
     }
 
     /// Relative velocity by the free bodies' velocities.
-    fn relative(&self, velocities: &[Vector6]) -> Vector3<f64> {
-        let mut sum = Vector3::zeros();
+    fn relative(&self, velocities: &[Vector6]) -> Vector4<f64> {
+        let mut sum = Vector4::zeros();
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
             if let Some(place) = self.place[side] {
-                let v = &velocities[place];
-                let linear = Vector3::new(v[0], v[1], v[2]);
-                let angular = Vector3::new(v[3], v[4], v[5]);
-                sum += (linear + self.lever[side] * angular) * sign;
+                sum += relative(&self.lever[side], &velocities[place]) * sign;
             }
         }
         sum
@@ -197,7 +210,7 @@ impl Solver {
     fn relate(&self, contacts: &mut [Contact]) {
         for contact in contacts {
             contact.velocity = contact.relative(&self.velocities) + contact.drift;
-            contact.change = Vector3::zeros();
+            contact.change = Vector4::zeros();
         }
     }
 
@@ -294,7 +307,7 @@ impl Solver {
 
 /// Adds `J^T K J` of a contact to the upper half, with `J = [1, lever]` on each
 /// side, up to sign. `K` is symmetric, so `(K lever)^T` is `lever^T K`.
-fn add_stiffness(hessian: &mut [f64], bodies: usize, contact: &Contact, k: &Matrix3<f64>) {
+fn add_stiffness(hessian: &mut [f64], bodies: usize, contact: &Contact, k: &Matrix4<f64>) {
     let n = 6 * bodies;
     let across = contact.lever.map(|lever| k * lever);
     for row in 0..2 {

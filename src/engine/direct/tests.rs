@@ -130,12 +130,15 @@ fn coupled_springs_give_by_their_inverse() {
     }
 }
 
-/// Torsional friction: a face of friction mu and patch radius rho resists a turn
-/// about its normal with mu rho N, and sliding with mu N as ever.
+/// Torsional friction: a face of friction mu whose corners lie at r from its middle, of
+/// patch radius rho, resists a turn about its normal with `mu N sqrt(r^2 + rho^2)`, and
+/// sliding with mu N as ever.
 #[test]
 fn a_patch_resists_a_turn_with_its_radius() {
-    let (mass, mu, rho) = (0.1, 0.5, 30e-3);
-    let [limit, push] = [mu * rho * mass * G, mu * mass * G];
+    let (mass, mu, rho) = (0.1, 0.5, 30e-3_f64);
+    let half = [5e-3, 5e-3, 2e-3];
+    let limit = mu * mass * G * rho.hypot(f64::hypot(half[0], half[1]));
+    let push = mu * mass * G;
     for (moment, force, moves) in [
         (0.98 * limit, 0.0, false),
         (1.02 * limit, 0.0, true),
@@ -143,7 +146,6 @@ fn a_patch_resists_a_turn_with_its_radius() {
         (0.0, 1.02 * push, true),
     ] {
         let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -G), ..Scene::default() };
-        let half = [5e-3, 5e-3, 2e-3];
         let under = Pose::translation(0.0, 0.0, -5e-3);
         let mut floor = cuboid("floor", Motion::Fixed, [0.1, 0.1, 5e-3], under, mu);
         floor.geoms[0].patch = rho;

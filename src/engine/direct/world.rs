@@ -6,7 +6,7 @@ use super::body::{Body, Kind};
 use super::cone::{Compliance, Cone};
 use super::contacts::{Detector, Touch};
 use super::joints::Joint;
-use super::solver::{Contact, Effort, Solver};
+use super::solver::{Contact, Effort, Solver, lever, relative};
 use crate::engine::{ContactForce, Diverged, World};
 use crate::scene::{BodyId, JointId, Motion, Pose, Scene, Spring};
 use nalgebra::Vector3;
@@ -89,16 +89,11 @@ impl DirectWorld {
             let place = ends.map(|body| body.place().map(|place| place - self.eliminated));
             let arm = ends.map(|body| touch.point - body.centre);
             let cone = Cone { mu: touch.friction, compliance };
-            // v + w x arm; friction acts beside the point by `spread`, which only a
-            // turn about the normal feels.
-            let twist = touch.normal.cross(&touch.spread) * touch.normal.transpose();
-            let lever = arm.map(|arm| twist - arm.cross_matrix());
+            let lever = arm.map(|arm| lever(&arm, &(touch.normal * touch.patch)));
             let mut contact = Contact::new(place, lever, touch.normal, cone);
-            for (body, arm, sign) in [(ends[0], arm[0], -1.0), (ends[1], arm[1], 1.0)] {
+            for (body, lever, sign) in [(ends[0], &lever[0], -1.0), (ends[1], &lever[1], 1.0)] {
                 if let Kind::Driven(_) = body.kind {
-                    let linear = body.velocity.fixed_rows::<3>(0);
-                    let angular = body.velocity.fixed_rows::<3>(3).into_owned();
-                    contact.drift += (linear + angular.cross(&arm)) * sign;
+                    contact.drift += relative(lever, &body.velocity) * sign;
                 }
             }
             let closing = touch.gap / step;
@@ -136,7 +131,7 @@ impl DirectWorld {
         let per_step = 1.0 / self.settings.step_s;
         for (touch, contact) in self.touches.iter().zip(&self.contacts) {
             let force = &mut self.forces[touch.pair];
-            force.net += contact.impulse * per_step;
+            force.net += contact.impulse.xyz() * per_step;
             force.normal_sum += contact.impulse.dot(&contact.normal) * per_step;
         }
     }

@@ -14,6 +14,7 @@
 //! | T10 | stiffness of a contact that wedges a light plug |
 //! | T11 | static deflection of the arm's TCP under its servos |
 //! | T12 | friction of a face that slides and turns, as in the grasp |
+//! | T13 | a soft flange whose command sets off |
 //!
 //! (T9 compares two engines on trials.) Every expected value is computed from
 //! its formula, which the check's file gives with its source. [`convergence`] asks
@@ -26,6 +27,7 @@ mod build;
 pub mod chamfer;
 pub mod convergence;
 pub mod edge;
+pub mod flange;
 pub mod grasp;
 pub mod incline;
 pub mod jamming;
@@ -113,5 +115,6 @@ pub fn run(make: Make<'_>) -> Vec<Row> {
     rows.extend(peg::t10(engine));
     rows.extend(arm::t11(engine));
     rows.extend(grasp::t12(engine));
+    rows.extend(flange::t13(engine));
     rows
 }

@@ -6,7 +6,7 @@
 //! replaced.
 
 use super::{ContactForce, Diverged, Engine, Unsupported, World};
-use crate::mjcf::{self, Settings, axis_name, driven_axis_name, geom_names, servo};
+use crate::mjcf::{self, HEAVY, Settings, axis_name, driven_axis_name, geom_names, servo};
 use crate::scene::{Axis, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
 use mujoco_rs::prelude::{MjData, MjModel, MjtObjBase};
 use nalgebra::{Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
@@ -138,14 +138,17 @@ impl MujocoWorld {
         }
     }
 
-    /// Puts the driven bodies where they are, on their way to where they go.
+    /// Sends the driven bodies on their way. MuJoCo's coordinates are relative: a velocity
+    /// that is merely set takes along all that hangs on the body, as if it weighed nothing.
+    /// So a force brings it to its velocity, against a mass beside which the rest is light.
     fn steer(&mut self) {
         let step = self.step_s();
         for driven in self.bodies.iter().filter_map(|body| body.driven.as_ref()) {
             for axis in 0..6 {
                 let rate = (driven.next[axis] - driven.now[axis]) / step;
-                self.data.qpos_mut()[driven.position[axis]] = driven.now[axis];
-                self.data.qvel_mut()[driven.velocity[axis]] = rate;
+                let dof = driven.velocity[axis];
+                let push = HEAVY * (rate - self.data.qvel()[dof]) / step;
+                self.data.qfrc_applied_mut()[dof] = push;
             }
         }
     }

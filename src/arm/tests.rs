@@ -179,7 +179,7 @@ fn ten_millimetres_change_the_compliance_by_less_than_two_percent() {
 fn an_arm_file_is_checked() {
     let text = include_str!("../../robots/ur5e.toml");
     for (from, to, part) in [
-        ("assembly_force_n = 50.0", "assembly_force_n = 0.0", "assembly_force_n"),
+        ("assembly_force_n = 100.0", "assembly_force_n = 0.0", "assembly_force_n"),
         ("limit_nm = 28.0", "limit_nm = -28.0", "joint \"wrist 1\" limit_nm"),
         ("home_deg = [270.0,", "home_deg = [nan,", "home_deg"),
         ("link_mass_kg = 3.7", "mass = 3.7", "mass"),

@@ -94,3 +94,8 @@ fn t12_a_face_slides_and_turns_as_its_pressure_says() {
     assert_passed(check::grasp::t12(&*direct(1.0)));
     assert_eq!(check::grasp::t12(&*rapier(1.0)).len(), 2, "it has no torsional friction");
 }
+
+#[test]
+fn t13_a_soft_flange_trails_a_command_that_sets_off() {
+    on_both(check::flange::t13);
+}

@@ -1,9 +1,8 @@
 //! A second, independent engine: MuJoCo. The only file that knows it.
 //!
 //! The scene is written as MJCF ([`crate::mjcf`]) and read by MuJoCo itself. What a
-//! trial does besides goes into the model's numbers: a driven body's coordinates
-//! and their rates are set before each step, a servo's gains where its spring is
-//! replaced.
+//! trial does besides goes into the model's numbers: the force that drives a driven
+//! body is set before each step, a servo's gains where its spring is replaced.
 
 use super::{ContactForce, Diverged, Engine, Unsupported, World};
 use crate::mjcf::{self, HEAVY, Settings, axis_name, driven_axis_name, geom_names, servo};

@@ -41,8 +41,10 @@ type Fallible<T> = Result<T, Box<dyn Error>>;
 fn main() -> Fallible<()> {
     let mode = std::env::args().nth(1).unwrap_or_default();
     let robot = shipped_robot("servo")?;
+    let only = std::env::args().nth(2);
     let tasks = TASKS
         .iter()
+        .filter(|file| only.as_ref().is_none_or(|name| name == file.name))
         .map(|file| Ok(Task::parse(file.text, file.file)?))
         .collect::<Fallible<Vec<Task>>>()?;
     let measured = STIFFNESS.first().ok_or("no measurements are shipped")?;

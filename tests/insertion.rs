@@ -169,7 +169,7 @@ fn the_same_trial_gives_the_same_bits() {
 #[test]
 fn a_stiffer_finger_lets_go_earlier_and_a_firmer_grasp_holds_on() {
     let mut rig = direct("usb");
-    let (soft, stiff) = (finger(1.2, 52.4), finger(3.84, 52.4));
+    let (soft, stiff) = (finger(1.2, 75.0), finger(3.0, 75.0));
     let at = |rig: &EngineRig, finger| trial(rig, finger, -1.5).outcome;
     assert_eq!(at(&rig, &soft), Outcome::Inserted);
     assert_eq!(at(&rig, &stiff), Outcome::Failed(FailureClass::ContactLossInInsertion));

@@ -14,7 +14,7 @@ use crate::trial::cell;
 use crate::units::{MM, N_PER_MM};
 use nalgebra::Vector3;
 
-/// The shipped robot `servo`.
+/// A flange like that of the shipped robot `servo`; what is expected is computed from it.
 const SERVO: Servo = Servo {
     stiffness: [10.0 * N_PER_MM, 10.0 * N_PER_MM, 20.0 * N_PER_MM],
     rotational_stiffness: [400.0; 3],

@@ -1,22 +1,23 @@
 //! Times of the parts that a study is made of: `cargo bench`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use finger_opt::codesign::Template;
-use finger_opt::engine::Engine;
-use finger_opt::engine::direct::Direct;
+use finger_opt::evaluation::objective::{Goals, Measure, Objectives};
+use finger_opt::evaluation::robustness::Plan;
+use finger_opt::evaluation::template::Template;
+use finger_opt::evaluation::tolerance::{self, Search};
 use finger_opt::finger::Finger;
-use finger_opt::objective::{Goals, Measure, Objectives};
+use finger_opt::input::robot::Robot;
+use finger_opt::input::shipped::{ROBOTS, SPACES, STIFFNESS, TASKS};
+use finger_opt::input::space::Space;
+use finger_opt::input::stiffness;
+use finger_opt::input::task::Task;
 use finger_opt::optimizer::{Grid, Observation, OptimizerKind, build};
-use finger_opt::robot::Robot;
-use finger_opt::robustness::Plan;
-use finger_opt::shipped::{ROBOTS, SPACES, STIFFNESS, TASKS};
-use finger_opt::space::Space;
+use finger_opt::physics::Engine;
+use finger_opt::physics::direct::Direct;
 use finger_opt::study::{
     FileStore, Inputs, JOURNAL_FILE, Journal, Runner, Simulated, Study, StudyConfig, Versions,
 };
 use finger_opt::surrogate::{self, Model};
-use finger_opt::task::Task;
-use finger_opt::tolerance::{self, Search};
 use finger_opt::trial::fake::FakeRig;
 use finger_opt::trial::run::{EngineRig, RigError};
 use finger_opt::trial::{Rig, cell};
@@ -40,7 +41,7 @@ fn space() -> Space {
 }
 
 fn model() -> Model {
-    let data = surrogate::parse(STIFFNESS[0].text, STIFFNESS[0].file).expect("valid");
+    let data = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file).expect("valid");
     surrogate::fit(&data).expect("fits")
 }
 
@@ -63,7 +64,7 @@ fn proposals(c: &mut Criterion) {
     // As many designs known as in the middle of a study of 100.
     let mut gp = build(OptimizerKind::Gp, Grid::new(space().levels()), 0);
     for _ in 0..12 {
-        let observed = |point: finger_opt::space::GridPoint| {
+        let observed = |point: finger_opt::input::space::GridPoint| {
             let value = space().design(&point).get("infill_density_percent");
             Observation::new(point, value)
         };
@@ -105,7 +106,7 @@ fn study(dir: &Path, model: &Model) -> Study {
     let stop = AtomicBool::new(false);
     let usb = TASKS.iter().find(|task| task.name == "usb").expect("shipped");
     let template = Template::parse(usb.text, usb.file).expect("valid");
-    let predict = |design: &finger_opt::space::Design| {
+    let predict = |design: &finger_opt::input::space::Design| {
         let value = |key| design.get(key).expect("in the space");
         model.predict(value("infill_density_percent"), value("infill_direction_deg"))
     };

@@ -14,17 +14,19 @@
 //! of every offset from 0.5 mm below to 0.5 mm above the window of the default search,
 //! `steps` the window of one design at several steps.
 
-use finger_opt::engine::direct::Direct;
-use finger_opt::evaluation::{Evaluation, Outcome, Window, grid_mm};
+use finger_opt::evaluation::tolerance::{self, Search};
+use finger_opt::evaluation::{Evaluation, Window, grid_mm};
 use finger_opt::finger::Finger;
-use finger_opt::robot::Robot;
-use finger_opt::shipped::{ROBOTS, STIFFNESS, TASKS};
-use finger_opt::surrogate::{self, Measurement};
-use finger_opt::task::Task;
-use finger_opt::tolerance::{self, Search};
+use finger_opt::input::robot::Robot;
+use finger_opt::input::shipped::{ROBOTS, STIFFNESS, TASKS};
+use finger_opt::input::stiffness;
+use finger_opt::input::stiffness::Measurement;
+use finger_opt::input::task::Task;
+use finger_opt::outcome::Outcome;
+use finger_opt::physics::direct::Direct;
 use finger_opt::trial::run::EngineRig;
 use finger_opt::trial::{Conditions, Grasped, Rig, Trial};
-use finger_opt::validate;
+use finger_opt::verify::agreement;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -48,7 +50,7 @@ fn main() -> Fallible<()> {
         .map(|file| Ok(Task::parse(file.text, file.file)?))
         .collect::<Fallible<Vec<Task>>>()?;
     let measured = STIFFNESS.first().ok_or("no measurements are shipped")?;
-    let designs = surrogate::parse(measured.text, measured.file)?;
+    let designs = stiffness::parse(measured.text, measured.file)?;
     let cases: Vec<(&Task, &Measurement)> =
         tasks.iter().flat_map(|task| designs.iter().map(move |design| (task, design))).collect();
     let compare = match mode.as_str() {
@@ -67,7 +69,7 @@ fn main() -> Fallible<()> {
     let pairs: Vec<Pair> = cases
         .par_iter()
         .map(|(task, design)| {
-            let pair = compare(task, &robot, &validate::finger(&task.finger, design));
+            let pair = compare(task, &robot, &agreement::finger(&task.finger, design));
             eprintln!("{} {}: {}", task.name, design.design, pair.csv());
             pair
         })
@@ -167,7 +169,7 @@ fn print_maps(cases: &[(&Task, &Measurement)], robot: &Robot) {
     let rows: Vec<String> = cases
         .par_iter()
         .map(|(task, design)| {
-            let (rig, finger) = (rig(task, robot, None), validate::finger(&task.finger, design));
+            let (rig, finger) = (rig(task, robot, None), agreement::finger(&task.finger, design));
             let window = tolerance::evaluate(&rig, &finger, Search::default()).window;
             let grasped = rig.grasp(&finger);
             let from = window.negative_steps - 5;
@@ -193,7 +195,7 @@ fn print_steps(cases: &[(&Task, &Measurement)], robot: &Robot) {
                 let rig = rig(task, robot, Some(step_s));
                 let window = tolerance::evaluate(
                     &rig,
-                    &validate::finger(&task.finger, design),
+                    &agreement::finger(&task.finger, design),
                     Search::default(),
                 )
                 .window;

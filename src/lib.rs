@@ -1,10 +1,11 @@
 //! Finds the compliant finger that makes a connector insertion most robust.
 //!
-//! Data flows one way, and no module reaches back up the flow:
+//! Data flows one way, and no module reaches back up the flow; `docs/architecture.md` draws
+//! it, and `tests/architecture.rs` holds every import to this order:
 //!
 //! ```text
-//! space -> design -> stiffness surrogate -> finger -> scene -> engine -> trial
-//!       -> tolerance -> robustness -> objective -> optimizer -> study -> report
+//! input -> finger -> surrogate -> physics -> trial -> evaluation -> optimizer
+//!       -> study -> verify -> report -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -12,32 +13,32 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
-pub mod arm;
-pub mod ask_tell;
-pub mod check;
-pub mod codesign;
-pub mod cross_check;
-pub mod engine;
-pub mod evaluation;
-pub mod finger;
-pub mod input;
-pub mod mjcf;
-pub mod objective;
-pub mod optimizer;
-pub mod pareto;
-pub mod report;
-pub mod robot;
-pub mod robustness;
-pub mod scene;
-pub mod shipped;
-pub mod space;
-pub mod stream;
-pub mod study;
-pub mod suite;
-pub mod surrogate;
-pub mod task;
-pub mod tolerance;
-pub mod trial;
-pub mod uncertainty;
 pub mod units;
-pub mod validate;
+
+pub mod stream;
+
+pub mod outcome;
+
+pub mod scene;
+
+pub mod input;
+
+pub mod finger;
+
+pub mod surrogate;
+
+pub mod physics;
+
+pub mod trial;
+
+pub mod evaluation;
+
+pub mod optimizer;
+
+pub mod study;
+
+pub mod verify;
+
+pub mod report;
+
+pub mod cli;

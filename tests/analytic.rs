@@ -1,10 +1,10 @@
 //! The analytic checks on the production settings, one test per check so that
 //! a failure names it.
 
-use finger_opt::check::{self, Row};
-use finger_opt::engine::Engine;
-use finger_opt::engine::direct::Direct;
-use finger_opt::engine::rapier::Rapier;
+use finger_opt::physics::Engine;
+use finger_opt::physics::direct::Direct;
+use finger_opt::physics::rapier::Rapier;
+use finger_opt::verify::analytic::{self, Row};
 
 fn rapier(factor: f64) -> Box<dyn Engine> {
     let mut engine = Rapier::default();
@@ -25,77 +25,77 @@ fn on_both(check: fn(&dyn Engine) -> Vec<Row>) {
 }
 
 fn assert_passed(rows: Vec<Row>) {
-    println!("{}", check::table(&rows));
+    println!("{}", analytic::table(&rows));
     assert!(!rows.is_empty());
-    assert!(rows.iter().all(|row| row.passed), "\n{}", check::table(&rows));
+    assert!(rows.iter().all(|row| row.passed), "\n{}", analytic::table(&rows));
 }
 
 #[test]
 fn t1_finger_springs_deflect_as_hooke_says() {
-    on_both(check::spring::t1);
+    on_both(analytic::spring::t1);
 }
 
 #[test]
 fn t2_block_on_an_incline_slides_and_rests_as_coulomb_says() {
-    on_both(check::incline::t2);
+    on_both(analytic::incline::t2);
 }
 
 #[test]
 fn t3_peg_tilts_until_two_points_touch() {
-    on_both(check::peg::t3);
+    on_both(analytic::peg::t3);
 }
 
 #[test]
 fn t4_peg_jams_where_whitney_says() {
-    on_both(check::jamming::t4);
+    on_both(analytic::jamming::t4);
 }
 
 #[test]
 fn t5_peg_wedges_where_whitney_says() {
-    on_both(check::wedging::t5);
+    on_both(analytic::wedging::t5);
 }
 
 #[test]
 fn t6_chamfer_takes_the_force_of_its_angle_and_friction() {
-    on_both(check::chamfer::t6);
+    on_both(analytic::chamfer::t6);
 }
 
 #[test]
 fn t7_force_through_the_remote_centre_does_not_turn() {
-    on_both(check::spring::t7);
+    on_both(analytic::spring::t7);
 }
 
 #[test]
 fn t8_block_tips_at_the_edge() {
-    on_both(check::edge::t8);
+    on_both(analytic::edge::t8);
 }
 
 #[test]
 fn t8_step_and_snapshots_change_nothing() {
-    assert_passed(check::step::t8(&rapier));
-    assert_passed(check::step::t8(&direct));
+    assert_passed(analytic::step::t8(&rapier));
+    assert_passed(analytic::step::t8(&direct));
 }
 
 #[test]
 fn t11_the_arm_deflects_as_its_joints_say() {
-    assert_passed(check::arm::t11(&*direct(1.0)));
-    assert!(check::arm::t11(&*rapier(1.0)).is_empty(), "it has no coupled springs");
+    assert_passed(analytic::arm::t11(&*direct(1.0)));
+    assert!(analytic::arm::t11(&*rapier(1.0)).is_empty(), "it has no coupled springs");
 }
 
 #[test]
 fn t10_light_wedged_plug_does_not_sink() {
-    on_both(check::peg::t10);
+    on_both(analytic::peg::t10);
 }
 
 /// rapier's friction acts at the middle of a face, wherever the face is loaded, so only
 /// `direct` (and MuJoCo, tests/second_engine.rs) is held to it: docs/simulation.md, "Engines".
 #[test]
 fn t12_a_face_slides_and_turns_as_its_pressure_says() {
-    assert_passed(check::grasp::t12(&*direct(1.0)));
-    assert_eq!(check::grasp::t12(&*rapier(1.0)).len(), 2, "it has no torsional friction");
+    assert_passed(analytic::grasp::t12(&*direct(1.0)));
+    assert_eq!(analytic::grasp::t12(&*rapier(1.0)).len(), 2, "it has no torsional friction");
 }
 
 #[test]
 fn t13_a_soft_flange_trails_a_command_that_sets_off() {
-    on_both(check::flange::t13);
+    on_both(analytic::flange::t13);
 }

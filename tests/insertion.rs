@@ -1,19 +1,20 @@
 //! The contact simulation on the four shipped tasks: does the physics hold, not the code.
 
-use finger_opt::engine::Engine;
-use finger_opt::engine::direct::Direct;
-use finger_opt::engine::rapier::Rapier;
-use finger_opt::evaluation::{FailureClass, Outcome};
+use finger_opt::evaluation::robustness::{self, Plan};
+use finger_opt::evaluation::tolerance::{Search, evaluate};
+use finger_opt::evaluation::uncertainty::Uncertainty;
 use finger_opt::finger::Finger;
-use finger_opt::robot::Robot;
-use finger_opt::robustness::{self, Plan};
-use finger_opt::shipped::{ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
+use finger_opt::input::robot::Robot;
+use finger_opt::input::shipped::{ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
+use finger_opt::input::stiffness;
+use finger_opt::input::task::Task;
+use finger_opt::outcome::{FailureClass, Outcome};
+use finger_opt::physics::Engine;
+use finger_opt::physics::direct::Direct;
+use finger_opt::physics::rapier::Rapier;
 use finger_opt::surrogate::{self, Estimate, Prediction};
-use finger_opt::task::Task;
-use finger_opt::tolerance::{Search, evaluate};
 use finger_opt::trial::run::EngineRig;
 use finger_opt::trial::{Conditions, Rig, Trial, picture};
-use finger_opt::uncertainty::Uncertainty;
 use finger_opt::units::{DEG, MM, N_PER_MM};
 
 fn task(name: &str) -> Task {
@@ -45,10 +46,10 @@ fn trial(rig: &EngineRig, finger: &Finger, offset_mm: f64) -> Trial {
 
 #[test]
 fn all_measured_fingers_insert_at_each_nominal_start() {
-    let measured = surrogate::parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
+    let measured = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
     for file in TASKS {
         let rig = direct(file.name);
-        let inserts = |m: &&surrogate::Measurement| {
+        let inserts = |m: &&stiffness::Measurement| {
             let finger = Finger::new(m.compliance, m.assembly);
             trial(&rig, &finger, 0.0).outcome == Outcome::Inserted
         };
@@ -141,7 +142,7 @@ fn a_socket_that_is_too_narrow_is_not_entered() {
     let mut rig = direct("ket8");
     // The key grows by 0.3 mm in y; the slot has 0.15 mm to spare.
     for part in &mut rig.task.plug.parts {
-        if let finger_opt::task::Solid::Box { min, max } = &mut part.solid {
+        if let finger_opt::input::task::Solid::Box { min, max } = &mut part.solid {
             min.y -= 0.15 * MM;
             max.y += 0.15 * MM;
         }
@@ -264,7 +265,7 @@ fn a_robust_range_is_smaller_than_the_range() {
     typical.robust.samples = 6;
     typical.robust.search = Search::Strides;
     let plan = Plan::new(&typical, 0, false, true);
-    let model = surrogate::fit(&surrogate::parse(STIFFNESS[0].text, "measured").unwrap()).unwrap();
+    let model = surrogate::fit(&stiffness::parse(STIFFNESS[0].text, "measured").unwrap()).unwrap();
     let predicted = model.predict(20.0, 10.0);
     let finger = Finger::new(predicted.compliance.mean, predicted.assembly.mean);
     let found = robustness::evaluate(&direct("usb"), &finger, &predicted, Search::Strides, &plan);

@@ -3,20 +3,21 @@
 mod common;
 
 use common::{Studies, read};
-use finger_opt::codesign::Template;
-use finger_opt::evaluation::{Evaluation, FailureClass, Outcome, RobustRange, SuccessRate, Window};
+use finger_opt::evaluation::objective::{Goals, Measure, Score};
+use finger_opt::evaluation::robustness::Plan;
+use finger_opt::evaluation::template::Template;
+use finger_opt::evaluation::tolerance::{Search, evaluate};
+use finger_opt::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
 use finger_opt::finger::Finger;
-use finger_opt::objective::{Goals, Measure, Score};
+use finger_opt::input::space::{Design, GridPoint, Space};
+use finger_opt::input::task::Task;
 use finger_opt::optimizer::{Grid, Observation, Optimizer, StopReason};
-use finger_opt::robustness::Plan;
-use finger_opt::space::{Design, GridPoint, Space};
+use finger_opt::outcome::{FailureClass, Outcome};
 use finger_opt::study::{
     Ending, Evaluate, Measured, Recorded, Runner, Simulated, Store, Study, StudyError, StudyRecord,
     Timing, decode, encode, strip_times,
 };
 use finger_opt::surrogate::{Estimate, Prediction};
-use finger_opt::task::Task;
-use finger_opt::tolerance::{Search, evaluate};
 use finger_opt::trial::Rig;
 use finger_opt::trial::fake::FakeRig;
 use finger_opt::trial::run::RigError;
@@ -286,7 +287,10 @@ fn whichever_write_fails_the_journal_stays_whole_and_the_study_goes_on() {
 struct Impossible;
 
 impl Evaluate for Impossible {
-    fn evaluate(&self, design: &Design) -> Result<Measured, finger_opt::codesign::Impossible> {
+    fn evaluate(
+        &self,
+        design: &Design,
+    ) -> Result<Measured, finger_opt::evaluation::template::Impossible> {
         let usb = include_str!("../tasks/usb.toml");
         let template = Template::parse(usb, "usb.toml").unwrap();
         let tilt = (design.get("infill_density_percent") == Some(13.0)).then_some(90.0);

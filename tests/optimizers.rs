@@ -1,8 +1,8 @@
 //! One suite for every optimizer: what the trait promises, checked for all of them.
 
+use finger_opt::evaluation::pareto::hypervolume;
+use finger_opt::input::space::GridPoint;
 use finger_opt::optimizer::{Grid, Observation, Optimizer, OptimizerKind, StopReason, build};
-use finger_opt::pareto::hypervolume;
-use finger_opt::space::GridPoint;
 use std::collections::BTreeSet;
 
 /// The value told for a point at the given position in the history.

@@ -1,9 +1,9 @@
 //! The analytic checks on MuJoCo, with the settings of the cross-check.
 #![cfg(feature = "mujoco")]
 
-use finger_opt::check;
-use finger_opt::engine::Engine;
-use finger_opt::engine::mujoco::Mujoco;
+use finger_opt::physics::Engine;
+use finger_opt::physics::mujoco::Mujoco;
+use finger_opt::verify::analytic;
 
 fn mujoco(factor: f64) -> Box<dyn Engine> {
     let mut engine = Mujoco::default();

@@ -1,8 +1,8 @@
 //! `optimize ask-tell`: an optimizer on standard input and output.
 
 use super::{Failure, print};
+use crate::optimizer::ask_tell::Session;
 use clap::Args;
-use finger_opt::ask_tell::Session;
 use std::io::{self, BufRead};
 
 /// Optimize anything: JSON lines on standard input and output, see docs/ask-tell.md.

@@ -3,13 +3,13 @@
 use super::bench_optimizers;
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
 use super::{Failure, print, print_json};
+use crate::evaluation::tolerance::{self, Search};
+use crate::finger::Finger;
+use crate::input::robot::Robot;
+use crate::input::shipped::{self, ROBOTS, TASKS};
+use crate::input::task::Task;
+use crate::units::N_PER_MM;
 use clap::{Args, Subcommand};
-use finger_opt::finger::Finger;
-use finger_opt::robot::Robot;
-use finger_opt::shipped::{self, ROBOTS, TASKS};
-use finger_opt::task::Task;
-use finger_opt::tolerance::{self, Search};
-use finger_opt::units::N_PER_MM;
 use serde_json::json;
 use std::time::Instant;
 
@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<Row, Failure> {
     let rig = setup::rig(arguments.engine, task, robot).map_err(Failure::input)?;
     let finger = Finger::new(COMPLIANCE * N_PER_MM, ASSEMBLY * N_PER_MM);
-    let finger = task.finger.shape(finger, 0.0);
+    let finger = finger.shaped(&task.finger, 0.0);
     let trials = std::sync::atomic::AtomicU32::new(0);
     let clock = Instant::now();
     rayon::scope(|scope| {

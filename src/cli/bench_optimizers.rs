@@ -1,14 +1,14 @@
 //! `optimize bench optimizers`: evaluations that the optimizers need.
 
 use super::{Failure, print};
-use clap::Args;
-use finger_opt::optimizer::OptimizerKind;
-use finger_opt::shipped;
-use finger_opt::study::write_file;
-use finger_opt::suite::{
+use crate::input::shipped;
+use crate::optimizer::OptimizerKind;
+use crate::study::write_file;
+use crate::verify::problems::{
     Function, GridProblem, Landscape, csv, markdown, on_function, on_grid, suggestion_times,
     time_markdown,
 };
+use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// Count the evaluations that the optimizers need on problems with known optima

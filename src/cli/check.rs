@@ -3,11 +3,11 @@
 
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
 use super::{Failure, print, print_json, validate};
+use crate::input::published;
+use crate::physics::Engine;
+use crate::physics::rapier::Rapier;
+use crate::verify::analytic::{self, convergence};
 use clap::Args;
-use finger_opt::check::{self, convergence};
-use finger_opt::engine::Engine;
-use finger_opt::engine::rapier::Rapier;
-use finger_opt::validate::published;
 
 /// Compare the contact engine with analytic results.
 #[derive(Debug, Args)]
@@ -41,9 +41,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.convergence {
         return arguments.converge(&|| make(1.0));
     }
-    let rows = check::run(&make);
+    let rows = analytic::run(&make);
     let failed = rows.iter().filter(|row| !row.passed).count();
-    arguments.show(check::table(&rows), &check::json(&rows))?;
+    arguments.show(analytic::table(&rows), &analytic::json(&rows))?;
     verdict("checks", failed, rows.len())
 }
 

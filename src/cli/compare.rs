@@ -1,10 +1,10 @@
 //! `optimize compare DIR..`: studies of the same problem side by side.
 
 use super::{Failure, print, print_json};
+use crate::report::compare::{Comparison, Quartiles, TOLERANCE_MM, compare};
+use crate::report::compare_svg;
+use crate::study::{StudyRecord, write_file};
 use clap::Args;
-use finger_opt::report::compare::{Comparison, Quartiles, TOLERANCE_MM, compare};
-use finger_opt::report::compare_svg;
-use finger_opt::study::{StudyRecord, write_file};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -67,7 +67,7 @@ fn table(comparison: &Comparison) -> String {
 fn to_json(comparison: &Comparison) -> Value {
     let quartiles =
         |[low, median, high]: Quartiles| json!({"q25": low, "median": median, "q75": high});
-    let group = |group: &finger_opt::report::compare::Group| {
+    let group = |group: &crate::report::compare::Group| {
         json!({
             "optimizer": group.optimizer,
             "batch": group.batch,

@@ -3,12 +3,13 @@
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
 use super::validate::tasks;
 use super::{Failure, print, print_json};
+use crate::input::published;
+use crate::input::stiffness::Measurement;
+use crate::input::task::Task;
+use crate::trial::Rig;
+use crate::verify::agreement;
+use crate::verify::cross_check::{self, Pair, Set};
 use clap::Args;
-use finger_opt::cross_check::{self, Pair, Set};
-use finger_opt::surrogate::Measurement;
-use finger_opt::task::Task;
-use finger_opt::trial::Rig;
-use finger_opt::validate::{self, published};
 
 /// Compare the outcomes of the same trials in two contact engines (check T9)
 ///
@@ -82,7 +83,7 @@ fn pairs<'a>(task: &'a Task, rigs: &'a [Box<dyn Rig>; 2]) -> Vec<Pair<'a>> {
     let pair = |design: &Measurement| Pair {
         task: task.name.clone(),
         finger_name: format!("{} %, {} deg", design.density_percent, design.direction_deg),
-        finger: validate::finger(&task.finger, design),
+        finger: agreement::finger(&task.finger, design),
         rigs: rigs.each_ref().map(|rig| &**rig),
     };
     ends.into_iter().flatten().map(pair).collect()

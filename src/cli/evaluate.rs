@@ -5,11 +5,11 @@ use super::repeat::{self, RepeatArguments};
 use super::setup::{self, Setup, SetupArguments};
 use super::words::{self, evaluation_json, merge};
 use super::{Failure, print, print_json};
+use crate::evaluation::Evaluation;
+use crate::evaluation::robustness;
+use crate::evaluation::tolerance::Search;
+use crate::input::shipped::UNCERTAINTIES;
 use clap::Args;
-use finger_opt::evaluation::Evaluation;
-use finger_opt::robustness;
-use finger_opt::shipped::UNCERTAINTIES;
-use finger_opt::tolerance::Search;
 use serde_json::json;
 use std::time::Instant;
 

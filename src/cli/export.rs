@@ -3,10 +3,10 @@
 use super::Failure;
 use super::finger::FingerArguments;
 use super::setup::{Setup, SetupArguments};
+use crate::physics::mjcf::{self, Settings};
+use crate::study::write_file;
+use crate::trial::cell;
 use clap::{Args, Subcommand};
-use finger_opt::mjcf::{self, Settings};
-use finger_opt::study::write_file;
-use finger_opt::trial::cell;
 use std::path::PathBuf;
 
 /// Write the scene of a trial for other programs

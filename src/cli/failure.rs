@@ -1,6 +1,6 @@
 //! Why a command failed, and the exit code that says so.
 
-use finger_opt::study::StudyError;
+use crate::study::StudyError;
 use std::fmt;
 
 /// Why a command failed.

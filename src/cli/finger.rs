@@ -3,12 +3,12 @@
 use super::Failure;
 use super::setup::Setup;
 use super::words::{self, stiffness_json};
+use crate::finger::Finger;
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::input::task::Task;
+use crate::surrogate::{Estimate, Prediction};
+use crate::units::{MM, N_PER_MM};
 use clap::Args;
-use finger_opt::finger::Finger;
-use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use finger_opt::surrogate::{Estimate, Prediction};
-use finger_opt::task::Task;
-use finger_opt::units::{MM, N_PER_MM};
 use serde_json::{Value, json};
 
 /// Which finger, and on what task.

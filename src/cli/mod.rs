@@ -1,33 +1,35 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
-pub mod ask_tell;
-pub mod bench;
+mod ask_tell;
+mod bench;
 mod bench_optimizers;
-pub mod check;
-pub mod compare;
-pub mod cross_check;
-pub mod evaluate;
-pub mod export;
+mod check;
+mod compare;
+mod cross_check;
+mod evaluate;
+mod export;
 mod failure;
 mod finger;
 mod progress;
 mod repeat;
-pub mod report;
-pub mod resume;
+mod report;
+mod resume;
 mod session;
 mod setup;
-pub mod stiffness;
-pub mod study;
+mod stiffness;
+mod study;
 mod summary;
-pub mod tasks;
-pub mod trial;
-pub mod validate;
+mod tasks;
+mod trial;
+mod validate;
 mod words;
 
-pub use failure::Failure;
+use failure::Failure;
 
 use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
 use std::io::{self, Write};
+use std::process::ExitCode;
 
 /// Finds the 3D-printed compliant finger that makes a connector insertion most robust.
 ///
@@ -43,18 +45,18 @@ use std::io::{self, Write};
     subcommand_negates_reqs = true,
     args_conflicts_with_subcommands = true
 )]
-pub struct Cli {
+struct Cli {
     // First: reading the subcommand takes it out of the matches.
     #[command(flatten)]
-    pub study: StudyOrNone,
+    study: StudyOrNone,
     #[command(subcommand)]
-    pub command: Option<Command>,
+    command: Option<Command>,
 }
 
 /// The arguments of a study, if no subcommand took its place. (clap's own
 /// `Option` does not see arguments that are flattened twice.)
 #[derive(Debug)]
-pub struct StudyOrNone(pub Option<study::Arguments>);
+struct StudyOrNone(Option<study::Arguments>);
 
 impl FromArgMatches for StudyOrNone {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
@@ -79,7 +81,7 @@ impl Args for StudyOrNone {
 }
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+enum Command {
     /// Continue a study after an interruption or a crash
     Resume(resume::Arguments),
     /// Write the tables and plots of a study again
@@ -101,6 +103,46 @@ pub enum Command {
     AskTell(ask_tell::Arguments),
     /// List tasks, spaces, robots and uncertainties
     Tasks(tasks::Arguments),
+}
+
+/// Runs `optimize` with these arguments, the program's name first.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        // Help and version come this way, too.
+        Err(usage) => usage.exit(),
+    };
+    match dispatch(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// A study searches a space for the design with the best objective; the other
+/// commands look at one step of that way each.
+fn dispatch(cli: Cli) -> Result<(), Failure> {
+    match cli.command {
+        None => match cli.study.0 {
+            Some(arguments) => study::run(&arguments),
+            None => Err(Failure::no_task()),
+        },
+        Some(Command::Resume(arguments)) => resume::run(&arguments),
+        Some(Command::Report(arguments)) => report::run(&arguments),
+        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
+        Some(Command::Trial(arguments)) => trial::run(&arguments),
+        Some(Command::Stiffness(arguments)) => stiffness::run(&arguments),
+        Some(Command::Compare(arguments)) => compare::run(&arguments),
+        Some(Command::Check(arguments)) => check::run(&arguments),
+        Some(Command::CrossCheck(arguments)) => cross_check::run(&arguments),
+        Some(Command::Validate(arguments)) => validate::run(&arguments),
+        Some(Command::Bench(arguments)) => bench::run(&arguments),
+        Some(Command::Export(arguments)) => export::run(&arguments),
+        Some(Command::AskTell(arguments)) => ask_tell::run(&arguments),
+        Some(Command::Tasks(arguments)) => tasks::run(&arguments),
+    }
 }
 
 /// Prints to standard output; a reader that has gone away (`| head`) is no error.

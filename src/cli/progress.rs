@@ -1,8 +1,8 @@
 //! Progress of a study on standard error: a bar on a terminal, lines elsewhere.
 
-use finger_opt::objective::Goals;
-use finger_opt::pareto::Archive;
-use finger_opt::study::{Recorded, Study};
+use crate::evaluation::objective::Goals;
+use crate::evaluation::pareto::Archive;
+use crate::study::{Recorded, Study};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};

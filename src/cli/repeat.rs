@@ -4,9 +4,10 @@ use super::Failure;
 use super::finger::Chosen;
 use super::setup::Setup;
 use super::words::outcome_word;
+use crate::evaluation::Window;
+use crate::evaluation::robustness::repeat::{Band, Bands, Repeats};
+use crate::outcome::Outcome;
 use clap::Args;
-use finger_opt::evaluation::{Outcome, Window};
-use finger_opt::robustness::repeat::{Band, Bands, Repeats};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 

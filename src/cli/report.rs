@@ -1,10 +1,10 @@
 //! `optimize report DIR`: makes the tables and plots of a study again.
 
 use super::{Failure, print, setup};
+use crate::input::stiffness::Measurement;
+use crate::report;
+use crate::study::{StudyRecord, read_inputs, write_evaluations_csv, write_file};
 use clap::Args;
-use finger_opt::report;
-use finger_opt::study::{StudyRecord, read_inputs, write_evaluations_csv, write_file};
-use finger_opt::surrogate::Measurement;
 use std::path::{Path, PathBuf};
 
 /// Report on a study.

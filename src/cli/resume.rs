@@ -3,8 +3,8 @@
 use super::Failure;
 use super::session::{self, SessionArguments};
 use super::setup::Setup;
+use crate::study::{Study, StudyConfig, StudyError, read_inputs};
 use clap::Args;
-use finger_opt::study::{Study, StudyConfig, StudyError, read_inputs};
 use std::path::PathBuf;
 
 /// Continue a study.

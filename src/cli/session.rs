@@ -3,8 +3,8 @@
 use super::progress::Progress;
 use super::setup::{self, EngineKind, OptimizerKind, Setup};
 use super::{Failure, report, summary};
+use crate::study::{Cache, Ending, Runner, Simulated, Study};
 use clap::Args;
-use finger_opt::study::{Cache, Ending, Runner, Simulated, Study};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -2,30 +2,31 @@
 //! where tasks, robots, engines, surrogate and optimizers are put together.
 
 use super::Failure;
-use clap::ValueEnum;
-use finger_opt::codesign::Template;
-use finger_opt::engine::Engine;
-use finger_opt::engine::direct::Direct;
+use crate::evaluation::objective::Measure;
+use crate::evaluation::robustness::Plan;
+use crate::evaluation::template::Template;
+use crate::evaluation::uncertainty::Uncertainty;
+use crate::input::robot::Robot;
+use crate::input::shipped::{self, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use crate::input::stiffness;
+use crate::input::task::Task;
+use crate::optimizer::gp::DEFAULT_NOISE_FLOOR;
+use crate::optimizer::{self, Grid, Optimizer, Polished};
+use crate::physics::Engine;
+use crate::physics::direct::Direct;
 #[cfg(feature = "mujoco")]
-use finger_opt::engine::mujoco::Mujoco;
-use finger_opt::engine::rapier::Rapier;
-use finger_opt::objective::Measure;
-use finger_opt::optimizer::gp::DEFAULT_NOISE_FLOOR;
-use finger_opt::optimizer::{self, Grid, Optimizer, Polished};
-use finger_opt::robot::Robot;
-use finger_opt::robustness::Plan;
-use finger_opt::shipped::{self, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
-use finger_opt::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use finger_opt::study::{Inputs, StudyConfig, Versions};
-use finger_opt::surrogate::{self, Model, Prediction};
-use finger_opt::task::Task;
-use finger_opt::trial::Rig;
-use finger_opt::trial::fake::FakeRig;
-use finger_opt::trial::run::{EngineRig, RigError};
-use finger_opt::uncertainty::Uncertainty;
+use crate::physics::mujoco::Mujoco;
+use crate::physics::rapier::Rapier;
+use crate::study::{Inputs, StudyConfig, Versions};
+use crate::surrogate::{self, Model, Prediction};
+use crate::trial::Rig;
+use crate::trial::fake::FakeRig;
+use crate::trial::run::{EngineRig, RigError};
+use clap::ValueEnum;
 use std::time::Duration;
 
-pub use finger_opt::optimizer::OptimizerKind;
+pub use crate::optimizer::OptimizerKind;
 
 /// Robot used unless another is named.
 pub const DEFAULT_ROBOT: &str = "servo";
@@ -321,7 +322,7 @@ impl Surrogate {
 
 /// Fits the stiffness model to a CSV of measurements.
 pub fn surrogate(data: &Source) -> Result<Surrogate, Failure> {
-    let measurements = surrogate::parse(&data.text, &data.file).map_err(Failure::input)?;
+    let measurements = stiffness::parse(&data.text, &data.file).map_err(Failure::input)?;
     let fitted = surrogate::fit(&measurements)
         .map_err(|error| Failure::usage(format!("{}: {error}", data.file)))?;
     Ok(Surrogate(fitted))

@@ -2,9 +2,9 @@
 
 use super::setup::{stiffness_data, surrogate};
 use super::{Failure, print, print_json};
+use crate::report::stiffness;
+use crate::study::write_file;
 use clap::Args;
-use finger_opt::report::stiffness;
-use finger_opt::study::write_file;
 use std::path::PathBuf;
 
 /// Show the stiffness model.

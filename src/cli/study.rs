@@ -3,10 +3,10 @@
 use super::Failure;
 use super::session::{self, SessionArguments};
 use super::setup::{self, OptimizerKind, Setup, SetupArguments};
+use crate::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
+use crate::input::shipped::UNCERTAINTIES;
+use crate::study::{Study, StudyConfig, sha256, study_name};
 use clap::{Args, ValueEnum};
-use finger_opt::objective::{Aggregate, Constraint, Measure, Objectives};
-use finger_opt::shipped::UNCERTAINTIES;
-use finger_opt::study::{Study, StudyConfig, sha256, study_name};
 use std::path::{Path, PathBuf};
 
 /// Largest seed: TOML, in which studies keep theirs, has no larger whole numbers.

@@ -2,8 +2,8 @@
 
 use super::words::{drawn_text, evaluation_json, merge, stiffness, stiffness_json, window};
 use super::{Failure, print, print_json};
-use finger_opt::report::volume_unit;
-use finger_opt::study::{Ending, Recorded, Study, StudyRecord, nearest, volume};
+use crate::report::volume_unit;
+use crate::study::{Ending, Recorded, Study, StudyRecord, nearest, volume};
 use serde_json::{Value, json};
 
 /// Prints the result of a study, `known` evaluations of which were in the cache.

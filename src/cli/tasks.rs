@@ -1,13 +1,13 @@
 //! `optimize tasks`: what is shipped.
 
 use super::{Failure, print, print_json};
+use crate::evaluation::uncertainty::Uncertainty;
+use crate::input::InputError;
+use crate::input::robot::Robot;
+use crate::input::shipped::{ROBOTS, SPACES, Shipped, TASKS, UNCERTAINTIES};
+use crate::input::space::Space;
+use crate::input::task::Task;
 use clap::Args;
-use finger_opt::input::InputError;
-use finger_opt::robot::Robot;
-use finger_opt::shipped::{ROBOTS, SPACES, Shipped, TASKS, UNCERTAINTIES};
-use finger_opt::space::Space;
-use finger_opt::task::Task;
-use finger_opt::uncertainty::Uncertainty;
 use serde_json::json;
 
 /// List what is shipped.

@@ -5,11 +5,11 @@ use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
 use super::words::{failure, merge, outcome_word};
 use super::{Failure, print, print_json};
+use crate::outcome::Outcome;
+use crate::study::write_file;
+use crate::trial::{Trial, picture};
+use crate::units::MM;
 use clap::Args;
-use finger_opt::evaluation::Outcome;
-use finger_opt::study::write_file;
-use finger_opt::trial::{Trial, picture};
-use finger_opt::units::MM;
 use serde_json::json;
 
 /// Largest offset accepted, mm: far outside any socket.

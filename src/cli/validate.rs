@@ -2,16 +2,16 @@
 
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
 use super::{Failure, print, print_json};
+use crate::evaluation::Window;
+use crate::evaluation::tolerance::{self, Search};
+use crate::input::published::{self, Origin};
+use crate::input::robot::Robot;
+use crate::input::shipped::TASKS;
+use crate::input::task::Task;
+use crate::report::validation;
+use crate::study::write_file;
+use crate::verify::agreement::{self, TaskTable};
 use clap::Args;
-use finger_opt::evaluation::Window;
-use finger_opt::report::validation;
-use finger_opt::robot::Robot;
-use finger_opt::shipped::TASKS;
-use finger_opt::study::write_file;
-use finger_opt::task::Task;
-use finger_opt::tolerance::{self, Search};
-use finger_opt::validate::published::{self, Origin};
-use finger_opt::validate::{self, TaskTable};
 use rayon::prelude::*;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -52,11 +52,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return print_json(&json!({
             "robot": robot.name,
             "engine": arguments.engine.name(),
-            "tasks": validate::json(&tables),
+            "tasks": agreement::json(&tables),
         }));
     }
     let (engine, out) = (arguments.engine.name(), arguments.out.display());
-    let texts: Vec<String> = tables.iter().map(validate::text).collect();
+    let texts: Vec<String> = tables.iter().map(agreement::text).collect();
     print(&format!(
         "robot {}, engine {engine}; ends: failure class (1 lost early, 2 missed, 3 jammed, 4 lost)\n\n\
          {}\ntables and figures are in {out}\n",
@@ -90,7 +90,7 @@ impl Arguments {
         let windows: Vec<Window> = pairs
             .into_par_iter()
             .map(|(task, rig, design)| {
-                tolerance::evaluate(&**rig, &validate::finger(&task.finger, design), search).window
+                tolerance::evaluate(&**rig, &agreement::finger(&task.finger, design), search).window
             })
             .collect();
         let of_tasks = windows.chunks(designs.len().max(1));
@@ -118,8 +118,8 @@ fn task(name: &str) -> Result<Task, Failure> {
 }
 
 fn write(out: &Path, tables: &[TaskTable]) -> Result<(), Failure> {
-    write_file(&out.join("validation.csv"), &validate::csv(tables))?;
-    write_file(&out.join("validation_summary.csv"), &validate::summary_csv(tables))?;
+    write_file(&out.join("validation.csv"), &agreement::csv(tables))?;
+    write_file(&out.join("validation_summary.csv"), &agreement::summary_csv(tables))?;
     let figures = validation::figures(tables)
         .map_err(|error| Failure::running(format!("cannot draw the figures: {error}")))?;
     for (name, svg) in figures {

@@ -1,8 +1,9 @@
 //! What is printed of an evaluation.
 
-use finger_opt::evaluation::{Evaluation, Outcome};
-use finger_opt::surrogate::Prediction;
-use finger_opt::units::N_PER_MM;
+use crate::evaluation::Evaluation;
+use crate::outcome::Outcome;
+use crate::surrogate::Prediction;
+use crate::units::N_PER_MM;
 use serde_json::{Value, json};
 use std::fmt::Write;
 

@@ -1,12 +1,9 @@
 //! One printed finger as the paper models it: six springs about a remote
 //! centre of compliance (RCC), Sec. "Stiffness model" and Table "Simulation Inputs".
 
-mod model;
-
-pub use model::{Coupling, FingerModel, Rcc};
-
+use crate::input::finger::{Coupling, FingerModel};
+use crate::input::task::Friction;
 use crate::scene::{Axis, Coupled, Geom, Inertia, Pose, Shape, Spring, Springs};
-use crate::task::Friction;
 use crate::units::{GRAM, MM, N_PER_MM};
 use nalgebra::{Matrix6, Point3, Vector3};
 
@@ -53,6 +50,11 @@ impl Finger {
             rotational_damping: 0.02,
             coupling: None,
         }
+    }
+
+    /// The same with what a task file says of its fingers, the infill in this direction, degrees.
+    pub fn shaped(self, model: &FingerModel, direction_deg: f64) -> Self {
+        Finger { rcc: model.rcc.at(direction_deg), coupling: model.coupling, ..self }
     }
 }
 
@@ -138,5 +140,55 @@ pub fn inertia(finger: &Finger) -> Inertia {
         mass: finger.mass,
         centre: Point3::new(0.0, 0.0, -finger.rcc),
         moments: Vector3::repeat(finger.mass * GYRATION * GYRATION),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::finger::Rcc;
+    use crate::scene::{Spring, Springs};
+
+    #[test]
+    fn the_default_is_the_papers_finger() {
+        let finger = Finger::new(2e3, 4e4).shaped(&FingerModel::default(), f64::NAN);
+        assert_eq!(finger, Finger::new(2e3, 4e4));
+        assert!(matches!(finger.mounted(1.0), Springs::Axes(_)));
+    }
+
+    #[test]
+    fn the_remote_centre_moves_with_the_infill_direction() {
+        let rcc = Rcc { at_zero: 21.0 * MM, per_degree: -0.1 * MM };
+        let model = FingerModel { rcc, ..FingerModel::default() };
+        assert!((Finger::new(2e3, 4e4).shaped(&model, 30.0).rcc - 18.0 * MM).abs() < 1e-15);
+    }
+
+    /// Turned by 180 degrees about z, a push in y that turned about z turns the other way.
+    #[test]
+    fn the_opposite_finger_is_the_same_part_turned() {
+        let coupling = Coupling::new([(1, 2, 0.3), (1, 5, 0.2), (0, 4, 0.1)]).unwrap();
+        let springs = [1e5, 2e3, 4e4, 1.0, 10.0, 10.0];
+        let [here, there] = [-1.0, 1.0].map(|side| coupling.stiffness(springs, side));
+        assert_eq!(here[(1, 2)], 0.3 * (2e3_f64 * 4e4).sqrt());
+        assert_eq!((there[(1, 2)], there[(1, 5)]), (-here[(1, 2)], -here[(1, 5)]));
+        assert_eq!((there[(0, 4)], there[(1, 1)]), (here[(0, 4)], 2e3));
+        assert_eq!(here, here.transpose());
+    }
+
+    #[test]
+    fn coupling_that_would_push_a_finger_away_is_none() {
+        assert_eq!(Coupling::new([(1, 2, 1.0)]), None);
+        assert_eq!(Coupling::new([(0, 1, 0.8), (1, 2, 0.8), (0, 2, -0.8)]), None);
+        assert!(Coupling::new([(0, 1, 0.8), (1, 2, 0.8), (0, 2, 0.8)]).is_some());
+    }
+
+    #[test]
+    fn a_coupled_finger_keeps_the_damping_of_its_springs() {
+        let coupling = Coupling::new([(1, 3, 0.5)]);
+        let finger = Finger { coupling, ..Finger::new(2e3, 4e4) };
+        let Springs::Coupled(coupled) = finger.mounted(-1.0) else { panic!("coupled") };
+        let damping = finger.springs().map(|Spring { damping, .. }| damping);
+        assert_eq!(coupled.damping, Matrix6::from_diagonal(&damping.into()));
+        assert_eq!(coupled.stiffness[(1, 3)], 0.5 * (2e3 * finger.rotation[0]).sqrt());
     }
 }

@@ -1,7 +1,7 @@
 //! Full factorial search, coarse to fine.
 
 use super::{Grid, Observation, Optimizer, Proposed, StopReason};
-use crate::space::GridPoint;
+use crate::input::space::GridPoint;
 
 /// Stages after which every axis of at most 2^32 levels shows all of them.
 const LAST_STAGE: u32 = 32;

@@ -3,6 +3,7 @@
 //! They maximise. They know the unit cube, the number of levels per axis and
 //! the numbers they are told, and nothing of fingers or tasks.
 
+pub mod ask_tell;
 pub mod cmaes;
 pub mod gp;
 mod kind;
@@ -22,7 +23,7 @@ pub use proposed::Proposed;
 pub use random::RandomSearch;
 pub use sobol::SobolSearch;
 
-use crate::space::GridPoint;
+use crate::input::space::GridPoint;
 
 /// The grid of the unit cube: axis `i` has `levels[i]` values
 /// `k / (levels[i] - 1)`, `k = 0 .. levels[i]`. An axis with one level is fixed at 0.5.

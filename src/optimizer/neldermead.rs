@@ -4,7 +4,7 @@ use super::cmaes::fold;
 use super::simplex::{Simplex, Want};
 use super::sobol::SobolSequence;
 use super::{Grid, Observation, Optimizer, Proposed, StopReason};
-use crate::space::GridPoint;
+use crate::input::space::GridPoint;
 use std::collections::BTreeMap;
 
 /// Edge of a first simplex at a new place, in edges of the cube.

@@ -1,7 +1,7 @@
 //! Local polish of the best point that another optimizer has found.
 
 use super::{Grid, NelderMeadOptimizer, Observation, Optimizer, StopReason};
-use crate::space::GridPoint;
+use crate::input::space::GridPoint;
 
 /// Asks another optimizer for a number of points, then Nelder-Mead for up to a number of
 /// points more, which starts at the best of them and stays about it.

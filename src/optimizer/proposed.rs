@@ -1,7 +1,7 @@
 //! The points an optimizer has already proposed, and a way to any that are left.
 
 use super::{Grid, StopReason};
-use crate::space::GridPoint;
+use crate::input::space::GridPoint;
 use crate::stream::stream;
 use rand::RngExt;
 use std::collections::BTreeSet;

@@ -1,7 +1,7 @@
 //! Uniform random search without replacement.
 
 use super::{Grid, Observation, Optimizer, Proposed, StopReason};
-use crate::space::GridPoint;
+use crate::input::space::GridPoint;
 
 /// Draws unseen grid points uniformly; once most are seen, walks what is left in order.
 #[derive(Debug, Clone)]

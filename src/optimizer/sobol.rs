@@ -1,7 +1,7 @@
 //! Owen-scrambled Sobol points, snapped to the grid.
 
 use super::{Grid, Observation, Optimizer, Proposed, StopReason};
-use crate::space::GridPoint;
+use crate::input::space::GridPoint;
 use crate::stream::stream;
 use rand::Rng;
 

@@ -1,7 +1,8 @@
 //! The best design in words.
 
 use super::text::{design, end, escape, infill, is_infill, outcome_words, stiffness, values};
-use crate::evaluation::{Evaluation, FailureClass, Outcome, RobustRange, SuccessRate};
+use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
+use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Recorded, StudyRecord, nearest};
 
 /// The section; says so if no design can be recommended.

@@ -1,7 +1,7 @@
 //! Studies of the same problem beside each other: optimizers against evaluations.
 
 use super::convergence::best_so_far;
-use crate::objective::{Aggregate, Constraint};
+use crate::evaluation::objective::{Aggregate, Constraint};
 use crate::study::{StudyConfig, StudyRecord};
 use std::collections::BTreeMap;
 

@@ -3,9 +3,9 @@
 use super::text::escape;
 use super::theme::{inline, variables};
 use super::{ReportError, best, convergence, front, map, others, scatter, sections, windows};
-use crate::objective::Measure;
+use crate::evaluation::objective::Measure;
+use crate::input::stiffness::Measurement;
 use crate::study::StudyRecord;
-use crate::surrogate::Measurement;
 
 /// Pixels of a plot in the page: narrow, so that its text stays readable when
 /// a phone shrinks it to fit.

@@ -3,10 +3,10 @@
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, axes, message, sheet, words};
 use super::theme::{Colour, INK, LINES, MUTED, ORANGE, RED, SCALE};
-use crate::objective::Measure;
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Space};
+use crate::evaluation::objective::Measure;
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Space};
+use crate::input::stiffness::Measurement;
 use crate::study::{Recorded, StudyRecord};
-use crate::surrogate::Measurement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::ops::Range;

@@ -4,8 +4,8 @@ use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, message, sheet};
 use super::text::is_infill;
 use super::theme::{BLUE, INK};
-use crate::objective::Measure;
-use crate::space::Parameter;
+use crate::evaluation::objective::Measure;
+use crate::input::space::Parameter;
 use crate::study::{Recorded, StudyRecord};
 use plotters::prelude::*;
 

@@ -3,10 +3,10 @@
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet};
 use super::theme::{BLUE, GREEN, ORANGE};
-use crate::objective::Measure;
+use crate::evaluation::objective::Measure;
+use crate::input::published::{Origin, designs, of_task};
 use crate::study::{Recorded, StudyRecord};
 use crate::units::N_PER_MM;
-use crate::validate::published::{Origin, designs, of_task};
 use plotters::prelude::*;
 
 /// The plot of one task, by its place among the tasks, `size` pixels; `None` if there is
@@ -41,7 +41,7 @@ impl Points {
         let name = record.config.tasks().nth(task).unwrap_or_default();
         let published = |origin| {
             let rows = of_task(name, origin);
-            let point = |row: &crate::validate::published::Published| {
+            let point = |row: &crate::input::published::Published| {
                 let design = measured.iter().find(|m| m.design == row.design)?;
                 Some((design.compliance / N_PER_MM, row.tolerable_range_mm?))
             };

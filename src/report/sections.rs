@@ -2,12 +2,14 @@
 
 use super::text::{design, escape, outcome_words, values};
 use super::windows;
-use crate::evaluation::{Evaluation, FailureClass, Outcome, Window};
-use crate::objective::Measure;
-use crate::space::{DENSITY_KEY, DIRECTION_KEY};
+use crate::evaluation::objective::Measure;
+use crate::evaluation::{Evaluation, Window};
+use crate::input::published::{Origin, Published, designs, of_task};
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY};
+use crate::input::stiffness::Measurement;
+use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Recorded, StudyRecord};
-use crate::surrogate::Measurement;
-use crate::validate::published::{Origin, Published, designs, of_task, rank_correlation};
+use crate::verify::agreement::statistics::rank_correlation;
 
 /// A list of names and values; both are escaped.
 pub(super) fn definitions(rows: &[(String, String)]) -> String {

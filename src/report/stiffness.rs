@@ -3,7 +3,8 @@
 use super::ReportError;
 use super::chart::{Area, AxisOf, Chart, Drawn, around, axes, legend, message, sheet};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
-use crate::surrogate::{Axis, Estimate, Measurement, Model};
+use crate::input::stiffness::{Axis, Measurement};
+use crate::surrogate::{Estimate, Model};
 use crate::units::N_PER_MM;
 use plotters::prelude::*;
 use std::fmt::Write;

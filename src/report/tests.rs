@@ -1,11 +1,13 @@
 use super::*;
-use crate::evaluation::{Evaluation, FailureClass, Outcome, Window};
+use crate::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
+use crate::evaluation::tolerance::{Search, evaluate};
+use crate::evaluation::{Evaluation, Window};
 use crate::finger::Finger;
-use crate::objective::{Aggregate, Goals, Measure, Objectives};
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use crate::input::stiffness::{Measurement, SHIPPED_CSV, SHIPPED_FILE, parse};
+use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Recorded, StudyConfig, Timing, Versions};
-use crate::surrogate::{Measurement, Model, SHIPPED_CSV, SHIPPED_FILE, fit, parse};
-use crate::tolerance::{Search, evaluate};
+use crate::surrogate::{Model, fit};
 use crate::trial::fake::FakeRig;
 use std::collections::BTreeMap;
 

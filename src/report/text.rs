@@ -1,8 +1,8 @@
 //! Words and numbers of reports; every number with its unit.
 
-use crate::evaluation::{FailureClass, Outcome};
-use crate::objective::Objectives;
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::evaluation::objective::Objectives;
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::outcome::{FailureClass, Outcome};
 use crate::surrogate::Estimate;
 use crate::units::N_PER_MM;
 

@@ -1,6 +1,7 @@
 //! What a journal line says of an evaluation beyond what Optuna has fields for.
 
-use crate::evaluation::{Evaluation, Outcome, RobustRange, SuccessRate, Window, grid_mm};
+use crate::evaluation::{Evaluation, RobustRange, SuccessRate, Window, grid_mm};
+use crate::outcome::Outcome;
 use crate::surrogate::{Estimate, Prediction};
 use serde::{Deserialize, Deserializer, Serialize};
 

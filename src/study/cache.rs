@@ -12,7 +12,7 @@
 use super::attributes::Attributes;
 use super::seal::{seal, unseal};
 use crate::evaluation::Evaluation;
-use crate::robot::Robot;
+use crate::input::robot::Robot;
 use crate::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -123,10 +123,10 @@ impl Cache {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluation::tolerance::{Search, evaluate};
     use crate::finger::Finger;
-    use crate::shipped::ROBOTS;
+    use crate::input::shipped::ROBOTS;
     use crate::surrogate::Estimate;
-    use crate::tolerance::{Search, evaluate};
     use crate::trial::fake::FakeRig;
 
     fn cache(dir: &Path) -> Cache {

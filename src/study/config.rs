@@ -1,7 +1,7 @@
 //! The resolved configuration of a study, as `study.toml` keeps it.
 
-use crate::objective::{Aggregate, Constraint, Goals, Objectives};
-use crate::space::Space;
+use crate::evaluation::objective::{Aggregate, Constraint, Goals, Objectives};
+use crate::input::space::Space;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,7 +1,6 @@
 //! What can go wrong with a study's folder, said so that it can be mended.
 
-use super::line::LineError;
-use crate::codesign::Impossible;
+use crate::evaluation::template::Impossible;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -116,4 +115,23 @@ impl StudyError {
         let path = path.to_owned();
         move |source| StudyError::Io { action, path, source }
     }
+}
+
+/// What is wrong with one line; the journal adds the file and the line number.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum LineError {
+    /// No check, or one that does not fit.
+    #[error("damaged: its contents do not fit its `check`")]
+    Check,
+    /// The check fits, the contents do not.
+    #[error("not a line of this program's journals: {0}")]
+    Format(String),
+    /// Lines are missing, doubled or in the wrong order.
+    #[error("evaluation {found} stands where evaluation {expected} belongs")]
+    Order {
+        /// What the line says.
+        found: u64,
+        /// What its place in the file says.
+        expected: u64,
+    },
 }

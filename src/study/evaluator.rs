@@ -1,14 +1,15 @@
 //! What a study measures a design with.
 
 use super::cache::Cache;
-use crate::codesign::{Impossible, Template};
-use crate::evaluation::{Evaluation, Outcome};
+use crate::evaluation::Evaluation;
+use crate::evaluation::robustness::{self, Plan};
+use crate::evaluation::template::{Impossible, Template};
+use crate::evaluation::tolerance::Search;
 use crate::finger::Finger;
-use crate::robustness::{self, Plan};
-use crate::space::Design;
+use crate::input::space::Design;
+use crate::input::task::Task;
+use crate::outcome::Outcome;
 use crate::surrogate::Prediction;
-use crate::task::Task;
-use crate::tolerance::Search;
 use crate::trial::run::RigError;
 use crate::trial::{Conditions, Grasped, Rig, Trial};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -3,7 +3,7 @@
 use super::config::{StudyConfig, Versions, differences};
 use super::line::WORKER;
 use super::seal::{seal, unseal};
-use crate::objective::{Aggregate, Constraint, Measure, Objectives};
+use crate::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

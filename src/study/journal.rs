@@ -9,7 +9,7 @@ use super::error::StudyError;
 use super::record::Recorded;
 use super::store::Store;
 use super::{header, line};
-use crate::space::Space;
+use crate::input::space::Space;
 use std::io;
 use std::path::{Path, PathBuf};
 

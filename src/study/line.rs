@@ -10,11 +10,12 @@
 //! runs of the same study; [`super::strip_times`] (or `sed 's/,"datetime_start".*//'`) removes them.
 
 use super::attributes::Attributes;
+use super::error::LineError;
 use super::record::{Recorded, Timing};
 use super::seal::{seal, unseal};
 use super::time::is_timestamp;
-use crate::objective::Score;
-use crate::space::{Design, Parameter, Space};
+use crate::evaluation::objective::Score;
+use crate::input::space::{Design, Parameter, Space};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -25,25 +26,6 @@ const COMPLETE: u8 = 1;
 const FAIL: u8 = 3;
 /// Optuna wants to know who wrote a line.
 pub(super) const WORKER: &str = "finger-opt";
-
-/// What is wrong with one line; the journal adds the file and the line number.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum LineError {
-    /// No check, or one that does not fit.
-    #[error("damaged: its contents do not fit its `check`")]
-    Check,
-    /// The check fits, the contents do not.
-    #[error("not a line of this program's journals: {0}")]
-    Format(String),
-    /// Lines are missing, doubled or in the wrong order.
-    #[error("evaluation {found} stands where evaluation {expected} belongs")]
-    Order {
-        /// What the line says.
-        found: u64,
-        /// What its place in the file says.
-        expected: u64,
-    },
-}
 
 #[derive(Serialize, Deserialize)]
 struct TrialLine {

@@ -19,14 +19,14 @@ mod time;
 
 pub use cache::{Cache, Key};
 pub use config::{StudyConfig, Versions, study_name};
-pub use error::StudyError;
+pub use error::{LineError, StudyError};
 pub use evaluator::{Evaluate, Measured, Simulated};
 pub use folder::{
     CONFIG_FILE, Inputs, JOURNAL_FILE, Study, read_config, read_inputs, sha256, write_file,
 };
 pub use header::SCHEMA_VERSION;
 pub use journal::Journal;
-pub use line::{LineError, decode, encode};
+pub use line::{decode, encode};
 pub use record::{Recorded, StudyRecord, Timing, Volume, best, front, nearest, volume};
 pub use runner::{Ending, Runner};
 pub use seal::strip_times;

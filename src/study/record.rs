@@ -2,9 +2,9 @@
 
 use super::StudyConfig;
 use crate::evaluation::Evaluation;
-use crate::objective::{Goals, Measure, Score};
-use crate::pareto;
-use crate::space::Design;
+use crate::evaluation::objective::{Goals, Measure, Score};
+use crate::evaluation::pareto;
+use crate::input::space::Design;
 use crate::surrogate::Prediction;
 
 /// A study read from its folder: all that a report may know of it.

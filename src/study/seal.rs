@@ -4,7 +4,7 @@
 //! `{contents,"check":"<16 digits>","datetime_start":..}`. The check is the
 //! beginning of the SHA-256 of all bytes before it.
 
-use super::line::LineError;
+use super::error::LineError;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 

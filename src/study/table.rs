@@ -3,8 +3,9 @@
 use super::error::StudyError;
 use super::folder::write_file;
 use super::record::{Recorded, StudyRecord};
-use crate::evaluation::{Evaluation, Outcome, RobustRange, SuccessRate};
-use crate::objective::{Goals, Measure, Score};
+use crate::evaluation::objective::{Goals, Measure, Score};
+use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
+use crate::outcome::Outcome;
 use crate::units::N_PER_MM;
 use std::path::Path;
 

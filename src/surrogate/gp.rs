@@ -21,7 +21,8 @@
 //! restarts, so the fit is the same on every run.
 
 use super::link::{Link, Sum};
-use super::{Axis, Estimate, Fitted, Infill};
+use super::{Estimate, Fitted};
+use crate::input::stiffness::{Axis, Infill};
 use crate::units::DEG;
 use egobox_gp::correlation_models::Matern52Corr;
 use egobox_gp::mean_models::RegressionModel;

@@ -1,6 +1,6 @@
 //! The convex hull of the measured designs, and the distance to it.
 
-use super::Infill;
+use crate::input::stiffness::Infill;
 
 /// Convex hull in coordinates scaled by the measured spans.
 #[derive(Debug, Clone, PartialEq)]

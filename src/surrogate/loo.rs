@@ -1,6 +1,8 @@
 //! Leave-one-out errors: how well a model predicts a finger it has not seen.
 
-use super::{Axis, Fitted, Infill, ModelKind};
+use super::kind::fit_axis;
+use super::{Fitted, ModelKind};
+use crate::input::stiffness::{Axis, Infill};
 use crate::units::N_PER_MM;
 use rayon::prelude::*;
 
@@ -39,7 +41,7 @@ pub(super) fn leave_one_out(
             let keep = |i: &usize| *i != out;
             let x: Vec<Infill> = (0..n).filter(keep).map(|i| infills[i]).collect();
             let k: Vec<f64> = (0..n).filter(keep).map(|i| stiffness[i]).collect();
-            let fitted: Box<dyn Fitted> = super::model::fit_axis(axis, kind, &x, &k)?;
+            let fitted: Box<dyn Fitted> = fit_axis(axis, kind, &x, &k)?;
             let estimate = fitted.predict(infills[out]);
             Some((estimate.mean, estimate.sd))
         })

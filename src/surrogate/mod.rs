@@ -12,79 +12,19 @@
 
 mod gp;
 mod hull;
+mod kind;
 mod link;
 mod loo;
-mod measurement;
 mod model;
 mod ridge;
 #[cfg(test)]
 mod tests;
 
+use crate::input::stiffness::{Axis, Infill};
+
+pub use kind::ModelKind;
 pub use loo::Loo;
-pub use measurement::{HEADER, MINIMUM, Measurement, SurrogateError, parse};
 pub use model::{Model, fit};
-
-/// The measured designs shipped with the program (`data/measured_stiffness.csv`).
-pub const SHIPPED_CSV: &str = include_str!("../../data/measured_stiffness.csv");
-
-/// Name of the shipped file, for messages.
-pub const SHIPPED_FILE: &str = "data/measured_stiffness.csv";
-
-/// A direction in which a finger yields.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Axis {
-    /// z, the direction of assembly: loads the ribs along their length.
-    Assembly,
-    /// y, the direction in which the jaws close: bends the ribs.
-    Compliance,
-}
-
-impl Axis {
-    /// Both axes, assembly first, as in the measured file.
-    pub const ALL: [Axis; 2] = [Axis::Assembly, Axis::Compliance];
-
-    /// A short name for tables and plots.
-    pub fn label(self) -> &'static str {
-        match self {
-            Axis::Assembly => "assembly (z)",
-            Axis::Compliance => "compliance (y)",
-        }
-    }
-}
-
-/// A model of one axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ModelKind {
-    /// `k = a + b density + c direction` by least squares: what the others are
-    /// measured against. Never chosen, since it turns negative outside the data.
-    Linear,
-    /// The same terms with a ridge penalty, through a link that stays positive.
-    RidgeLinear,
-    /// All terms up to second degree with a ridge penalty, through the same link.
-    RidgeQuadratic,
-    /// A Gaussian process about a physical mean.
-    GaussianProcess,
-}
-
-impl ModelKind {
-    /// All models, simplest first.
-    pub const ALL: [ModelKind; 4] = [
-        ModelKind::Linear,
-        ModelKind::RidgeLinear,
-        ModelKind::RidgeQuadratic,
-        ModelKind::GaussianProcess,
-    ];
-
-    /// A short name for tables.
-    pub fn label(self) -> &'static str {
-        match self {
-            ModelKind::Linear => "linear (reference)",
-            ModelKind::RidgeLinear => "ridge, degree 1",
-            ModelKind::RidgeQuadratic => "ridge, degree 2",
-            ModelKind::GaussianProcess => "Gaussian process, physical mean",
-        }
-    }
-}
 
 /// A value with its standard deviation, both in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,9 +61,6 @@ impl Prediction {
         }
     }
 }
-
-/// Infill of a finger: density in percent, direction in degrees.
-type Infill = [f64; 2];
 
 /// A fitted model of one axis; stiffness in N/m.
 trait Fitted: std::fmt::Debug + Send + Sync {

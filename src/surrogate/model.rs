@@ -1,12 +1,11 @@
 //! The chosen model of each axis, and the choice.
 
 use super::hull::Hull;
-use super::link::{Link, Sum};
+use super::kind::fit_axis;
 use super::loo::{Loo, leave_one_out};
-use super::measurement::check_all;
-use super::{
-    Axis, Estimate, Fitted, Infill, Measurement, ModelKind, Prediction, SurrogateError, gp, ridge,
-};
+use super::{Estimate, Fitted, ModelKind, Prediction};
+use crate::input::stiffness::check_all;
+use crate::input::stiffness::{Axis, Infill, Measurement, SurrogateError};
 
 /// Stiffness of a finger as a function of its infill, fitted to measurements.
 #[derive(Debug)]
@@ -73,29 +72,6 @@ fn choose(
     let widen = best.standardised_rms.max(1.0);
     let fitted = fit_axis(axis, best.model, infills, &stiffness).ok_or(unfittable)?;
     Ok((Chosen { fitted, widen }, loo))
-}
-
-/// Fits one model on one axis, everything it has to choose included.
-pub(super) fn fit_axis(
-    axis: Axis,
-    kind: ModelKind,
-    infills: &[Infill],
-    stiffness: &[f64],
-) -> Option<Box<dyn Fitted>> {
-    let polynomial = |degree: u8, link: Link, penalties: &[f64]| {
-        let fitted = ridge::fit(infills, stiffness, degree, link, penalties)?;
-        Some(Box::new(fitted) as Box<dyn Fitted>)
-    };
-    let positive = Link::new(Sum::Parallel, stiffness);
-    match kind {
-        ModelKind::Linear => polynomial(1, Link::identity(), &[0.0]),
-        ModelKind::RidgeLinear => polynomial(1, positive, &ridge::PENALTIES),
-        ModelKind::RidgeQuadratic => polynomial(2, positive, &ridge::PENALTIES),
-        ModelKind::GaussianProcess => {
-            let fitted = gp::fit(axis, infills, stiffness)?;
-            Some(Box::new(fitted) as Box<dyn Fitted>)
-        }
-    }
 }
 
 impl Model {

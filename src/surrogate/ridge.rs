@@ -5,7 +5,8 @@
 //! among the designs given, so an outer leave-one-out stays honest.
 
 use super::link::Link;
-use super::{Estimate, Fitted, Infill};
+use super::{Estimate, Fitted};
+use crate::input::stiffness::Infill;
 use linfa::prelude::{Dataset, Fit};
 use linfa_elasticnet::ElasticNet;
 use nalgebra::{DMatrix, DVector};

@@ -1,4 +1,5 @@
 use super::*;
+use crate::input::stiffness::{Measurement, SHIPPED_CSV, SHIPPED_FILE, SurrogateError, parse};
 use crate::units::N_PER_MM;
 
 fn shipped() -> Vec<Measurement> {

@@ -3,13 +3,13 @@
 //! Frames: the world is the task frame. The flange frame is the TCP. The plug
 //! stands upright at its pick-up place, straight above the start of the search.
 
-use crate::arm::Reduced;
 use crate::finger::{self, Finger};
-use crate::robot::{Flange, Mounted, Servo};
+use crate::input::arm::Reduced;
+use crate::input::robot::{Flange, Mounted, Servo};
+use crate::input::task::{Task, geometry};
 use crate::scene::{
     Axis, Body, BodyId, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Spring, Springs,
 };
-use crate::task::{Task, geometry};
 use crate::units::MM;
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 

@@ -10,8 +10,8 @@
 //! 3. Its leading edge never entered the opening before the assembly push: class 2.
 //! 4. Otherwise it entered, is not seated and is still touched: class 3.
 
-use crate::evaluation::{FailureClass, Outcome};
-use crate::task::Stage;
+use crate::input::task::Stage;
+use crate::outcome::{FailureClass, Outcome};
 
 /// What the rules look at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,8 +1,8 @@
 //! What may differ between two trials of the same finger at the same offset.
 
 use super::cell::Cell;
+use crate::input::task::{Part, Solid, Task};
 use crate::scene::Pose;
-use crate::task::{Part, Solid, Task};
 
 /// Deviations of the world from the task file; SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,7 +106,7 @@ impl Solid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shipped::TASKS;
+    use crate::input::shipped::TASKS;
     use crate::units::MM;
 
     fn tasks() -> Vec<Task> {

@@ -7,8 +7,8 @@
 //! both ends, what sits low in the gripper its own height off both; clearance is added.
 
 use super::{Conditions, Grasped, Rig, Trial};
-use crate::evaluation::{FailureClass, Outcome};
 use crate::finger::Finger;
+use crate::outcome::{FailureClass, Outcome};
 use crate::units::{DEG, MM, N_PER_MM};
 
 /// The rig with the closed-form window.

@@ -1,7 +1,7 @@
 //! One simulated insertion attempt, and where attempts are made.
 
-use crate::evaluation::Outcome;
 use crate::finger::Finger;
+use crate::outcome::Outcome;
 use crate::scene::Pose;
 use serde::Serialize;
 

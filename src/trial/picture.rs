@@ -3,8 +3,8 @@
 
 use super::{Poses, Trial};
 use crate::finger;
+use crate::input::task::Task;
 use crate::scene::{Geom, Pose};
-use crate::task::Task;
 use crate::units::MM;
 use nalgebra::Point2;
 use std::fmt::Write;

@@ -2,13 +2,13 @@
 
 use super::attempt::{Run, Stop, turned};
 use super::{Conditions, Grasped, Rig, Trial, cell};
-use crate::arm::ArmError;
-use crate::engine::{Engine, Unsupported};
-use crate::evaluation::Outcome;
 use crate::finger::Finger;
-use crate::robot::{Mounted, Robot};
+use crate::input::arm::ArmError;
+use crate::input::robot::{Mounted, Robot};
+use crate::input::task::Task;
+use crate::outcome::Outcome;
+use crate::physics::{Engine, Unsupported};
 use crate::scene::Pose;
-use crate::task::Task;
 use crate::units::N_PER_MM;
 use std::sync::{Arc, OnceLock};
 
@@ -45,7 +45,7 @@ impl EngineRig {
             RigError::Robot { robot: robot.name.clone(), task: task.name.clone(), error }
         })?;
         // What a scene needs does not depend on how stiff its fingers are.
-        let any = task.finger.shape(Finger::new(N_PER_MM, N_PER_MM), 0.0);
+        let any = Finger::new(N_PER_MM, N_PER_MM).shaped(&task.finger, 0.0);
         engine.supports(&cell::build(&task, &mounted, &any).scene)?;
         Ok(EngineRig { task, robot: mounted, engine })
     }
@@ -131,10 +131,10 @@ impl Prepared<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::World;
-    use crate::engine::direct::{Direct, Settings};
+    use crate::input::shipped::{ROBOTS, TASKS};
+    use crate::physics::World;
+    use crate::physics::direct::{Direct, Settings};
     use crate::scene::Scene;
-    use crate::shipped::{ROBOTS, TASKS};
 
     /// An engine whose contacts are not numbers until its step has been halved so often.
     #[derive(Clone, Copy)]

@@ -3,8 +3,8 @@
 use super::core::Solution;
 use super::restarts::{Restarts, StartBox, Strategy};
 use super::stop::Tolerances;
+use crate::input::space::GridPoint;
 use crate::optimizer::{Grid, Observation, Optimizer, Proposed, StopReason};
-use crate::space::GridPoint;
 use std::collections::BTreeMap;
 
 /// Initial step size in units of the cube's edge (the tutorial advises 0.3 of the range).

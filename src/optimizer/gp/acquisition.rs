@@ -1,6 +1,6 @@
 //! Log expected improvement, computed so that it neither underflows nor cancels.
 
-use crate::pareto::Cell;
+use crate::evaluation::pareto::Cell;
 use libm::{erfc, exp, expm1, log, log1p};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -90,7 +90,7 @@ pub fn log_expected_volume(moments: &[(f64, f64)], cells: &[Cell]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pareto::{hypervolume, undominated};
+    use crate::evaluation::pareto::{hypervolume, undominated};
     use crate::stream::{normal, stream};
 
     /// `log(phi(z) + z Phi(z))` computed with 60 digits (mpmath), rounded to doubles.

@@ -6,10 +6,10 @@ use super::kernel::Hyperparameters;
 use super::model::Gp;
 use super::search::Search;
 use super::trained::{Front, Goal, Margin, Trained};
+use crate::evaluation::pareto::front;
+use crate::input::space::GridPoint;
 use crate::optimizer::sobol::SobolSequence;
 use crate::optimizer::{Grid, Observation, Optimizer, Proposed, StopReason};
-use crate::pareto::front;
-use crate::space::GridPoint;
 
 /// Default least standard deviation of the noise, in objective units: that of a value rounded
 /// to steps of 0.1, 0.1 / sqrt(12).

@@ -1,9 +1,9 @@
 //! Where on the grid the acquisition is largest.
 
 use super::trained::Trained;
+use crate::input::space::GridPoint;
 use crate::optimizer::sobol::SobolSequence;
 use crate::optimizer::{Grid, Proposed};
-use crate::space::GridPoint;
 use crate::stream::stream;
 use rand::RngExt;
 use std::collections::BTreeMap;

@@ -2,7 +2,7 @@
 
 use super::acquisition::{log_expected_improvement, log_expected_volume, log_probability_above};
 use super::model::Gp;
-use crate::pareto::{Cell, front, undominated};
+use crate::evaluation::pareto::{Cell, front, undominated};
 
 /// Models of what was told, and the goal they are used for.
 #[derive(Debug, Clone)]

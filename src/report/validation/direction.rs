@@ -3,7 +3,7 @@
 use super::super::ReportError;
 use super::super::chart::{Area, AxisOf, Drawn, around, axes, message, sheet};
 use super::{Entry, HEAD, KEY, Mark, distinct, headed, key, top};
-use crate::validate::{Row, Source, TaskTable};
+use crate::verify::agreement::{Row, Source, TaskTable};
 use plotters::prelude::*;
 use std::slice;
 

@@ -4,8 +4,8 @@ use super::super::ReportError;
 use super::super::chart::{Area, Drawn, message, sheet, words};
 use super::super::theme::{INK, LINES, MUTED, ORANGE, PAPER, SCALE};
 use super::{HEAD, headed};
-use crate::evaluation::FailureClass;
-use crate::validate::{Agreement, Source, TaskTable};
+use crate::outcome::FailureClass;
+use crate::verify::agreement::{Agreement, Source, TaskTable};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 

@@ -10,7 +10,7 @@ mod tests;
 use super::ReportError;
 use super::chart::{Area, Drawn, message, words};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
-use crate::validate::{Source, TaskTable};
+use crate::verify::agreement::{Source, TaskTable};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 

@@ -4,7 +4,7 @@ use super::super::ReportError;
 use super::super::chart::{Area, AxisOf, Drawn, axes, message, sheet, words};
 use super::super::theme::{INK, MUTED};
 use super::{HEAD, Mark, SERIES, headed, top};
-use crate::validate::{Agreement, Source, TaskTable};
+use crate::verify::agreement::{Agreement, Source, TaskTable};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 

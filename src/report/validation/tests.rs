@@ -1,10 +1,11 @@
 //! Every figure is drawn, for all tasks and for one.
 
 use super::*;
-use crate::finger::FingerModel;
-use crate::tolerance::{Search, evaluate};
+use crate::evaluation::tolerance::{Search, evaluate};
+use crate::input::finger::FingerModel;
+use crate::input::published;
 use crate::trial::fake::FakeRig;
-use crate::validate::{finger, published};
+use crate::verify::agreement::finger;
 
 fn tables(tasks: &[&str]) -> Vec<TaskTable> {
     let designs = published::designs();

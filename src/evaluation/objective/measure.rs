@@ -1,0 +1,226 @@
+//! What can be asked of an evaluation, and in which unit it is answered.
+
+use crate::evaluation::Evaluation;
+use crate::outcome::Outcome;
+use std::fmt;
+use std::str::FromStr;
+
+/// A number that an evaluation gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// Width of the tolerance window, mm.
+    Range,
+    /// Twice the smaller side of the window, mm: for a robot that errs both ways.
+    CentredRange,
+    /// Share of the trials under drawn errors that insert, 0 to 1.
+    SuccessRate,
+    /// Statistic of the range under drawn errors, mm.
+    RobustRange,
+    /// Largest contact force between plug and socket over the inserted trials, N.
+    PeakForce,
+    /// Largest slip of the part in the grasp over the inserted trials, mm.
+    Slip,
+}
+
+impl Measure {
+    /// All measures.
+    pub const ALL: [Measure; 6] = [
+        Measure::Range,
+        Measure::CentredRange,
+        Measure::SuccessRate,
+        Measure::RobustRange,
+        Measure::PeakForce,
+        Measure::Slip,
+    ];
+
+    /// Its name on the command line and in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Measure::Range => "range",
+            Measure::CentredRange => "centred-range",
+            Measure::SuccessRate => "success-rate",
+            Measure::RobustRange => "robust-range",
+            Measure::PeakForce => "peak-force",
+            Measure::Slip => "slip",
+        }
+    }
+
+    /// All names, for messages.
+    pub fn names() -> String {
+        Measure::ALL.map(Measure::name).join(", ")
+    }
+
+    /// Its unit, for text and axes; empty for a share.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Measure::SuccessRate => "",
+            Measure::PeakForce => "N",
+            _ => "mm",
+        }
+    }
+
+    /// Its unit at the end of a key: `mm`, `n` or `share`.
+    pub fn key(self) -> &'static str {
+        match self {
+            Measure::SuccessRate => "share",
+            Measure::PeakForce => "n",
+            _ => "mm",
+        }
+    }
+
+    /// 1 if larger is better, -1 if smaller is.
+    pub fn sense(self) -> f64 {
+        if matches!(self, Measure::PeakForce | Measure::Slip) { -1.0 } else { 1.0 }
+    }
+
+    /// Whether it is taken under drawn errors.
+    pub fn is_drawn(self) -> bool {
+        matches!(self, Measure::SuccessRate | Measure::RobustRange)
+    }
+
+    /// Its value in its unit, `None` if there is none: the measure was not taken, or the
+    /// nominal start diverges. A nominal start that fails leaves a range of 0, and neither
+    /// force nor slip, which are those of inserted trials. A window that a divergence ends
+    /// counts as far as it was seen to insert.
+    pub fn value(self, evaluation: &Evaluation) -> Option<f64> {
+        let value = match self {
+            Measure::SuccessRate => evaluation.success.as_ref()?.rate(),
+            Measure::RobustRange => evaluation.robust.as_ref()?.value_mm,
+            _ => self.of_window(evaluation),
+        };
+        value.filter(|value| value.is_finite())
+    }
+
+    fn of_window(self, evaluation: &Evaluation) -> Option<f64> {
+        let window = &evaluation.window;
+        match (window.nominal, self) {
+            (Outcome::Diverged, _) => None,
+            (Outcome::Inserted, Measure::CentredRange) => {
+                Some(2.0 * window.positive_mm().min(-window.negative_mm()))
+            }
+            (Outcome::Inserted, Measure::PeakForce) => Some(evaluation.peak_force_n),
+            (Outcome::Inserted, Measure::Slip) => Some(evaluation.slip_mm),
+            (Outcome::Inserted, _) => Some(window.range_mm()),
+            (Outcome::Failed(_), Measure::PeakForce | Measure::Slip) => None,
+            (Outcome::Failed(_), _) => Some(0.0),
+        }
+    }
+
+    /// A value with its unit.
+    pub fn show(self, value: f64) -> String {
+        match self {
+            Measure::Range | Measure::CentredRange => format!("{value:.1} mm"),
+            Measure::RobustRange | Measure::Slip => format!("{value:.2} mm"),
+            Measure::SuccessRate => format!("{value:.3}"),
+            Measure::PeakForce => format!("{value:.1} N"),
+        }
+    }
+
+    /// Name and unit, for an axis or a heading: `peak-force (N)`.
+    pub fn label(self) -> String {
+        match self {
+            Measure::SuccessRate => "success-rate (0 to 1)".to_owned(),
+            _ => format!("{self} ({})", self.unit()),
+        }
+    }
+}
+
+impl fmt::Display for Measure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Measure {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        Measure::ALL.into_iter().find(|measure| measure.name() == name).ok_or_else(|| {
+            format!("nothing measured is called `{name}`; there are {}", Measure::names())
+        })
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::evaluation::{RobustRange, SuccessRate, Window};
+    use crate::outcome::FailureClass;
+
+    pub fn evaluation(nominal: Outcome, end_positive: Outcome) -> Evaluation {
+        let end_negative = Some(Outcome::Failed(FailureClass::Jammed));
+        let window = Window {
+            nominal,
+            negative_steps: -33,
+            positive_steps: 14,
+            end_negative,
+            end_positive: Some(end_positive),
+        };
+        Evaluation {
+            window,
+            failure_counts: [0; 4],
+            diverged: 0,
+            trials: 49,
+            peak_force_n: 5.0,
+            slip_mm: 0.1,
+            simulated_s: 49.0,
+            end_shares: None,
+            success: None,
+            robust: None,
+        }
+    }
+
+    #[test]
+    fn values_of_a_window() {
+        let missed = Outcome::Failed(FailureClass::PlugMissed);
+        let good = evaluation(Outcome::Inserted, missed);
+        let bad = evaluation(missed, missed);
+        for (measure, of_good, of_bad) in [
+            (Measure::Range, Some(4.7), Some(0.0)),
+            (Measure::CentredRange, Some(2.8), Some(0.0)),
+            (Measure::PeakForce, Some(5.0), None),
+            (Measure::Slip, Some(0.1), None),
+            (Measure::SuccessRate, None, None),
+            (Measure::RobustRange, None, None),
+        ] {
+            assert_eq!((measure.value(&good), measure.value(&bad)), (of_good, of_bad), "{measure}");
+        }
+    }
+
+    #[test]
+    fn drawn_measures_do_not_depend_on_the_nominal_start() {
+        let jammed = Outcome::Failed(FailureClass::Jammed);
+        let drawn = Evaluation {
+            success: Some(SuccessRate {
+                inserted: 3,
+                failure_counts: [0, 1, 0, 0],
+                diverged: 1,
+                confidence: 0.95,
+            }),
+            robust: Some(RobustRange {
+                ranges_mm: vec![1.0, 3.0],
+                diverged: 0,
+                value_mm: Some(0.6),
+                trials: 9,
+            }),
+            ..evaluation(jammed, jammed)
+        };
+        assert_eq!(Measure::SuccessRate.value(&drawn), Some(0.75));
+        assert_eq!(Measure::RobustRange.value(&drawn), Some(0.6));
+    }
+
+    #[test]
+    fn a_divergence_at_the_nominal_start_hides_the_value() {
+        let value = |nominal| Measure::Range.value(&evaluation(nominal, Outcome::Diverged));
+        assert_eq!(value(Outcome::Diverged), None);
+        assert_eq!(value(Outcome::Inserted), Some(4.7));
+    }
+
+    #[test]
+    fn names_read_back_and_others_are_answered_with_the_names() {
+        for measure in Measure::ALL {
+            assert_eq!(measure.to_string().parse(), Ok(measure));
+        }
+        let error = "rnage".parse::<Measure>().unwrap_err();
+        assert!(error.contains("range, centred-range"), "{error}");
+    }
+}

@@ -1,0 +1,176 @@
+//! What is asked of a design: what is to be made large or small, over which
+//! tasks, and within which limits.
+
+mod aggregate;
+mod constraint;
+mod list;
+mod measure;
+mod plateau;
+
+pub use aggregate::Aggregate;
+pub use constraint::{Bound, Constraint};
+pub use list::Objectives;
+pub use measure::Measure;
+
+use crate::evaluation::Evaluation;
+use std::cmp::Ordering;
+
+/// Study files keep these as they are written on the command line.
+macro_rules! kept_as_text {
+    ($($kept:ty),*) => {$(
+        impl From<$kept> for String {
+            fn from(value: $kept) -> String {
+                value.to_string()
+            }
+        }
+
+        impl TryFrom<String> for $kept {
+            type Error = String;
+            fn try_from(text: String) -> Result<Self, String> {
+                text.parse()
+            }
+        }
+    )*};
+}
+
+kept_as_text!(Aggregate, Constraint, Objectives);
+
+/// Objectives and constraints of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Goals {
+    /// What is optimized.
+    pub objectives: Objectives,
+    /// What a design must keep to; on every task, if there are several.
+    pub constraints: Vec<Constraint>,
+    /// How the values of several tasks become one.
+    pub aggregate: Aggregate,
+}
+
+/// What an evaluation says of the goals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Score {
+    /// Value of each objective, in its own unit and sense.
+    pub values: Vec<f64>,
+    /// How far each constraint is violated, as a share of its limit; 0 or below where
+    /// it is kept. Of several tasks the worst counts.
+    pub violations: Vec<f64>,
+}
+
+impl Goals {
+    /// One objective without constraints, on one task.
+    pub fn of(measure: Measure) -> Self {
+        Goals {
+            objectives: Objectives::of(measure),
+            constraints: Vec::new(),
+            aggregate: Aggregate::Min,
+        }
+    }
+
+    /// Whether a measure is an objective or is constrained.
+    pub fn need(&self, measure: Measure) -> bool {
+        self.measures().any(|needed| needed == measure)
+    }
+
+    /// Whether trials or windows under drawn errors are needed.
+    pub fn need_draws(&self) -> bool {
+        self.measures().any(Measure::is_drawn)
+    }
+
+    fn measures(&self) -> impl Iterator<Item = Measure> {
+        let constrained = self.constraints.iter().map(|constraint| constraint.measure);
+        self.objectives.measures().iter().copied().chain(constrained)
+    }
+
+    /// Objectives and violations of one design, evaluated on each task; `None` if any of
+    /// the measures has no value on any of them.
+    pub fn score(&self, tasks: &[&Evaluation]) -> Option<Score> {
+        let of = |measure: Measure| -> Option<Vec<f64>> {
+            tasks.iter().map(|evaluation| measure.value(evaluation)).collect()
+        };
+        let value = |&measure: &Measure| Some(self.aggregate.of(measure.sense(), &of(measure)?));
+        let violation =
+            |constraint: &Constraint| Some(constraint.violation(constraint.worst(tasks)?));
+        Some(Score {
+            values: self.objectives.measures().iter().map(value).collect::<Option<_>>()?,
+            violations: self.constraints.iter().map(violation).collect::<Option<_>>()?,
+        })
+    }
+
+    /// The values with their signs turned so that larger is better.
+    pub fn gains(&self, values: &[f64]) -> Vec<f64> {
+        let measures = self.objectives.measures();
+        measures.iter().zip(values).map(|(measure, value)| measure.sense() * value).collect()
+    }
+
+    /// Orders by the first objective, equals by the next and so on; greater is better.
+    pub fn order(&self, a: &[f64], b: &[f64]) -> Ordering {
+        let (a, b) = (self.gains(a), self.gains(b));
+        let differing = a.iter().zip(&b).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
+        differing.unwrap_or(Ordering::Equal)
+    }
+}
+
+impl Score {
+    /// Whether all constraints are kept.
+    pub fn feasible(&self) -> bool {
+        self.violations.iter().all(|&violation| violation <= 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::measure::tests::evaluation;
+    use super::*;
+    use crate::outcome::{FailureClass, Outcome};
+
+    fn goals(objectives: &str, constraints: &[&str], aggregate: Aggregate) -> Goals {
+        Goals {
+            objectives: objectives.parse().unwrap(),
+            constraints: constraints.iter().map(|text| text.parse().unwrap()).collect(),
+            aggregate,
+        }
+    }
+
+    #[test]
+    fn the_score_is_aggregated_over_tasks_and_the_worst_violation_counts() {
+        let missed = Outcome::Failed(FailureClass::PlugMissed);
+        // 4.7 mm with 5 N, and 2.0 mm wide with 8 N.
+        let wide = evaluation(Outcome::Inserted, missed);
+        let mut narrow = wide.clone();
+        (narrow.window.negative_steps, narrow.peak_force_n) = (-6, 8.0);
+        let tasks = [&wide, &narrow];
+        let constraints = ["peak-force<=4", "range>=1"];
+        let score = |objectives, aggregate| {
+            goals(objectives, &constraints, aggregate).score(&tasks).unwrap()
+        };
+        let min = score("range,peak-force", Aggregate::Min);
+        assert_eq!((min.values, min.violations), (vec![2.0, 8.0], vec![1.0, -1.0]));
+        let mean = score("peak-force", Aggregate::Mean);
+        assert!(mean.values == [6.5] && !mean.feasible());
+        let weighted = score("range", Aggregate::Weighted(vec![2.0, 1.0]));
+        assert!((weighted.values[0] - (2.0 * 4.7 + 2.0) / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_was_not_measured_leaves_no_score() {
+        let jammed = Outcome::Failed(FailureClass::Jammed);
+        let nothing = evaluation(jammed, jammed);
+        let good = evaluation(Outcome::Inserted, jammed);
+        let range = goals("range", &[], Aggregate::Min);
+        assert_eq!(range.score(&[&nothing]).unwrap().values, [0.0]);
+        let forced = goals("range", &["peak-force<=9"], Aggregate::Min);
+        assert!(forced.score(&[&good]).unwrap().feasible());
+        assert_eq!(forced.score(&[&nothing]), None, "no trial inserted: there is no force");
+        assert_eq!(forced.score(&[&good, &nothing]), None);
+        assert_eq!(goals("success-rate", &[], Aggregate::Min).score(&[&good]), None);
+    }
+
+    #[test]
+    fn the_order_is_by_the_first_objective_in_its_sense() {
+        let goals = goals("peak-force,range", &[], Aggregate::Min);
+        assert!(goals.order(&[3.0, 1.0], &[4.0, 9.0]).is_gt());
+        assert!(goals.order(&[3.0, 1.0], &[3.0, 2.0]).is_lt());
+        assert!(goals.order(&[3.0, 1.0], &[3.0, 1.0]).is_eq());
+        assert!(goals.need(Measure::Range) && !goals.need(Measure::Slip) && !goals.need_draws());
+    }
+}

@@ -1,0 +1,169 @@
+//! The files shipped within the program, so that it runs from any folder.
+
+use std::path::Path;
+
+/// One shipped file.
+#[derive(Debug, Clone, Copy)]
+pub struct Shipped {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// Its path in the project, for messages.
+    pub file: &'static str,
+    /// Its contents.
+    pub text: &'static str,
+}
+
+macro_rules! shipped {
+    ($($name:literal: $file:literal),* $(,)?) => {
+        &[$(Shipped {
+            name: $name,
+            file: $file,
+            text: include_str!(concat!("../../", $file)),
+        }),*]
+    };
+}
+
+/// Tasks.
+pub const TASKS: &[Shipped] = shipped! {
+    "ket8": "tasks/ket8.toml",
+    "ket12": "tasks/ket12.toml",
+    "rj45": "tasks/rj45.toml",
+    "usb": "tasks/usb.toml",
+};
+
+/// Search spaces.
+pub const SPACES: &[Shipped] = shipped! {
+    "infill": "spaces/infill.toml",
+    "codesign": "spaces/codesign.toml",
+};
+
+/// Robots.
+pub const ROBOTS: &[Shipped] = shipped! {
+    "servo": "robots/servo.toml",
+    "rigid": "robots/rigid.toml",
+    "ur5e": "robots/ur5e.toml",
+};
+
+/// Distributions of the errors under which a finger is to work.
+pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typical.toml" };
+
+/// Measured stiffness of printed fingers.
+pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffness.csv" };
+
+/// A text and what to call it in messages.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// File name as the user knows it.
+    pub file: String,
+    /// Contents.
+    pub text: String,
+}
+
+/// Why a name or path gives no text.
+#[derive(Debug, thiserror::Error)]
+pub enum ShippedError {
+    /// Not a shipped name.
+    #[error(
+        "no {kind} is called `{name}`{}; there are {names}, or give the path of a file",
+        hint(nearest)
+    )]
+    Unknown {
+        /// "task", "space", ...
+        kind: &'static str,
+        /// What was given.
+        name: String,
+        /// The shipped name most like it.
+        nearest: Option<&'static str>,
+        /// All shipped names.
+        names: String,
+    },
+    /// A path that cannot be read.
+    #[error("{file}: cannot read the {kind}: {source}")]
+    Unreadable {
+        /// The path.
+        file: String,
+        /// "task", "space", ...
+        kind: &'static str,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+}
+
+fn hint(nearest: &Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!(" (did you mean `{name}`?)"))
+}
+
+/// The shipped file of that name or, if `name` looks like a path (it has a
+/// separator or an extension), the file there.
+pub fn resolve(
+    kind: &'static str,
+    shipped: &[Shipped],
+    name: &str,
+) -> Result<Source, ShippedError> {
+    if let Some(found) = shipped.iter().find(|shipped| shipped.name == name) {
+        return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
+    }
+    if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
+        return match std::fs::read_to_string(name) {
+            Ok(text) => Ok(Source { file: name.to_owned(), text }),
+            Err(source) => Err(ShippedError::Unreadable { file: name.to_owned(), kind, source }),
+        };
+    }
+    let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
+    Err(ShippedError::Unknown {
+        kind,
+        name: name.to_owned(),
+        nearest: nearest(name, &names),
+        names: names.join(", "),
+    })
+}
+
+/// The name that differs least from `name`, if less than half of it differs.
+pub fn nearest(name: &str, names: &[&'static str]) -> Option<&'static str> {
+    let distance = |other: &&&str| edits(name, other);
+    let best = names.iter().min_by_key(distance)?;
+    (2 * edits(name, best) <= name.chars().count()).then_some(*best)
+}
+
+/// Insertions, deletions and replacements that turn `a` into `b` (Levenshtein).
+fn edits(a: &str, b: &str) -> usize {
+    let mut row: Vec<usize> = (0..=b.chars().count()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.chars().enumerate() {
+            let replaced = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(row[j + 1] + 1);
+        }
+    }
+    row[b.chars().count()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edit_distances() {
+        for (a, b, distance) in [("", "usb", 3), ("ubs", "usb", 2), ("ket", "ket8", 1)] {
+            assert_eq!(edits(a, b), distance);
+        }
+    }
+
+    #[test]
+    fn an_unknown_name_is_answered_with_the_nearest_and_all() {
+        let error = resolve("task", TASKS, "rj54").unwrap_err().to_string();
+        for part in ["rj54", "did you mean `rj45`", "ket8, ket12, rj45, usb"] {
+            assert!(error.contains(part), "{error}");
+        }
+        assert_eq!(nearest("hexapod", &["usb", "rj45"]), None);
+    }
+
+    #[test]
+    fn every_shipped_file_has_contents() {
+        for shipped in [TASKS, SPACES, ROBOTS, UNCERTAINTIES, STIFFNESS].concat() {
+            assert!(!shipped.text.trim().is_empty(), "{}", shipped.file);
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! How a trial ends: the vocabulary of trials, published tables and measurements.
+
+use serde::{Deserialize, Serialize};
+
+/// How a trial failed; the numbers are the paper's (Table "Failure Cases").
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(into = "u8", try_from = "u8")]
+pub enum FailureClass {
+    /// 1: the part left the grasp before the search began.
+    ContactLossBeforeSearch,
+    /// 2: the leading edge never entered the opening before the assembly push.
+    PlugMissed,
+    /// 3: entered, not seated, still held.
+    Jammed,
+    /// 4: the part left the grasp, or slipped beyond the limit, in search or insertion.
+    ContactLossInInsertion,
+}
+
+impl FailureClass {
+    /// All classes in the order of their numbers.
+    pub const ALL: [FailureClass; 4] = [
+        FailureClass::ContactLossBeforeSearch,
+        FailureClass::PlugMissed,
+        FailureClass::Jammed,
+        FailureClass::ContactLossInInsertion,
+    ];
+
+    /// The paper's number, 1 to 4.
+    pub fn number(self) -> u8 {
+        self as u8 + 1
+    }
+
+    /// A short name for tables and plots.
+    pub fn label(self) -> &'static str {
+        match self {
+            FailureClass::ContactLossBeforeSearch => "contact loss before search",
+            FailureClass::PlugMissed => "plug missed",
+            FailureClass::Jammed => "jammed",
+            FailureClass::ContactLossInInsertion => "contact loss in insertion",
+        }
+    }
+}
+
+impl From<FailureClass> for u8 {
+    fn from(class: FailureClass) -> u8 {
+        class.number()
+    }
+}
+
+impl TryFrom<u8> for FailureClass {
+    type Error = String;
+    fn try_from(number: u8) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|class| class.number() == number)
+            .ok_or_else(|| format!("failure class {number} is not one of 1, 2, 3, 4"))
+    }
+}
+
+/// How one trial ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Seated: deep enough and upright enough.
+    Inserted,
+    /// Not seated, for a physical reason.
+    Failed(FailureClass),
+    /// The simulation left the finite numbers; says nothing about the design.
+    Diverged,
+}

@@ -1,0 +1,241 @@
+//! The world: one step from poses and velocities to the next.
+
+use super::Settings;
+use super::blocks::{Blocks, Vector6};
+use super::body::{Body, Kind};
+use super::cone::{Compliance, Cone};
+use super::contacts::{Detector, Touch};
+use super::joints::Joint;
+use super::solver::{Contact, Effort, Solver, lever, relative};
+use crate::physics::{ContactForce, Diverged, World};
+use crate::scene::{BodyId, JointId, Motion, Pose, Scene, Spring};
+use nalgebra::Vector3;
+
+/// Tries at finding which servos are at their limits.
+const TRIES: usize = 5;
+
+const NO_FORCE: ContactForce = ContactForce { net: Vector3::new(0.0, 0.0, 0.0), normal_sum: 0.0 };
+
+/// A scene in motion; a clone continues bit for bit alike.
+#[derive(Clone)]
+pub(super) struct DirectWorld {
+    settings: Settings,
+    gravity: Vector3<f64>,
+    pub bodies: Vec<Body>,
+    joints: Vec<Joint>,
+    /// The bodies that may touch.
+    pairs: Vec<(usize, usize)>,
+    /// Their forces over the last step.
+    forces: Vec<ContactForce>,
+    detector: Detector,
+    system: Blocks,
+    /// Right-hand side, then solution; by place.
+    values: Vec<Vector6>,
+    /// Force at the centre of mass and moment applied to each body, N, N m.
+    pushes: Vec<Vector6>,
+    /// Places before this one are eliminated before contacts are solved.
+    eliminated: usize,
+    solver: Solver,
+    touches: Vec<Touch>,
+    contacts: Vec<Contact>,
+    /// What the last step took.
+    pub effort: Effort,
+}
+
+impl DirectWorld {
+    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        let (places, eliminated, size) = places(scene);
+        let bodies: Vec<Body> =
+            scene.bodies.iter().zip(&places).map(|(body, &place)| Body::new(body, place)).collect();
+        let ends = |joint: &crate::scene::Joint| {
+            Some((bodies[joint.parent.0].place()?, bodies[joint.child.0].place()?))
+        };
+        let coupled: Vec<_> = scene.joints.iter().filter_map(ends).collect();
+        DirectWorld {
+            settings: *settings,
+            gravity: scene.gravity,
+            joints: scene.joints.iter().map(Joint::new).collect(),
+            pairs: scene.contacts.iter().map(|&(a, b)| (a.0, b.0)).collect(),
+            forces: vec![NO_FORCE; scene.contacts.len()],
+            detector: Detector::new(scene, settings.prediction),
+            system: Blocks::new(size, eliminated, &coupled),
+            values: vec![Vector6::zeros(); size],
+            pushes: vec![Vector6::zeros(); scene.bodies.len()],
+            eliminated,
+            solver: Solver::new(size - eliminated),
+            touches: Vec::new(),
+            contacts: Vec::new(),
+            bodies,
+            effort: Effort::default(),
+        }
+    }
+
+    /// Contacts as the solver wants them.
+    fn meet(&mut self) {
+        let step = self.settings.step_s;
+        self.detector.detect(&self.bodies, &mut self.touches);
+        self.contacts.clear();
+        // Of a contact's force at the end of the step, k gap + c rate, what the gap
+        // at its start makes, and how the impulse answers to the velocity.
+        let spring = self.settings.contact_stiffness * step;
+        let share = spring / (spring + self.settings.contact_damping);
+        let compliance = Compliance {
+            normal: share / (spring * step),
+            tangent: 1.0 / (self.settings.stick_damping * step),
+        };
+        for touch in &self.touches {
+            let (a, b) = self.pairs[touch.pair];
+            let ends = [&self.bodies[a], &self.bodies[b]];
+            let place = ends.map(|body| body.place().map(|place| place - self.eliminated));
+            let arm = ends.map(|body| touch.point - body.centre);
+            let cone = Cone { mu: touch.friction, compliance };
+            let lever = arm.map(|arm| lever(&arm, &(touch.normal * touch.patch)));
+            let mut contact = Contact::new(place, lever, touch.normal, cone);
+            for (body, lever, sign) in [(ends[0], &lever[0], -1.0), (ends[1], &lever[1], 1.0)] {
+                if let Kind::Driven(_) = body.kind {
+                    contact.drift += relative(lever, &body.velocity) * sign;
+                }
+            }
+            let closing = touch.gap / step;
+            let bias = if touch.gap > 0.0 { closing } else { closing * share };
+            contact.bias = bias.max(-self.settings.push_out);
+            self.contacts.push(contact);
+        }
+    }
+
+    /// Velocities at the end of the step, with the servos as they are assumed.
+    fn solve(&mut self) -> Option<()> {
+        let step = self.settings.step_s;
+        self.system.clear();
+        for (body, push) in self.bodies.iter().zip(&self.pushes) {
+            if let Some(place) = body.place() {
+                self.system.add(place, place, &body.mass());
+                self.values[place] = body.momentum(&self.gravity, step) + push * step;
+            }
+        }
+        for joint in &self.joints {
+            joint.assemble(&self.bodies, step, &mut self.system, &mut self.values);
+        }
+        self.system.eliminate()?;
+        self.system.reduce(&mut self.values);
+        self.system.remainder(&mut self.solver.system);
+        self.solver.rhs.copy_from_slice(&self.values[self.eliminated..]);
+        self.effort = self.solver.solve(&mut self.contacts, step)?;
+        self.values[self.eliminated..].copy_from_slice(&self.solver.velocities);
+        self.system.expand(&mut self.values);
+        Some(())
+    }
+
+    fn add_forces(&mut self) {
+        self.forces.fill(NO_FORCE);
+        let per_step = 1.0 / self.settings.step_s;
+        for (touch, contact) in self.touches.iter().zip(&self.contacts) {
+            let force = &mut self.forces[touch.pair];
+            force.net += contact.impulse.xyz() * per_step;
+            force.normal_sum += contact.impulse.dot(&contact.normal) * per_step;
+        }
+    }
+
+    fn try_step(&mut self) -> Option<()> {
+        let step = self.settings.step_s;
+        for body in &mut self.bodies {
+            body.steer(step);
+            if let Some(free) = body.place().and_then(|place| place.checked_sub(self.eliminated)) {
+                self.solver.velocities[free] = body.velocity;
+            }
+        }
+        for joint in &mut self.joints {
+            joint.locate(&self.bodies);
+        }
+        self.meet();
+        for _ in 0..TRIES {
+            self.solve()?;
+            for body in &mut self.bodies {
+                if let Some(place) = body.place() {
+                    body.velocity = self.values[place];
+                }
+            }
+            let settle = |all: bool, joint: &mut Joint| joint.settle(&self.bodies, step) && all;
+            if self.joints.iter_mut().fold(true, settle) {
+                break;
+            }
+        }
+        self.add_forces();
+        for body in &mut self.bodies {
+            body.advance(step);
+        }
+        self.bodies.iter().all(Body::is_finite).then_some(())
+    }
+}
+
+/// The place of each dynamic body in the system, how many of them are
+/// eliminated before contacts, and how many there are. Those that touch nothing
+/// come first, the ones with the fewest joints first of all: little fill-in.
+fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
+    let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
+    let touching = |i: &usize| scene.contacts.iter().any(|&(a, b)| a.0 == *i || b.0 == *i);
+    let joints =
+        |i: &usize| scene.joints.iter().filter(|j| j.parent.0 == *i || j.child.0 == *i).count();
+    let mut order: Vec<usize> = (0..scene.bodies.len()).filter(dynamic).collect();
+    order.sort_by_key(|i| (touching(i), joints(i)));
+    let eliminated = order.iter().filter(|i| !touching(i)).count();
+    let mut places = vec![0; scene.bodies.len()];
+    for (place, &body) in order.iter().enumerate() {
+        places[body] = place;
+    }
+    (places, eliminated, order.len())
+}
+
+impl World for DirectWorld {
+    fn step(&mut self) -> Result<(), Diverged> {
+        self.try_step().ok_or(Diverged)
+    }
+
+    fn step_s(&self) -> f64 {
+        self.settings.step_s
+    }
+
+    fn pose(&self, body: BodyId) -> Pose {
+        self.bodies[body.0].pose
+    }
+
+    fn drive(&mut self, body: BodyId, pose: Pose) {
+        if let Kind::Driven(target) = &mut self.bodies[body.0].kind {
+            *target = pose;
+        }
+    }
+
+    fn place(&mut self, body: BodyId, pose: Pose) {
+        self.bodies[body.0].put(pose);
+    }
+
+    fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring) {
+        self.joints[joint.0].set(axis, spring);
+    }
+
+    fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>) {
+        let push = &mut self.pushes[body.0];
+        push.fixed_rows_mut::<3>(0).copy_from(&force);
+        push.fixed_rows_mut::<3>(3).copy_from(&moment);
+    }
+
+    fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
+        let mut sum = NO_FORCE;
+        for (&pair, force) in self.pairs.iter().zip(&self.forces) {
+            let sign = if pair == (first.0, second.0) {
+                1.0
+            } else if pair == (second.0, first.0) {
+                -1.0
+            } else {
+                continue;
+            };
+            sum.net += force.net * sign;
+            sum.normal_sum += force.normal_sum;
+        }
+        sum
+    }
+
+    fn snapshot(&self) -> Box<dyn World> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,110 @@
+//! Contact engines behind one trait; they know scenes, not studies.
+
+use crate::scene::{Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
+use nalgebra::Vector3;
+
+pub mod direct;
+pub mod mjcf;
+#[cfg(feature = "mujoco")]
+pub mod mujoco;
+pub mod rapier;
+
+/// Builds worlds from scenes.
+pub trait Engine: Send + Sync {
+    /// Name and version, as recorded in a study.
+    fn version(&self) -> String;
+
+    /// Whether it can simulate a scene exactly as it stands.
+    fn supports(&self, _scene: &Scene) -> Result<(), Unsupported> {
+        Ok(())
+    }
+
+    /// Whether a face contact resists a turn about its normal by [`crate::scene::Geom::patch`].
+    fn turns_with_friction(&self) -> bool {
+        true
+    }
+
+    /// A world at time zero, of a scene that it [supports](Engine::supports).
+    fn world(&self, scene: &Scene) -> Box<dyn World>;
+
+    /// The same engine with half the step, for what diverged.
+    fn halved(&self) -> Box<dyn Engine>;
+
+    /// The same engine, finer in one way each, and what that way is: for convergence studies.
+    fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
+        vec![("half the step", self.halved())]
+    }
+}
+
+/// An engine lacks what a scene needs.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the engine {engine} cannot simulate `{part}`: it has no {lacking}; use --engine direct")]
+pub struct Unsupported {
+    /// Name and version of the engine.
+    pub engine: String,
+    /// Body or joint of the scene.
+    pub part: String,
+    /// What is needed.
+    pub lacking: &'static str,
+}
+
+/// Refuses springs that couple axes, and masses that depend on the direction.
+fn refuse_coupling(engine: &dyn Engine, scene: &Scene) -> Result<(), Unsupported> {
+    let refuse = |part: &str, lacking| {
+        Err(Unsupported { engine: engine.version(), part: part.to_owned(), lacking })
+    };
+    let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled(_));
+    if let Some(joint) = scene.joints.iter().find(coupled) {
+        return refuse(&joint.name, "springs that couple the axes of a joint");
+    }
+    let mechanism = |body: &&Body| matches!(body.motion, Motion::Mechanism(_));
+    match scene.bodies.iter().find(mechanism) {
+        Some(body) => refuse(&body.name, "mass that depends on the direction"),
+        None => Ok(()),
+    }
+}
+
+/// The state left the finite numbers; the trial says nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the simulation diverged: a body's state is no longer finite")]
+pub struct Diverged;
+
+/// Contact between two bodies over the last step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// Net force on the second body, N.
+    pub net: Vector3<f64>,
+    /// Sum of the magnitudes of the normal forces of all contact points, N.
+    pub normal_sum: f64,
+}
+
+/// A scene that is being simulated.
+pub trait World: Send + Sync {
+    /// Advances by one step; every step is checked for divergence.
+    fn step(&mut self) -> Result<(), Diverged>;
+
+    /// Length of one step, s.
+    fn step_s(&self) -> f64;
+
+    /// Body frame in the world.
+    fn pose(&self, body: BodyId) -> Pose;
+
+    /// Commands where a driven body is at the end of the next step.
+    fn drive(&mut self, body: BodyId, pose: Pose);
+
+    /// Puts a fixed body elsewhere; it must touch nothing before and after.
+    fn place(&mut self, body: BodyId, pose: Pose);
+
+    /// Replaces the spring of a sprung axis (0..6) of a joint.
+    fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring);
+
+    /// Applies a force at a free body's centre of mass, N, and a moment, N m, in
+    /// world axes, in every step from now on; replaces what was applied before.
+    fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>);
+
+    /// Contact between two bodies over the last step.
+    fn contact(&self, first: BodyId, second: BodyId) -> ContactForce;
+
+    /// An independent copy that continues bit for bit alike.
+    fn snapshot(&self) -> Box<dyn World>;
+}

@@ -1,0 +1,161 @@
+//! Our tolerance windows beside the published ones: tables and statistics,
+//! pure functions of windows that were measured elsewhere.
+
+pub mod statistics;
+mod table;
+mod targets;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub use statistics::Agreement;
+pub use table::{CSV_HEADER, SUMMARY_HEADER, csv, json, summary_csv};
+pub use targets::{Target, targets};
+pub use text::text;
+
+use crate::evaluation::Window;
+use crate::finger::Finger;
+use crate::input::finger::FingerModel;
+use crate::input::published::{self, Origin, Published};
+use crate::input::stiffness::Measurement;
+use crate::outcome::{FailureClass, Outcome};
+
+/// Where a range and the failures at its ends come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// This program's simulation.
+    Ours,
+    /// The publication's simulation.
+    Simulation,
+    /// The publication's experiments on the robot.
+    InSitu,
+}
+
+impl Source {
+    /// A name for tables and plots.
+    pub fn label(self) -> &'static str {
+        match self {
+            Source::Ours => "ours",
+            Source::Simulation => "published simulation",
+            Source::InSitu => "published in-situ",
+        }
+    }
+
+    /// A name for keys and columns.
+    pub fn key(self) -> &'static str {
+        match self {
+            Source::Ours => "ours",
+            Source::Simulation => "simulation",
+            Source::InSitu => "in_situ",
+        }
+    }
+}
+
+/// What is compared with what.
+pub const COMPARISONS: [(Source, Source); 3] = [
+    (Source::Ours, Source::Simulation),
+    (Source::Ours, Source::InSitu),
+    (Source::Simulation, Source::InSitu),
+];
+
+/// Range and failures of one design according to one source.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// Tolerable range, mm; `None` if there is none.
+    pub range_mm: Option<f64>,
+    /// Failure at the negative and at the positive end of the window, if there is one.
+    pub failures: [Option<FailureClass>; 2],
+}
+
+/// One measured design: our window and what was published of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The design and its measured stiffness.
+    pub design: Measurement,
+    /// Our window.
+    pub window: Window,
+    simulation: Option<Reading>,
+    in_situ: Option<Reading>,
+}
+
+impl Row {
+    /// What a source says of this design, if anything.
+    pub fn reading(&self, source: Source) -> Option<Reading> {
+        match source {
+            Source::Ours => Some(Reading::from(&self.window)),
+            Source::Simulation => self.simulation,
+            Source::InSitu => self.in_situ,
+        }
+    }
+
+    /// The range according to a source, mm.
+    pub fn range_mm(&self, source: Source) -> Option<f64> {
+        self.reading(source)?.range_mm
+    }
+}
+
+impl From<&Window> for Reading {
+    /// A nominal start that diverges says nothing of the range; one that fails
+    /// makes it 0. Either way there is no window, so no ends to be credited with.
+    fn from(window: &Window) -> Self {
+        let class = |end| match (window.nominal, end) {
+            (Outcome::Inserted, Some(Outcome::Failed(class))) => Some(class),
+            _ => None,
+        };
+        Reading {
+            range_mm: (window.nominal != Outcome::Diverged).then(|| window.range_mm()),
+            failures: [class(window.end_negative), class(window.end_positive)],
+        }
+    }
+}
+
+impl From<&Published> for Reading {
+    fn from(row: &Published) -> Self {
+        Reading {
+            range_mm: row.tolerable_range_mm,
+            failures: [row.failure_negative_offset, row.failure_positive_offset],
+        }
+    }
+}
+
+/// All measured designs on one task.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TaskTable {
+    /// Name of the task.
+    pub task: String,
+    /// One row per design, in the order of the designs.
+    pub rows: Vec<Row>,
+}
+
+impl TaskTable {
+    /// Puts windows beside what is published of a task.
+    pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
+        let [simulation, in_situ] =
+            [Origin::Simulation, Origin::InSitu].map(|origin| published::of_task(task, origin));
+        let find = |rows: &[Published], design| {
+            rows.iter().find(|row| row.design == design).map(Reading::from)
+        };
+        let row = |(design, window): (Measurement, Window)| Row {
+            simulation: find(&simulation, design.design),
+            in_situ: find(&in_situ, design.design),
+            design,
+            window,
+        };
+        TaskTable { task: task.to_owned(), rows: windows.into_iter().map(row).collect() }
+    }
+
+    /// The agreement of each pair of [`COMPARISONS`].
+    pub fn agreements(&self) -> [Agreement; 3] {
+        COMPARISONS.map(|(source, reference)| Agreement::of(&self.rows, source, reference))
+    }
+
+    /// Designs whose nominal start inserts.
+    pub fn nominal_inserted(&self) -> usize {
+        self.rows.iter().filter(|row| row.window.nominal == Outcome::Inserted).count()
+    }
+}
+
+/// The finger of a measured design: its measured stiffness, not the surrogate's.
+pub fn finger(model: &FingerModel, design: &Measurement) -> Finger {
+    Finger::new(design.compliance, design.assembly).shaped(model, design.direction_deg)
+}

@@ -1,0 +1,97 @@
+//! T6: the force of crossing a chamfer.
+//!
+//! A plug on a lateral spring K slides down a chamfer that makes the angle a
+//! with the direction of insertion. With the normal force N the balance of the
+//! plug is K x = N (cos a - mu sin a) across and F = N (sin a + mu cos a) along
+//! the insertion, hence F = K x tan(a + atan mu), x being the way that the
+//! chamfer has pushed the plug aside (Whitney 1982, J. Dyn. Sys. Meas. Control
+//! 104:65, chamfer crossing, for a support that does not turn).
+
+use super::build;
+use super::{Row, Tolerance};
+use crate::finger::Finger;
+use crate::physics::{Diverged, Engine};
+use crate::scene::{Axis, Body, Joint, Motion, Pose, Scene, Springs};
+use crate::units::{DEG, GRAM, MM, N_PER_MM};
+use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
+
+/// Angles of the chamfer, degrees from the direction of insertion.
+const ANGLES: [f64; 2] = [30.0, 45.0];
+/// Friction of plug and socket.
+const FRICTION: f64 = 0.2;
+/// Speed of insertion, m/s: so slow that the springs' dampers carry nothing.
+const SPEED: f64 = 2.0 * MM;
+/// Way of insertion, m.
+const WAY: f64 = 0.6 * MM;
+/// The plug, kg and m.
+const MASS: f64 = 20.0 * GRAM;
+const SIZE: [f64; 3] = [8.0 * MM, 12.0 * MM, 20.0 * MM];
+/// Rotational stiffness, N m/rad: the formula's support does not turn (here by
+/// less than a milliradian), but nor may it ring between two steps.
+const UPRIGHT: f64 = 100.0;
+
+/// Insertion force over lateral force, T6 rows.
+pub fn t6(engine: &dyn Engine) -> Vec<Row> {
+    ANGLES
+        .into_iter()
+        .map(|angle| {
+            let quantity = format!("Fz/(K x) on a chamfer of {angle} deg, mu {FRICTION}");
+            let expected = (angle * DEG + FRICTION.atan()).tan();
+            let measured = force_ratio(engine, angle * DEG);
+            Row::new(("T6", quantity), expected, measured, "-", Tolerance::Relative(0.02))
+        })
+        .collect()
+}
+
+fn force_ratio(engine: &dyn Engine, angle: f64) -> Result<f64, Diverged> {
+    let support = Finger { rotation: [UPRIGHT; 3], ..Finger::new(5.0 * N_PER_MM, 40.0 * N_PER_MM) };
+    let size = Vector3::from(SIZE);
+    let mut scene = Scene::default();
+    let flange = scene.body(Body {
+        name: "flange".into(),
+        motion: Motion::Driven,
+        pose: Pose::identity(),
+        geoms: Vec::new(),
+    });
+    // The plug's frame is the middle of its tip; its corner at -y starts on the chamfer.
+    let centre = Point3::new(0.0, 0.0, size.z / 2.0);
+    let middle = Pose::from_parts(Translation3::from(centre.coords), UnitQuaternion::identity());
+    let plug = scene.body(Body {
+        name: "plug".into(),
+        motion: Motion::Carried(build::box_inertia(MASS, size, centre)),
+        pose: Pose::identity(),
+        geoms: vec![build::cuboid("plug", size, middle, FRICTION)],
+    });
+    scene.joint(Joint {
+        name: "springs".into(),
+        parent: flange,
+        child: plug,
+        in_parent: middle,
+        in_child: middle,
+        springs: Springs::Axes(support.springs().map(Axis::Sprung)),
+    });
+    let socket = scene.body(chamfer(-size.y / 2.0, angle));
+    scene.contacts.push((socket, plug));
+
+    let mut world = engine.world(&scene);
+    for step in 1..=build::steps(world.as_ref(), WAY / SPEED) {
+        let down = SPEED * world.step_s() * step as f64;
+        world.drive(flange, Pose::translation(0.0, 0.0, -down));
+        world.step()?;
+    }
+    let moved = world.pose(flange).inverse() * world.pose(plug);
+    let across = support.compliance * moved.translation.y;
+    let along = support.assembly * moved.translation.z;
+    Ok(along / across)
+}
+
+/// A block whose face goes through the line y, z = 0 and looks to +y and up,
+/// `angle` from the vertical.
+fn chamfer(y: f64, angle: f64) -> Body {
+    let size = Vector3::new(20.0 * MM, 10.0 * MM, 10.0 * MM);
+    // The block's face at +y, turned about x so that its normal rises by the angle.
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angle);
+    let normal = turn * Vector3::y();
+    let pose = Pose::from_parts(Translation3::from(Vector3::y() * y - normal * size.y / 2.0), turn);
+    build::fixed("chamfer", pose, vec![build::cuboid("chamfer", size, Pose::identity(), FRICTION)])
+}

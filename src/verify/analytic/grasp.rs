@@ -1,0 +1,152 @@
+//! T12: a face that slides or turns on another, as a part does in the grasp.
+//!
+//! A face that slides without turning is held back through its centre of pressure,
+//! whatever its pressure and its torsional friction are (Mason 1986, Int. J. Robot.
+//! Res. 5:53): beside the middle by `e` the friction `mu N` has the moment `mu N e`.
+//! A soft face of patch radius `rho` also resists a turn about its normal: at each point
+//! that bears `N`, force `F` and moment `M` lie within the ellipsoid
+//! `(F/mu N)^2 + (M/mu N rho)^2 = 1` (Howe and Cutkosky 1996, Int. J. Robot. Res. 15:557).
+//! A face of points at the radius `r` from its middle then turns at `mu N sqrt(rho^2 + r^2)`.
+
+use super::build;
+use super::{Row, Tolerance};
+use crate::physics::{Diverged, Engine};
+use crate::scene::{Axis, Body, BodyId, Geom, Joint, Motion, Pose, Scene, Spring, Springs};
+use crate::units::{GRAM, MM};
+use nalgebra::{Rotation2, Translation3, UnitQuaternion, Vector2, Vector3};
+
+/// Friction, load and patch of the face: finger and plug in the grasp.
+const FRICTION: f64 = 1.0;
+const LOAD: f64 = 5.0;
+const PATCH: f64 = 30.0 * MM;
+/// The block: its face is as large as a fingertip's pad.
+const MASS: f64 = 5.0 * GRAM;
+const SIZE: [f64; 3] = [12.0 * MM, 8.4 * MM, 6.0 * MM];
+/// How far beside the middle the load acts, along y, m.
+const BESIDE: [f64; 2] = [1.5 * MM, 3.0 * MM];
+/// Springs that hold the block: along, N/m, and about the normal, N m/rad.
+const HOLD: f64 = 1e4;
+const TURN: f64 = 10.0;
+/// How fast a hand draws the block, m/s, and turns it, rad/s: as slowly as parts slip in
+/// a grasp, and at the same speed at the patch.
+const DRAWN: f64 = 1.0 * MM;
+const TURNED: f64 = DRAWN / PATCH;
+/// How long, s: nine times what an uneven face takes to come to rest in its turn.
+const DRAWING: f64 = 4.0;
+
+/// Moments of a pad's friction, T12 rows; on an engine without torsional friction only
+/// those that do not depend on it.
+pub fn t12(engine: &dyn Engine) -> Vec<Row> {
+    let mut rows: Vec<Row> = BESIDE
+        .into_iter()
+        .map(|beside| {
+            let quantity = format!("moment of a face loaded {} mm beside", beside / MM);
+            let moment = hold(engine, beside, [DRAWN, 0.0]).map(|held| held.moment / MM);
+            let expected = FRICTION * LOAD * beside / MM;
+            Row::new(("T12", quantity), expected, moment, "N mm", Tolerance::Relative(0.02))
+        })
+        .collect();
+    if engine.turns_with_friction() {
+        rows.extend([0.0, DRAWN].into_iter().flat_map(|speed| turning(engine, speed)));
+    }
+    rows
+}
+
+/// The wrench of a face that turns, while drawn along at a speed, m/s.
+fn turning(engine: &dyn Engine, speed: f64) -> Vec<Row> {
+    let held = hold(engine, 0.0, [speed, TURNED]);
+    let angle = held.as_ref().map_or(0.0, |held| held.angle);
+    let (force, moment) = friction(speed, TURNED, angle);
+    let how = if speed > 0.0 { "drawn and turned" } else { "turned" };
+    let two_percent = Tolerance::Relative(0.02);
+    let measured = held.map(|held| held.moment / MM);
+    let name = ("T12", format!("moment of a face, {how}"));
+    let mut rows = vec![Row::new(name, moment / MM, measured, "N mm", two_percent)];
+    if speed > 0.0 {
+        let name = ("T12", format!("force of a face, {how}"));
+        rows.push(Row::new(name, force, held.map(|held| held.force), "N", two_percent));
+    }
+    rows
+}
+
+/// Force along x and moment of the friction of a face that moves at `speed` along x and
+/// turns at `spin`, its four corners equally loaded, N and N m.
+fn friction(speed: f64, spin: f64, angle: f64) -> (f64, f64) {
+    let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    corners.into_iter().fold((0.0, 0.0), |(force, moment), (x, y)| {
+        let r = Rotation2::new(angle) * Vector2::new(x * SIZE[0], y * SIZE[1]) / 2.0;
+        let v = Vector2::new(speed - spin * r.y, spin * r.x);
+        let press = FRICTION * LOAD / 4.0 / v.norm().hypot(spin * PATCH);
+        let turning = r.perp(&v) + PATCH * PATCH * spin;
+        (force + press * v.x, moment + press * turning)
+    })
+}
+
+/// What a hand feels of a block that it draws and turns over a floor.
+#[derive(Debug, Clone, Copy)]
+struct Held {
+    /// Against the draw, N.
+    force: f64,
+    /// Against the turn, N m.
+    moment: f64,
+    /// How far the block has turned, rad.
+    angle: f64,
+}
+
+/// Draws and turns the block at these speeds, m/s and rad/s, loaded beside its middle.
+fn hold(engine: &dyn Engine, beside: f64, [speed, spin]: [f64; 2]) -> Result<Held, Diverged> {
+    let (scene, hand, block) = scene();
+    let mut world = engine.world(&scene);
+    world.push(block, -Vector3::z() * LOAD, -Vector3::x() * (LOAD * beside));
+    let step = world.step_s();
+    let mut to = Pose::identity();
+    for k in 1..=build::steps(world.as_ref(), DRAWING) {
+        let time = k as f64 * step;
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), spin * time);
+        to = Pose::from_parts(Translation3::new(speed * time, 0.0, 0.0), turn);
+        world.drive(hand, to);
+        world.step()?;
+    }
+    let at = world.pose(block);
+    let angle = |pose: &Pose| pose.rotation.scaled_axis().z;
+    let lag = to.translation.vector - (at * foot()).translation.vector;
+    // Drawn only, the face's friction turns the block; the hand's spring holds against it.
+    let moment = TURN * (angle(&to) - angle(&at)).abs();
+    Ok(Held { force: HOLD * lag.x, moment, angle: angle(&at) })
+}
+
+/// The middle of the block's face in its frame.
+fn foot() -> Pose {
+    Pose::translation(0.0, 0.0, -SIZE[2] / 2.0)
+}
+
+/// A block on a floor through the origin, on springs in the plane to a driven hand.
+fn scene() -> (Scene, BodyId, BodyId) {
+    let mut scene = Scene::default();
+    let below = Pose::translation(0.0, 0.0, -10.0 * MM);
+    let ground = build::cuboid("floor", Vector3::new(0.2, 0.2, 0.02), below, FRICTION);
+    let ground = Geom { patch: PATCH, ..ground };
+    let floor = scene.body(build::fixed("floor", Pose::identity(), vec![ground]));
+    let mut block = build::block("block", MASS, Vector3::from(SIZE), FRICTION, foot().inverse());
+    block.geoms[0].patch = f64::INFINITY;
+    let block = scene.body(block);
+    scene.contacts.push((floor, block));
+    let hand = scene.body(Body {
+        name: "hand".into(),
+        motion: Motion::Driven,
+        pose: Pose::identity(),
+        geoms: Vec::new(),
+    });
+    let springs = [HOLD, HOLD, 0.0, 0.0, 0.0, TURN];
+    // Damped within a few milliseconds.
+    let sprung = |stiffness: f64| Axis::Sprung(Spring::new(stiffness, stiffness * 2e-3));
+    scene.joint(Joint {
+        name: "springs".into(),
+        parent: hand,
+        child: block,
+        in_parent: Pose::identity(),
+        in_child: foot(),
+        springs: Springs::Axes(springs.map(sprung)),
+    });
+    (scene, hand, block)
+}

@@ -1,0 +1,106 @@
+//! The rows of the checks as text and as JSON.
+
+use super::{Row, Tolerance};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// The rows as an aligned table, at most 100 columns wide.
+pub fn table(rows: &[Row]) -> String {
+    let mut text = format!(
+        "{:<6}{:<44}{:>9} {:>9} {:<5}{:>9}  {:<8}\n",
+        "check", "quantity", "expected", "measured", "unit", "error", "allowed"
+    );
+    for row in rows {
+        let (error, allowed) = match row.tolerance {
+            Tolerance::Relative(share) => (percent(row.error()), percent(share)),
+            Tolerance::Absolute(error) => (number(row.error()), number(error)),
+        };
+        let verdict = if row.passed { "ok" } else { "FAIL" };
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{:<6}{:<44}{:>9} {:>9} {:<5}{error:>9}  {allowed:<8}{verdict}",
+            row.check,
+            row.quantity,
+            number(row.expected),
+            number(row.measured),
+            row.unit,
+        );
+    }
+    text
+}
+
+/// The rows as a JSON array of objects.
+pub fn json(rows: &[Row]) -> Value {
+    rows.iter()
+        .map(|row| {
+            let (kind, tolerance) = match row.tolerance {
+                Tolerance::Relative(share) => ("relative", share),
+                Tolerance::Absolute(error) => ("absolute", error),
+            };
+            json!({
+                "check": row.check,
+                "quantity": row.quantity,
+                "expected": row.expected,
+                "measured": row.measured,
+                "error": row.error(),
+                "unit": row.unit,
+                "tolerance": tolerance,
+                "tolerance_kind": kind,
+                "passed": row.passed,
+            })
+        })
+        .collect()
+}
+
+fn number(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        size if size < 1e-3 => format!("{value:.1e}"),
+        size if size < 10.0 => format!("{value:.5}"),
+        _ => format!("{value:.3}"),
+    }
+}
+
+fn percent(share: f64) -> String {
+    match (100.0 * share).abs() {
+        0.0 => "0 %".into(),
+        size if size < 0.01 => format!("{:.0e} %", 100.0 * share),
+        _ => format!("{:.2} %", 100.0 * share),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Diverged;
+
+    fn rows() -> Vec<Row> {
+        let name = |text: &str| ("T1", text.to_owned());
+        let tolerance = Tolerance::Relative(0.01);
+        vec![
+            Row::new(name("good"), 2.0, Ok(2.01), "mm", tolerance),
+            Row::new(name("bad"), 2.0, Ok(2.03), "mm", tolerance),
+            Row::new(name("diverged"), 2.0, Err(Diverged), "mm", tolerance),
+        ]
+    }
+
+    #[test]
+    fn rows_pass_within_their_tolerance_only() {
+        assert_eq!(rows().iter().map(|row| row.passed).collect::<Vec<_>>(), [true, false, false]);
+    }
+
+    #[test]
+    fn table_fits_a_terminal_and_names_the_failures() {
+        let text = table(&rows());
+        assert!(text.lines().all(|line| line.len() <= 100), "{text}");
+        assert_eq!(text.matches("FAIL").count(), 2, "{text}");
+    }
+
+    #[test]
+    fn json_has_null_for_what_diverged() {
+        let value = json(&rows());
+        assert_eq!(value[0]["tolerance_kind"], "relative");
+        assert!(value[2]["measured"].is_null());
+    }
+}

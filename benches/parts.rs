@@ -1,6 +1,7 @@
 //! Times of the parts that a study is made of: `cargo bench`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use finger_opt::evaluation::evaluator::Evaluator;
 use finger_opt::evaluation::objective::{Goals, Measure, Objectives};
 use finger_opt::evaluation::robustness::Plan;
 use finger_opt::evaluation::template::Template;
@@ -15,11 +16,12 @@ use finger_opt::optimizer::{Grid, Observation, OptimizerKind, build};
 use finger_opt::physics::Engine;
 use finger_opt::physics::direct::Direct;
 use finger_opt::study::{
-    FileStore, Inputs, JOURNAL_FILE, Journal, Runner, Simulated, Study, StudyConfig, Versions,
+    FileStore, IfChanged, Inputs, JOURNAL_FILE, Journal, Provenance, Runner, Simulated, Study,
+    StudyConfig,
 };
 use finger_opt::surrogate::{self, Model};
-use finger_opt::trial::fake::FakeRig;
-use finger_opt::trial::run::{EngineRig, RigError};
+use finger_opt::trial::engine::EngineKind;
+use finger_opt::trial::run::EngineRig;
 use finger_opt::trial::{Rig, cell};
 use finger_opt::units::N_PER_MM;
 use std::collections::BTreeMap;
@@ -76,10 +78,8 @@ fn proposals(c: &mut Criterion) {
 
 fn config(budget: u64) -> StudyConfig {
     StudyConfig {
-        task: "usb".into(),
-        other_tasks: Vec::new(),
+        tasks: vec!["usb".into()],
         robot: "servo".into(),
-        engine: "fake".into(),
         optimizer: "random".into(),
         objective: Objectives::of(Measure::Range),
         constraints: Vec::new(),
@@ -89,37 +89,35 @@ fn config(budget: u64) -> StudyConfig {
         budget,
         polish: 0,
         batch: 4,
-        versions: Versions { program: "bench".into(), engine: "1".into() },
-        input_sha256: BTreeMap::new(),
+        provenance: Provenance::new(EngineKind::Fake, BTreeMap::new()),
         space: space(),
     }
 }
 
-fn fake(_: &Task) -> Result<Box<dyn Rig>, RigError> {
-    Ok(Box::new(FakeRig::default()))
+fn evaluator() -> Evaluator {
+    let usb = TASKS.iter().find(|task| task.name == "usb").expect("shipped");
+    Evaluator {
+        surrogate: model(),
+        templates: vec![Template::parse(usb.text, usb.file).expect("valid")],
+        robot: robot(),
+        engine: EngineKind::Fake,
+    }
 }
 
 /// A study of 100 random designs on the fake engine.
-fn study(dir: &Path, model: &Model) -> Study {
+fn study(dir: &Path, evaluator: &Evaluator) -> Study {
+    let (config, inputs) = (config(100), Inputs::new());
     let mut study =
-        Study::create_or_continue(dir, &config(100), &Inputs::new()).expect("a new study");
+        Study::create_or_continue(dir, &config, &inputs, IfChanged::Refuse).expect("a new study");
     let stop = AtomicBool::new(false);
-    let usb = TASKS.iter().find(|task| task.name == "usb").expect("shipped");
-    let template = Template::parse(usb.text, usb.file).expect("valid");
-    let predict = |design: &finger_opt::input::space::Design| {
-        let value = |key| design.get(key).expect("in the space");
-        model.predict(value("infill_density_percent"), value("infill_direction_deg"))
-    };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let runner = Runner {
         evaluator: &Simulated {
-            predict,
-            template: &template,
-            other_templates: &[],
+            evaluator,
+            search: Search::default(),
             plan: &Plan::WINDOW,
-            rig: fake,
-            stop: &stop,
             cache: None,
+            stop: &stop,
         },
         goals: &Goals::of(Measure::Range),
         pool: &pool,
@@ -131,12 +129,12 @@ fn study(dir: &Path, model: &Model) -> Study {
 }
 
 fn studies(c: &mut Criterion) {
-    let model = model();
+    let evaluator = evaluator();
     c.bench_function("study of 100, fake engine", |b| {
-        b.iter(|| study(tempfile::tempdir().expect("a folder").path(), &model));
+        b.iter(|| study(tempfile::tempdir().expect("a folder").path(), &evaluator));
     });
     let dir = tempfile::tempdir().expect("a folder");
-    let recorded = study(dir.path(), &model).evaluations.remove(0);
+    let recorded = study(dir.path(), &evaluator).evaluations.remove(0);
     let path = dir.path().join(format!("other-{JOURNAL_FILE}"));
     let store = Box::new(FileStore::open(&path).expect("a file"));
     let (mut journal, _) = Journal::open(store, &path, &config(100)).expect("a journal");

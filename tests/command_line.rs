@@ -18,8 +18,8 @@ fn an_evaluation_prints_the_promised_keys() {
             .json();
     for key in [
         "task",
-        "density_percent",
-        "direction_deg",
+        "infill_density_percent",
+        "infill_direction_deg",
         "range_mm",
         "negative_mm",
         "positive_mm",
@@ -356,4 +356,34 @@ fn an_engine_agrees_with_itself_in_the_cross_check() {
     assert_eq!((&result["agreement"], &result["passed"]), (&1.0.into(), &true.into()));
     assert!(result["trials"].as_array().is_some_and(|trials| trials.len() > 20), "{result}");
     assert!(fake(&check).succeeds().contains("100.0 %"));
+}
+
+#[test]
+fn every_help_shows_an_example_and_the_shell_and_man_are_served() {
+    let help = optimize(&["--help"]);
+    assert!(help.succeeds().contains("Example: optimize --task usb --budget 200"));
+    for command in [
+        "resume",
+        "report",
+        "evaluate",
+        "trial",
+        "stiffness",
+        "compare",
+        "check",
+        "cross-check",
+        "validate",
+        "bench",
+        "export",
+        "ask-tell",
+        "tasks",
+        "completions",
+        "man",
+    ] {
+        let help = optimize(&[command, "--help"]);
+        let example = format!("Example: optimize {command}");
+        assert!(help.succeeds().contains(&example), "{command}: {}", help.stdout);
+    }
+    assert!(optimize(&["completions", "bash"]).succeeds().contains("_optimize"));
+    assert!(optimize(&["man"]).succeeds().starts_with(".ie"));
+    assert_eq!(optimize(&["task"]).succeeds(), optimize(&["tasks"]).succeeds());
 }

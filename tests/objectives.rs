@@ -88,10 +88,10 @@ fn errors_from_a_file_are_kept_with_the_study() {
     let more = ["--objective", "robust-range", "--uncertainty", file.to_str().unwrap()];
     is_durable(&studies, "s", 10, &more);
     for line in evaluations(&studies, "s") {
-        let robust = &line["user_attrs"]["robust_range"];
+        let robust = &line["user_attrs"]["tasks"][0];
         assert_eq!(robust["ranges_mm"].as_array().map(Vec::len), Some(5));
         assert_eq!(line["values"][0], robust["value_mm"]);
-        assert!(line["user_attrs"].get("success_rate").is_none(), "not asked for");
+        assert!(line["user_attrs"]["tasks"][0].get("success_rate").is_none(), "not asked for");
     }
     fs::remove_file(&file).unwrap();
     studies.resume("s").succeeds();
@@ -135,7 +135,7 @@ fn only_a_design_that_keeps_the_constraints_is_recommended() {
     let violation = |line: &Value| number(&line["system_attrs"]["constraints"][0]);
     let range = |line: &Value| number(&line["values"][0]);
     for line in &lines {
-        let force = number(&line["user_attrs"]["peak_force_n"]);
+        let force = number(&line["user_attrs"]["tasks"][0]["peak_force_n"]);
         assert!((violation(line) - (force - 8.6) / 8.6).abs() < 1e-12);
         assert_eq!(line["system_attrs"]["constraints"][1], (0.1 - 0.2) / 0.2);
     }
@@ -271,8 +271,8 @@ fn several_tasks_are_evaluated_and_aggregated() {
         ("weighted", &weighted, |usb, far| (3.0 * usb + far) / 4.0),
     ] {
         for (line, usb) in of(name, more).iter().zip(&alone) {
-            let far = range(&line["user_attrs"]["other_tasks"][0]);
-            assert!((range(&line["user_attrs"]) - usb).abs() < 1e-9);
+            let far = range(&line["user_attrs"]["tasks"][1]);
+            assert!((range(&line["user_attrs"]["tasks"][0]) - usb).abs() < 1e-9);
             // 8 mm farther out costs 0.8 mm.
             assert!((usb - far - 0.8).abs() < 0.11, "{usb} and {far}");
             assert!((number(&line["values"][0]) - expected(*usb, far)).abs() < 1e-9, "{name}");
@@ -301,7 +301,7 @@ fn a_study_of_several_tasks_is_durable_and_has_its_own_folder() {
     optimize(&["report", studies.dir("s").to_str().unwrap()]).succeeds();
     let line = &evaluations(&studies, "s")[0];
     let rate = |of: &Value| number(&of["success_rate"]["rate"]);
-    let (usb, far) = (rate(&line["user_attrs"]), rate(&line["user_attrs"]["other_tasks"][0]));
+    let (usb, far) = (rate(&line["user_attrs"]["tasks"][0]), rate(&line["user_attrs"]["tasks"][1]));
     assert_eq!(number(&line["values"][0]), usb.min(far));
     let mut named = common::command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);
     run(named.current_dir(&studies.0)).succeeds();
@@ -358,7 +358,7 @@ fn changed_goals_are_another_study_and_odd_ones_are_not_compared() {
     studies
         .study("s", 4, &[])
         .fails(2, &["constraints.0: the study has \"slip<=1\", now has nothing"]);
-    studies.study("s", 4, &["--task", "usb,rj45"]).fails(2, &["other_tasks.0"]);
+    studies.study("s", 4, &["--task", "usb,rj45"]).fails(2, &["tasks.1"]);
     studies.study("front", 4, &["--objective", "range,slip"]).succeeds();
     let dir = |name| studies.dir(name).to_str().unwrap().to_owned();
     optimize(&["compare", &dir("front")]).fails(2, &["range,slip", "one objective in mm"]);

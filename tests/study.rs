@@ -191,13 +191,11 @@ fn another_configuration_is_refused_field_by_field() {
     }
     let config = studies.dir("reference").join("study.toml");
     let text = read(&config);
-    fs::write(&config, text.replace("program = \"", "program = \"99.")).unwrap();
-    studies.resume("reference").fails(2, &["versions.program"]);
     fs::write(&config, text.replace("seed = 0", "sead = 0")).unwrap();
     studies.resume("reference").fails(2, &["study.toml", "sead"]);
     fs::write(&config, text).unwrap();
-    fs::write(studies.dir("reference").join("inputs/task.toml"), "name = 'x'").unwrap();
-    studies.resume("reference").fails(2, &["task.toml", "was changed"]);
+    fs::write(studies.dir("reference").join("inputs/task_1.toml"), "name = 'x'").unwrap();
+    studies.resume("reference").fails(2, &["task_1.toml", "was changed"]);
     assert_eq!(studies.journal("reference"), expected);
 }
 
@@ -326,4 +324,89 @@ fn an_interrupted_study_keeps_no_half_evaluation_in_the_cache() {
     child.wait().expect("it ends");
     run(&mut studies.command("other", BUDGET, &["--cache", &dir])).succeeds();
     assert_eq!(studies.journal("other"), expected);
+}
+
+/// What the best design of a study's JSON was, and from which evaluation.
+fn best_of(json: &serde_json::Value) -> u64 {
+    json["best"]["evaluation"].as_u64().expect("a best design")
+}
+
+#[test]
+fn a_study_measured_with_other_settings_is_refused_unless_that_is_accepted() {
+    let studies = Studies::new();
+    let expected = reference(&studies);
+    let task = studies.dir("usb.toml");
+    let usb = include_str!("../tasks/usb.toml");
+    fs::write(&task, usb).unwrap();
+    let own = ["--task", task.to_str().unwrap(), "--json"];
+    let before = studies.study("changed", 12, &own).json();
+    assert!(studies.journal("changed").lines().count() == 2 + 12 && best_of(&before) < 12);
+    // The file changes: neither the same command nor, of its copies, a newer program goes on.
+    fs::write(&task, format!("# another comment\n{usb}")).unwrap();
+    let journal = studies.journal("changed");
+    let remedies = ["input_sha256.task_1", "--accept-changed", "--out"];
+    studies.study("changed", BUDGET, &own).fails(2, &remedies);
+    assert_eq!(studies.journal("changed"), journal, "nothing is written");
+    optimize(&["report", studies.dir("changed").to_str().unwrap()]).succeeds();
+
+    let accepted = [&own[..], &["--accept-changed"]].concat();
+    let after = studies.study("changed", BUDGET, &accepted).json();
+    assert!(best_of(&after) >= 12, "the best is of the last segment: {after}");
+    assert_eq!(after["segments"][1]["first"], 12);
+    let journal = studies.journal("changed");
+    assert_eq!(journal.lines().count(), 2 + BUDGET as usize + 1, "one line for the segment");
+    assert_eq!(
+        journal.lines().filter(|line| line.contains("\"op_code\":4")).collect::<Vec<_>>(),
+        expected.lines().filter(|line| line.contains("\"op_code\":4")).collect::<Vec<_>>(),
+        "a comment changes no value"
+    );
+    let page = read(&studies.dir("changed").join("report.html"));
+    assert!(page.contains("segment 2 (from evaluation 12)"), "the report shows it");
+    // From now on it is measured with the changed file.
+    studies.study("changed", BUDGET, &own).succeeds();
+    studies.resume("changed").succeeds();
+    let text = studies.study("changed", BUDGET, &own[..2]);
+    assert!(text.succeeds().contains("segment       2, from evaluation 12"), "{}", text.stdout);
+}
+
+#[test]
+fn a_study_of_other_sources_is_not_resumed() {
+    let studies = Studies::new();
+    studies.study("s", 6, &[]).succeeds();
+    // As another build of the program would have written it, from its first line on.
+    for file in ["study.toml", "journal.jsonl"] {
+        let path = studies.dir("s").join(file);
+        let text = read(&path);
+        let at = text.find("source_sha256").expect("it is recorded") + "source_sha256".len() + 5;
+        let other = if text.as_bytes()[at] == b'0' { "1" } else { "0" };
+        fs::write(&path, text[..at].to_owned() + other + &text[at + 1..]).unwrap();
+    }
+    let path = studies.dir("s").join("journal.jsonl");
+    fs::write(&path, common::resealed(&read(&path))).unwrap();
+    let parts = ["source_sha256: the study has", "now has", "--accept-changed", "--out"];
+    studies.resume("s").fails(2, &parts);
+    studies.study("s", 6, &[]).fails(2, &parts);
+    studies.study("s", 9, &["--accept-changed"]).succeeds();
+    assert_eq!(studies.journal("s").lines().count(), 2 + 9 + 1);
+}
+
+#[test]
+fn the_best_designs_are_walked_beside_the_journal() {
+    let studies = Studies::new();
+    let json = studies.study("s", 8, &["--json"]).json();
+    let walked = json["walked"].as_array().expect("what was walked");
+    assert_eq!(walked.len(), 3);
+    assert_eq!(walked[0]["range_mm"], json["best"]["range_mm"], "the closed form has no gaps");
+    assert!(walked[0]["trials"].as_u64() > json["best"]["trials"].as_u64(), "step by step");
+    assert_eq!(studies.journal("s").lines().count(), 2 + 8, "not counted in the budget");
+    let file = studies.dir("s").join("walk.json");
+    let kept = read(&file);
+    // It can be made again, and a damaged one is.
+    fs::write(&file, "{").unwrap();
+    studies.resume("s").succeeds();
+    assert_eq!(read(&file), kept);
+    let text = studies.study("s", 8, &[]);
+    assert!(text.succeeds().contains("walked        step by step"), "{}", text.stdout);
+    let forced = studies.study("force", 8, &["--objective", "peak-force", "--json"]).json();
+    assert!(forced.get("walked").is_none(), "windows do not decide there");
 }

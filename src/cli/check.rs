@@ -32,12 +32,13 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let engine = arguments.engine;
-    if engine.build(1.0).is_none() {
+    if !engine.simulates() {
         let name = engine.name();
         return Err(Failure::usage(format!("--engine {name} simulates no contacts to be checked")));
     }
     // `build` answers alike whatever the step, so the second engine is never needed.
-    let make = |factor: f64| engine.build(factor).unwrap_or_else(|| Box::<Rapier>::default());
+    let make =
+        |factor: f64| engine.build(factor).engine().unwrap_or_else(|| Box::<Rapier>::default());
     if arguments.convergence {
         return arguments.converge(&|| make(1.0));
     }

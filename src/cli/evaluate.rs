@@ -3,14 +3,14 @@
 use super::finger::{Chosen, FingerArguments};
 use super::repeat::{self, RepeatArguments};
 use super::setup::{self, Setup, SetupArguments};
-use super::words::{self, evaluation_json, merge};
+use super::words::{self, merge};
 use super::{Failure, print, print_json};
 use crate::evaluation::Evaluation;
-use crate::evaluation::robustness;
 use crate::evaluation::tolerance::Search;
 use crate::input::shipped::UNCERTAINTIES;
 use clap::Args;
 use serde_json::json;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Measure one finger.
@@ -45,15 +45,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let chosen = arguments.finger.choose(&setup)?;
     let clock = Instant::now();
     let search = if arguments.walk { Search::Walk } else { Search::Strides };
-    let rig = setup.rig(&chosen.task).map_err(Failure::input)?;
     let plan = setup.plan(arguments.seed, |_| setup.uncertainty.is_some())?;
+    let never = AtomicBool::new(false);
     let evaluation =
-        robustness::evaluate(&*rig, &chosen.finger, &chosen.stiffness(), search, &plan);
+        setup.evaluator.measure(&chosen.specimen, search, &plan, &never).map_err(Failure::input)?;
     let wall_s = clock.elapsed().as_secs_f64();
     let bands = arguments.repeat.bands(&setup, &chosen, &evaluation.window)?;
     if arguments.json {
         let mut fields = chosen.json(&setup, &arguments.finger);
-        merge(&mut fields, evaluation_json(&evaluation));
+        merge(&mut fields, json!(evaluation));
         merge(&mut fields, json!({"wall_s": wall_s}));
         if let Some(bands) = bands {
             merge(&mut fields, json!({"bands": repeat::bands_json(&bands)}));
@@ -67,7 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn text(chosen: &Chosen, evaluation: &Evaluation) -> String {
     let [c1, c2, c3, c4] = evaluation.failure_counts;
     let mut lines = vec![
-        format!("task          {}", chosen.task.name),
+        format!("task          {}", chosen.specimen.task.name),
         chosen.text(),
         format!("range         {:.1} mm", evaluation.window.range_mm()),
         words::window(evaluation),

@@ -3,6 +3,7 @@
 use super::Failure;
 use super::finger::FingerArguments;
 use super::setup::{Setup, SetupArguments};
+use crate::evaluation::evaluator::Specimen;
 use crate::physics::mjcf::{self, Settings};
 use crate::study::write_file;
 use crate::trial::cell;
@@ -42,9 +43,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Format::Mjcf(arguments) = &arguments.format;
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
-    let task = &chosen.task;
-    let mounted = setup.robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
-    let scene = cell::build(task, &mounted, &chosen.finger).scene;
+    let Specimen { task, finger, .. } = &chosen.specimen;
+    let mounted =
+        setup.evaluator.robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
+    let scene = cell::build(task, &mounted, finger).scene;
     let text = mjcf::write(&scene, &task.name, &Settings::default()).map_err(|error| {
         Failure::usage(format!("{error}; --robot servo and --robot rigid need none of it"))
     })?;

@@ -2,11 +2,10 @@
 
 use super::Failure;
 use super::setup::Setup;
-use super::words::{self, stiffness_json};
-use crate::finger::Finger;
+use super::words;
+use crate::evaluation::evaluator::Specimen;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use crate::input::task::Task;
-use crate::surrogate::{Estimate, Prediction};
+use crate::surrogate::Prediction;
 use crate::units::{MM, N_PER_MM};
 use clap::Args;
 use serde_json::{Value, json};
@@ -43,22 +42,19 @@ pub struct FingerArguments {
     set: Vec<(String, f64)>,
 }
 
-/// A task and a finger, and where its stiffness comes from.
+/// A finger on a task, and where its stiffness comes from.
 pub struct Chosen {
-    pub task: Task,
-    pub finger: Finger,
+    pub specimen: Specimen,
     /// What was set beside the infill.
     pub set: Design,
-    /// `None` if the stiffness was given.
-    pub prediction: Option<Prediction>,
+    /// Whether the stiffness was given, not predicted.
+    pub given: bool,
 }
 
 impl FingerArguments {
     /// The finger, checked against the space.
     pub fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
-        if !setup.other_templates.is_empty() {
-            return Err(Failure::usage("give one --task; only a study may have several"));
-        }
+        let template = setup.only_task()?;
         for (flag, key, value) in [
             ("--density", DENSITY_KEY, self.density),
             ("--direction", DIRECTION_KEY, self.direction),
@@ -68,11 +64,21 @@ impl FingerArguments {
             }
         }
         let set = self.settings(setup)?;
-        let (finger, prediction) = self.printed(setup)?;
         let mut design = set.clone();
+        design.0.extend(self.density.map(|density| (DENSITY_KEY.to_owned(), density)));
         design.0.extend(self.direction.map(|direction| (DIRECTION_KEY.to_owned(), direction)));
-        let (task, finger) = setup.template.apply(&design, finger).map_err(Failure::input)?;
-        Ok(Chosen { task, finger, set, prediction })
+        let (stiffness, given) = match (self.stiffness_compliance, self.stiffness_assembly) {
+            (Some(compliance), Some(assembly)) => {
+                (Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM), true)
+            }
+            _ if self.density.is_some() && self.direction.is_some() => {
+                (setup.evaluator.predict(&design), false)
+            }
+            _ => return Err(Failure::usage("give --density and --direction")),
+        };
+        let specimen =
+            setup.evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
+        Ok(Chosen { specimen, set, given })
     }
 
     /// What is set beside the infill; a key of the space must keep to its bounds there.
@@ -93,62 +99,31 @@ impl FingerArguments {
         }
         Ok(set)
     }
-
-    /// The finger as printed: its stiffness, and all else as in the paper.
-    fn printed(&self, setup: &Setup) -> Result<(Finger, Option<Prediction>), Failure> {
-        if let (Some(compliance), Some(assembly)) =
-            (self.stiffness_compliance, self.stiffness_assembly)
-        {
-            return Ok((Finger::new(compliance * N_PER_MM, assembly * N_PER_MM), None));
-        }
-        let (Some(density), Some(direction)) = (self.density, self.direction) else {
-            return Err(Failure::usage("give --density and --direction"));
-        };
-        let prediction = setup.surrogate.predict(&Design::infill(density, direction));
-        let finger = Finger::new(prediction.compliance.mean, prediction.assembly.mean);
-        Ok((finger, Some(prediction)))
-    }
 }
 
 impl Chosen {
-    /// The predicted stiffness; one that was given has no error.
-    pub fn stiffness(&self) -> Prediction {
-        let exact = |mean| Estimate { mean, sd: 0.0 };
-        self.prediction.unwrap_or(Prediction {
-            compliance: exact(self.finger.compliance),
-            assembly: exact(self.finger.assembly),
-            hull_distance: 0.0,
-        })
-    }
-
     /// The keys that say what was measured.
     pub fn json(&self, setup: &Setup, arguments: &FingerArguments) -> Value {
         json!({
-            "task": self.task.name,
-            "robot": setup.robot.name,
-            "density_percent": arguments.density,
-            "direction_deg": arguments.direction,
+            "task": self.specimen.task.name,
+            "robot": setup.evaluator.robot.name,
+            "infill_density_percent": arguments.density,
+            "infill_direction_deg": arguments.direction,
             "set": self.set,
-            "rcc_mm": self.finger.rcc / MM,
-            "stiffness": match &self.prediction {
-                Some(prediction) => stiffness_json(prediction),
-                None => json!({
-                    "compliance_n_per_mm": self.finger.compliance / N_PER_MM,
-                    "assembly_n_per_mm": self.finger.assembly / N_PER_MM,
-                }),
-            },
+            "rcc_mm": self.specimen.finger.rcc / MM,
+            "stiffness": self.specimen.stiffness,
         })
     }
 
     /// What was set, and the stiffness, a line each.
     pub fn text(&self) -> String {
-        let (compliance, assembly) = (self.finger.compliance, self.finger.assembly);
-        let stiffness = match &self.prediction {
-            Some(prediction) => words::stiffness(prediction),
-            None => format!(
+        let stiffness = &self.specimen.stiffness;
+        let stiffness = match self.given {
+            false => words::stiffness(stiffness),
+            true => format!(
                 "stiffness     compliance {} N/mm, assembly {} N/mm, as given",
-                compliance / N_PER_MM,
-                assembly / N_PER_MM
+                stiffness.compliance.mean / N_PER_MM,
+                stiffness.assembly.mean / N_PER_MM
             ),
         };
         if self.set.0.is_empty() {

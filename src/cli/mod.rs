@@ -10,6 +10,7 @@ mod evaluate;
 mod export;
 mod failure;
 mod finger;
+mod manual;
 mod progress;
 mod repeat;
 mod report;
@@ -43,7 +44,8 @@ use std::process::ExitCode;
     name = "optimize",
     version,
     subcommand_negates_reqs = true,
-    args_conflicts_with_subcommands = true
+    args_conflicts_with_subcommands = true,
+    after_help = "Example: optimize --task usb --budget 200"
 )]
 struct Cli {
     // First: reading the subcommand takes it out of the matches.
@@ -83,26 +85,53 @@ impl Args for StudyOrNone {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Continue a study after an interruption or a crash
+    #[command(after_help = "Example: optimize resume results/usb-gp-seed0")]
     Resume(resume::Arguments),
     /// Write the tables and plots of a study again
+    #[command(after_help = "Example: optimize report results/usb-gp-seed0")]
     Report(report::Arguments),
     /// Measure the tolerance window of one finger
+    #[command(
+        after_help = "Example: optimize evaluate --task usb --density 20 --direction 10 --walk"
+    )]
     Evaluate(evaluate::Arguments),
     /// Simulate one insertion
+    #[command(after_help = "Example: optimize trial --task ket12 --density 10 --direction 0 \
+                            --offset-mm 0.5 --svg trial.svg")]
     Trial(trial::Arguments),
     /// Show the stiffness model and how well it fits
+    #[command(after_help = "Example: optimize stiffness --stiffness-data mine.csv --svg model.svg")]
     Stiffness(stiffness::Arguments),
     /// Compare optimizers over studies of the same task and objective
+    #[command(
+        after_help = "Example: optimize compare results/usb-gp-seed0 results/usb-sobol-seed0"
+    )]
     Compare(compare::Arguments),
+    #[command(after_help = "Example: optimize check")]
     Check(check::Arguments),
+    #[command(after_help = "Example: optimize cross-check --against mujoco --reduced")]
     CrossCheck(cross_check::Arguments),
+    #[command(after_help = "Example: optimize validate --task ket8 --strides")]
     Validate(validate::Arguments),
+    #[command(after_help = "Example: optimize bench --repeats 8")]
     Bench(bench::Arguments),
+    #[command(after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 \
+                            --out scene.xml")]
     Export(export::Arguments),
     /// Optimize anything: JSON lines on standard input and output
+    #[command(
+        after_help = "Example: optimize ask-tell < session.jsonl; docs/ask-tell.md has the lines"
+    )]
     AskTell(ask_tell::Arguments),
     /// List tasks, spaces, robots and uncertainties
+    #[command(visible_alias = "task", after_help = "Example: optimize tasks --json")]
     Tasks(tasks::Arguments),
+    /// Print a completion script for a shell
+    #[command(after_help = "Example: optimize completions bash > optimize.bash")]
+    Completions(manual::CompletionArguments),
+    /// Print the manual page
+    #[command(after_help = "Example: optimize man > optimize.1")]
+    Man,
 }
 
 /// Runs `optimize` with these arguments, the program's name first.
@@ -142,6 +171,8 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::AskTell(arguments)) => ask_tell::run(&arguments),
         Some(Command::Tasks(arguments)) => tasks::run(&arguments),
+        Some(Command::Completions(arguments)) => manual::completions(&arguments),
+        Some(Command::Man) => manual::page(),
     }
 }
 

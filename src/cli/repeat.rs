@@ -60,9 +60,10 @@ impl RepeatArguments {
         measure: impl Fn(&Repeats) -> T,
     ) -> Result<Option<T>, Failure> {
         let Some(count) = self.repeat else { return Ok(None) };
-        let rig = |factor| setup.rig_at(&chosen.task, factor).map_err(Failure::input);
+        let specimen = &chosen.specimen;
+        let rig = |factor| setup.evaluator.rig(specimen, factor).map_err(Failure::input);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);
-        let repeats = Repeats::new([&*whole, &*half], &chosen.finger, self.repeat_seed, count);
+        let repeats = Repeats::new([&*whole, &*half], &specimen.finger, self.repeat_seed, count);
         Ok(Some(measure(&repeats)))
     }
 }

@@ -1,9 +1,10 @@
 //! `optimize report DIR`: makes the tables and plots of a study again.
 
-use super::{Failure, print, setup};
+use super::setup::{self, STIFFNESS_DATA};
+use super::{Failure, print};
 use crate::input::stiffness::Measurement;
 use crate::report;
-use crate::study::{StudyRecord, read_inputs, write_evaluations_csv, write_file};
+use crate::study::{StudyRecord, write_evaluations_csv, write_file};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -18,9 +19,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dir = &arguments.dir;
     let record = StudyRecord::load(dir)?;
-    let inputs = read_inputs(dir, &record.config)?;
-    let surrogate = setup::surrogate(&setup::input(&inputs, "stiffness")?)?;
-    write(dir, &record, surrogate.0.measurements())?;
+    let inputs = record.inputs(dir)?;
+    let surrogate = setup::surrogate(&setup::input(&inputs, STIFFNESS_DATA)?)?;
+    write(dir, &record, surrogate.measurements())?;
     let count = record.evaluations.len();
     let page = dir.join(PAGE);
     print(&format!("wrote the report of {count} evaluations: {}\n", page.display()))

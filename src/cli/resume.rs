@@ -3,7 +3,7 @@
 use super::Failure;
 use super::session::{self, SessionArguments};
 use super::setup::Setup;
-use crate::study::{Study, StudyConfig, StudyError, read_inputs};
+use crate::study::Study;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -18,13 +18,9 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let study = Study::resume(&arguments.dir)?;
-    let inputs = read_inputs(study.dir(), &study.config)?;
-    let setup = Setup::from_inputs(&inputs, &study.config.engine)?;
-    let now = StudyConfig { versions: setup.engine.versions(), ..study.config.clone() };
-    if let Some(differences) = study.config.differences(&now) {
-        let dir = arguments.dir.clone();
-        return Err(StudyError::Different { dir, differences }.into());
-    }
+    let mut study = Study::resume(&arguments.dir)?;
+    let inputs = study.inputs()?;
+    let setup = Setup::from_inputs(&inputs, &study.provenance().engine.name)?;
+    study.measure_with(&setup.provenance(), &inputs, arguments.session.if_changed())?;
     session::run(study, &setup, &arguments.session)
 }

@@ -1,9 +1,17 @@
 //! Runs an open study to its end: threads, Ctrl-C, progress, summary.
 
 use super::progress::Progress;
-use super::setup::{self, EngineKind, OptimizerKind, Setup};
+use super::setup::Setup;
 use super::{Failure, report, summary};
-use crate::study::{Cache, Ending, Runner, Simulated, Study};
+use crate::evaluation::objective::Measure;
+use crate::evaluation::robustness::Plan;
+use crate::evaluation::tolerance::Search;
+use crate::evaluation::uncertainty::Uncertainty;
+use crate::optimizer::gp::DEFAULT_NOISE_FLOOR;
+use crate::optimizer::{self, Grid, Optimizer, OptimizerKind, Polished};
+use crate::study::{
+    Cache, Ending, IfChanged, Runner, Simulated, Study, StudyConfig, StudyError, walk_best,
+};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,6 +32,10 @@ pub struct SessionArguments {
     /// Measure every design anew, and keep nothing
     #[arg(long, conflicts_with = "cache")]
     no_cache: bool,
+    /// Go on with a study that was measured by another program version, engine setting or input
+    /// file, in a new segment; the best design is then taken from that
+    #[arg(long)]
+    accept_changed: bool,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -44,17 +56,16 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))?;
     let stop = stop_on_interrupt(study.dir())?;
     let cache = arguments.cache(setup);
-    let evaluator = Simulated {
-        predict: |design: &_| setup.surrogate.predict(design),
-        template: &setup.template,
-        other_templates: &setup.other_templates,
-        plan: &plan,
-        rig: |task: &_| setup.rig(task),
-        stop: &stop,
+    let simulated = |search, plan| Simulated {
+        evaluator: &setup.evaluator,
+        search,
+        plan,
         cache: cache.as_ref(),
+        stop: &stop,
     };
+    let evaluator = simulated(Search::default(), &plan);
     let runner = Runner { evaluator: &evaluator, goals: &goals, pool: &pool, stop: &stop };
-    let mut optimizer = setup::optimizer(kind, setup, &config);
+    let mut optimizer = optimizer(kind, setup, &config);
     let mut progress = Progress::new(&study, arguments.quiet);
     let ended =
         runner.run(&mut study, &mut *optimizer, &mut |recorded| progress.measured(recorded));
@@ -62,28 +73,66 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     if let Some(problem) = cache.as_ref().and_then(Cache::problem) {
         eprintln!("warning: evaluations are not kept for other studies: {problem}");
     }
-    let ending = ended.map_err(|error| match Failure::from(error) {
+    let hint = |error: StudyError| match Failure::from(error) {
         Failure::Run(error) => Failure::running(format!("{error}\n{}", resume_hint(&study))),
         bad_input => bad_input,
-    })?;
-    report::write(study.dir(), &study.record(), setup.surrogate.0.measurements())?;
-    match ending {
-        Ending::Interrupted => {
-            Err(Failure::running(format!("interrupted; {}", resume_hint(&study))))
-        }
-        ending => {
-            let known = cache.map_or(0, |cache| cache.found());
-            summary::show(&study, ending, known, arguments.json)
+    };
+    let ending = ended.map_err(hint)?;
+    if ending != Ending::Interrupted {
+        let walker = simulated(Search::Walk, &Plan::WINDOW);
+        walk_best(&study, &walker, &pool, &stop).map_err(hint)?;
+    }
+    let record = study.record();
+    report::write(study.dir(), &record, setup.evaluator.surrogate.measurements())?;
+    if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {
+        return Err(Failure::running(format!("interrupted; {}", resume_hint(&study))));
+    }
+    let known = cache.as_ref().map_or(0, Cache::found);
+    summary::show(study.dir(), &record, ending, known, arguments.json)
+}
+
+/// The optimizer of a study.
+fn optimizer(
+    kind: OptimizerKind,
+    setup: &Setup,
+    config: &StudyConfig,
+) -> Box<dyn Optimizer + Send> {
+    let grid = Grid::new(setup.space.levels());
+    let measures = config.objective.measures().iter();
+    let floors: Vec<f64> =
+        measures.map(|&measure| noise_floor(measure, setup.uncertainty.as_ref())).collect();
+    let search = optimizer::build_for(kind, grid.clone(), config.seed, &floors);
+    match config.polish {
+        0 => search,
+        polish => Box::new(Polished::new(search, grid, config.budget, polish)),
+    }
+}
+
+/// Standard deviation of what a measure's steps round off, in its unit: ranges have steps of
+/// 0.1 mm, success rates of one trial, forces and slips none.
+fn noise_floor(measure: Measure, uncertainty: Option<&Uncertainty>) -> f64 {
+    match measure {
+        Measure::PeakForce | Measure::Slip => 0.0,
+        Measure::Range | Measure::CentredRange | Measure::RobustRange => DEFAULT_NOISE_FLOOR,
+        Measure::SuccessRate => {
+            let trials = uncertainty.map_or(1, |errors| errors.success.trials);
+            1.0 / f64::from(trials) / 12f64.sqrt()
         }
     }
 }
 
 impl SessionArguments {
+    /// What to do with a study that was measured otherwise.
+    pub fn if_changed(&self) -> IfChanged {
+        if self.accept_changed { IfChanged::NewSegment } else { IfChanged::Refuse }
+    }
+
     fn cache(&self, setup: &Setup) -> Option<Cache> {
+        let engine = setup.evaluator.engine;
         // A closed formula is faster than a file.
-        let default = (setup.engine != EngineKind::Fake).then(|| PathBuf::from(CACHE));
+        let default = engine.simulates().then(|| PathBuf::from(CACHE));
         let dir = self.cache.clone().or(default).filter(|_| !self.no_cache)?;
-        Some(Cache::new(&dir, &setup.robot, &setup.engine.settings()))
+        Some(Cache::new(&dir, &setup.evaluator.robot, &engine.record()))
     }
 }
 

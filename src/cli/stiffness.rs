@@ -24,7 +24,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let data = stiffness_data(arguments.stiffness_data.as_deref())?;
-    let model = surrogate(&data)?.0;
+    let model = surrogate(&data)?;
     if let Some(path) = &arguments.svg {
         let svg = stiffness::svg(&model).map_err(|error| Failure::running(error.to_string()))?;
         write_file(path, &svg)?;

@@ -2,10 +2,11 @@
 
 use super::Failure;
 use super::session::{self, SessionArguments};
-use super::setup::{self, OptimizerKind, Setup, SetupArguments};
+use super::setup::{self, Setup, SetupArguments};
 use crate::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
 use crate::input::shipped::UNCERTAINTIES;
-use crate::study::{Study, StudyConfig, sha256, study_name};
+use crate::optimizer::OptimizerKind;
+use crate::study::{Study, StudyConfig, study_name};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -84,7 +85,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let config = arguments.config(&setup)?;
     check(arguments.optimizer, &config)?;
     let dir = arguments.out.clone().unwrap_or_else(|| default_folder(&config));
-    let study = Study::create_or_continue(&dir, &config, &setup.inputs)?;
+    let if_changed = arguments.session.if_changed();
+    let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
     session::run(study, &setup, &arguments.session)
 }
 
@@ -127,23 +129,22 @@ impl Arguments {
     }
 
     fn config(&self, setup: &Setup) -> Result<StudyConfig, Failure> {
-        let names = setup.other_templates.iter().map(|template| template.task().name.clone());
+        let evaluator = &setup.evaluator;
+        let names = evaluator.templates.iter().map(|template| template.task().name.clone());
+        let tasks: Vec<String> = names.collect();
         Ok(StudyConfig {
-            task: setup.template.task().name.clone(),
-            other_tasks: names.collect(),
-            robot: setup.robot.name.clone(),
-            engine: setup.engine.name().to_owned(),
+            aggregate: self.aggregate(tasks.len())?,
+            tasks,
+            robot: evaluator.robot.name.clone(),
             optimizer: self.optimizer.to_string(),
             objective: self.objective.clone(),
             constraints: self.constraint.clone(),
-            aggregate: self.aggregate(setup.templates().count())?,
             uncertainty: setup.uncertainty.as_ref().map(|errors| errors.name.clone()),
             seed: self.seed,
             budget: self.budget,
             polish: self.polish,
             batch: self.batch,
-            versions: setup.engine.versions(),
-            input_sha256: sha256(&setup.inputs),
+            provenance: setup.provenance(),
             space: setup.space.clone(),
         })
     }

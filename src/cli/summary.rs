@@ -1,21 +1,30 @@
 //! What is printed of a whole study.
 
-use super::words::{drawn_text, evaluation_json, merge, stiffness, stiffness_json, window};
+use super::words::{drawn_text, merge, stiffness, window};
 use super::{Failure, print, print_json};
 use crate::report::volume_unit;
-use crate::study::{Ending, Recorded, Study, StudyRecord, nearest, volume};
+use crate::study::{Ending, Recorded, StudyRecord, nearest, volume};
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// Prints the result of a study, `known` evaluations of which were in the cache.
-pub fn show(study: &Study, ending: Ending, known: u64, as_json: bool) -> Result<(), Failure> {
+pub fn show(
+    dir: &Path,
+    record: &StudyRecord,
+    ending: Ending,
+    known: u64,
+    as_json: bool,
+) -> Result<(), Failure> {
     if as_json {
-        return print_json(&to_json(study, ending, known));
+        let mut fields = to_json(record, ending, known);
+        merge(&mut fields, json!({"study": dir}));
+        return print_json(&fields);
     }
-    print(&text(study, ending, known))
+    print(&text(dir, record, ending, known))
 }
 
-fn text(study: &Study, ending: Ending, known: u64) -> String {
-    let (config, record) = (&study.config, study.record());
+fn text(dir: &Path, record: &StudyRecord, ending: Ending, known: u64) -> String {
+    let config = &record.config;
     let done = record.evaluations.len();
     let end = match ending {
         Ending::SpaceExhausted => ": every design of the space",
@@ -24,22 +33,32 @@ fn text(study: &Study, ending: Ending, known: u64) -> String {
     };
     let (task, method) = (config.task_name(), config.method());
     let mut lines = vec![format!("{task} with {method}: {done} evaluations{end}")];
-    match (record.best(), config.objective.single()) {
-        (None, _) => lines.push(none(&record)),
-        (Some(best), Some(_)) => lines.extend(best_lines(&record, best)),
-        (Some(_), None) => lines.extend(front_lines(&record)),
+    if let Some(segment) = record.segments.last().filter(|segment| segment.first > 0) {
+        lines.push(format!(
+            "segment       {}, from evaluation {}: the settings changed, and only these count",
+            record.segments.len(),
+            segment.first
+        ));
+    }
+    match (record.recommended(), config.objective.single()) {
+        (None, _) => lines.push(none(record)),
+        (Some(best), Some(_)) => {
+            lines.extend(best_lines(record, best));
+            lines.extend(walked_lines(record));
+        }
+        (Some(_), None) => lines.extend(front_lines(record)),
     }
     if known > 0 {
         lines.push(format!("cache         {known} evaluations were known from other studies"));
     }
-    let page = study.dir().join(super::report::PAGE);
-    lines.push(format!("study         {} (see {})", study.dir().display(), page.display()));
+    let page = dir.join(super::report::PAGE);
+    lines.push(format!("study         {} (see {})", dir.display(), page.display()));
     lines.join("\n") + "\n"
 }
 
 /// Why no design is recommended.
 fn none(record: &StudyRecord) -> String {
-    let Some(nearest) = nearest(&record.evaluations) else {
+    let Some(nearest) = nearest(record.current()) else {
         return "no evaluation gave a value".to_owned();
     };
     let tasks = nearest.tasks();
@@ -64,7 +83,7 @@ fn best_lines(record: &StudyRecord, best: &Recorded) -> Vec<String> {
     let constraints = config.constraints.iter();
     lines.extend(constraints.map(|c| format!("constraint    {} {}", c.measure, c.words(&tasks))));
     for (name, evaluation) in config.tasks().zip(&tasks) {
-        if !config.other_tasks.is_empty() {
+        if config.several_tasks() {
             lines.push(format!("task          {name}"));
         }
         lines.push(window(evaluation));
@@ -72,6 +91,24 @@ fn best_lines(record: &StudyRecord, best: &Recorded) -> Vec<String> {
     }
     lines.push(stiffness(&best.stiffness));
     lines
+}
+
+/// What the walk said of the best designs of the search, if they were walked.
+fn walked_lines(record: &StudyRecord) -> Vec<String> {
+    let (Some(measure), Some(searched)) = (record.config.objective.single(), record.best()) else {
+        return Vec::new();
+    };
+    let show = |recorded: &Recorded| recorded.value().map_or("none".into(), |v| measure.show(v));
+    let [first, rest @ ..] = record.walked.as_slice() else { return Vec::new() };
+    let mut line = format!("walked        step by step: the best {} designs", rest.len() + 1);
+    let before = record.current().iter().find(|r| r.index == first.recorded.index);
+    if let Some(before) = before.filter(|before| before.value() != first.recorded.value()) {
+        line += &format!("; the search had given this one {}", show(before));
+    }
+    if searched.index != first.recorded.index {
+        line += &format!("; evaluation {} had {} in the search", searched.index, show(searched));
+    }
+    vec![line]
 }
 
 fn front_lines(record: &StudyRecord) -> Vec<String> {
@@ -86,7 +123,7 @@ fn front_lines(record: &StudyRecord) -> Vec<String> {
         front.len()
     )];
     lines.extend(front.iter().map(line));
-    let found = volume(&goals, &record.evaluations);
+    let found = volume(&goals, record.current());
     lines.push(format!(
         "hypervolume   {:.3} {} from the reference {}",
         found.hypervolume,
@@ -96,8 +133,8 @@ fn front_lines(record: &StudyRecord) -> Vec<String> {
     lines
 }
 
-fn to_json(study: &Study, ending: Ending, known: u64) -> Value {
-    let (config, record) = (&study.config, study.record());
+fn to_json(record: &StudyRecord, ending: Ending, known: u64) -> Value {
+    let config = &record.config;
     let ending = match ending {
         Ending::BudgetSpent => "budget_spent",
         Ending::SpaceExhausted => "space_exhausted",
@@ -110,7 +147,7 @@ fn to_json(study: &Study, ending: Ending, known: u64) -> Value {
         "task": config.task_name(),
         "space": config.space.name(),
         "robot": config.robot,
-        "engine": config.engine,
+        "engine": record.segments.last().map(|segment| &segment.provenance.engine.name),
         "optimizer": config.optimizer,
         "objective": config.objective,
         "seed": config.seed,
@@ -119,20 +156,27 @@ fn to_json(study: &Study, ending: Ending, known: u64) -> Value {
         "evaluations": record.evaluations.len(),
         "cached": known,
         "ending": ending,
-        "best": best.map(|best| recorded_json(&record, best)),
-        "study": study.dir(),
+        "best": best.map(|best| recorded_json(record, best)),
     });
+    if !record.walked.is_empty() {
+        let walked: Vec<Value> =
+            record.walked.iter().map(|walked| recorded_json(record, &walked.recorded)).collect();
+        merge(&mut fields, json!({"walked": walked}));
+    }
+    if record.segments.len() > 1 {
+        merge(&mut fields, json!({"segments": record.segments}));
+    }
     if !config.constraints.is_empty() {
-        let feasible = record.evaluations.iter().filter(|r| r.feasible().is_some()).count();
+        let feasible = record.current().iter().filter(|r| r.feasible().is_some()).count();
         merge(&mut fields, json!({"constraints": config.constraints, "feasible": feasible}));
     }
     if let Some(aggregate) = &config.aggregate {
         merge(&mut fields, json!({"aggregate": aggregate}));
     }
     if single.is_none() {
-        let found = volume(&config.goals(), &record.evaluations);
+        let found = volume(&config.goals(), record.current());
         let front = record.front();
-        let front: Vec<Value> = front.iter().map(|r| recorded_json(&record, r)).collect();
+        let front: Vec<Value> = front.iter().map(|r| recorded_json(record, r)).collect();
         let keys = config.objective.keys();
         let reference: serde_json::Map<_, _> =
             keys.into_iter().zip(found.reference.iter().map(|&value| json!(value))).collect();
@@ -150,7 +194,7 @@ fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
     let config = &record.config;
     let mut fields = json!({
         "evaluation": recorded.index,
-        "stiffness": stiffness_json(&recorded.stiffness),
+        "stiffness": recorded.stiffness,
     });
     if let Some(score) = &recorded.score {
         let keys = config.objective.keys().into_iter();
@@ -161,12 +205,12 @@ fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
         }
     }
     merge(&mut fields, json!(recorded.design));
-    if config.other_tasks.is_empty() {
-        merge(&mut fields, evaluation_json(&recorded.evaluation));
+    if !config.several_tasks() {
+        merge(&mut fields, json!(recorded.tasks.first()));
     } else {
         let of = |(task, evaluation)| {
             let mut fields = json!({"task": task});
-            merge(&mut fields, evaluation_json(evaluation));
+            merge(&mut fields, json!(evaluation));
             fields
         };
         let tasks: Vec<Value> = config.tasks().zip(recorded.tasks()).map(of).collect();

@@ -40,10 +40,11 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
-    let rig = setup.rig(&chosen.task).map_err(Failure::input)?;
-    let trial = rig.grasp(&chosen.finger).trial(arguments.offset_mm * MM);
+    let specimen = &chosen.specimen;
+    let rig = setup.evaluator.rig(specimen, 1.0).map_err(Failure::input)?;
+    let trial = rig.grasp(&specimen.finger).trial(arguments.offset_mm * MM);
     if let Some(file) = &arguments.svg {
-        write_file(file, &picture::svg(&chosen.task, &trial))?;
+        write_file(file, &picture::svg(&specimen.task, &trial))?;
     }
     let repeats = arguments.repeat.outcomes(&setup, &chosen, arguments.offset_mm * MM)?;
     if arguments.json {

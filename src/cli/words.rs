@@ -4,7 +4,7 @@ use crate::evaluation::Evaluation;
 use crate::outcome::Outcome;
 use crate::surrogate::Prediction;
 use crate::units::N_PER_MM;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::fmt::Write;
 
 /// The window of an evaluation and what ended it.
@@ -53,27 +53,6 @@ pub fn stiffness(prediction: &Prediction) -> String {
     text
 }
 
-/// The keys every evaluation is printed with.
-pub fn evaluation_json(evaluation: &Evaluation) -> Value {
-    let window = &evaluation.window;
-    let mut fields = json!({
-        "range_mm": window.range_mm(),
-        "negative_mm": window.negative_mm(),
-        "positive_mm": window.positive_mm(),
-        "nominal": outcome_word(window.nominal),
-        "failure_negative": failure(window.end_negative),
-        "failure_positive": failure(window.end_positive),
-        "failure_counts": evaluation.failure_counts,
-        "diverged": evaluation.diverged,
-        "peak_force_n": evaluation.peak_force_n,
-        "slip_mm": evaluation.slip_mm,
-        "trials": evaluation.trials,
-        "simulated_s": evaluation.simulated_s,
-    });
-    merge(&mut fields, drawn_json(evaluation));
-    fields
-}
-
 /// Success rate and robust range, a line each, as far as they were measured.
 pub fn drawn_text(evaluation: &Evaluation) -> Vec<String> {
     let mut lines = Vec::new();
@@ -102,51 +81,6 @@ pub fn drawn_text(evaluation: &Evaluation) -> Vec<String> {
         ));
     }
     lines
-}
-
-fn drawn_json(evaluation: &Evaluation) -> Value {
-    let mut fields = json!({});
-    if let Some(success) = &evaluation.success {
-        let [low, high] = success.interval();
-        merge(
-            &mut fields,
-            json!({
-                "success_rate": success.rate(),
-                "success_low": low,
-                "success_high": high,
-                "success_confidence": success.confidence,
-                "success_inserted": success.inserted,
-                "success_failure_counts": success.failure_counts,
-                "success_diverged": success.diverged,
-            }),
-        );
-    }
-    if let Some(robust) = &evaluation.robust {
-        merge(
-            &mut fields,
-            json!({
-                "robust_range_mm": robust.value_mm,
-                "robust_mean_mm": robust.mean_mm(),
-                "robust_sd_mm": robust.sd_mm(),
-                "robust_ranges_mm": robust.ranges_mm,
-                "robust_diverged": robust.diverged,
-                "robust_trials": robust.trials,
-            }),
-        );
-    }
-    fields
-}
-
-/// A prediction with its uncertainty.
-pub fn stiffness_json(prediction: &Prediction) -> Value {
-    json!({
-        "compliance_n_per_mm": prediction.compliance.mean / N_PER_MM,
-        "compliance_sd_n_per_mm": prediction.compliance.sd / N_PER_MM,
-        "assembly_n_per_mm": prediction.assembly.mean / N_PER_MM,
-        "assembly_sd_n_per_mm": prediction.assembly.sd / N_PER_MM,
-        "hull_distance": prediction.hull_distance,
-        "inside_hull": prediction.inside_hull(),
-    })
 }
 
 /// `inserted`, `failed` or `diverged`.

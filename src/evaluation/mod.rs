@@ -1,8 +1,11 @@
 //! What a trial, a window search and an evaluation report.
 
+pub mod evaluator;
 pub mod objective;
 pub mod pareto;
 pub mod robustness;
+mod schema;
+mod stoppable;
 pub mod template;
 pub mod tolerance;
 pub mod uncertainty;
@@ -20,7 +23,8 @@ pub const OFFSET_STEP_MM: f64 = 0.1;
 /// what stopped the search at each end.
 ///
 /// Invariant of a window with `nominal == Inserted`: `negative_steps <= 0 <=
-/// positive_steps`, and every grid offset between them was found to insert.
+/// positive_steps`, and both were found to insert. By the step-by-step walk every grid
+/// offset between them was; by strides a gap between the offsets tried stays unseen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Window {
     /// Outcome at the nominal start; anything but inserted makes the range 0.
@@ -62,8 +66,9 @@ pub fn grid_mm(steps: OffsetStep) -> f64 {
 }
 
 /// Everything measured for one design on one task. The counts and times are those
-/// of the window search.
-#[derive(Debug, Clone, PartialEq)]
+/// of the window search. Written in the one form of `schema.rs`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "schema::EvaluationRow", try_from = "schema::EvaluationRow")]
 pub struct Evaluation {
     /// The tolerance window.
     pub window: Window,
@@ -81,9 +86,8 @@ pub struct Evaluation {
     pub simulated_s: f64,
     /// Where the outcome turns within the grid step beyond each end (negative, positive), as
     /// a share of it, 0 to 1: interpolated over [`Trial::margin`](crate::trial::Trial::margin).
-    /// If the nominal start fails, its margin, -1 to 0. `None` in studies from before it was
-    /// recorded.
-    pub end_shares: Option<[f64; 2]>,
+    /// If the nominal start fails, its margin, -1 to 0.
+    pub end_shares: [f64; 2],
     /// How often the design inserts under errors, if that was measured.
     pub success: Option<SuccessRate>,
     /// How its range holds under errors, if that was measured.

@@ -16,9 +16,8 @@ pub enum Search {
     Walk,
     /// In strides of 0.5 mm outward to the first failure, then by bisection
     /// between the last two: a third of the trials. It finds the end that the
-    /// walk finds unless a gap in the window is narrower than a stride; over the
-    /// 44 pairs of task and measured finger the ends are the same
-    /// (`docs/performance.md`).
+    /// walk finds unless a gap in the window is narrower than a stride; so it is on 43 of
+    /// the 44 pairs of task and measured finger (`docs/performance.md`).
     #[default]
     Strides,
 }
@@ -179,7 +178,7 @@ impl Log {
             peak_force_n: self.peak_force_n,
             slip_mm: self.slip_mm,
             simulated_s: self.simulated_s,
-            end_shares: Some(end_shares),
+            end_shares,
             success: None,
             robust: None,
         }

@@ -53,7 +53,7 @@ fn none(record: &StudyRecord) -> String {
 /// What the best design tolerates on one task, and whether that is of any use.
 fn tolerated(record: &StudyRecord, task: &str, evaluation: &Evaluation) -> String {
     let window = &evaluation.window;
-    let on = match record.config.other_tasks.is_empty() {
+    let on = match !record.config.several_tasks() {
         true => String::new(),
         false => format!(" on {}", escape(task)),
     };
@@ -99,7 +99,7 @@ fn facts(record: &StudyRecord, best: &Recorded, found: &[f64]) -> String {
     let constraints = record.config.constraints.iter();
     rows.extend(constraints.map(|c| ("constraint".to_owned(), c.words(&tasks))));
     for (task, evaluation) in record.config.tasks().zip(&tasks) {
-        if !record.config.other_tasks.is_empty() {
+        if record.config.several_tasks() {
             rows.push(("on the task".to_owned(), task.to_owned()));
         }
         rows.extend(of_task(evaluation));

@@ -173,14 +173,11 @@ fn alike(
                 config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string),
             ),
             ("robot", config.robot.clone()),
-            ("engine", config.engine.clone()),
-            ("engine version", config.versions.engine.clone()),
+            ("engine", config.provenance.engine.name.clone()),
         ]
         .map(|(what, value)| (what.to_owned(), value))
         .into();
         fields.push(("space".to_owned(), config.space.name().to_owned()));
-        let files = config.input_sha256.iter();
-        fields.extend(files.map(|(role, hash)| (format!("{role} file (SHA-256)"), hash.clone())));
         fields
     };
     let (ours, theirs) = (fields(&ours.config), fields(&theirs.config));

@@ -130,7 +130,7 @@ fn each_task(
     record: &StudyRecord,
     part: impl Fn(usize) -> Result<String, ReportError>,
 ) -> Result<String, ReportError> {
-    let alone = record.config.other_tasks.is_empty();
+    let alone = !record.config.several_tasks();
     let titled = |(task, name): (usize, &str)| {
         let title = if alone { String::new() } else { format!("<h3>{}</h3>\n", escape(name)) };
         Ok(title + &part(task)?)

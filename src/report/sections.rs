@@ -8,7 +8,7 @@ use crate::input::published::{Origin, Published, designs, of_task};
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY};
 use crate::input::stiffness::Measurement;
 use crate::outcome::{FailureClass, Outcome};
-use crate::study::{Recorded, StudyRecord};
+use crate::study::{Provenance, Recorded, StudyRecord};
 use crate::verify::agreement::statistics::rank_correlation;
 
 /// A list of names and values; both are escaped.
@@ -159,8 +159,6 @@ pub(super) fn provenance(record: &StudyRecord) -> String {
         ("seed", config.seed.to_string()),
         ("evaluations", format!("{} of {}", record.evaluations.len(), config.evaluations())),
         ("designs proposed at a time", config.batch.to_string()),
-        ("contact engine", format!("{} {}", config.engine, config.versions.engine)),
-        ("finger-opt", config.versions.program.clone()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .into();
@@ -179,9 +177,25 @@ pub(super) fn provenance(record: &StudyRecord) -> String {
     let wall: f64 = record.evaluations.iter().map(|r| r.timing.wall_s).sum();
     rows.push(("simulated time of the window searches".to_owned(), format!("{simulated:.0} s")));
     rows.push(("wall-clock time, summed over evaluations".to_owned(), format!("{wall:.0} s")));
-    for (role, hash) in &config.input_sha256 {
-        rows.push((format!("SHA-256 of the {role} file"), hash.clone()));
-    }
+    rows.extend(record.segments.iter().enumerate().flat_map(|(i, segment)| {
+        let name = |what: &str| match record.segments.len() {
+            1 => what.to_owned(),
+            _ => format!("{what}, segment {} (from evaluation {})", i + 1, segment.first),
+        };
+        let Provenance { program, source_sha256, input_sha256, engine } = &segment.provenance;
+        let mut rows = vec![
+            (name("finger-opt"), format!("{program}, sources {source_sha256}")),
+            (name("contact engine"), engine.version.clone()),
+        ];
+        let settings = engine.settings.iter().map(|(key, value)| format!("{key} = {value}"));
+        rows.push((name("engine settings"), settings.collect::<Vec<_>>().join(", ")));
+        rows.extend(
+            input_sha256
+                .iter()
+                .map(|(role, hash)| (name(&format!("SHA-256 of the {role} file")), hash.clone())),
+        );
+        rows
+    }));
     definitions(&rows)
 }
 

@@ -6,8 +6,9 @@ use crate::finger::Finger;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use crate::input::stiffness::{Measurement, SHIPPED_CSV, SHIPPED_FILE, parse};
 use crate::outcome::{FailureClass, Outcome};
-use crate::study::{Recorded, StudyConfig, Timing, Versions};
+use crate::study::{Provenance, Recorded, Segment, StudyConfig, Timing};
 use crate::surrogate::{Model, fit};
+use crate::trial::engine::EngineKind;
 use crate::trial::fake::FakeRig;
 use std::collections::BTreeMap;
 
@@ -19,12 +20,15 @@ fn model() -> Model {
     fit(&measured()).unwrap()
 }
 
+fn provenance() -> Provenance {
+    let hashes = BTreeMap::from([("task_1".to_owned(), "9f86d081884c7d65".repeat(4))]);
+    Provenance::new(EngineKind::Direct, hashes)
+}
+
 fn config(task: &str) -> StudyConfig {
     StudyConfig {
-        task: task.to_owned(),
-        other_tasks: Vec::new(),
+        tasks: vec![task.to_owned()],
         robot: "rigid".to_owned(),
-        engine: "fake".to_owned(),
         optimizer: "gp".to_owned(),
         objective: Objectives::of(Measure::Range),
         constraints: Vec::new(),
@@ -34,14 +38,14 @@ fn config(task: &str) -> StudyConfig {
         budget: 200,
         polish: 0,
         batch: 4,
-        versions: Versions { program: "0.1.0".to_owned(), engine: "1".to_owned() },
-        input_sha256: BTreeMap::from([("task".to_owned(), "9f86d081884c7d65".repeat(4))]),
+        provenance: provenance(),
         space: Space::parse(include_str!("../../spaces/infill.toml"), "infill.toml").unwrap(),
     }
 }
 
 fn record(task: &str, evaluations: Vec<Recorded>) -> StudyRecord {
-    StudyRecord { config: config(task), evaluations }
+    let segments = vec![Segment { first: 0, provenance: provenance() }];
+    StudyRecord { config: config(task), segments, evaluations, walked: Vec::new() }
 }
 
 /// A study of the closed-form rig over a coarse grid in a scattered order.
@@ -66,8 +70,8 @@ fn recorded(
 ) -> Recorded {
     let score = Goals::of(Measure::Range).score(&[&evaluation]);
     let design = Design::infill(infill[0], infill[1]);
-    let (other_tasks, timing) = (Vec::new(), Timing::default());
-    Recorded { index, design, score, stiffness, evaluation, other_tasks, timing }
+    let (tasks, timing) = (vec![evaluation], Timing::default());
+    Recorded { index, design, score, stiffness, tasks, timing }
 }
 
 /// An evaluation whose nominal start already ends so.
@@ -91,7 +95,7 @@ fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
         peak_force_n: 0.0,
         slip_mm: 0.0,
         simulated_s: 3.0,
-        end_shares: None,
+        end_shares: [0.0; 2],
         success: None,
         robust: None,
     };
@@ -123,7 +127,7 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
     let page = html(&study, &measured()).unwrap();
     check_page(&page);
     let best = study.best().unwrap();
-    let window = &best.evaluation.window;
+    let window = &best.tasks[0].window;
     for number in [
         format!("<b>{:.1} mm</b>", window.range_mm()),
         format!("{:+.1} mm to {:+.1} mm", window.negative_mm(), window.positive_mm()),
@@ -136,7 +140,7 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
     ] {
         assert!(page.contains(&number), "{number}");
     }
-    let trials: u32 = study.evaluations.iter().map(|r| r.evaluation.trials).sum();
+    let trials: u32 = study.evaluations.iter().map(|r| r.tasks[0].trials).sum();
     assert!(page.contains(&format!("{trials} trials in 60 window searches")));
     assert!(page.contains("9.0 mm (4 | 3)") && page.contains("4.7 mm (4 | 4)"));
     assert_eq!(page.matches("<svg ").count(), 4);
@@ -192,10 +196,10 @@ fn empty_failed_and_diverged_studies_still_have_a_page() {
 #[test]
 fn what_comes_from_files_is_escaped_and_unknown_tasks_are_told() {
     let mut study = study();
-    study.config.task = "<img onerror=x>&\"'".to_owned();
+    study.config.tasks = vec!["<img onerror=x>&\"'".to_owned()];
     study.config.uncertainty = Some("<b>errors".to_owned());
     study.evaluations[0].design.0.insert("<i>key".to_owned(), 1.0);
-    study.config.input_sha256.insert("<u>".to_owned(), "<s>".to_owned());
+    study.segments[0].provenance.input_sha256.insert("<u>".to_owned(), "<s>".to_owned());
     let page = html(&study, &measured()).unwrap();
     check_page(&page);
     for raw in ["<img", "<b>errors", "<i>", "<u>", "<s>"] {
@@ -210,11 +214,11 @@ fn fronts_constraints_and_tasks_have_their_places_on_the_page() {
     let mut study = study();
     study.config.objective = "range,peak-force".parse().unwrap();
     study.config.constraints = vec!["range<=6".parse().unwrap()];
-    study.config.other_tasks = vec!["<s>other".to_owned()];
+    study.config.tasks.push("<s>other".to_owned());
     study.config.aggregate = Some(Aggregate::Mean);
     let goals = study.config.goals();
     for recorded in &mut study.evaluations {
-        recorded.other_tasks = vec![recorded.evaluation.clone()];
+        recorded.tasks.push(recorded.tasks[0].clone());
         recorded.score = goals.score(&recorded.tasks());
     }
     let page = html(&study, &measured()).unwrap();

@@ -9,11 +9,11 @@
 //! many processes need no lock; of two writers the later wins with an equal file. A file
 //! that is torn or damaged fails its check and is measured and written again.
 
-use super::attributes::Attributes;
+use super::provenance::SOURCES;
 use super::seal::{seal, unseal};
 use crate::evaluation::Evaluation;
 use crate::input::robot::Robot;
-use crate::surrogate::Prediction;
+use crate::trial::engine::EngineRecord;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Debug;
@@ -21,9 +21,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::{fs, io};
-
-/// The sources that this program was built from.
-const SOURCES: &str = env!("FINGER_OPT_SOURCE_SHA256");
 
 /// A folder of evaluations, for one robot and one engine.
 #[derive(Debug)]
@@ -42,15 +39,15 @@ pub struct Key(String);
 #[derive(Serialize, Deserialize)]
 struct Entry {
     key: String,
-    measured: Attributes,
+    measured: Evaluation,
 }
 
 impl Cache {
-    /// The cache in `dir`, which need not exist; `engine` names the engine and all its settings.
-    pub fn new(dir: &Path, robot: &Robot, engine: &str) -> Self {
+    /// The cache in `dir`, which need not exist.
+    pub fn new(dir: &Path, robot: &Robot, engine: &EngineRecord) -> Self {
         Cache {
             dir: dir.to_owned(),
-            context: format!("sources {SOURCES}\nengine {engine}\nrobot {robot:?}\n"),
+            context: format!("sources {SOURCES}\nengine {engine:?}\nrobot {robot:?}\n"),
             found: AtomicU64::new(0),
             problem: Mutex::new(None),
         }
@@ -73,13 +70,13 @@ impl Cache {
             return None;
         }
         self.found.fetch_add(1, Ordering::Relaxed);
-        Some(entry.measured.evaluation())
+        Some(entry.measured)
     }
 
-    /// Keeps an evaluation and the stiffness it was made with. What cannot be kept is measured
-    /// again next time, so a failure is only noted ([`problem`](Self::problem)).
-    pub fn put(&self, key: &Key, evaluation: &Evaluation, stiffness: &Prediction) {
-        if let Err(error) = self.write(key, Attributes::new(evaluation, stiffness))
+    /// Keeps an evaluation. What cannot be kept is measured again next time, so a failure is
+    /// only noted ([`problem`](Self::problem)).
+    pub fn put(&self, key: &Key, evaluation: &Evaluation) {
+        if let Err(error) = self.write(key, evaluation)
             && let Ok(mut problem) = self.problem.lock()
         {
             problem.get_or_insert(error);
@@ -102,8 +99,8 @@ impl Cache {
         self.dir.join(folder).join(format!("{name}.json"))
     }
 
-    fn write(&self, key: &Key, measured: Attributes) -> io::Result<()> {
-        let entry = Entry { key: key.0.clone(), measured };
+    fn write(&self, key: &Key, measured: &Evaluation) -> io::Result<()> {
+        let entry = Entry { key: key.0.clone(), measured: measured.clone() };
         let text = seal(&entry, None::<&()>)?;
         let path = self.path(key);
         let folder = path.parent().unwrap_or(&self.dir);
@@ -126,22 +123,17 @@ mod tests {
     use crate::evaluation::tolerance::{Search, evaluate};
     use crate::finger::Finger;
     use crate::input::shipped::ROBOTS;
-    use crate::surrogate::Estimate;
+    use crate::trial::engine::EngineKind;
     use crate::trial::fake::FakeRig;
 
     fn cache(dir: &Path) -> Cache {
         let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-        Cache::new(dir, &robot, "fake")
+        Cache::new(dir, &robot, &EngineKind::Direct.record())
     }
 
     fn measured(compliance: f64) -> Evaluation {
         let finger = Finger::new(compliance, 2e4);
         evaluate(&FakeRig::default(), &finger, Search::Walk)
-    }
-
-    fn stiffness() -> Prediction {
-        let one = Estimate { mean: 2e3, sd: 0.1 };
-        Prediction { compliance: one, assembly: one, hull_distance: 0.0 }
     }
 
     fn files(dir: &Path) -> Vec<PathBuf> {
@@ -157,14 +149,22 @@ mod tests {
         let cache = cache(dir.path());
         let (a, b) = (cache.key(&0.1), cache.key(&(0.1 + f64::EPSILON)));
         assert_eq!(cache.get(&a), None);
-        cache.put(&a, &measured(3e3), &stiffness());
+        cache.put(&a, &measured(3e3));
         assert_eq!(cache.get(&a), Some(measured(3e3)));
         assert_eq!((cache.get(&b), cache.found(), cache.problem()), (None, 1, None));
         let robot = Robot::parse(ROBOTS[1].text, ROBOTS[1].file).unwrap();
         let others = [
-            Cache::new(dir.path(), &robot, "fake"),
-            Cache::new(dir.path(), &Robot { stop_force: 1.0, ..robot }, "fake"),
-            Cache::new(dir.path(), &Robot::parse(ROBOTS[0].text, "").unwrap(), "faker"),
+            Cache::new(dir.path(), &robot, &EngineKind::Direct.record()),
+            Cache::new(
+                dir.path(),
+                &Robot { stop_force: 1.0, ..robot },
+                &EngineKind::Direct.record(),
+            ),
+            Cache::new(
+                dir.path(),
+                &Robot::parse(ROBOTS[0].text, "").unwrap(),
+                &EngineKind::Rapier.record(),
+            ),
         ];
         for other in others {
             assert_eq!(other.get(&other.key(&0.1)), None);
@@ -176,7 +176,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let cache = cache(dir.path());
         let (key, found) = (cache.key(&1), measured(3e3));
-        cache.put(&key, &found, &stiffness());
+        cache.put(&key, &found);
         let [file] = &files(dir.path())[..] else { panic!("one file") };
         let whole = fs::read(file).unwrap();
         for torn in 0..whole.len() {
@@ -191,10 +191,10 @@ mod tests {
         }
         // Another evaluation's file under this name.
         let other = cache.key(&2);
-        cache.put(&other, &measured(2e3), &stiffness());
+        cache.put(&other, &measured(2e3));
         fs::copy(cache.path(&other), file).unwrap();
         assert_eq!(cache.get(&key), None);
-        cache.put(&key, &found, &stiffness());
+        cache.put(&key, &found);
         assert_eq!(cache.get(&key), Some(found));
     }
 
@@ -203,12 +203,12 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let caches = [cache(dir.path()), cache(dir.path())];
         let key = caches[0].key(&1);
-        caches[0].put(&key, &measured(3e3), &stiffness());
+        caches[0].put(&key, &measured(3e3));
         std::thread::scope(|scope| {
             for cache in caches.iter().cycle().take(8) {
                 scope.spawn(|| {
                     for _ in 0..200 {
-                        cache.put(&key, &measured(3e3), &stiffness());
+                        cache.put(&key, &measured(3e3));
                         assert_eq!(cache.get(&key), Some(measured(3e3)));
                     }
                 });
@@ -225,7 +225,7 @@ mod tests {
         fs::write(&file, "").unwrap();
         let cache = cache(&file);
         let key = cache.key(&1);
-        cache.put(&key, &measured(3e3), &stiffness());
+        cache.put(&key, &measured(3e3));
         assert_eq!(cache.get(&key), None);
         assert!(cache.problem().unwrap().contains("file: "));
     }

@@ -1,5 +1,6 @@
 //! The resolved configuration of a study, as `study.toml` keeps it.
 
+use super::provenance::Provenance;
 use crate::evaluation::objective::{Aggregate, Constraint, Goals, Objectives};
 use crate::input::space::Space;
 use serde::{Deserialize, Serialize};
@@ -10,15 +11,10 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyConfig {
-    /// Name of the task, or of the first of several.
-    pub task: String,
-    /// Names of the tasks beside it.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub other_tasks: Vec<String>,
+    /// Names of the tasks, at least one.
+    pub tasks: Vec<String>,
     /// Name of the robot.
     pub robot: String,
-    /// Name of the contact engine.
-    pub engine: String,
     /// Name of the optimizer.
     pub optimizer: String,
     /// What is optimized.
@@ -37,28 +33,15 @@ pub struct StudyConfig {
     /// Evaluations that the optimizer has; the one field that may be raised later, unless
     /// there is a polish.
     pub budget: u64,
-    /// Most evaluations of the polish that follows. Studies from before there was one have none.
+    /// Most evaluations of the polish that follows.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub polish: u64,
     /// Designs the optimizer proposes at a time.
     pub batch: u64,
-    /// Versions of what computed the results.
-    pub versions: Versions,
-    /// SHA-256 of each input file by its role (`task`, `space`, `robot`, `stiffness`; where
-    /// there are such: `task_2` and so on, `uncertainty`), in hexadecimal.
-    pub input_sha256: BTreeMap<String, String>,
+    /// What the study began to be measured with.
+    pub provenance: Provenance,
     /// The search space in full.
     pub space: Space,
-}
-
-/// Versions of what computed the results.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Versions {
-    /// This program.
-    pub program: String,
-    /// The contact engine.
-    pub engine: String,
 }
 
 impl StudyConfig {
@@ -69,7 +52,12 @@ impl StudyConfig {
 
     /// Names of all tasks, in their order.
     pub fn tasks(&self) -> impl Iterator<Item = &str> {
-        std::iter::once(&self.task).chain(&self.other_tasks).map(String::as_str)
+        self.tasks.iter().map(String::as_str)
+    }
+
+    /// Whether there is more than one task.
+    pub fn several_tasks(&self) -> bool {
+        self.tasks.len() > 1
     }
 
     /// The tasks in one word: `usb+rj45`.
@@ -101,15 +89,17 @@ impl StudyConfig {
 
     /// The fields in which a study on disk differs from what is asked for now,
     /// one line each; a budget that was raised does not count, unless a polish follows it.
+    /// What it is measured with is compared by [`Provenance::differences`].
     pub fn differences(&self, asked: &StudyConfig) -> Option<String> {
         let may_rise = asked.polish == 0 && asked.budget > self.budget;
         let budget = if may_rise { asked.budget } else { self.budget };
-        let raised = StudyConfig { budget, ..self.clone() };
+        let provenance = asked.provenance.clone();
+        let raised = StudyConfig { budget, provenance, ..self.clone() };
         differences(&raised, asked, ["the study", "now"])
     }
 }
 
-pub(super) fn is_zero(number: &u64) -> bool {
+fn is_zero(number: &u64) -> bool {
     *number == 0
 }
 

@@ -54,6 +54,18 @@ pub enum StudyError {
         /// One line for each differing field, with both values.
         differences: String,
     },
+    /// The study was measured with something else than would go on with it now.
+    #[error(
+        "{}: was measured with other settings than now:\n{differences}\ngive another --out, or \
+         --accept-changed to go on in a new segment (the best design is then taken from that)",
+        dir.display()
+    )]
+    Changed {
+        /// The study's folder.
+        dir: PathBuf,
+        /// One line for each difference, with both values.
+        differences: String,
+    },
     /// One line of the journal is damaged.
     #[error(
         "{}: line {line}: {source}; restore the file from a copy, or delete line {line} and \

@@ -3,17 +3,21 @@
 //! ```text
 //! study.toml       the resolved configuration
 //! inputs/          copies of the input files, so that a study can be resumed
-//!                  when the originals have changed or gone
+//!                  when the originals have changed or gone; inputs-2/ and so on
+//!                  those of a further segment
 //! journal.jsonl    what was measured
+//! walk.json        what the walk found of the best designs
 //! evaluations.csv  the same as a table; convergence.svg and report.html beside it
 //! .lock            held by the process that writes
 //! ```
 
 use super::config::StudyConfig;
 use super::error::StudyError;
-use super::journal::{self, Journal};
+use super::journal::{self, Contents, Journal};
+use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord};
 use super::store::{FileStore, Store};
+use super::walked;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -27,10 +31,10 @@ pub const JOURNAL_FILE: &str = "journal.jsonl";
 const INPUTS: &str = "inputs";
 const LOCK_FILE: &str = ".lock";
 
-/// Texts of a study's input files by role (`task`, `space`, `robot`, `stiffness`).
+/// Texts of a study's input files by role (`task_1` and so on, `space`, `robot`, `stiffness`).
 pub type Inputs = BTreeMap<String, String>;
 
-/// SHA-256 of each input, in hexadecimal: a study's `input_sha256`.
+/// SHA-256 of each input, in hexadecimal.
 pub fn sha256(inputs: &Inputs) -> BTreeMap<String, String> {
     let hash = |text: &String| {
         Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
@@ -44,10 +48,21 @@ pub struct Study {
     pub config: StudyConfig,
     /// What has been measured, by index.
     pub evaluations: Vec<Recorded>,
+    /// What it was measured with.
+    segments: Vec<Segment>,
     pub(super) journal: Journal,
     dir: PathBuf,
     // Dropping the file, or the end of the process, releases the lock.
     _lock: File,
+}
+
+/// What to do if the present program and inputs measure otherwise than the study was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IfChanged {
+    /// Do not go on.
+    Refuse,
+    /// Go on in a new segment.
+    NewSegment,
 }
 
 impl Study {
@@ -57,6 +72,7 @@ impl Study {
         dir: &Path,
         config: &StudyConfig,
         inputs: &Inputs,
+        if_changed: IfChanged,
     ) -> Result<Study, StudyError> {
         fs::create_dir_all(dir).map_err(StudyError::io("create the folder", dir))?;
         let lock = lock(dir)?;
@@ -66,21 +82,22 @@ impl Study {
             if let Some(differences) = found.differences(config) {
                 return Err(StudyError::Different { dir: dir.to_owned(), differences });
             }
-            if found.budget < config.budget {
-                write_config(dir, config)?;
+            let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
+            study.measure_with(&config.provenance, inputs, if_changed)?;
+            if study.config.budget < config.budget {
+                study.config.budget = config.budget;
+                write_config(dir, &study.config)?;
             }
-        } else {
-            let journal = dir.join(JOURNAL_FILE);
-            if journal.exists() {
-                let problem = "there is no study.toml beside it; give another --out".to_owned();
-                return Err(StudyError::Foreign { path: journal, problem });
-            }
-            for (role, text) in inputs {
-                write_file(&input_path(dir, role), text)?;
-            }
-            // Last, so that a folder with a configuration is complete.
-            write_config(dir, config)?;
+            return Ok(study);
         }
+        let journal = dir.join(JOURNAL_FILE);
+        if journal.exists() {
+            let problem = "there is no study.toml beside it; give another --out".to_owned();
+            return Err(StudyError::Foreign { path: journal, problem });
+        }
+        write_inputs(dir, 1, inputs)?;
+        // Last, so that a folder with a configuration is complete.
+        write_config(dir, config)?;
         Study::open_locked(dir, lock, journal_file(dir)?)
     }
 
@@ -100,9 +117,39 @@ impl Study {
 
     fn open_locked(dir: &Path, lock: File, store: Box<dyn Store>) -> Result<Study, StudyError> {
         let config = read_config(dir)?;
-        let (journal, evaluations) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
+        let (journal, contents) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
         sync_folder(dir)?;
-        Ok(Study { config, evaluations, journal, dir: dir.to_owned(), _lock: lock })
+        let Contents { evaluations, segments, .. } = contents;
+        Ok(Study { config, evaluations, segments, journal, dir: dir.to_owned(), _lock: lock })
+    }
+
+    /// Makes sure that what is measured from now on belongs to what was measured before.
+    pub fn measure_with(
+        &mut self,
+        now: &Provenance,
+        inputs: &Inputs,
+        if_changed: IfChanged,
+    ) -> Result<(), StudyError> {
+        let Some(differences) = self.provenance().differences(now) else { return Ok(()) };
+        if if_changed == IfChanged::Refuse {
+            return Err(StudyError::Changed { dir: self.dir.clone(), differences });
+        }
+        let number = self.segments.len() + 1;
+        write_inputs(&self.dir, number, inputs)?;
+        self.journal.begin_segment(number, now.clone());
+        let first = self.evaluations.len() as u64;
+        self.segments.push(Segment { first, provenance: now.clone() });
+        Ok(())
+    }
+
+    /// What its next evaluation is measured with.
+    pub fn provenance(&self) -> &Provenance {
+        self.segments.last().map_or(&self.config.provenance, |segment| &segment.provenance)
+    }
+
+    /// The copies of the input files that its next evaluation is measured with.
+    pub fn inputs(&self) -> Result<Inputs, StudyError> {
+        read_inputs(&self.dir, &self.segments)
     }
 
     /// The folder.
@@ -112,7 +159,8 @@ impl Study {
 
     /// A copy that needs no open study.
     pub fn record(&self) -> StudyRecord {
-        StudyRecord { config: self.config.clone(), evaluations: self.evaluations.clone() }
+        let (config, segments) = (self.config.clone(), self.segments.clone());
+        StudyRecord::new(&self.dir, config, segments, self.evaluations.clone())
     }
 }
 
@@ -120,8 +168,27 @@ impl StudyRecord {
     /// Reads the study in `dir`, running or not, and writes nothing.
     pub fn load(dir: &Path) -> Result<StudyRecord, StudyError> {
         let config = read_config(dir)?;
-        let evaluations = journal::read(&dir.join(JOURNAL_FILE), &config)?;
-        Ok(StudyRecord { config, evaluations })
+        let contents = journal::read(&dir.join(JOURNAL_FILE), &config)?;
+        let Contents { evaluations, segments, .. } = contents;
+        Ok(StudyRecord::new(dir, config, segments, evaluations))
+    }
+
+    fn new(
+        dir: &Path,
+        config: StudyConfig,
+        segments: Vec<Segment>,
+        evaluations: Vec<Recorded>,
+    ) -> Self {
+        let mut record = StudyRecord { config, segments, evaluations, walked: Vec::new() };
+        let provenance = record.segments.last().map(|segment| &segment.provenance);
+        let goals = record.config.goals();
+        record.walked = walked::read(dir, &goals, provenance, record.current());
+        record
+    }
+
+    /// The copies of the input files of the last segment.
+    pub fn inputs(&self, dir: &Path) -> Result<Inputs, StudyError> {
+        read_inputs(dir, &self.segments)
     }
 }
 
@@ -146,29 +213,40 @@ pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
     })
 }
 
-/// The copies of the input files in the study's folder, checked against its configuration.
-pub fn read_inputs(dir: &Path, config: &StudyConfig) -> Result<Inputs, StudyError> {
+/// The copies of the input files of the last segment, checked against its provenance.
+fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
+    let Some(segment) = segments.last() else { return Ok(Inputs::new()) };
+    let (number, expected) = (segments.len(), &segment.provenance.input_sha256);
     let mut inputs = Inputs::new();
-    for role in config.input_sha256.keys() {
-        let path = input_path(dir, role);
+    for role in expected.keys() {
+        let path = input_path(dir, number, role);
         let text = fs::read_to_string(&path).map_err(StudyError::io("read", &path))?;
         inputs.insert(role.clone(), text);
     }
     let found = sha256(&inputs);
-    for (role, hash) in &config.input_sha256 {
+    for (role, hash) in expected {
         if found.get(role) != Some(hash) {
             return Err(StudyError::File {
-                path: input_path(dir, role),
-                problem: format!("was changed: its SHA-256 is not the {hash} of study.toml"),
+                path: input_path(dir, number, role),
+                problem: format!("was changed: its SHA-256 is not the {hash} of the study"),
             });
         }
     }
     Ok(inputs)
 }
 
-fn input_path(dir: &Path, role: &str) -> PathBuf {
+/// Keeps copies of the input files of the segment with this number, counted from 1.
+fn write_inputs(dir: &Path, segment: usize, inputs: &Inputs) -> Result<(), StudyError> {
+    for (role, text) in inputs {
+        write_file(&input_path(dir, segment, role), text)?;
+    }
+    Ok(())
+}
+
+fn input_path(dir: &Path, segment: usize, role: &str) -> PathBuf {
     let extension = if role == "stiffness" { "csv" } else { "toml" };
-    dir.join(INPUTS).join(format!("{role}.{extension}"))
+    let folder = if segment == 1 { INPUTS.to_owned() } else { format!("{INPUTS}-{segment}") };
+    dir.join(folder).join(format!("{role}.{extension}"))
 }
 
 fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {

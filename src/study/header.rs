@@ -1,14 +1,16 @@
 //! The first two lines of a journal: whose it is.
 
-use super::config::{StudyConfig, Versions, differences};
+use super::config::{StudyConfig, differences};
+use super::error::LineError;
 use super::line::WORKER;
+use super::provenance::Segment;
 use super::seal::{seal, unseal};
-use crate::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
+use crate::evaluation::objective::Measure;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Version of the journal's format; every later program reads all earlier ones.
-pub const SCHEMA_VERSION: u64 = 1;
+/// Version of the journal's format.
+pub const SCHEMA_VERSION: u64 = 2;
 
 const CREATE_STUDY: u8 = 0;
 const STUDY_USER_ATTRIBUTE: u8 = 2;
@@ -37,60 +39,25 @@ struct UserAttribute {
     finger_opt: Identity,
 }
 
-/// The configuration without what may change while the journal stays the same.
+/// The configuration without what may change while the journal stays the same: with a
+/// polish the budget decides where that begins, without one it may rise.
 #[derive(Serialize, Deserialize)]
 struct Identity {
     schema_version: u64,
-    task: String,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    other_tasks: Vec<String>,
-    space: String,
-    robot: String,
-    engine: String,
-    optimizer: String,
-    objective: Objectives,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    constraints: Vec<Constraint>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    aggregate: Option<Aggregate>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    uncertainty: Option<String>,
-    seed: u64,
-    batch: u64,
-    /// With a polish the budget decides where it begins.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    polish: Option<Polish>,
-    versions: Versions,
-    input_sha256: BTreeMap<String, String>,
+    #[serde(flatten)]
+    config: serde_json::Map<String, serde_json::Value>,
 }
 
-#[derive(Serialize, Deserialize)]
-struct Polish {
-    after: u64,
-    at_most: u64,
-}
-
-impl From<&StudyConfig> for Identity {
-    fn from(config: &StudyConfig) -> Self {
-        Identity {
-            schema_version: SCHEMA_VERSION,
-            task: config.task.clone(),
-            other_tasks: config.other_tasks.clone(),
-            space: config.space.name().to_owned(),
-            robot: config.robot.clone(),
-            engine: config.engine.clone(),
-            optimizer: config.optimizer.clone(),
-            objective: config.objective.clone(),
-            constraints: config.constraints.clone(),
-            aggregate: config.aggregate.clone(),
-            uncertainty: config.uncertainty.clone(),
-            seed: config.seed,
-            batch: config.batch,
-            polish: (config.polish > 0)
-                .then_some(Polish { after: config.budget, at_most: config.polish }),
-            versions: config.versions.clone(),
-            input_sha256: config.input_sha256.clone(),
+impl Identity {
+    fn of(config: &StudyConfig) -> Result<Self, serde_json::Error> {
+        let mut fields = match serde_json::to_value(config)? {
+            serde_json::Value::Object(fields) => fields,
+            _ => serde_json::Map::new(),
+        };
+        if config.polish == 0 {
+            fields.remove("budget");
         }
+        Ok(Identity { schema_version: SCHEMA_VERSION, config: fields })
     }
 }
 
@@ -107,9 +74,43 @@ pub fn encode(config: &StudyConfig) -> Result<String, serde_json::Error> {
         op_code: STUDY_USER_ATTRIBUTE,
         worker_id: WORKER.to_owned(),
         study_id: 0,
-        user_attr: UserAttribute { finger_opt: Identity::from(config) },
+        user_attr: UserAttribute { finger_opt: Identity::of(config)? },
     };
     Ok(seal(&create, NO_TIMES)? + &seal(&attributes, NO_TIMES)?)
+}
+
+/// The line that begins a further segment: a study attribute, as Optuna reads it.
+#[derive(Serialize, Deserialize)]
+struct SegmentLine {
+    op_code: u8,
+    worker_id: String,
+    study_id: u64,
+    user_attr: BTreeMap<String, Segment>,
+}
+
+/// The line of the segment with this number, counted from 1.
+pub fn encode_segment(number: usize, segment: &Segment) -> Result<String, serde_json::Error> {
+    let line = SegmentLine {
+        op_code: STUDY_USER_ATTRIBUTE,
+        worker_id: WORKER.to_owned(),
+        study_id: 0,
+        user_attr: BTreeMap::from([(format!("finger_opt_segment_{number}"), segment.clone())]),
+    };
+    seal(&line, NO_TIMES)
+}
+
+/// The segment that a line begins, `None` if the line is of another kind.
+pub fn decode_segment(line: &str) -> Result<Option<Segment>, LineError> {
+    if !line.starts_with(&format!("{{\"op_code\":{STUDY_USER_ATTRIBUTE},")) {
+        return Ok(None);
+    }
+    let (content, _) = unseal(line)?;
+    let line: SegmentLine =
+        serde_json::from_str(&content).map_err(|error| LineError::Format(error.to_string()))?;
+    match line.user_attr.into_values().next() {
+        Some(segment) => Ok(Some(segment)),
+        None => Err(LineError::Format("a segment without its provenance".to_owned())),
+    }
 }
 
 const NO_TIMES: Option<&()> = None;
@@ -126,21 +127,18 @@ pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), Stri
         .ok()
         .and_then(|value| value["user_attr"]["finger_opt"]["schema_version"].as_u64());
     match version {
-        Some(1..=SCHEMA_VERSION) => {}
-        Some(newer) => {
+        Some(SCHEMA_VERSION) => {}
+        Some(other) => {
             return Err(format!(
-                "its schema version is {newer}; this program reads versions 1 to {SCHEMA_VERSION}"
+                "its schema version is {other}; this program reads version {SCHEMA_VERSION}"
             ));
         }
         None => return Err("line 2 has no schema_version".to_owned()),
     }
     let found: StudyAttributes =
         serde_json::from_str(&attributes).map_err(|error| format!("line 2: {error}"))?;
-    match differences(
-        &found.user_attr.finger_opt,
-        &Identity::from(config),
-        ["the journal", "study.toml"],
-    ) {
+    let expected = Identity::of(config).map_err(|error| error.to_string())?;
+    match differences(&found.user_attr.finger_opt, &expected, ["the journal", "study.toml"]) {
         Some(differences) => Err(format!("it was made with another configuration:\n{differences}")),
         None => Ok(()),
     }

@@ -5,7 +5,8 @@
 //! tail, which opening cuts off. Damage anywhere else is an error.
 
 use super::config::StudyConfig;
-use super::error::StudyError;
+use super::error::{LineError, StudyError};
+use super::provenance::{Provenance, Segment};
 use super::record::Recorded;
 use super::store::Store;
 use super::{header, line};
@@ -20,13 +21,19 @@ pub struct Journal {
     space: Space,
     /// Bytes of whole, synced lines.
     len: u64,
+    /// A segment that begins with the next evaluation, and its number.
+    next_segment: Option<(usize, Provenance)>,
     /// A write failed: what follows could not be trusted.
     broken: bool,
 }
 
-/// A journal's contents, and how many of its bytes are whole lines.
-struct Parsed {
-    evaluations: Vec<Recorded>,
+/// What a journal holds.
+pub struct Contents {
+    /// The evaluations, by index.
+    pub evaluations: Vec<Recorded>,
+    /// Where what they were measured with changed; the first begins at 0.
+    pub segments: Vec<Segment>,
+    /// How many of its bytes are whole lines.
     whole: usize,
 }
 
@@ -37,7 +44,7 @@ impl Journal {
         mut store: Box<dyn Store>,
         path: &Path,
         config: &StudyConfig,
-    ) -> Result<(Journal, Vec<Recorded>), StudyError> {
+    ) -> Result<(Journal, Contents), StudyError> {
         let bytes = store.read().map_err(StudyError::io("read", path))?;
         let parsed = parse(&bytes, path, config)?;
         if parsed.whole < bytes.len() {
@@ -50,20 +57,33 @@ impl Journal {
             store,
             space: config.space.clone(),
             len: parsed.whole as u64,
+            next_segment: None,
             broken: false,
         };
         if parsed.whole == 0 {
             let header = header::encode(config).map_err(|error| journal.failed(error.into()))?;
             journal.write(&header)?;
         }
-        Ok((journal, parsed.evaluations))
+        Ok((journal, parsed))
     }
 
     /// Adds one evaluation; when this returns it survives a power failure.
     pub fn append(&mut self, recorded: &Recorded) -> Result<(), StudyError> {
-        let line =
-            line::encode(recorded, &self.space).map_err(|error| self.failed(error.into()))?;
-        self.write(&line)
+        let encoded = || -> Result<String, serde_json::Error> {
+            let line = line::encode(recorded, &self.space)?;
+            let Some((number, provenance)) = &self.next_segment else { return Ok(line) };
+            let segment = Segment { first: recorded.index, provenance: provenance.clone() };
+            Ok(header::encode_segment(*number, &segment)? + &line)
+        };
+        let lines = encoded().map_err(|error| self.failed(error.into()))?;
+        self.write(&lines)?;
+        self.next_segment = None;
+        Ok(())
+    }
+
+    /// Lets a segment, the `number`th, begin with the next evaluation.
+    pub(super) fn begin_segment(&mut self, number: usize, provenance: Provenance) {
+        self.next_segment = Some((number, provenance));
     }
 
     /// Where it is kept.
@@ -95,34 +115,55 @@ impl Journal {
 }
 
 /// What a journal holds; a torn tail is passed over, and nothing is written.
-pub fn read(path: &Path, config: &StudyConfig) -> Result<Vec<Recorded>, StudyError> {
+pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
     let bytes = std::fs::read(path).map_err(StudyError::io("read", path))?;
-    Ok(parse(&bytes, path, config)?.evaluations)
+    parse(&bytes, path, config)
 }
 
-fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Parsed, StudyError> {
+fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
     let foreign = |problem: String| StudyError::Foreign { path: path.to_owned(), problem };
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
     let lines: Vec<&[u8]> = bytes[..whole].split_inclusive(|&byte| byte == b'\n').collect();
-    let [first, second, evaluations @ ..] = lines.as_slice() else {
+    let beginning = Segment { first: 0, provenance: config.provenance.clone() };
+    let mut contents = Contents { evaluations: Vec::new(), segments: vec![beginning], whole };
+    let [first, second, rest @ ..] = lines.as_slice() else {
         // Killed while the header was written; anything else is not ours to overwrite.
         let header = header::encode(config).map_err(|error| foreign(error.to_string()))?;
         let written = bytes.trim_ascii_end();
         let written = &written[..written.iter().take_while(|&&byte| byte != 0).count()];
         return if header.as_bytes().starts_with(written) {
-            Ok(Parsed { evaluations: Vec::new(), whole: 0 })
+            Ok(Contents { whole: 0, ..contents })
         } else {
             Err(foreign("it does not begin with this study's header".to_owned()))
         };
     };
     let text = |line: &[u8]| String::from_utf8_lossy(line).trim_end_matches('\n').to_owned();
     header::check(&text(first), &text(second), config).map_err(foreign)?;
-    let evaluations = evaluations.iter().enumerate().map(|(index, line)| {
-        line::decode(&text(line), index as u64).map_err(|source| StudyError::Line {
+    for (number, line) in (3..).zip(rest) {
+        contents.add(&text(line)).map_err(|source| StudyError::Line {
             path: path.to_owned(),
-            line: index + 3,
+            line: number,
             source,
-        })
-    });
-    Ok(Parsed { evaluations: evaluations.collect::<Result<_, _>>()?, whole })
+        })?;
+    }
+    Ok(contents)
+}
+
+impl Contents {
+    /// Reads one line after the header.
+    fn add(&mut self, line: &str) -> Result<(), LineError> {
+        let expected = self.evaluations.len() as u64;
+        match header::decode_segment(line)? {
+            None => self.evaluations.push(line::decode(line, expected)?),
+            Some(segment) if segment.first != expected => {
+                return Err(LineError::Order { found: segment.first, expected });
+            }
+            Some(segment) => {
+                // The evaluation it was written with was torn off.
+                self.segments.retain(|other| other.first < expected || other.first == 0);
+                self.segments.push(segment);
+            }
+        }
+        Ok(())
+    }
 }

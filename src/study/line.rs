@@ -9,13 +9,14 @@
 //! `datetime_complete` and `wall_s`, the only fields that differ between two
 //! runs of the same study; [`super::strip_times`] (or `sed 's/,"datetime_start".*//'`) removes them.
 
-use super::attributes::Attributes;
 use super::error::LineError;
 use super::record::{Recorded, Timing};
 use super::seal::{seal, unseal};
 use super::time::is_timestamp;
+use crate::evaluation::Evaluation;
 use crate::evaluation::objective::Score;
 use crate::input::space::{Design, Parameter, Space};
+use crate::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -37,9 +38,17 @@ struct TrialLine {
     values: Option<Vec<f64>>,
     params: BTreeMap<String, f64>,
     distributions: BTreeMap<String, String>,
-    user_attrs: Attributes,
+    user_attrs: UserAttributes,
     system_attrs: SystemAttributes,
     intermediate_values: Empty,
+}
+
+/// What Optuna has no fields for.
+#[derive(Serialize, Deserialize)]
+struct UserAttributes {
+    stiffness: Prediction,
+    /// What was measured on each task.
+    tasks: Vec<Evaluation>,
 }
 
 /// Optuna's samplers look for constraints here, and take 0 and below as kept.
@@ -85,8 +94,7 @@ pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::
         values: score.map(|score| score.values.clone()),
         params: recorded.design.0.clone(),
         distributions: space.parameters().iter().map(distribution).collect::<Result<_, _>>()?,
-        user_attrs: Attributes::new(&recorded.evaluation, &recorded.stiffness)
-            .with_other_tasks(&recorded.other_tasks),
+        user_attrs: UserAttributes { stiffness: recorded.stiffness, tasks: recorded.tasks.clone() },
         system_attrs: SystemAttributes {
             constraints: score.map_or_else(Vec::new, |score| score.violations.clone()),
         },
@@ -123,9 +131,8 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
             .values
             .map(|values| Score { values, violations: trial.system_attrs.constraints }),
         design: Design(trial.params),
-        stiffness: trial.user_attrs.prediction(),
-        evaluation: trial.user_attrs.evaluation(),
-        other_tasks: trial.user_attrs.other_tasks(),
+        stiffness: trial.user_attrs.stiffness,
+        tasks: trial.user_attrs.tasks,
         timing: Timing {
             datetime_start: times.datetime_start,
             datetime_complete: times.datetime_complete,

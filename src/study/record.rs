@@ -1,6 +1,8 @@
 //! A study as it can be read back: its configuration and what it measured.
 
 use super::StudyConfig;
+use super::provenance::Segment;
+use super::walked::Walked;
 use crate::evaluation::Evaluation;
 use crate::evaluation::objective::{Goals, Measure, Score};
 use crate::evaluation::pareto;
@@ -12,8 +14,12 @@ use crate::surrogate::Prediction;
 pub struct StudyRecord {
     /// What was asked for.
     pub config: StudyConfig,
+    /// What the evaluations were measured with, in their order; the first begins at 0.
+    pub segments: Vec<Segment>,
     /// What was measured, by index: `evaluations[i].index == i`.
     pub evaluations: Vec<Recorded>,
+    /// What the walk found of the best designs, best first; empty if they were not walked.
+    pub walked: Vec<Walked>,
 }
 
 /// One evaluation of a study.
@@ -27,10 +33,8 @@ pub struct Recorded {
     pub score: Option<Score>,
     /// Stiffness the surrogate predicted for the design, N/m.
     pub stiffness: Prediction,
-    /// What the simulation measured, on the first task.
-    pub evaluation: Evaluation,
-    /// The same on the other tasks, in their order.
-    pub other_tasks: Vec<Evaluation>,
+    /// What the simulation measured on each task, in their order.
+    pub tasks: Vec<Evaluation>,
     /// When it was measured; the only part that differs between equal runs.
     pub timing: Timing,
 }
@@ -59,27 +63,36 @@ impl Recorded {
 
     /// What was measured on a task, by its place among the tasks.
     pub fn on(&self, task: usize) -> Option<&Evaluation> {
-        match task.checked_sub(1) {
-            None => Some(&self.evaluation),
-            Some(other) => self.other_tasks.get(other),
-        }
+        self.tasks.get(task)
     }
 
     /// What was measured on each task.
     pub fn tasks(&self) -> Vec<&Evaluation> {
-        std::iter::once(&self.evaluation).chain(&self.other_tasks).collect()
+        self.tasks.iter().collect()
     }
 }
 
 impl StudyRecord {
-    /// See [`best`].
-    pub fn best(&self) -> Option<&Recorded> {
-        best(&self.config.goals(), &self.evaluations)
+    /// The evaluations of the last segment: only they are of the present model.
+    pub fn current(&self) -> &[Recorded] {
+        let first = self.segments.last().map_or(0, |segment| segment.first as usize);
+        self.evaluations.get(first..).unwrap_or_default()
     }
 
-    /// See [`front`].
+    /// The [`best`] of the [`current`](Self::current) evaluations.
+    pub fn best(&self) -> Option<&Recorded> {
+        best(&self.config.goals(), self.current())
+    }
+
+    /// The [`front`] of the [`current`](Self::current) evaluations.
     pub fn front(&self) -> Vec<&Recorded> {
-        front(&self.config.goals(), &self.evaluations)
+        front(&self.config.goals(), self.current())
+    }
+
+    /// What is recommended: the best by the walk, or as recorded where nothing was walked.
+    pub fn recommended(&self) -> Option<&Recorded> {
+        let walked = self.walked.first().map(|walked| &walked.recorded);
+        walked.or_else(|| self.best())
     }
 }
 

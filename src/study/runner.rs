@@ -16,11 +16,11 @@
 //! - evaluations that end out of order wait in memory until all earlier ones are written.
 
 use super::error::StudyError;
-use super::evaluator::{Evaluate, Measured};
 use super::folder::Study;
 use super::journal::Journal;
 use super::record::{Recorded, Timing};
 use super::time;
+use crate::evaluation::evaluator::{Evaluate, Measured};
 use crate::evaluation::objective::Goals;
 use crate::input::space::{Design, GridPoint};
 use crate::optimizer::{Observation, Optimizer, StopReason};
@@ -158,8 +158,10 @@ impl Runner<'_> {
         if self.stop.load(Ordering::SeqCst) {
             return Ok(None);
         }
-        let Measured { stiffness, evaluation, other_tasks } = measured.map_err(|source| {
-            StudyError::Impossible { index, design: design.to_string(), source }
+        let Measured { stiffness, tasks } = measured.map_err(|source| StudyError::Impossible {
+            index,
+            design: design.to_string(),
+            source,
         })?;
         let timing = Timing {
             datetime_start,
@@ -167,8 +169,7 @@ impl Runner<'_> {
             wall_s: clock.elapsed().as_secs_f64(),
         };
         let design = design.clone();
-        let mut recorded =
-            Recorded { index, design, score: None, stiffness, evaluation, other_tasks, timing };
+        let mut recorded = Recorded { index, design, score: None, stiffness, tasks, timing };
         recorded.score = self.goals.score(&recorded.tasks());
         Ok(Some(recorded))
     }

@@ -1,57 +1,19 @@
-//! `evaluations.csv`: a study as a table, units in the headers.
+//! `evaluations.csv`: a study as a table, units in the headers. What was measured stands in
+//! it under the keys that JSON and journal have.
 
 use super::error::StudyError;
 use super::folder::write_file;
 use super::record::{Recorded, StudyRecord};
-use crate::evaluation::objective::{Goals, Measure, Score};
-use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
-use crate::outcome::Outcome;
-use crate::units::N_PER_MM;
+use crate::evaluation::objective::Score;
+use serde::Serialize;
+use serde_json::Value;
 use std::path::Path;
 
-/// What the window search of one task measured.
-const WINDOW: [&str; 15] = [
-    "range_mm",
-    "negative_mm",
-    "positive_mm",
-    "nominal",
-    "end_negative",
-    "end_positive",
-    "failures_1",
-    "failures_2",
-    "failures_3",
-    "failures_4",
-    "diverged",
-    "trials",
-    "peak_force_n",
-    "slip_mm",
-    "simulated_s",
-];
+/// Lists of as many values as there were draws: no columns.
+const DRAWN: &str = "robust_ranges_mm";
 
-/// What trials under drawn errors measured.
-const SUCCESS: [&str; 9] = [
-    "success_rate",
-    "success_low",
-    "success_high",
-    "success_inserted",
-    "success_failures_1",
-    "success_failures_2",
-    "success_failures_3",
-    "success_failures_4",
-    "success_diverged",
-];
-
-/// What windows under drawn errors measured.
-const ROBUST: [&str; 5] =
-    ["robust_range_mm", "robust_mean_mm", "robust_sd_mm", "robust_windows", "robust_diverged"];
-
-const STIFFNESS: [&str; 5] = [
-    "stiffness_compliance_n_per_mm",
-    "stiffness_compliance_sd_n_per_mm",
-    "stiffness_assembly_n_per_mm",
-    "stiffness_assembly_sd_n_per_mm",
-    "hull_distance",
-];
+/// Column and cell, in the order of the columns.
+type Row = Vec<(String, String)>;
 
 /// Writes `evaluations.csv` into a study's folder, one row per evaluation.
 pub fn write_evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<(), StudyError> {
@@ -66,117 +28,68 @@ pub fn write_evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<(), Stu
 
 fn csv(record: &StudyRecord) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let (config, goals) = (&record.config, record.config.goals());
-    let keys: Vec<&str> = config.space.parameters().iter().map(|p| p.key.as_str()).collect();
-    let mut header = vec!["evaluation".to_owned()];
-    header.extend(keys.iter().map(|&key| key.to_owned()));
-    header.extend(config.objective.keys());
-    // A share of the limit, so without a unit.
-    header.extend(config.constraints.iter().map(|c| format!("violation {c}")));
-    for task in config.tasks() {
-        let alone = config.other_tasks.is_empty();
-        let named = |key: &str| if alone { key.to_owned() } else { format!("{task}.{key}") };
-        header.extend(of_task(&goals).map(named));
-    }
-    header.extend(STIFFNESS.map(str::to_owned));
-    writer.write_record(&header)?;
+    let mut header: Vec<String> = Vec::new();
     for recorded in &record.evaluations {
-        let mut row = vec![recorded.index.to_string()];
-        row.extend(keys.iter().map(|key| number(recorded.design.get(key))));
-        row.extend(scores(recorded, &goals));
-        row.extend(recorded.tasks().into_iter().flat_map(|found| measured(found, &goals)));
-        row.extend(stiffness(recorded));
-        writer.write_record(&row)?;
+        let row = row(record, recorded)?;
+        if header.is_empty() {
+            header = row.iter().map(|(column, _)| column.clone()).collect();
+            writer.write_record(&header)?;
+        }
+        let cell = |column: &String| {
+            row.iter().find(|(name, _)| name == column).map_or("", |(_, cell)| cell.as_str())
+        };
+        writer.write_record(header.iter().map(cell))?;
     }
     Ok(writer.into_inner()?)
 }
 
-/// The columns of each task.
-fn of_task(goals: &Goals) -> impl Iterator<Item = &'static str> {
-    let success = goals.need(Measure::SuccessRate).then_some(SUCCESS);
-    let robust = goals.need(Measure::RobustRange).then_some(ROBUST);
-    let drawn = success.into_iter().flatten().chain(robust.into_iter().flatten());
-    WINDOW.into_iter().chain(drawn)
-}
-
-/// Objectives and violations, empty where there is no score.
-fn scores(recorded: &Recorded, goals: &Goals) -> Vec<String> {
-    let score = recorded.score.as_ref();
-    let cells = |count: usize, of: fn(&Score) -> &[f64]| {
-        (0..count).map(move |i| number(score.and_then(|score| of(score).get(i).copied())))
+fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Error> {
+    let config = &record.config;
+    let mut row = vec![("evaluation".to_owned(), recorded.index.to_string())];
+    for parameter in config.space.parameters() {
+        let value = recorded.design.get(&parameter.key);
+        row.push((parameter.key.clone(), value.map_or(String::new(), |value| value.to_string())));
+    }
+    let score = |of: fn(&Score) -> &[f64], i: usize| {
+        let value = recorded.score.as_ref().and_then(|score| of(score).get(i));
+        value.map_or(String::new(), |value| value.to_string())
     };
-    cells(goals.objectives.measures().len(), |score| &score.values)
-        .chain(cells(goals.constraints.len(), |score| &score.violations))
-        .collect()
-}
-
-fn measured(found: &Evaluation, goals: &Goals) -> Vec<String> {
-    let (window, counts) = (&found.window, found.failure_counts.map(|count| count.to_string()));
-    let mut row = vec![
-        number(Some(window.range_mm())),
-        number(Some(window.negative_mm())),
-        number(Some(window.positive_mm())),
-        word(Some(window.nominal)),
-        word(window.end_negative),
-        word(window.end_positive),
-    ];
-    row.extend(counts);
-    row.extend([
-        found.diverged.to_string(),
-        found.trials.to_string(),
-        number(Some(found.peak_force_n)),
-        number(Some(found.slip_mm)),
-        number(Some(found.simulated_s)),
-    ]);
-    let empty = |columns: usize| vec![String::new(); columns];
-    if goals.need(Measure::SuccessRate) {
-        row.extend(found.success.as_ref().map_or_else(|| empty(SUCCESS.len()), success));
+    for (i, key) in config.objective.keys().into_iter().enumerate() {
+        row.push((key, score(|score| &score.values, i)));
     }
-    if goals.need(Measure::RobustRange) {
-        row.extend(found.robust.as_ref().map_or_else(|| empty(ROBUST.len()), robust));
+    for (i, constraint) in config.constraints.iter().enumerate() {
+        // A share of the limit, so without a unit.
+        row.push((format!("violation {constraint}"), score(|score| &score.violations, i)));
     }
-    row
+    for (task, measured) in config.tasks().zip(&recorded.tasks) {
+        let prefix = if config.tasks.len() == 1 { String::new() } else { format!("{task}.") };
+        cells(&prefix, measured, &mut row)?;
+    }
+    cells("stiffness_", &recorded.stiffness, &mut row)?;
+    Ok(row)
 }
 
-fn success(found: &SuccessRate) -> Vec<String> {
-    let [low, high] = found.interval();
-    let mut row = vec![number(found.rate()), number(Some(low)), number(Some(high))];
-    row.push(found.inserted.to_string());
-    row.extend(found.failure_counts.map(|count| count.to_string()));
-    row.push(found.diverged.to_string());
-    row
+/// The fields of a flat value; those of a list by their place, counted from 1.
+fn cells(prefix: &str, value: &impl Serialize, row: &mut Row) -> Result<(), serde_json::Error> {
+    let Value::Object(fields) = serde_json::to_value(value)? else { return Ok(()) };
+    for (key, value) in fields.into_iter().filter(|(key, _)| key != DRAWN) {
+        match value {
+            Value::Array(values) => {
+                for (i, value) in (1..).zip(values) {
+                    row.push((format!("{prefix}{key}_{i}"), cell(value)));
+                }
+            }
+            value => row.push((format!("{prefix}{key}"), cell(value))),
+        }
+    }
+    Ok(())
 }
 
-fn robust(found: &RobustRange) -> Vec<String> {
-    let some = |value: f64| number(Some(value).filter(|value| value.is_finite()));
-    let windows = found.ranges_mm.len().to_string();
-    let (mean, sd) = (some(found.mean_mm()), some(found.sd_mm()));
-    vec![number(found.value_mm), mean, sd, windows, found.diverged.to_string()]
-}
-
-fn stiffness(recorded: &Recorded) -> [String; STIFFNESS.len()] {
-    let n_per_mm = |n_per_m: f64| format!("{:.4}", n_per_m / N_PER_MM);
-    let predicted = &recorded.stiffness;
-    [
-        n_per_mm(predicted.compliance.mean),
-        n_per_mm(predicted.compliance.sd),
-        n_per_mm(predicted.assembly.mean),
-        n_per_mm(predicted.assembly.sd),
-        number(Some(predicted.hull_distance)),
-    ]
-}
-
-/// An empty cell where there is no value.
-fn number(value: Option<f64>) -> String {
-    value.map_or(String::new(), |value| value.to_string())
-}
-
-/// The failure class where there is one, else the outcome.
-fn word(outcome: Option<Outcome>) -> String {
-    match outcome {
-        None => String::new(),
-        Some(Outcome::Inserted) => "inserted".to_owned(),
-        Some(Outcome::Failed(class)) => class.number().to_string(),
-        Some(Outcome::Diverged) => "diverged".to_owned(),
+/// Empty where there is no value.
+fn cell(value: Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text,
+        other => other.to_string(),
     }
 }

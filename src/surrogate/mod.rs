@@ -17,6 +17,7 @@ mod link;
 mod loo;
 mod model;
 mod ridge;
+mod row;
 #[cfg(test)]
 mod tests;
 
@@ -35,8 +36,9 @@ pub struct Estimate {
     pub sd: f64,
 }
 
-/// Predicted stiffness of one finger.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Predicted stiffness of one finger. Written in the one form of `row.rs`.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(into = "row::StiffnessRow", from = "row::StiffnessRow")]
 pub struct Prediction {
     /// In the compliance direction (y), N/m.
     pub compliance: Estimate,
@@ -48,6 +50,12 @@ pub struct Prediction {
 }
 
 impl Prediction {
+    /// A stiffness that is known, N/m.
+    pub fn exact(compliance: f64, assembly: f64) -> Self {
+        let exact = |mean| Estimate { mean, sd: 0.0 };
+        Prediction { compliance: exact(compliance), assembly: exact(assembly), hull_distance: 0.0 }
+    }
+
     /// Whether the design lies inside the hull of the measured designs.
     pub fn inside_hull(&self) -> bool {
         self.hull_distance == 0.0

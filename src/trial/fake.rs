@@ -18,6 +18,17 @@ pub struct FakeRig {
     pub delay: std::time::Duration,
 }
 
+/// Microseconds each trial takes, for tests that interrupt a study.
+const DELAY: &str = "FINGER_OPT_FAKE_DELAY_US";
+
+impl FakeRig {
+    /// With the delay that the environment asks for.
+    pub fn from_environment() -> Self {
+        let delay = std::env::var(DELAY).ok().and_then(|text| text.parse().ok());
+        FakeRig { delay: std::time::Duration::from_micros(delay.unwrap_or(0)) }
+    }
+}
+
 impl Rig for FakeRig {
     fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
         let (low, high) = window_in_mm(finger, conditions);

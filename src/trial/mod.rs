@@ -9,6 +9,8 @@ mod attempt;
 pub mod cell;
 pub mod classify;
 pub mod conditions;
+pub mod engine;
+#[cfg(any(test, feature = "fake-engine"))]
 pub mod fake;
 pub mod motion;
 pub mod picture;

@@ -99,3 +99,17 @@ impl Studies {
 pub fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
+
+/// A journal whose second line has a check that fits again.
+pub fn resealed(text: &str) -> String {
+    use sha2::{Digest, Sha256};
+    let line = |line: &str| match line.split_once(",\"check\":\"") {
+        Some((content, rest)) if content.contains("schema_version") => {
+            let digest = Sha256::digest(content.as_bytes());
+            let check: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
+            format!("{content},\"check\":\"{check}{}\n", &rest[16..])
+        }
+        _ => format!("{line}\n"),
+    };
+    text.lines().map(line).collect()
+}

@@ -163,7 +163,7 @@ pub(super) mod tests {
             peak_force_n: 5.0,
             slip_mm: 0.1,
             simulated_s: 49.0,
-            end_shares: None,
+            end_shares: [0.0; 2],
             success: None,
             robust: None,
         }

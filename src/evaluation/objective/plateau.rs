@@ -25,12 +25,10 @@ impl Goals {
 /// at each end half of the step's share that still inserts; below 0, by how clearly the
 /// nominal start fails, where it does. 0 for what is not taken on the grid.
 fn slope(measure: Measure, evaluation: &Evaluation) -> f64 {
-    let (Measure::Range | Measure::CentredRange, Some([below, above])) =
-        (measure, evaluation.end_shares)
-    else {
+    if !matches!(measure, Measure::Range | Measure::CentredRange) {
         return 0.0;
-    };
-    let window = &evaluation.window;
+    }
+    let (window, [below, above]) = (&evaluation.window, evaluation.end_shares);
     if window.nominal != Outcome::Inserted {
         return OFFSET_STEP_MM * below.min(0.0);
     }
@@ -88,7 +86,7 @@ mod tests {
         let failed = |share: f64| {
             let mut evaluation = measured(3.0, 20.0);
             evaluation.window.nominal = Outcome::Failed(crate::outcome::FailureClass::Jammed);
-            evaluation.end_shares = Some([share; 2]);
+            evaluation.end_shares = [share; 2];
             told(Measure::Range, &evaluation)
         };
         assert!(failed(-1.0) < failed(-0.2) && failed(-0.2) < 0.0 && failed(-1.0) >= -0.1);

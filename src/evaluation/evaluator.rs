@@ -1,0 +1,121 @@
+//! Design in, evaluation out: the one way from a design to what is measured of it.
+
+use super::Evaluation;
+use super::robustness::{self, Plan};
+use super::stoppable::Stoppable;
+use super::template::{Impossible, Template};
+use super::tolerance::Search;
+use crate::finger::Finger;
+use crate::input::robot::Robot;
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::input::task::Task;
+use crate::surrogate::{Model, Prediction};
+use crate::trial::Rig;
+use crate::trial::engine::EngineKind;
+use crate::trial::run::RigError;
+use std::sync::atomic::AtomicBool;
+
+/// Stiffness model, tasks, robot and engine: all that decides what a design measures.
+pub struct Evaluator {
+    /// Predicts a finger's stiffness from its infill.
+    pub surrogate: Model,
+    /// The tasks, whose numbers a design may set; at least one.
+    pub templates: Vec<Template>,
+    /// The robot.
+    pub robot: Robot,
+    /// What computes the contacts.
+    pub engine: EngineKind,
+}
+
+/// A design on one task: what is simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Specimen {
+    /// The task, with the numbers that the design sets.
+    pub task: Task,
+    /// The finger.
+    pub finger: Finger,
+    /// The stiffness that the finger was given, with its error.
+    pub stiffness: Prediction,
+}
+
+/// What is known of one design after its evaluation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Stiffness predicted for it.
+    pub stiffness: Prediction,
+    /// What was measured on each task, in their order.
+    pub tasks: Vec<Evaluation>,
+}
+
+/// Evaluates designs, several at a time.
+pub trait Evaluate: Sync {
+    /// Measures one design; equal designs measure equal.
+    ///
+    /// # Errors
+    /// If the design cannot be simulated.
+    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible>;
+}
+
+impl Evaluator {
+    /// The stiffness predicted for a design, which must name the infill.
+    pub fn predict(&self, design: &Design) -> Prediction {
+        let value = |key| design.get(key).unwrap_or(f64::NAN);
+        self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))
+    }
+
+    /// A design of this stiffness on one of the tasks.
+    ///
+    /// # Errors
+    /// If it sets what does not exist, or to what cannot be.
+    pub fn specimen(
+        &self,
+        template: &Template,
+        design: &Design,
+        stiffness: Prediction,
+    ) -> Result<Specimen, Impossible> {
+        let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
+        let (task, finger) = template.apply(design, finger)?;
+        Ok(Specimen { task, finger, stiffness })
+    }
+
+    /// Where trials of a specimen are run, with the engine's step times `step_factor`.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn rig(&self, specimen: &Specimen, step_factor: f64) -> Result<Box<dyn Rig>, RigError> {
+        self.engine.rig(&specimen.task, &self.robot, step_factor)
+    }
+
+    /// Measures the window of a specimen, looked for by `search`, and what the plan adds; ends
+    /// early, with a worthless result, once `stop` is set.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn measure(
+        &self,
+        specimen: &Specimen,
+        search: Search,
+        plan: &Plan,
+        stop: &AtomicBool,
+    ) -> Result<Evaluation, RigError> {
+        let rig = self.rig(specimen, 1.0)?;
+        let rig = Stoppable { rig: &*rig, stop };
+        let Specimen { finger, stiffness, .. } = specimen;
+        Ok(robustness::evaluate(&rig, finger, stiffness, search, plan))
+    }
+
+    /// Measures a design on every task by `measure`, which may know the answer already.
+    ///
+    /// # Errors
+    /// If the design cannot be simulated.
+    pub fn evaluate_by(
+        &self,
+        design: &Design,
+        measure: impl Fn(&Specimen) -> Result<Evaluation, RigError>,
+    ) -> Result<Measured, Impossible> {
+        let stiffness = self.predict(design);
+        let on = |template| Ok(measure(&self.specimen(template, design, stiffness)?)?);
+        let tasks = self.templates.iter().map(on).collect::<Result<_, Impossible>>()?;
+        Ok(Measured { stiffness, tasks })
+    }
+}

@@ -1,0 +1,52 @@
+//! What a study's values were measured with.
+
+use super::config::differences;
+use crate::trial::engine::{EngineKind, EngineRecord};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The sources that this program was built from.
+pub(super) const SOURCES: &str = env!("FINGER_OPT_SOURCE_SHA256");
+
+/// What computed the values, and from which inputs: values of different provenance do not
+/// belong into one study unless the user says so.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// Version of this program.
+    pub program: String,
+    /// SHA-256 of the program's sources, in hexadecimal.
+    pub source_sha256: String,
+    /// SHA-256 of each input file by its role (`task_1` and so on, `space`, `robot`,
+    /// `stiffness`; `uncertainty` where there is one), in hexadecimal.
+    pub input_sha256: BTreeMap<String, String>,
+    /// The contact engine.
+    pub engine: EngineRecord,
+}
+
+/// Evaluations of one provenance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Segment {
+    /// Index of its first evaluation.
+    pub first: u64,
+    /// What they were measured with.
+    pub provenance: Provenance,
+}
+
+impl Provenance {
+    /// Of what this program measures now from these inputs.
+    pub fn new(engine: EngineKind, input_sha256: BTreeMap<String, String>) -> Self {
+        Provenance {
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            source_sha256: SOURCES.to_owned(),
+            input_sha256,
+            engine: engine.record(),
+        }
+    }
+
+    /// In what another differs, one line each; `None` if in nothing.
+    pub fn differences(&self, now: &Provenance) -> Option<String> {
+        differences(self, now, ["the study", "now"])
+    }
+}

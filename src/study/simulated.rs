@@ -1,0 +1,46 @@
+//! What a study measures a design with: the evaluator, a cache, and a flag that stops it.
+
+use super::cache::Cache;
+use crate::evaluation::Evaluation;
+use crate::evaluation::evaluator::{Evaluate, Evaluator, Measured, Specimen};
+use crate::evaluation::robustness::Plan;
+use crate::evaluation::template::Impossible;
+use crate::evaluation::tolerance::Search;
+use crate::input::space::Design;
+use crate::trial::run::RigError;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Measures designs by simulation, or finds them in the cache.
+pub struct Simulated<'a> {
+    /// What turns a design into an evaluation.
+    pub evaluator: &'a Evaluator,
+    /// How the ends of a window are looked for.
+    pub search: Search,
+    /// What is measured beside the window.
+    pub plan: &'a Plan,
+    /// Where evaluations are kept, if they are.
+    pub cache: Option<&'a Cache>,
+    /// Set when the study is to stop: trials then end at once.
+    pub stop: &'a AtomicBool,
+}
+
+impl Evaluate for Simulated<'_> {
+    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible> {
+        self.evaluator.evaluate_by(design, |specimen| self.measure(specimen))
+    }
+}
+
+impl Simulated<'_> {
+    fn measure(&self, specimen: &Specimen) -> Result<Evaluation, RigError> {
+        let keep = self.cache.map(|cache| (cache, cache.key(&(specimen, self.search, self.plan))));
+        if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
+            return Ok(found);
+        }
+        let evaluation = self.evaluator.measure(specimen, self.search, self.plan, self.stop)?;
+        // Once it is set trials may have been skipped.
+        if let Some((cache, key)) = keep.filter(|_| !self.stop.load(Ordering::SeqCst)) {
+            cache.put(&key, &evaluation);
+        }
+        Ok(evaluation)
+    }
+}

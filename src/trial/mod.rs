@@ -13,6 +13,7 @@ pub mod fake;
 pub mod motion;
 pub mod picture;
 pub mod run;
+mod watch;
 
 pub use conditions::Conditions;
 

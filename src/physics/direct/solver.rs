@@ -155,7 +155,10 @@ impl Solver {
             self.newton(contacts, step * FORCE_TOLERANCE, &mut iterations)?;
             let mut error: f64 = 0.0;
             for contact in contacts.iter_mut() {
-                if contact.cone.state(&contact.pull(0.0)) != State::Apart {
+                let pull = contact.pull(0.0);
+                // With the sliding term that the velocities were solved with.
+                contact.impulse = contact.cone.impulse(&pull, &contact.normal);
+                if contact.cone.state(&pull) != State::Apart {
                     let now = contact.sliding();
                     error = error.max((now - contact.slide).abs());
                     contact.slide = now;
@@ -164,9 +167,6 @@ impl Solver {
             if error < SLIDING_TOLERANCE {
                 break;
             }
-        }
-        for contact in contacts.iter_mut() {
-            contact.impulse = contact.cone.impulse(&contact.pull(0.0), &contact.normal);
         }
         Some(())
     }

@@ -1,5 +1,5 @@
 //! The engine-neutral scene: bodies with convex geoms, joints with springs and
-//! servos, and the pairs of bodies that may touch. SI units throughout.
+//! servos, and the pairs of bodies that may touch, with their friction. SI units throughout.
 
 use nalgebra::{Isometry3, Matrix6, Point3, Vector3};
 
@@ -45,14 +45,74 @@ pub struct Geom {
     pub shape: Shape,
     /// Shape frame in the body frame.
     pub pose: Pose,
-    /// Coefficient of friction; a pair of geoms has the smaller of its two.
-    pub friction: f64,
+    /// Its own coefficient of friction, in place of that of the pair of bodies; of two geoms
+    /// that have one, the smaller.
+    pub friction: Option<f64>,
+}
+
+/// Two bodies that may touch, and the friction of their surfaces on one another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPair {
+    /// The first body.
+    pub first: BodyId,
+    /// The second body.
+    pub second: BodyId,
+    /// Of their surfaces, but for geoms that have a friction of their own.
+    pub friction: Friction,
+}
+
+/// Two geoms that may touch; all bodies' geoms are counted in one row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GeomPair {
+    /// Index of their bodies' pair in [`Scene::contacts`].
+    pub bodies: usize,
+    /// The geom of the pair's first body.
+    pub first: usize,
+    /// The geom of the pair's second body.
+    pub second: usize,
+    /// Of their surfaces.
+    pub friction: Friction,
+}
+
+/// Friction of one surface on another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// Coefficient of friction.
+    pub coefficient: f64,
     /// Radius of the soft patch that a contact point stands for, m: friction also
     /// resists a turn about the normal, with at most that times the friction force,
     /// and force and moment share an ellipsoid (Howe and Cutkosky 1996, Int. J. Robot.
-    /// Res. 15:557). A pair has the smaller of its two; at 0 a point turns freely.
-    /// Engines without it ignore it.
+    /// Res. 15:557). At 0 a point turns freely. Engines without it ignore it.
     pub patch: f64,
+}
+
+impl Friction {
+    /// Friction of hard surfaces, which resists no turn.
+    pub fn hard(coefficient: f64) -> Self {
+        Friction { coefficient, patch: 0.0 }
+    }
+}
+
+impl ContactPair {
+    /// Friction of a geom of the first body on one of the second.
+    fn between(&self, first: &Geom, second: &Geom) -> Friction {
+        let own = first.friction.into_iter().chain(second.friction).reduce(f64::min);
+        Friction { coefficient: own.unwrap_or(self.friction.coefficient), ..self.friction }
+    }
+
+    /// 1 if these are its bodies, -1 if they are in the other order.
+    pub fn sign(&self, first: BodyId, second: BodyId) -> Option<f64> {
+        match (self.first, self.second) {
+            ends if ends == (first, second) => Some(1.0),
+            ends if ends == (second, first) => Some(-1.0),
+            _ => None,
+        }
+    }
+
+    /// Whether a body is one of the two.
+    pub fn has(&self, body: BodyId) -> bool {
+        self.first == body || self.second == body
+    }
 }
 
 /// Mass properties of a body about its centre of mass, along the body axes.
@@ -119,7 +179,7 @@ impl Spring {
 
 /// One of the six axes of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Axis {
+pub enum JointAxis {
     /// No relative motion.
     Locked,
     /// Motion against a spring.
@@ -140,7 +200,7 @@ pub struct Coupled {
 #[expect(clippy::large_enum_variant, reason = "a scene has a handful of joints")]
 pub enum Springs {
     /// Each axis by itself: translations x, y, z, rotations x, y, z.
-    Axes([Axis; 6]),
+    Axes([JointAxis; 6]),
     /// All six axes at once; coordinates as above, the rotations as a rotation vector.
     Coupled(Coupled),
 }
@@ -171,7 +231,7 @@ pub struct Scene {
     /// The joints.
     pub joints: Vec<Joint>,
     /// Pairs of bodies that may touch; all others pass through one another.
-    pub contacts: Vec<(BodyId, BodyId)>,
+    pub contacts: Vec<ContactPair>,
     /// m/s2.
     pub gravity: Vector3<f64>,
 }
@@ -187,6 +247,37 @@ impl Scene {
     pub fn joint(&mut self, joint: Joint) -> JointId {
         self.joints.push(joint);
         JointId(self.joints.len() - 1)
+    }
+
+    /// Lets two bodies touch.
+    pub fn contact(&mut self, first: BodyId, second: BodyId, friction: Friction) {
+        self.contacts.push(ContactPair { first, second, friction });
+    }
+
+    /// Each two geoms that may touch, in the order of the contacts.
+    pub fn geom_pairs(&self) -> Vec<GeomPair> {
+        let mut next = 0;
+        let count = |body: &Body| {
+            next += body.geoms.len();
+            next - body.geoms.len()
+        };
+        let from: Vec<usize> = self.bodies.iter().map(count).collect();
+        let mut found = Vec::new();
+        for (bodies, pair) in self.contacts.iter().enumerate() {
+            let (a, b) = (pair.first.0, pair.second.0);
+            for (i, first) in self.bodies[a].geoms.iter().enumerate() {
+                for (j, second) in self.bodies[b].geoms.iter().enumerate() {
+                    let friction = pair.between(first, second);
+                    found.push(GeomPair {
+                        bodies,
+                        first: from[a] + i,
+                        second: from[b] + j,
+                        friction,
+                    });
+                }
+            }
+        }
+        found
     }
 }
 
@@ -210,5 +301,38 @@ impl Shape {
                 .collect(),
             Shape::Hull { points } => points.clone(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_geoms_own_friction_takes_the_place_of_the_pairs() {
+        let geom = |friction| Geom {
+            name: String::new(),
+            shape: Shape::Box { half: Vector3::repeat(1.0) },
+            pose: Pose::identity(),
+            friction,
+        };
+        let body = |frictions: [Option<f64>; 2]| Body {
+            name: String::new(),
+            motion: Motion::Fixed,
+            pose: Pose::identity(),
+            geoms: frictions.map(geom).to_vec(),
+        };
+        let mut scene = Scene::default();
+        scene.body(body([None; 2]));
+        let first = scene.body(body([None, Some(0.3)]));
+        let second = scene.body(body([None, Some(0.02)]));
+        scene.contact(first, second, Friction { coefficient: 1.0, patch: 0.03 });
+        let found: Vec<_> = scene
+            .geom_pairs()
+            .iter()
+            .map(|p| (p.first, p.second, p.friction.coefficient))
+            .collect();
+        assert_eq!(found, [(2, 4, 1.0), (2, 5, 0.02), (3, 4, 0.3), (3, 5, 0.02)]);
+        assert!(scene.geom_pairs().iter().all(|pair| pair.friction.patch == 0.03));
     }
 }

@@ -4,7 +4,7 @@
 use finger_opt::physics::Engine;
 use finger_opt::physics::direct::Direct;
 use finger_opt::physics::rapier::Rapier;
-use finger_opt::verify::analytic::{self, Row};
+use finger_opt::verify::analytic::{self, CheckRow};
 
 fn rapier(factor: f64) -> Box<dyn Engine> {
     let mut engine = Rapier::default();
@@ -19,12 +19,12 @@ fn direct(factor: f64) -> Box<dyn Engine> {
 }
 
 /// One check on both engines.
-fn on_both(check: fn(&dyn Engine) -> Vec<Row>) {
+fn on_both(check: fn(&dyn Engine) -> Vec<CheckRow>) {
     assert_passed(check(&*rapier(1.0)));
     assert_passed(check(&*direct(1.0)));
 }
 
-fn assert_passed(rows: Vec<Row>) {
+fn assert_passed(rows: Vec<CheckRow>) {
     println!("{}", analytic::table(&rows));
     assert!(!rows.is_empty());
     assert!(rows.iter().all(|row| row.passed), "\n{}", analytic::table(&rows));
@@ -98,4 +98,9 @@ fn t12_a_face_slides_and_turns_as_its_pressure_says() {
 #[test]
 fn t13_a_soft_flange_trails_a_command_that_sets_off() {
     on_both(analytic::flange::t13);
+}
+
+#[test]
+fn t14_a_contact_reports_the_whole_force_it_bears() {
+    on_both(analytic::push::t14);
 }

@@ -86,11 +86,11 @@ fn a_rigid_flange_inserts_with_more_force_than_a_soft_one() {
 }
 
 #[test]
-fn rapier_inserts_the_keys_too() {
-    for name in ["ket8", "ket12"] {
-        let rig = rig(name, Box::new(Rapier::default()));
+fn rapier_inserts_all_four_plugs_too() {
+    for file in TASKS {
+        let rig = rig(file.name, Box::new(Rapier::default()));
         let trial = trial(&rig, &finger(1.2, 52.4), 0.0);
-        assert_eq!(trial.outcome, Outcome::Inserted, "{name}");
+        assert_eq!(trial.outcome, Outcome::Inserted, "{}", file.name);
     }
 }
 

@@ -1,8 +1,14 @@
-//! Does an outcome stay when nothing that matters changes? Through the real binary.
+//! Does an outcome stay when nothing that matters changes?
 
 mod common;
 
 use common::optimize;
+use finger_opt::input::published;
+use finger_opt::input::robot::Robot;
+use finger_opt::input::shipped::{ROBOTS, TASKS};
+use finger_opt::input::task::Task;
+use finger_opt::physics::direct::Direct;
+use finger_opt::verify::analytic::convergence;
 
 /// Window of -3.33 to 1.40 mm; friction moves its lower end by a tenth.
 const CLOSED_FORM: [&str; 8] = [
@@ -28,6 +34,20 @@ fn windows_on_half_the_step_are_the_same() {
     let stiffness: Vec<f64> =
         rows.iter().filter_map(|row| row["compliance_n_per_mm"].as_f64()).collect();
     assert!(stiffness.len() == 3 && stiffness.is_sorted(), "{stiffness:?}");
+}
+
+/// Not with the softest finger: its positive end is not firm (docs/simulation.md, "The step").
+#[test]
+fn windows_of_the_stiffer_fingers_on_usb_are_the_same_on_half_the_step() {
+    let usb = TASKS.iter().find(|file| file.name == "usb").expect("shipped");
+    let usb = Task::parse(usb.text, usb.file).expect("valid");
+    let servo = ROBOTS.iter().find(|file| file.name == "servo").expect("shipped");
+    let servo = Robot::parse(servo.text, servo.file).expect("valid");
+    let stiffer = convergence::three(published::designs()).split_off(1);
+    let rows = convergence::measure(&[usb], &stiffer, &servo, &|| Box::<Direct>::default());
+    let rows = rows.expect("the engine can simulate the two");
+    assert_eq!(rows.len(), 2);
+    assert!(rows.iter().all(convergence::WindowRow::passed), "{}", convergence::table(&rows));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::Failure;
 use super::finger::FingerArguments;
 use super::setup::{Setup, SetupArguments};
 use crate::evaluation::evaluator::Specimen;
-use crate::physics::mjcf::{self, Settings};
+use crate::physics::mjcf::{self, MjcfSettings};
 use crate::study::write_file;
 use crate::trial::cell;
 use clap::{Args, Subcommand};
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mounted =
         setup.evaluator.robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
     let scene = cell::build(task, &mounted, finger).scene;
-    let text = mjcf::write(&scene, &task.name, &Settings::default()).map_err(|error| {
+    let text = mjcf::write(&scene, &task.name, &MjcfSettings::default()).map_err(|error| {
         Failure::usage(format!("{error}; --robot servo and --robot rigid need none of it"))
     })?;
     write_file(&arguments.out, &text)?;

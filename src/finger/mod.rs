@@ -2,8 +2,7 @@
 //! centre of compliance (RCC), Sec. "Stiffness model" and Table "Simulation Inputs".
 
 use crate::input::finger::{Coupling, FingerModel};
-use crate::input::task::Friction;
-use crate::scene::{Axis, Coupled, Geom, Inertia, Pose, Shape, Spring, Springs};
+use crate::scene::{Coupled, Geom, Inertia, JointAxis, Pose, Shape, Spring, Springs};
 use crate::units::{GRAM, MM, N_PER_MM};
 use nalgebra::{Matrix6, Point3, Vector3};
 
@@ -99,7 +98,7 @@ impl Finger {
     pub fn mounted(&self, side: f64) -> Springs {
         let springs = self.springs();
         match &self.coupling {
-            None => Springs::Axes(springs.map(Axis::Sprung)),
+            None => Springs::Axes(springs.map(JointAxis::Sprung)),
             Some(coupling) => Springs::Coupled(Coupled {
                 stiffness: coupling.stiffness(springs.map(|spring| spring.stiffness), side),
                 damping: Matrix6::from_diagonal(&springs.map(|spring| spring.damping).into()),
@@ -111,15 +110,14 @@ impl Finger {
 /// Pad and roof in the finger frame: origin on the pad's face at the height of
 /// the TCP, `side` -1 for the finger at -y, +1 for the one at +y; `shoulder` is
 /// the height of the part's shoulder above the TCP, m.
-pub fn tip(shoulder: f64, side: f64, friction: &Friction) -> Vec<Geom> {
+pub fn tip(shoulder: f64, side: f64) -> Vec<Geom> {
     use notch::*;
     let roof_z = shoulder + ROOF_GAP;
     let cuboid = |name: &str, y: [f64; 2], z: [f64; 2]| Geom {
         name: name.into(),
         shape: Shape::Box { half: Vector3::new(WIDTH, y[1] - y[0], z[1] - z[0]) / 2.0 },
         pose: Pose::translation(0.0, side * (y[0] + y[1]) / 2.0, (z[0] + z[1]) / 2.0),
-        friction: friction.finger_plug,
-        patch: friction.finger_torsion / friction.finger_plug.max(f64::MIN_POSITIVE),
+        friction: None,
     };
     vec![
         cuboid("pad", [0.0, PAD_THICKNESS], [roof_z - PAD_HEIGHT, roof_z]),

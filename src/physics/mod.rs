@@ -8,6 +8,7 @@ pub mod mjcf;
 #[cfg(feature = "mujoco")]
 pub mod mujoco;
 pub mod rapier;
+mod shapes;
 
 /// Builds worlds from scenes.
 pub trait Engine: Send + Sync {
@@ -19,7 +20,7 @@ pub trait Engine: Send + Sync {
         Ok(())
     }
 
-    /// Whether a face contact resists a turn about its normal by [`crate::scene::Geom::patch`].
+    /// Whether a face contact resists a turn about its normal by [`crate::scene::Friction::patch`].
     fn turns_with_friction(&self) -> bool {
         true
     }
@@ -70,9 +71,9 @@ fn refuse_coupling(engine: &dyn Engine, scene: &Scene) -> Result<(), Unsupported
 pub struct Diverged;
 
 /// Contact between two bodies over the last step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactForce {
-    /// Net force on the second body, N.
+    /// Net force on the second body, with friction, N.
     pub net: Vector3<f64>,
     /// Sum of the magnitudes of the normal forces of all contact points, N.
     pub normal_sum: f64,

@@ -1,12 +1,13 @@
 //! One attempt at an insertion: the phases, step by step, and what is watched on the way.
 
-use super::cell::{self, Cell};
-use super::classify::{Facts, classify};
+use super::cell::{self, Hand, WorkCell};
+use super::classify::{Facts, Placement, classify, within};
 use super::motion::{Move, Tcp};
+use super::watch::Watch;
 use super::{PhaseEnd, Poses, Trial};
 use crate::input::robot::Mounted;
 use crate::input::task::{Ending, Hold, Phase, Stage, Task};
-use crate::outcome::{FailureClass, Outcome};
+use crate::outcome::Outcome;
 use crate::physics::{Diverged, World};
 use crate::scene::{BodyId, Pose};
 use crate::units::{DEG, MM};
@@ -17,24 +18,17 @@ use std::sync::Arc;
 const GRASP_TIME: f64 = 0.3;
 /// Time to lift, tilt and carry the part to the start, s.
 const CARRY_TIME: f64 = 0.2;
-/// A finger that is off for this long has let go, s: longer than a bounce.
-const LOSS_TIME: f64 = 0.02;
-/// A finger that presses with less is off, N.
-const LOSS_FORCE: f64 = 0.01;
-/// Time constant of the force filter, s, as of a wrist sensor: a single step's
-/// impact is numerics, not a force that a part feels.
-const FORCE_FILTER: f64 = 0.005;
 /// A tolerance-based move that is not there by then is stuck, s after its command ended.
 const TOLERANCE_TIMEOUT: f64 = 1.0;
 /// The leading edge is inside when it is this far below the socket's top, m:
 /// more than contacts sink, less than any preload.
 const ENTERED_DEPTH: f64 = 0.15 * MM;
-/// Rest after a move that has no settling time of its own, s.
-const SETTLE: f64 = 0.03;
+/// Rest after a move that has none of its own, s.
+const REST: f64 = 0.03;
 /// First contact, N.
 const TOUCH_FORCE: f64 = 0.05;
 
-/// Why a run ends early.
+/// Why an attempt ends early.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Stop {
     Lost,
@@ -48,11 +42,12 @@ impl From<Diverged> for Stop {
     }
 }
 
-pub(super) struct Run<'a> {
+/// An attempt as it goes on.
+pub(super) struct Attempt<'a> {
     robot: &'a Mounted,
-    /// The task under the conditions of this run.
+    /// The task under the conditions of this attempt.
     task: Arc<Task>,
-    pub cell: Cell,
+    pub cell: WorkCell,
     pub world: Box<dyn World>,
     target: Tcp,
     stage: Stage,
@@ -63,22 +58,16 @@ pub(super) struct Run<'a> {
     time: f64,
     /// Grasp point in each finger's frame right after the grasp.
     grasp: [Vector3<f64>; 2],
-    /// Filtered net force plug-socket, N.
-    force: Vector3<f64>,
-    peak_force: f64,
-    phase_peak: f64,
-    /// For how long each finger has been off, s.
-    loose_for: [f64; 2],
-    entered: bool,
+    watch: Watch,
     corners: Vec<Point3<f64>>,
     phases: Vec<PhaseEnd>,
 }
 
-impl<'a> Run<'a> {
-    pub fn new(robot: &'a Mounted, task: Arc<Task>, cell: Cell, world: Box<dyn World>) -> Self {
+impl<'a> Attempt<'a> {
+    pub fn new(robot: &'a Mounted, task: Arc<Task>, cell: WorkCell, world: Box<dyn World>) -> Self {
         let pose = world.pose(cell.command);
         let corners = task.plug.parts.iter().flat_map(|part| part.solid.corners()).collect();
-        Run {
+        Attempt {
             robot,
             task,
             cell,
@@ -89,18 +78,15 @@ impl<'a> Run<'a> {
             socket: Pose::identity(),
             time: 0.0,
             grasp: [Vector3::zeros(); 2],
-            force: Vector3::zeros(),
-            peak_force: 0.0,
-            phase_peak: 0.0,
-            loose_for: [0.0; 2],
-            entered: false,
+            watch: Watch::default(),
             corners,
             phases: Vec::new(),
         }
     }
 
-    pub fn copy(&self) -> Run<'a> {
-        Run {
+    /// An independent copy that goes on bit for bit alike.
+    pub fn copy(&self) -> Attempt<'a> {
+        Attempt {
             robot: self.robot,
             task: Arc::clone(&self.task),
             cell: self.cell.clone(),
@@ -129,7 +115,7 @@ impl<'a> Run<'a> {
         self.world.place(self.cell.stand, Pose::translation(0.0, 0.0, -1.0));
         let [x, y, z] = task.strategy.start;
         let start = Tcp { position: Vector3::new(x, y, z), tilt: task.strategy.tilt };
-        self.follow(Move::lasting(self.target, start, CARRY_TIME), self.settle())?;
+        self.follow(Move::lasting(self.target, start, CARRY_TIME), self.rest_time())?;
         self.end_phase("carry");
         for phase in task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach) {
             self.phase(phase)?;
@@ -161,7 +147,7 @@ impl<'a> Run<'a> {
         let to = self.target.moved(displacement);
         let motion = Move::new(self.target, to, phase.speed);
         let end = match phase.ending {
-            Ending::Duration(settle) => self.follow(motion, settle.max(self.settle())),
+            Ending::Duration(rest) => self.follow(motion, rest.max(self.rest_time())),
             Ending::Tolerance(within) => self.reach(motion, within),
             Ending::Touch { preload } => self.touch(motion, preload),
         };
@@ -178,9 +164,9 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Commands a move and then waits.
-    fn follow(&mut self, motion: Move, settle: f64) -> Result<(), Stop> {
-        let steps = self.steps(motion.duration() + settle);
+    /// Commands a move and then rests, s.
+    fn follow(&mut self, motion: Move, rest: f64) -> Result<(), Stop> {
+        let steps = self.steps(motion.duration() + rest);
         for i in 1..=steps {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
@@ -218,7 +204,7 @@ impl<'a> Run<'a> {
         // and the lag would come on top of the preload.
         let reached = along.dot(&(self.tcp() - start.position));
         let to = start.moved(along * (reached + preload));
-        self.follow(Move::new(self.target, to, speed), self.settle())
+        self.follow(Move::new(self.target, to, speed), self.rest_time())
     }
 
     /// One step of the command, the engine and the monitors.
@@ -228,17 +214,17 @@ impl<'a> Run<'a> {
         let dt = self.world.step_s();
         self.time += dt;
         let contact = self.world.contact(self.cell.socket, self.cell.plug);
-        self.force += (contact.net - self.force) * (dt / FORCE_FILTER);
-        self.peak_force = self.peak_force.max(self.force.norm());
-        self.phase_peak = self.phase_peak.max(self.force.norm());
+        self.watch.see_force(&contact.net, dt);
         self.watch_grasp(dt)?;
-        self.watch_entry();
-        if self.robot.stops(&self.force) { Err(Stop::ForceLimit) } else { Ok(()) }
+        if self.stage == Stage::Search {
+            self.watch.entered = self.watch.entered || self.leading_edge_inside();
+        }
+        if self.robot.stops(&self.watch.force) { Err(Stop::ForceLimit) } else { Ok(()) }
     }
 
     /// Shortest rest after a move, s.
-    fn settle(&self) -> f64 {
-        SETTLE.max(self.robot.settling())
+    fn rest_time(&self) -> f64 {
+        REST.max(self.robot.settling())
     }
 
     fn tcp(&self) -> Vector3<f64> {
@@ -253,43 +239,10 @@ impl<'a> Run<'a> {
         if self.time < GRASP_TIME {
             return Ok(());
         }
-        for (hand, loose_for) in self.cell.hands.iter().zip(&mut self.loose_for) {
-            let pressed = self.world.contact(hand.finger, self.cell.plug).normal_sum;
-            *loose_for = if pressed < LOSS_FORCE { *loose_for + dt } else { 0.0 };
-        }
-        let dropped = self.loose_for.iter().all(|&time| time > LOSS_TIME);
+        let pressed = |hand: Hand| self.world.contact(hand.finger, self.cell.plug).normal_sum;
+        self.watch.see_fingers(self.cell.hands.map(pressed), dt);
         let slipped = !self.phases.is_empty() && self.slip() > self.task.grip.slip_limit;
-        if dropped || slipped { Err(Stop::Lost) } else { Ok(()) }
-    }
-
-    fn watch_entry(&mut self) {
-        if self.stage == Stage::Search {
-            self.entered = self.entered || self.leading_edge_inside();
-        }
-    }
-
-    /// Whether the part lies where it belongs now.
-    fn seated(&self) -> bool {
-        let success = self.task.success;
-        let tip = self.tip();
-        // Deep beside the socket is not inserted.
-        let inside = within(tip.x, self.task.opening[0]) && within(tip.y, self.task.opening[1]);
-        inside && -tip.z >= success.depth && self.tilt() <= success.tilt
-    }
-
-    /// How clearly it ended so; see [`Trial::margin`].
-    fn margin(&self, outcome: Outcome) -> f64 {
-        let success = self.task.success;
-        let deep = (-self.tip().z - success.depth) / success.depth;
-        let upright = (success.tilt - self.tilt()) / success.tilt;
-        let margin = deep.min(upright).clamp(-1.0, 1.0);
-        match outcome {
-            Outcome::Inserted => margin.max(0.0),
-            // Lost before it came to the socket: nothing is nearer to success for being deeper.
-            Outcome::Failed(FailureClass::ContactLossBeforeSearch) => -1.0,
-            Outcome::Failed(_) => margin.min(0.0),
-            Outcome::Diverged => 0.0,
-        }
+        if self.watch.dropped() || slipped { Err(Stop::Lost) } else { Ok(()) }
     }
 
     /// A body in the task frame: as if the start, not the socket, were shifted and turned.
@@ -306,12 +259,8 @@ impl<'a> Run<'a> {
         Poses { plug: self.plug(), fingers }
     }
 
-    fn tip(&self) -> Vector3<f64> {
-        self.plug().translation.vector
-    }
-
-    fn tilt(&self) -> f64 {
-        (self.plug() * Vector3::z()).z.clamp(-1.0, 1.0).acos()
+    fn placement(&self) -> Placement {
+        Placement::new(&self.plug())
     }
 
     fn leading_edge_inside(&self) -> bool {
@@ -342,37 +291,40 @@ impl<'a> Run<'a> {
     }
 
     fn end_phase(&mut self, name: &str) {
+        let placement = self.placement();
         let end = PhaseEnd {
             name: name.to_owned(),
             time_s: self.time,
-            tip_mm: (self.tip() / MM).into(),
-            tilt_deg: self.tilt() / DEG,
+            tip_mm: (placement.tip / MM).into(),
+            tilt_deg: placement.tilt / DEG,
             slip_mm: self.slip() / MM,
-            peak_force_n: self.phase_peak,
+            peak_force_n: self.watch.phase_peak,
             poses: self.poses(),
         };
-        self.phase_peak = 0.0;
+        self.watch.phase_peak = 0.0;
         self.phases.push(end);
     }
 
+    /// What came of it, if it ended so.
     pub fn result(self, end: Result<(), Stop>) -> Trial {
+        let placement = self.placement();
         // Judged at rest after the push, or where a bottomed part stopped the robot:
         // a part that only passes through a good pose may tip on.
         let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
         let facts = Facts {
-            seated: held && self.stage == Stage::Assembly && self.seated(),
-            gripped: self.loose_for.iter().all(|&time| time <= LOSS_TIME),
+            seated: held && self.stage == Stage::Assembly && placement.seated(&self.task),
+            gripped: self.watch.gripped(),
             lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
-            entered: self.entered,
+            entered: self.watch.entered,
         };
         let diverged = end == Err(Stop::Diverged);
         let outcome = if diverged { Outcome::Diverged } else { classify(facts) };
         Trial {
             outcome,
-            margin: self.margin(outcome),
-            depth_mm: -self.tip().z / MM,
-            tilt_deg: self.tilt() / DEG,
-            peak_force_n: self.peak_force,
+            margin: placement.margin(&self.task, outcome),
+            depth_mm: -placement.tip.z / MM,
+            tilt_deg: placement.tilt / DEG,
+            peak_force_n: self.watch.peak_force,
             slip_mm: self.slip() / MM,
             simulated_s: self.time,
             phases: self.phases,
@@ -384,8 +336,4 @@ impl<'a> Run<'a> {
 /// A turn about z, rad.
 pub(super) fn turned(angle: f64) -> Pose {
     Pose::rotation(Vector3::z() * angle)
-}
-
-fn within(value: f64, [from, to]: [f64; 2]) -> bool {
-    from <= value && value <= to
 }

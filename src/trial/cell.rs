@@ -6,9 +6,10 @@
 use crate::finger::{self, Finger};
 use crate::input::arm::Reduced;
 use crate::input::robot::{Flange, Mounted, Servo};
-use crate::input::task::{Task, geometry};
+use crate::input::task::{Part, Task, geometry};
 use crate::scene::{
-    Axis, Body, BodyId, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Spring, Springs,
+    Body, BodyId, Friction, Geom, Inertia, Joint, JointAxis, JointId, Motion, Pose, Scene, Shape,
+    Spring, Springs,
 };
 use crate::units::MM;
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
@@ -32,7 +33,7 @@ const HOLD_GAIN: f64 = 1e7;
 
 /// A scene and the handles that a trial needs.
 #[derive(Debug, Clone)]
-pub struct Cell {
+pub struct WorkCell {
     /// The scene.
     pub scene: Scene,
     /// The body that is commanded: the flange itself, or its servo's target.
@@ -63,7 +64,7 @@ pub struct Hand {
 }
 
 /// Builds the scene for one pair of fingers; the jaws are open.
-pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> Cell {
+pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -9.81), ..Scene::default() };
     let [x, y, z] = task.strategy.start;
     let tcp = Pose::translation(x, y, z + PICK_UP_HEIGHT);
@@ -74,13 +75,18 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> Cell {
         name: "socket".into(),
         motion: Motion::Fixed,
         pose: Pose::identity(),
-        geoms: task.socket.iter().map(|part| part.geom(task.friction.plug_socket)).collect(),
+        geoms: task.socket.iter().map(Part::geom).collect(),
     });
     let stand = scene.body(stand_body(task, plug_pose));
     let hands = [-1.0, 1.0].map(|side| hand(&mut scene, task, finger, flange, tcp, side));
-    scene.contacts.extend([(plug, socket), (plug, stand)]);
-    scene.contacts.extend(hands.iter().map(|hand| (hand.finger, plug)));
-    Cell { command, flange, hands, plug, socket, stand, scene }
+    let hard = Friction::hard(task.friction.plug_socket);
+    scene.contact(plug, socket, hard);
+    scene.contact(plug, stand, hard);
+    let soft = pad_friction(task);
+    for hand in &hands {
+        scene.contact(hand.finger, plug, soft);
+    }
+    WorkCell { command, flange, hands, plug, socket, stand, scene }
 }
 
 /// The servo setting of a jaw that has been closing for `time` seconds; `side`
@@ -159,26 +165,24 @@ fn servo_flange(servo: &Servo) -> (Motion, Springs) {
         } else {
             (servo.rotational_stiffness[i - 3], servo.inertia)
         };
-        Axis::Sprung(Spring::new(k, critical(k, m)))
+        JointAxis::Sprung(Spring::new(k, critical(k, m)))
     };
     (Motion::Carried(inertia), Springs::Axes(std::array::from_fn(axis)))
 }
 
+/// Friction of a finger's soft pad on the plug.
+fn pad_friction(task: &Task) -> Friction {
+    let coefficient = task.friction.finger_plug;
+    let patch = task.friction.finger_torsion / coefficient.max(f64::MIN_POSITIVE);
+    Friction { coefficient, patch }
+}
+
 fn plug_body(task: &Task, pose: Pose) -> Body {
-    // The finger's coefficient is the larger one; a pair takes the smaller of
-    // its two, so the plug's own never decides.
-    let friction = task.friction.finger_plug.max(task.friction.plug_socket);
     Body {
         name: "plug".into(),
         motion: Motion::Free(geometry::inertia(&task.plug.parts, task.plug.mass)),
         pose,
-        // The finger's patch decides, too.
-        geoms: task
-            .plug
-            .parts
-            .iter()
-            .map(|part| Geom { patch: f64::INFINITY, ..part.geom(friction) })
-            .collect(),
+        geoms: task.plug.parts.iter().map(Part::geom).collect(),
     }
 }
 
@@ -189,10 +193,9 @@ fn stand_body(task: &Task, plug: Pose) -> Body {
     let pose = plug * Pose::translation(0.0, 0.0, bottom - half.z);
     let geom = Geom {
         name: "stand".into(),
-        shape: crate::scene::Shape::Box { half },
+        shape: Shape::Box { half },
         pose: Pose::identity(),
-        friction: task.friction.plug_socket,
-        patch: 0.0,
+        friction: None,
     };
     Body { name: "stand".into(), motion: Motion::Fixed, pose, geoms: vec![geom] }
 }
@@ -221,8 +224,9 @@ fn hand(
         pose: tcp * in_flange,
         geoms: Vec::new(),
     });
-    let mut axes = [Axis::Locked; 6];
-    axes[1] = Axis::Sprung(Spring { limit: task.grip.force, ..Spring::new(JAW_GAIN, JAW_DAMPING) });
+    let mut axes = [JointAxis::Locked; 6];
+    axes[1] =
+        JointAxis::Sprung(Spring { limit: task.grip.force, ..Spring::new(JAW_GAIN, JAW_DAMPING) });
     let slide = scene.joint(Joint {
         name: format!("slide {label}"),
         parent: flange,
@@ -235,7 +239,7 @@ fn hand(
         name: format!("finger {label}"),
         motion: Motion::Free(finger::inertia(finger)),
         pose: tcp * in_flange,
-        geoms: finger::tip(task.grip.shoulder_z - task.grip.tcp_z, side, &task.friction),
+        geoms: finger::tip(task.grip.shoulder_z - task.grip.tcp_z, side),
     });
     let rcc = Pose::from_parts(Translation3::new(0.0, 0.0, -finger.rcc), nalgebra::one());
     scene.joint(Joint {

@@ -8,17 +8,64 @@
 //!    seated, but that one finger has let go of: pushed aside by more than twice the
 //!    grasp force, it stands where it is driven by the other finger alone.
 //! 3. Its leading edge never entered the opening before the assembly push: class 2.
-//! 4. Otherwise it entered, is not seated and is still touched: class 3.
+//! 4. Otherwise it entered and is not seated, whether fingers still touch it or not: class 3.
 
-use crate::input::task::Stage;
+use crate::input::task::{Stage, Task};
 use crate::outcome::{FailureClass, Outcome};
+use crate::scene::Pose;
+use nalgebra::Vector3;
+
+/// Where the part lies against its socket.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Placement {
+    /// Its tip, task frame, m.
+    pub tip: Vector3<f64>,
+    /// Angle between its axis and z, rad.
+    pub tilt: f64,
+}
+
+impl Placement {
+    /// From the plug's pose in the task frame.
+    pub fn new(plug: &Pose) -> Self {
+        let tilt = (plug * Vector3::z()).z.clamp(-1.0, 1.0).acos();
+        Placement { tip: plug.translation.vector, tilt }
+    }
+
+    /// Whether it lies where it belongs.
+    pub fn seated(&self, task: &Task) -> bool {
+        let [x, y] = task.opening;
+        // Deep beside the socket is not inserted.
+        let inside = within(self.tip.x, x) && within(self.tip.y, y);
+        inside && -self.tip.z >= task.success.depth && self.tilt <= task.success.tilt
+    }
+
+    /// How clearly it ended so; see [`super::Trial::margin`].
+    pub fn margin(&self, task: &Task, outcome: Outcome) -> f64 {
+        let success = task.success;
+        let deep = (-self.tip.z - success.depth) / success.depth;
+        let upright = (success.tilt - self.tilt) / success.tilt;
+        let margin = deep.min(upright).clamp(-1.0, 1.0);
+        match outcome {
+            Outcome::Inserted => margin.max(0.0),
+            // Lost before it came to the socket: nothing is nearer to success for being deeper.
+            Outcome::Failed(FailureClass::ContactLossBeforeSearch) => -1.0,
+            Outcome::Failed(_) => margin.min(0.0),
+            Outcome::Diverged => 0.0,
+        }
+    }
+}
+
+/// Whether a value lies between two others.
+pub(super) fn within(value: f64, [from, to]: [f64; 2]) -> bool {
+    from <= value && value <= to
+}
 
 /// What the rules look at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Facts {
     /// In the opening, deep and upright enough, at the end.
     pub seated: bool,
-    /// Both fingers touch it at the end.
+    /// Neither finger has been off it for long at the end.
     pub gripped: bool,
     /// The stage in which the part left the grasp.
     pub lost_in: Option<Stage>,

@@ -1,6 +1,6 @@
 //! What may differ between two trials of the same finger at the same offset.
 
-use super::cell::Cell;
+use super::cell::WorkCell;
 use crate::input::task::{Part, Solid, Task};
 use crate::scene::Pose;
 
@@ -54,7 +54,7 @@ impl Conditions {
     }
 
     /// Moves the part, and what it stands on, to where these conditions put it in the gripper.
-    pub fn displace(&self, cell: &mut Cell) {
+    pub fn displace(&self, cell: &mut WorkCell) {
         let by = Pose::translation(self.grasp_across, 0.0, -self.grasp_low);
         for body in [cell.plug, cell.stand] {
             let pose = &mut cell.scene.bodies[body.0].pose;

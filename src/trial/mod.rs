@@ -15,6 +15,7 @@ pub mod fake;
 pub mod motion;
 pub mod picture;
 pub mod run;
+mod watch;
 
 pub use conditions::Conditions;
 

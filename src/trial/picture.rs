@@ -61,14 +61,14 @@ pub fn svg(task: &Task, trial: &Trial) -> String {
 
 fn panel(out: &mut String, task: &Task, poses: &Poses, axis: usize) {
     for part in &task.socket {
-        polygon(out, &part.geom(0.0), &Pose::identity(), axis, "#b8c4d6");
+        polygon(out, &part.geom(), &Pose::identity(), axis, "#b8c4d6");
     }
     for part in &task.plug.parts {
-        polygon(out, &part.geom(0.0), &poses.plug, axis, "#e8a33d");
+        polygon(out, &part.geom(), &poses.plug, axis, "#e8a33d");
     }
     let shoulder = task.grip.shoulder_z - task.grip.tcp_z;
     for (pose, side) in poses.fingers.iter().zip([-1.0, 1.0]) {
-        for geom in finger::tip(shoulder, side, &task.friction) {
+        for geom in finger::tip(shoulder, side) {
             polygon(out, &geom, pose, axis, "#5b8c5a");
         }
     }

@@ -1,6 +1,6 @@
 //! A trial in a contact engine: where it is run, and what happens if it diverges.
 
-use super::attempt::{Run, Stop, turned};
+use super::attempt::{Attempt, Stop, turned};
 use super::{Conditions, Grasped, Rig, Trial, cell};
 use crate::finger::Finger;
 use crate::input::arm::ArmError;
@@ -49,9 +49,7 @@ impl EngineRig {
         engine.supports(&cell::build(&task, &mounted, &any).scene)?;
         Ok(EngineRig { task, robot: mounted, engine })
     }
-}
 
-impl EngineRig {
     /// Grasps, carries and approaches.
     fn prepare(
         &self,
@@ -63,10 +61,10 @@ impl EngineRig {
         let mut cell = cell::build(&task, &self.robot, finger);
         conditions.displace(&mut cell);
         let world = engine.world(&cell.scene);
-        let mut run = Run::new(&self.robot, task, cell, world);
-        run.yaw = conditions.yaw;
-        let lost = run.prepare();
-        Prepared { run, lost }
+        let mut attempt = Attempt::new(&self.robot, task, cell, world);
+        attempt.yaw = conditions.yaw;
+        let end = attempt.prepare();
+        Prepared { attempt, end }
     }
 }
 
@@ -82,7 +80,7 @@ impl Rig for EngineRig {
     }
 }
 
-/// A run stopped right before the search, and what it takes to begin it again.
+/// An attempt stopped right before the search, and what it takes to begin it again.
 struct Ready<'a> {
     rig: &'a EngineRig,
     finger: Finger,
@@ -106,25 +104,23 @@ impl Grasped for Ready<'_> {
     }
 }
 
-/// A run stopped right before the search; every offset starts from a copy.
+/// An attempt stopped right before the search; every offset starts from a copy.
 struct Prepared<'a> {
-    run: Run<'a>,
-    lost: Result<(), Stop>,
+    attempt: Attempt<'a>,
+    /// Whether it came so far.
+    end: Result<(), Stop>,
 }
 
 impl Prepared<'_> {
     fn trial(&self, offset: f64) -> Trial {
-        let mut run = self.run.copy();
+        let mut attempt = self.attempt.copy();
         // Shifting the start by y is shifting the socket by -y: the part has
         // touched nothing of it yet. So all offsets share grasp and approach.
-        let socket = Pose::translation(0.0, -offset, 0.0) * turned(run.yaw);
-        run.socket = turned(-run.yaw) * Pose::translation(0.0, offset, 0.0);
-        run.world.place(run.cell.socket, socket);
-        let end = match self.lost {
-            Ok(()) => run.search_and_assemble(),
-            Err(stop) => Err(stop),
-        };
-        run.result(end)
+        let socket = Pose::translation(0.0, -offset, 0.0) * turned(attempt.yaw);
+        attempt.socket = turned(-attempt.yaw) * Pose::translation(0.0, offset, 0.0);
+        attempt.world.place(attempt.cell.socket, socket);
+        let end = self.end.and_then(|()| attempt.search_and_assemble());
+        attempt.result(end)
     }
 }
 
@@ -133,7 +129,7 @@ mod tests {
     use super::*;
     use crate::input::shipped::{ROBOTS, TASKS};
     use crate::physics::World;
-    use crate::physics::direct::{Direct, Settings};
+    use crate::physics::direct::{Direct, DirectSettings};
     use crate::scene::Scene;
 
     /// An engine whose contacts are not numbers until its step has been halved so often.
@@ -149,14 +145,14 @@ mod tests {
         }
 
         fn world(&self, scene: &Scene) -> Box<dyn World> {
-            let settings = Settings { contact_stiffness: f64::NAN, ..self.direct.settings };
+            let settings = DirectSettings { contact_stiffness: f64::NAN, ..self.direct.settings };
             let broken = Direct { settings };
             if self.halvings == 0 { self.direct.world(scene) } else { broken.world(scene) }
         }
 
         fn halved(&self) -> Box<dyn Engine> {
             let step_s = 0.5 * self.direct.settings.step_s;
-            let settings = Settings { step_s, ..self.direct.settings };
+            let settings = DirectSettings { step_s, ..self.direct.settings };
             Box::new(Fragile { direct: Direct { settings }, halvings: self.halvings - 1 })
         }
     }

@@ -46,14 +46,13 @@ pub enum Solid {
 
 impl Part {
     /// The part as a geom on a body whose frame is the part's frame.
-    pub fn geom(&self, friction: f64) -> Geom {
+    pub fn geom(&self) -> Geom {
         let (shape, origin) = self.solid.shape();
         Geom {
             name: self.name.clone(),
             shape,
             pose: Pose::from_parts(Translation3::from(origin), nalgebra::one()),
-            friction: self.friction.unwrap_or(friction),
-            patch: 0.0,
+            friction: self.friction,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Bodies: pose, velocity and mass of each, and how they move on.
 
 use super::blocks::Vector6;
-use crate::scene::{self, Inertia, Motion, Pose};
+use crate::scene::{Body, Inertia, Motion, Pose};
 use nalgebra::{Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
 /// How a body's velocity comes about.
@@ -17,7 +17,7 @@ pub(super) enum Kind {
 
 /// A body in motion.
 #[derive(Debug, Clone)]
-pub(super) struct Body {
+pub(super) struct MovingBody {
     pub kind: Kind,
     /// Body frame in the world.
     pub pose: Pose,
@@ -38,9 +38,9 @@ pub(super) struct Body {
     tensor: Matrix3<f64>,
 }
 
-impl Body {
+impl MovingBody {
     /// At rest; `place` is the place in the system if the body is dynamic.
-    pub fn new(body: &scene::Body, place: usize) -> Self {
+    pub fn new(body: &Body, place: usize) -> Self {
         let (kind, inertia, weightless) = match body.motion {
             Motion::Fixed => (Kind::Fixed, MASSLESS, true),
             Motion::Driven => (Kind::Driven(body.pose), MASSLESS, true),
@@ -52,7 +52,7 @@ impl Body {
             Motion::Mechanism(mass) => Some(mass),
             _ => None,
         };
-        let mut made = Body {
+        let mut made = MovingBody {
             kind,
             pose: body.pose,
             inertia,
@@ -155,7 +155,7 @@ const MASSLESS: Inertia =
     Inertia { mass: 0.0, centre: Point3::new(0.0, 0.0, 0.0), moments: Vector3::new(0.0, 0.0, 0.0) };
 
 #[cfg(test)]
-impl Body {
+impl MovingBody {
     /// J.
     pub fn kinetic_energy(&self) -> f64 {
         0.5 * self.velocity.dot(&(self.mass() * self.velocity))

@@ -2,14 +2,18 @@
 //! touch or are about to. Nothing is carried over from step to step but parry's
 //! guess of a separating direction, so a contact's normal is never out of date.
 
-use super::body::Body;
-use super::shapes;
-use crate::scene::{Pose, Scene};
+use super::body::MovingBody;
+use crate::physics::shapes;
+use crate::scene::{Friction, Geom, GeomPair, Pose, Scene};
 use nalgebra::{Point3, Vector3};
 use parry::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry::shape::SharedShape;
 use rapier3d_f64::parry;
 
+/// Shapes are in millimetres, so many to a metre: some of parry's tolerances are
+/// absolute and made for metre-sized things (in metres it drops the crossing of two
+/// edges of 1 mm that meet at less than a degree).
+const MILLIMETRES: f64 = 1e3;
 /// At most so many points of a manifold are kept.
 const POINTS: usize = 4;
 /// A surface is covered if a neighbour is found this far out from it, m.
@@ -28,15 +32,13 @@ pub(super) struct Touch {
     pub normal: Vector3<f64>,
     /// Signed distance, m; negative if they overlap.
     pub gap: f64,
-    /// Coefficient of friction.
-    pub friction: f64,
-    /// Radius at which its friction resists a turn about the normal, m (see `Geom::patch`).
-    pub patch: f64,
+    /// Of the two surfaces.
+    pub friction: Friction,
 }
 
-/// A shape on a body.
+/// A geom as parry has it.
 #[derive(Clone)]
-struct Geom {
+struct Solid {
     body: usize,
     shape: SharedShape,
     /// parry's frame of the shape in the body frame.
@@ -44,8 +46,6 @@ struct Geom {
     /// Enclosing box in the body frame: frame and half extents, m.
     frame: Pose,
     half: Vector3<f64>,
-    friction: f64,
-    patch: f64,
     /// Enclosing box in the world, m.
     low: Vector3<f64>,
     high: Vector3<f64>,
@@ -56,19 +56,14 @@ struct Geom {
 /// Two shapes that may touch.
 #[derive(Clone)]
 struct Candidate {
-    pair: usize,
-    first: usize,
-    second: usize,
-    friction: f64,
-    /// See `Geom::patch`.
-    patch: f64,
+    pair: GeomPair,
     manifold: ContactManifold<(), ()>,
 }
 
 /// All shapes of a scene and the pairs that may touch.
 #[derive(Clone)]
 pub(super) struct Detector {
-    geoms: Vec<Geom>,
+    solids: Vec<Solid>,
     candidates: Vec<Candidate>,
     prediction: f64,
 }
@@ -76,77 +71,61 @@ pub(super) struct Detector {
 impl Detector {
     /// `prediction` is the gap, m, up to which a contact is foreseen.
     pub fn new(scene: &Scene, prediction: f64) -> Self {
-        let mut geoms = Vec::new();
-        let mut of_body = Vec::new();
+        let mut solids: Vec<Solid> = Vec::new();
         for (index, body) in scene.bodies.iter().enumerate() {
-            let from = geoms.len();
-            geoms.extend(body.geoms.iter().map(|geom| new_geom(index, geom)));
-            of_body.push(from..geoms.len());
+            solids.extend(body.geoms.iter().map(|geom| Solid::new(index, geom)));
         }
-        for range in &of_body {
-            for i in range.clone() {
-                geoms[i].enclose(&Pose::identity());
-            }
-            for i in range.clone() {
-                let near = |&j: &usize| j != i && !geoms[i].apart(&geoms[j], COVER);
-                geoms[i].neighbours = range.clone().filter(near).collect();
-            }
+        for solid in &mut solids {
+            solid.enclose(&Pose::identity());
         }
-        let mut candidates = Vec::new();
-        for (pair, (a, b)) in scene.contacts.iter().enumerate() {
-            for first in of_body[a.0].clone() {
-                for second in of_body[b.0].clone() {
-                    let friction = geoms[first].friction.min(geoms[second].friction);
-                    let manifold = ContactManifold::new();
-                    // Two that leave it to the other have none.
-                    let patch = Some(geoms[first].patch.min(geoms[second].patch))
-                        .filter(|patch| patch.is_finite())
-                        .unwrap_or(0.0);
-                    candidates.push(Candidate { pair, first, second, friction, patch, manifold });
-                }
-            }
+        for i in 0..solids.len() {
+            let (own, all) = (&solids[i], 0..solids.len());
+            let near =
+                |&j: &usize| j != i && solids[j].body == own.body && !own.apart(&solids[j], COVER);
+            solids[i].neighbours = all.filter(near).collect();
         }
-        Detector { geoms, candidates, prediction }
+        let candidate = |pair: GeomPair| Candidate { pair, manifold: ContactManifold::new() };
+        let candidates = scene.geom_pairs().into_iter().map(candidate).collect();
+        Detector { solids, candidates, prediction }
     }
 
     /// Finds the contacts at the bodies' poses.
-    pub fn detect(&mut self, bodies: &[Body], found: &mut Vec<Touch>) {
+    pub fn detect(&mut self, bodies: &[MovingBody], found: &mut Vec<Touch>) {
         found.clear();
-        for geom in &mut self.geoms {
-            geom.enclose(&bodies[geom.body].pose);
+        for solid in &mut self.solids {
+            solid.enclose(&bodies[solid.body].pose);
         }
         for candidate in &mut self.candidates {
-            let (first, second) = (&self.geoms[candidate.first], &self.geoms[candidate.second]);
+            let (first, second) =
+                (&self.solids[candidate.pair.first], &self.solids[candidate.pair.second]);
             if first.apart(second, self.prediction) {
                 continue;
             }
             let pose = bodies[first.body].pose * first.pose;
             let other = bodies[second.body].pose * second.pose;
-            candidate.meet(&pose, &other, (first, second), self.prediction);
-            candidate.uncover(&self.geoms);
+            candidate.compute(&pose, &other, (first, second), self.prediction);
+            candidate.drop_covered(&self.solids);
             candidate.report(&pose, self.prediction, found);
         }
     }
 }
 
-fn new_geom(body: usize, geom: &crate::scene::Geom) -> Geom {
-    let (shape, turn) = shapes::shared(&geom.shape);
-    let (centre, half) = shapes::bounds(&geom.shape);
-    Geom {
-        body,
-        shape,
-        pose: geom.pose * turn,
-        frame: geom.pose * Pose::translation(centre.x, centre.y, centre.z),
-        half,
-        friction: geom.friction,
-        patch: geom.patch,
-        low: Vector3::zeros(),
-        high: Vector3::zeros(),
-        neighbours: Vec::new(),
+impl Solid {
+    fn new(body: usize, geom: &Geom) -> Self {
+        let (shape, turn) = shapes::shared(&geom.shape, MILLIMETRES);
+        let (centre, half) = shapes::bounds(&geom.shape);
+        Solid {
+            body,
+            shape,
+            pose: geom.pose * turn,
+            frame: geom.pose * Pose::translation(centre.x, centre.y, centre.z),
+            half,
+            low: Vector3::zeros(),
+            high: Vector3::zeros(),
+            neighbours: Vec::new(),
+        }
     }
-}
 
-impl Geom {
     fn enclose(&mut self, body: &Pose) {
         let frame = body * self.frame;
         let reach = frame.rotation.to_rotation_matrix().into_inner().abs() * self.half;
@@ -154,36 +133,34 @@ impl Geom {
         self.high = frame.translation.vector + reach;
     }
 
-    fn apart(&self, other: &Geom, margin: f64) -> bool {
+    fn apart(&self, other: &Solid, margin: f64) -> bool {
         (0..3).any(|i| self.low[i] > other.high[i] + margin || other.low[i] > self.high[i] + margin)
     }
-}
 
-impl Geom {
     /// Whether a neighbour covers a place on the surface, both in parry's frame of the shape, m.
-    fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, geoms: &[Geom]) -> bool {
+    fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, solids: &[Solid]) -> bool {
         let outside = self.pose * Point3::from(place + outward * COVER);
         self.neighbours.iter().any(|&j| {
-            let local = geoms[j].pose.inverse_transform_point(&outside).coords * shapes::SCALE;
-            let distance = geoms[j].shape.distance_to_local_point(shapes::vector(&local), true);
-            distance < SEAM * shapes::SCALE
+            let local = solids[j].pose.inverse_transform_point(&outside).coords * MILLIMETRES;
+            let distance = solids[j].shape.distance_to_local_point(shapes::vector(&local), true);
+            distance < SEAM * MILLIMETRES
         })
     }
 }
 
 impl Candidate {
     /// Computes the manifold afresh.
-    fn meet(&mut self, first: &Pose, second: &Pose, geoms: (&Geom, &Geom), prediction: f64) {
+    fn compute(&mut self, first: &Pose, second: &Pose, solids: (&Solid, &Solid), prediction: f64) {
         // With points left in it parry would only move them along.
         self.manifold.points.clear();
-        let relative = shapes::pose(&first.inv_mul(second));
+        let relative = shapes::pose(&first.inv_mul(second), MILLIMETRES);
         let result = DefaultQueryDispatcher.contact_manifold_convex_convex(
             &relative,
-            &*geoms.0.shape,
-            &*geoms.1.shape,
+            &*solids.0.shape,
+            &*solids.1.shape,
             None,
             None,
-            prediction * shapes::SCALE,
+            prediction * MILLIMETRES,
             &mut self.manifold,
         );
         if result.is_err() {
@@ -195,37 +172,36 @@ impl Candidate {
     /// Drops the points on faces that another shape of the same body covers: at
     /// a seam of two flush parts the hidden end face of the next part would stop
     /// an edge that slides along, 0.1 um deep, as if it were a step.
-    fn uncover(&mut self, geoms: &[Geom]) {
+    fn drop_covered(&mut self, solids: &[Solid]) {
         let manifold = &mut self.manifold;
         let outward = [manifold.local_n1, manifold.local_n2].map(shapes::from_vector);
-        let sides = [&geoms[self.first], &geoms[self.second]];
+        let sides = [&solids[self.pair.first], &solids[self.pair.second]];
         if sides.iter().all(|side| side.neighbours.is_empty()) {
             return;
         }
         manifold.points.retain(|point| {
             let places = [point.local_p1, point.local_p2].map(shapes::from_vector);
-            (0..2).all(|i| !sides[i].covered(&(places[i] / shapes::SCALE), &outward[i], geoms))
+            (0..2).all(|i| !sides[i].covered(&(places[i] / MILLIMETRES), &outward[i], solids))
         });
     }
 
     /// Adds the manifold's extreme points to the list.
     fn report(&mut self, first: &Pose, prediction: f64, found: &mut Vec<Touch>) {
-        let limit = prediction * shapes::SCALE;
+        let limit = prediction * MILLIMETRES;
         self.manifold.points.retain(|point| point.dist <= limit);
         let normal = first.rotation * shapes::from_vector(self.manifold.local_n1);
         let axis = shapes::from_vector(self.manifold.local_n1);
         let middle = |i: usize| {
             let point = &self.manifold.points[i];
-            (shapes::from_vector(point.local_p1) + axis * (0.5 * point.dist)) / shapes::SCALE
+            (shapes::from_vector(point.local_p1) + axis * (0.5 * point.dist)) / MILLIMETRES
         };
         let mut add = |i: usize| {
             found.push(Touch {
-                pair: self.pair,
+                pair: self.pair.bodies,
                 point: first * Point3::from(middle(i)),
                 normal,
-                gap: self.manifold.points[i].dist / shapes::SCALE,
-                friction: self.friction,
-                patch: self.patch,
+                gap: self.manifold.points[i].dist / MILLIMETRES,
+                friction: self.pair.friction,
             });
         };
         let count = self.manifold.points.len();

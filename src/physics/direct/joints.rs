@@ -10,8 +10,8 @@
 //! limit; which servos are is settled by repeating the step's solution.
 
 use super::blocks::{Blocks, Vector6};
-use super::body::{Body, Kind};
-use crate::scene::{self, Axis, Coupled, Pose, Spring, Springs};
+use super::body::{Kind, MovingBody};
+use crate::scene::{Coupled, Joint, JointAxis, Pose, Spring, Springs};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
 /// Stiffness of a locked translation, N/m.
@@ -69,7 +69,7 @@ impl Answer {
 
 /// A joint with its coordinates at the start of the step.
 #[derive(Debug, Clone)]
-pub(super) struct Joint {
+pub(super) struct SprungJoint {
     parent: usize,
     child: usize,
     in_parent: Pose,
@@ -82,12 +82,12 @@ pub(super) struct Joint {
     by_parent: Matrix6<f64>,
 }
 
-impl Joint {
-    pub fn new(joint: &scene::Joint) -> Self {
-        let drive = |i: usize, axis: Axis| {
+impl SprungJoint {
+    pub fn new(joint: &Joint) -> Self {
+        let drive = |i: usize, axis: JointAxis| {
             let spring = match axis {
-                Axis::Sprung(spring) => spring,
-                Axis::Locked => Spring::new(if i < 3 { LOCKED } else { LOCKED_TURN }, 0.0),
+                JointAxis::Sprung(spring) => spring,
+                JointAxis::Locked => Spring::new(if i < 3 { LOCKED } else { LOCKED_TURN }, 0.0),
             };
             Drive { spring, saturated: 0.0 }
         };
@@ -95,7 +95,7 @@ impl Joint {
             Springs::Axes(axes) => Law::Drives(std::array::from_fn(|i| drive(i, axes[i]))),
             Springs::Coupled(coupled) => Law::Coupled(*coupled),
         };
-        Joint {
+        SprungJoint {
             parent: joint.parent.0,
             child: joint.child.0,
             in_parent: joint.in_parent,
@@ -119,7 +119,7 @@ impl Joint {
     }
 
     /// Coordinates and their Jacobian at the bodies' poses.
-    pub fn locate(&mut self, bodies: &[Body]) {
+    pub fn locate(&mut self, bodies: &[MovingBody]) {
         let (parent, child) = (&bodies[self.parent], &bodies[self.child]);
         let (p, c) = (parent.pose * self.in_parent, child.pose * self.in_child);
         let relative = p.inv_mul(&c);
@@ -157,7 +157,13 @@ impl Joint {
     }
 
     /// Adds the springs to the system and its right-hand side.
-    pub fn assemble(&self, bodies: &[Body], step: f64, system: &mut Blocks, rhs: &mut [Vector6]) {
+    pub fn assemble(
+        &self,
+        bodies: &[MovingBody],
+        step: f64,
+        system: &mut Blocks,
+        rhs: &mut [Vector6],
+    ) {
         let (answer, mut push) = self.answer(step);
         // A driven end moves at a known velocity: it belongs on the right-hand side.
         for (end, jacobian) in [(self.parent, &self.by_parent), (self.child, &self.by_child)] {
@@ -183,24 +189,24 @@ impl Joint {
 
     /// Whether every servo is at its limit, or not, as was assumed when the
     /// bodies' velocities were solved for; sets it right for another try.
-    pub fn settle(&mut self, bodies: &[Body], step: f64) -> bool {
+    pub fn update_limits(&mut self, bodies: &[MovingBody], step: f64) -> bool {
         let Law::Drives(drives) = &mut self.law else { return true };
         if drives.iter().all(|drive| drive.spring.limit.is_infinite()) {
             return true;
         }
         let rate = self.by_child * bodies[self.child].velocity
             + self.by_parent * bodies[self.parent].velocity;
-        let mut settled = true;
+        let mut as_assumed = true;
         for (i, drive) in drives.iter_mut().enumerate() {
             let Spring { stiffness, damping, target, limit } = drive.spring;
             let end = self.position[i] + step * rate[i];
             let force = -stiffness * (end - target) - damping * rate[i];
             // A margin, lest rounding flips it for ever.
             let now = if force.abs() > limit * (1.0 + 1e-9) { force.signum() } else { 0.0 };
-            settled &= now == drive.saturated;
+            as_assumed &= now == drive.saturated;
             drive.saturated = now;
         }
-        settled
+        as_assumed
     }
 }
 

@@ -15,7 +15,6 @@ mod cone;
 mod contacts;
 mod dense;
 mod joints;
-mod shapes;
 mod solver;
 mod world;
 
@@ -27,7 +26,7 @@ use crate::scene::Scene;
 
 /// How finely it simulates.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Settings {
+pub struct DirectSettings {
     /// Length of a step, s.
     pub step_s: f64,
     /// Gap at which a contact is foreseen, m: farther than anything moves in a step.
@@ -49,9 +48,9 @@ pub struct Settings {
     pub push_out: f64,
 }
 
-impl Default for Settings {
+impl Default for DirectSettings {
     fn default() -> Self {
-        Settings {
+        DirectSettings {
             step_s: 5e-4,
             prediction: 0.2e-3,
             contact_stiffness: 5.5e5,
@@ -62,11 +61,11 @@ impl Default for Settings {
     }
 }
 
-/// The engine; see [`Settings`].
+/// The engine; see [`DirectSettings`].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Direct {
     /// How finely it simulates.
-    pub settings: Settings,
+    pub settings: DirectSettings,
 }
 
 impl Engine for Direct {
@@ -80,6 +79,6 @@ impl Engine for Direct {
 
     fn halved(&self) -> Box<dyn Engine> {
         let step_s = 0.5 * self.settings.step_s;
-        Box::new(Direct { settings: Settings { step_s, ..self.settings } })
+        Box::new(Direct { settings: DirectSettings { step_s, ..self.settings } })
     }
 }

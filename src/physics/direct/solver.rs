@@ -112,17 +112,6 @@ impl Contact {
     }
 }
 
-/// What a solution took.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Effort {
-    /// Newton iterations.
-    pub iterations: usize,
-    /// Rounds of the fixed point.
-    pub rounds: usize,
-    /// Whether the force tolerance was met.
-    pub converged: bool,
-}
-
 /// The reduced problem and its workspace.
 #[derive(Clone)]
 pub(super) struct Solver {
@@ -156,18 +145,20 @@ impl Solver {
     }
 
     /// Solves; None if the numbers are not finite.
-    pub fn solve(&mut self, contacts: &mut [Contact], step: f64) -> Option<Effort> {
-        let mut effort = Effort::default();
-        self.relate(contacts);
+    pub fn solve(&mut self, contacts: &mut [Contact], step: f64) -> Option<()> {
+        let mut iterations = 0;
+        self.update_velocities(contacts);
         for contact in contacts.iter_mut() {
             contact.slide = contact.sliding();
         }
-        while effort.rounds < ROUNDS {
-            effort.rounds += 1;
-            self.newton(contacts, step * FORCE_TOLERANCE, &mut effort)?;
+        for _ in 0..ROUNDS {
+            self.newton(contacts, step * FORCE_TOLERANCE, &mut iterations)?;
             let mut error: f64 = 0.0;
             for contact in contacts.iter_mut() {
-                if contact.cone.state(&contact.pull(0.0)) != State::Apart {
+                let pull = contact.pull(0.0);
+                // With the sliding term that the velocities were solved with.
+                contact.impulse = contact.cone.impulse(&pull, &contact.normal);
+                if contact.cone.state(&pull) != State::Apart {
                     let now = contact.sliding();
                     error = error.max((now - contact.slide).abs());
                     contact.slide = now;
@@ -177,37 +168,34 @@ impl Solver {
                 break;
             }
         }
-        for contact in contacts.iter_mut() {
-            contact.impulse = contact.cone.impulse(&contact.pull(0.0), &contact.normal);
-        }
-        Some(effort)
+        Some(())
     }
 
+    /// Newton's iterations, of which `iterations` have been made in this step.
     fn newton(
         &mut self,
         contacts: &mut [Contact],
         tolerance: f64,
-        effort: &mut Effort,
+        iterations: &mut usize,
     ) -> Option<()> {
-        effort.converged = false;
-        while effort.iterations < ITERATIONS {
+        while *iterations < ITERATIONS {
+            // A NaN goes on, and is found when the matrix is factored.
             if self.slope(contacts) < tolerance {
-                effort.converged = true;
                 break;
             }
-            effort.iterations += 1;
+            *iterations += 1;
             self.descend(contacts)?;
             let along = self.search(contacts);
             for (v, d) in self.velocities.iter_mut().zip(&self.direction) {
                 *v += d * along;
             }
-            self.relate(contacts);
+            self.update_velocities(contacts);
         }
         Some(())
     }
 
     /// Relative velocities at the present velocities.
-    fn relate(&self, contacts: &mut [Contact]) {
+    fn update_velocities(&self, contacts: &mut [Contact]) {
         for contact in contacts {
             contact.velocity = contact.relative(&self.velocities) + contact.drift;
             contact.change = Vector4::zeros();

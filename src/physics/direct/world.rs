@@ -1,30 +1,28 @@
 //! The world: one step from poses and velocities to the next.
 
-use super::Settings;
+use super::DirectSettings;
 use super::blocks::{Blocks, Vector6};
-use super::body::{Body, Kind};
+use super::body::{Kind, MovingBody};
 use super::cone::{Compliance, Cone};
 use super::contacts::{Detector, Touch};
-use super::joints::Joint;
-use super::solver::{Contact, Effort, Solver, lever, relative};
+use super::joints::SprungJoint;
+use super::solver::{Contact, Solver, lever, relative};
 use crate::physics::{ContactForce, Diverged, World};
-use crate::scene::{BodyId, JointId, Motion, Pose, Scene, Spring};
+use crate::scene::{BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring};
 use nalgebra::Vector3;
 
 /// Tries at finding which servos are at their limits.
 const TRIES: usize = 5;
 
-const NO_FORCE: ContactForce = ContactForce { net: Vector3::new(0.0, 0.0, 0.0), normal_sum: 0.0 };
-
 /// A scene in motion; a clone continues bit for bit alike.
 #[derive(Clone)]
 pub(super) struct DirectWorld {
-    settings: Settings,
+    settings: DirectSettings,
     gravity: Vector3<f64>,
-    pub bodies: Vec<Body>,
-    joints: Vec<Joint>,
+    pub bodies: Vec<MovingBody>,
+    joints: Vec<SprungJoint>,
     /// The bodies that may touch.
-    pairs: Vec<(usize, usize)>,
+    pairs: Vec<ContactPair>,
     /// Their forces over the last step.
     forces: Vec<ContactForce>,
     detector: Detector,
@@ -38,25 +36,23 @@ pub(super) struct DirectWorld {
     solver: Solver,
     touches: Vec<Touch>,
     contacts: Vec<Contact>,
-    /// What the last step took.
-    pub effort: Effort,
 }
 
 impl DirectWorld {
-    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+    pub fn new(scene: &Scene, settings: &DirectSettings) -> Self {
         let (places, eliminated, size) = places(scene);
-        let bodies: Vec<Body> =
-            scene.bodies.iter().zip(&places).map(|(body, &place)| Body::new(body, place)).collect();
-        let ends = |joint: &crate::scene::Joint| {
-            Some((bodies[joint.parent.0].place()?, bodies[joint.child.0].place()?))
-        };
+        let dynamic = scene.bodies.iter().zip(&places);
+        let bodies: Vec<MovingBody> =
+            dynamic.map(|(body, &place)| MovingBody::new(body, place)).collect();
+        let ends =
+            |joint: &Joint| Some((bodies[joint.parent.0].place()?, bodies[joint.child.0].place()?));
         let coupled: Vec<_> = scene.joints.iter().filter_map(ends).collect();
         DirectWorld {
             settings: *settings,
             gravity: scene.gravity,
-            joints: scene.joints.iter().map(Joint::new).collect(),
-            pairs: scene.contacts.iter().map(|&(a, b)| (a.0, b.0)).collect(),
-            forces: vec![NO_FORCE; scene.contacts.len()],
+            joints: scene.joints.iter().map(SprungJoint::new).collect(),
+            pairs: scene.contacts.clone(),
+            forces: vec![ContactForce::default(); scene.contacts.len()],
             detector: Detector::new(scene, settings.prediction),
             system: Blocks::new(size, eliminated, &coupled),
             values: vec![Vector6::zeros(); size],
@@ -66,12 +62,11 @@ impl DirectWorld {
             touches: Vec::new(),
             contacts: Vec::new(),
             bodies,
-            effort: Effort::default(),
         }
     }
 
-    /// Contacts as the solver wants them.
-    fn meet(&mut self) {
+    /// Finds the contacts, and puts them as the solver wants them.
+    fn find_contacts(&mut self) {
         let step = self.settings.step_s;
         self.detector.detect(&self.bodies, &mut self.touches);
         self.contacts.clear();
@@ -84,12 +79,13 @@ impl DirectWorld {
             tangent: 1.0 / (self.settings.stick_damping * step),
         };
         for touch in &self.touches {
-            let (a, b) = self.pairs[touch.pair];
-            let ends = [&self.bodies[a], &self.bodies[b]];
+            let pair = &self.pairs[touch.pair];
+            let ends = [&self.bodies[pair.first.0], &self.bodies[pair.second.0]];
             let place = ends.map(|body| body.place().map(|place| place - self.eliminated));
             let arm = ends.map(|body| touch.point - body.centre);
-            let cone = Cone { mu: touch.friction, compliance };
-            let lever = arm.map(|arm| lever(&arm, &(touch.normal * touch.patch)));
+            let cone = Cone { mu: touch.friction.coefficient, compliance };
+            let patch = touch.normal * touch.friction.patch;
+            let lever = arm.map(|arm| lever(&arm, &patch));
             let mut contact = Contact::new(place, lever, touch.normal, cone);
             for (body, lever, sign) in [(ends[0], &lever[0], -1.0), (ends[1], &lever[1], 1.0)] {
                 if let Kind::Driven(_) = body.kind {
@@ -120,14 +116,14 @@ impl DirectWorld {
         self.system.reduce(&mut self.values);
         self.system.remainder(&mut self.solver.system);
         self.solver.rhs.copy_from_slice(&self.values[self.eliminated..]);
-        self.effort = self.solver.solve(&mut self.contacts, step)?;
+        self.solver.solve(&mut self.contacts, step)?;
         self.values[self.eliminated..].copy_from_slice(&self.solver.velocities);
         self.system.expand(&mut self.values);
         Some(())
     }
 
     fn add_forces(&mut self) {
-        self.forces.fill(NO_FORCE);
+        self.forces.fill(ContactForce::default());
         let per_step = 1.0 / self.settings.step_s;
         for (touch, contact) in self.touches.iter().zip(&self.contacts) {
             let force = &mut self.forces[touch.pair];
@@ -147,7 +143,7 @@ impl DirectWorld {
         for joint in &mut self.joints {
             joint.locate(&self.bodies);
         }
-        self.meet();
+        self.find_contacts();
         for _ in 0..TRIES {
             self.solve()?;
             for body in &mut self.bodies {
@@ -155,8 +151,9 @@ impl DirectWorld {
                     body.velocity = self.values[place];
                 }
             }
-            let settle = |all: bool, joint: &mut Joint| joint.settle(&self.bodies, step) && all;
-            if self.joints.iter_mut().fold(true, settle) {
+            let update =
+                |all: bool, joint: &mut SprungJoint| joint.update_limits(&self.bodies, step) && all;
+            if self.joints.iter_mut().fold(true, update) {
                 break;
             }
         }
@@ -164,7 +161,7 @@ impl DirectWorld {
         for body in &mut self.bodies {
             body.advance(step);
         }
-        self.bodies.iter().all(Body::is_finite).then_some(())
+        self.bodies.iter().all(MovingBody::is_finite).then_some(())
     }
 }
 
@@ -173,7 +170,7 @@ impl DirectWorld {
 /// come first, the ones with the fewest joints first of all: little fill-in.
 fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
     let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
-    let touching = |i: &usize| scene.contacts.iter().any(|&(a, b)| a.0 == *i || b.0 == *i);
+    let touching = |i: &usize| scene.contacts.iter().any(|pair| pair.has(BodyId(*i)));
     let joints =
         |i: &usize| scene.joints.iter().filter(|j| j.parent.0 == *i || j.child.0 == *i).count();
     let mut order: Vec<usize> = (0..scene.bodies.len()).filter(dynamic).collect();
@@ -220,15 +217,9 @@ impl World for DirectWorld {
     }
 
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
-        let mut sum = NO_FORCE;
-        for (&pair, force) in self.pairs.iter().zip(&self.forces) {
-            let sign = if pair == (first.0, second.0) {
-                1.0
-            } else if pair == (second.0, first.0) {
-                -1.0
-            } else {
-                continue;
-            };
+        let mut sum = ContactForce::default();
+        for (pair, force) in self.pairs.iter().zip(&self.forces) {
+            let Some(sign) = pair.sign(first, second) else { continue };
             sum.net += force.net * sign;
             sum.normal_sum += force.normal_sum;
         }

@@ -2,7 +2,9 @@
 
 use super::xml::Element;
 use super::{AXES, HEAVY, axis_name, driven_axis_name, geom_names, mesh_name};
-use crate::scene::{Axis, Body, BodyId, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Springs};
+use crate::scene::{
+    Body, BodyId, Geom, Inertia, Joint, JointAxis, Motion, Pose, Scene, Shape, Springs,
+};
 use nalgebra::{Point3, Vector3};
 
 /// Colours of the bodies in turn, red, green, blue; fixed ones are see-through.
@@ -95,8 +97,8 @@ fn joints(tie: &Joint) -> Vec<Element> {
     // Coupled springs are refused before.
     let Springs::Axes(axes) = &tie.springs else { return Vec::new() };
     let sprung = axes.iter().enumerate().filter_map(|(i, axis)| match axis {
-        Axis::Locked => None,
-        Axis::Sprung(spring) => Some((i, spring)),
+        JointAxis::Locked => None,
+        JointAxis::Sprung(spring) => Some((i, spring)),
     });
     let element = |(i, spring): (usize, &crate::scene::Spring)| {
         let element = joint(&axis_name(tie, i), &tie.in_child, i);

@@ -18,8 +18,10 @@
 //! choice, `b_f = b`, a plug that slides at 100 mm/s with friction 0.2 would
 //! float at 0.055 mm, near a connector's clearance; here at 0.011 mm.
 
-use super::{HEAVY, Settings, geom_names, xml::Element};
-use crate::scene::{Axis, Body, BodyId, Geom, Motion, Scene, Springs};
+use super::{HEAVY, MjcfSettings, geom_names, xml::Element};
+use crate::scene::{
+    Body, BodyId, ContactPair, Friction, GeomPair, JointAxis, Motion, Scene, Springs,
+};
 
 /// Depth over which MuJoCo lets an impedance vary, m; ours does not.
 const WIDTH: f64 = 1e-3;
@@ -27,42 +29,37 @@ const WIDTH: f64 = 1e-3;
 const IMPEDANCES: [f64; 2] = [1e-4, 0.9999];
 
 /// How much harder than the normal a sticking point is held; one number for all pairs.
-pub(super) fn impratio(settings: &Settings) -> f64 {
+pub(super) fn impratio(settings: &MjcfSettings) -> f64 {
     settings.stick_damping / (settings.friction_rate * settings.contact_mass)
 }
 
 /// All pairs of geoms that may touch.
-pub(super) fn pairs(scene: &Scene, settings: &Settings) -> Element {
-    let names = geom_names(scene);
-    let mut list = Vec::new();
-    for &(a, b) in &scene.contacts {
-        let weight = inverse_weight(scene, a) + inverse_weight(scene, b);
-        for (first, name) in scene.bodies[a.0].geoms.iter().zip(&names[a.0]) {
-            for (second, other) in scene.bodies[b.0].geoms.iter().zip(&names[b.0]) {
-                let pair = Element::new("pair").with("geom1", name).with("geom2", other);
-                list.push(soft(rough(pair, first, second), weight, settings));
-            }
-        }
-    }
-    Element::new("contact").holding(list)
+pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
+    let names = geom_names(scene).concat();
+    let pair = |pair: GeomPair| {
+        let ContactPair { first, second, .. } = scene.contacts[pair.bodies];
+        let weight = inverse_weight(scene, first) + inverse_weight(scene, second);
+        let element = Element::new("pair").with("geom1", &names[pair.first]);
+        let element = element.with("geom2", &names[pair.second]);
+        soft(rough(element, pair.friction), weight, settings)
+    };
+    Element::new("contact").holding(scene.geom_pairs().into_iter().map(pair))
 }
 
-/// Friction of two geoms: of each kind the smaller.
-fn rough(pair: Element, first: &Geom, second: &Geom) -> Element {
-    let friction = first.friction.min(second.friction);
-    let patch = first.patch.min(second.patch);
-    if friction <= 0.0 {
+/// A pair with its friction.
+fn rough(pair: Element, Friction { coefficient, patch }: Friction) -> Element {
+    if coefficient <= 0.0 {
         return pair.with("condim", 1);
     }
-    if patch <= 0.0 || patch.is_infinite() {
-        return pair.with("condim", 3).numbers("friction", [friction, friction]);
+    if patch <= 0.0 {
+        return pair.with("condim", 3).numbers("friction", [coefficient; 2]);
     }
     // A moment about the normal of at most `patch` times the friction force.
-    pair.with("condim", 4).numbers("friction", [friction, friction, friction * patch])
+    pair.with("condim", 4).numbers("friction", [coefficient, coefficient, coefficient * patch])
 }
 
 /// Stiffness and damping of two geoms of bodies of this inverse mass, 1/kg.
-fn soft(pair: Element, weight: f64, settings: &Settings) -> Element {
+fn soft(pair: Element, weight: f64, settings: &MjcfSettings) -> Element {
     let share = settings.contact_mass * weight;
     let impedance = (share / (1.0 + share)).clamp(IMPEDANCES[0], IMPEDANCES[1]);
     // MuJoCo divides both by the impedance.
@@ -88,7 +85,7 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     let joint = scene.joints.iter().find(|joint| joint.child == body);
     let free = match joint.map(|joint| &joint.springs) {
         Some(Springs::Axes(axes)) => {
-            axes[..3].iter().filter(|axis| matches!(axis, Axis::Sprung(_))).count()
+            axes[..3].iter().filter(|axis| matches!(axis, JointAxis::Sprung(_))).count()
         }
         Some(Springs::Coupled(_)) | None => 3,
     };

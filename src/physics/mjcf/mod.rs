@@ -20,12 +20,12 @@ mod xml;
 #[cfg(test)]
 mod tests;
 
-use crate::scene::{Axis, Body, Joint, Motion, Scene, Spring, Springs};
+use crate::scene::{Body, Joint, JointAxis, Motion, Scene, Spring, Springs};
 use xml::Element;
 
 /// How finely and how stiffly MuJoCo is to simulate.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Settings {
+pub struct MjcfSettings {
     /// Length of a step, s: the published one. MuJoCo knows a contact only once
     /// the surfaces overlap; at twice the step a light plug that is suddenly pressed
     /// with 70 N has by then sunk too far (check T10).
@@ -48,9 +48,9 @@ pub struct Settings {
     pub tolerance: f64,
 }
 
-impl Default for Settings {
+impl Default for MjcfSettings {
     fn default() -> Self {
-        Settings {
+        MjcfSettings {
             step_s: 5e-5,
             contact_stiffness: 5.5e5,
             contact_damping: 1500.0,
@@ -106,7 +106,7 @@ pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
 }
 
 /// The scene as the text of a model; `name` is shown by viewers.
-pub fn write(scene: &Scene, name: &str, settings: &Settings) -> Result<String, NotMjcf> {
+pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<String, NotMjcf> {
     supports(scene)?;
     let g = scene.gravity;
     let option = Element::new("option")
@@ -177,7 +177,7 @@ fn actuator(joint: &str, spring: &Spring, reach: f64) -> Element {
 pub(crate) fn servo(joint: &Joint, axis: usize) -> Option<&Spring> {
     match &joint.springs {
         Springs::Axes(axes) => match &axes[axis] {
-            Axis::Sprung(spring) if spring.limit.is_finite() => Some(spring),
+            JointAxis::Sprung(spring) if spring.limit.is_finite() => Some(spring),
             _ => None,
         },
         Springs::Coupled(_) => None,

@@ -5,6 +5,7 @@ use crate::finger::Finger;
 use crate::input::robot::Robot;
 use crate::input::shipped::{ROBOTS, TASKS};
 use crate::input::task::Task;
+use crate::physics::direct::DirectSettings;
 use crate::scene::{BodyId, Pose};
 use crate::trial::cell;
 use crate::units::N_PER_MM;
@@ -22,7 +23,7 @@ fn scene(task: &str, robot: &str) -> Scene {
 }
 
 fn model(scene: &Scene) -> String {
-    write(scene, "a model", &Settings::default()).unwrap()
+    write(scene, "a model", &MjcfSettings::default()).unwrap()
 }
 
 fn all<'a>(document: &'a Document, tag: &'a str) -> Vec<Node<'a, 'a>> {
@@ -91,7 +92,8 @@ fn every_geom_joint_and_pair_is_there_under_a_name_of_its_own() {
         // The command's and the jaws'.
         assert_eq!(names("position").len(), 6 + 2);
         let count = |id: &BodyId| scene.bodies[id.0].geoms.len();
-        let pairs: usize = scene.contacts.iter().map(|(a, b)| count(a) * count(b)).sum();
+        let pairs: usize =
+            scene.contacts.iter().map(|pair| count(&pair.first) * count(&pair.second)).sum();
         assert_eq!(all(&document, "pair").len(), pairs);
         let geoms: BTreeSet<_> = names("geom").into_iter().collect();
         for pair in all(&document, "pair") {
@@ -133,7 +135,7 @@ fn lengths_are_metres_and_springs_are_the_finger_s() {
 /// stiffness `solref/(d R)`, with MuJoCo's inverse masses `A` of the pair.
 #[test]
 fn contacts_have_the_stiffness_and_friction_of_the_pair() {
-    let settings = Settings::default();
+    let settings = MjcfSettings::default();
     let scene = scene("ket8", "servo");
     let text = model(&scene);
     let document = Document::parse(&text).unwrap();
@@ -161,8 +163,8 @@ fn contacts_have_the_stiffness_and_friction_of_the_pair() {
 }
 
 #[test]
-fn the_give_of_contacts_is_that_of_the_production_engine() {
-    let (ours, direct) = (Settings::default(), crate::physics::direct::Settings::default());
+fn the_give_of_contacts_is_that_of_the_engine_direct() {
+    let (ours, direct) = (MjcfSettings::default(), DirectSettings::default());
     assert_eq!(ours.contact_stiffness, direct.contact_stiffness);
     assert_eq!(ours.contact_damping, direct.contact_damping);
     assert_eq!(ours.stick_damping, direct.stick_damping);

@@ -6,12 +6,12 @@
 //! once as what that stands for, a chain of six links with a sprung joint each.
 
 use super::build::{self, Wrench};
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::input::arm::{Arm, JOINTS};
 use crate::input::robot::{Drive, Mounted, Robot};
 use crate::input::shipped::ROBOTS;
 use crate::physics::{Diverged, Engine};
-use crate::scene::{Axis, Body, BodyId, Joint, Motion, Pose, Scene, Spring, Springs};
+use crate::scene::{Body, BodyId, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs};
 use crate::trial::cell;
 use crate::units::MM;
 use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
@@ -23,7 +23,7 @@ const REST: f64 = 2.4;
 
 /// Deflections of the TCP along a force, T11 rows; none on an engine that refuses
 /// this robot, since it has no coupled springs.
-pub fn t11(engine: &dyn Engine) -> Vec<Row> {
+pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
     // The shipped file is an arm within its reach: tests see to it.
     let Some((arm, mounted)) = ur5e() else { return Vec::new() };
     let reduced = flange(&mounted);
@@ -37,7 +37,7 @@ pub fn t11(engine: &dyn Engine) -> Vec<Row> {
             let measured = loaded.deflection(engine, axis).map(|by| by / MM);
             let quantity = format!("UR5e, {name}, TCP along {along}");
             let close = Tolerance::Relative(0.01);
-            rows.push(Row::new(("T11", quantity), expected, measured, "mm", close));
+            rows.push(CheckRow::new(("T11", quantity), expected, measured, "mm", close));
         }
     }
     rows
@@ -121,8 +121,9 @@ pub fn chain(arm: &Arm) -> Loaded {
             pose: posture.links[i],
             geoms: Vec::new(),
         });
-        let mut axes = [Axis::Locked; 6];
-        axes[3 + joint.axis.iamax()] = Axis::Sprung(Spring::new(joint.stiffness, joint.damping));
+        let mut axes = [JointAxis::Locked; 6];
+        axes[3 + joint.axis.iamax()] =
+            JointAxis::Sprung(Spring::new(joint.stiffness, joint.damping));
         // The hinge's zero is the home angle.
         let turn = UnitQuaternion::from_axis_angle(&joint.axis, arm.home[i]);
         scene.joint(Joint {

@@ -8,8 +8,8 @@ use nalgebra::{Point3, Vector3};
 pub const GRAVITY: f64 = 9.81;
 
 /// A geom that is a box of the given size, m, centred in a frame.
-pub fn cuboid(name: &str, size: Vector3<f64>, pose: Pose, friction: f64) -> Geom {
-    Geom { name: name.into(), shape: Shape::Box { half: size / 2.0 }, pose, friction, patch: 0.0 }
+pub fn cuboid(name: &str, size: Vector3<f64>, pose: Pose) -> Geom {
+    Geom { name: name.into(), shape: Shape::Box { half: size / 2.0 }, pose, friction: None }
 }
 
 /// Mass properties of a homogeneous box, m and kg.
@@ -25,12 +25,12 @@ pub fn fixed(name: &str, pose: Pose, geoms: Vec<Geom>) -> Body {
 }
 
 /// A free block with its frame in its centre.
-pub fn block(name: &str, mass: f64, size: Vector3<f64>, friction: f64, pose: Pose) -> Body {
+pub fn block(name: &str, mass: f64, size: Vector3<f64>, pose: Pose) -> Body {
     Body {
         name: name.into(),
         motion: Motion::Free(box_inertia(mass, size, Point3::origin())),
         pose,
-        geoms: vec![cuboid(name, size, Pose::identity(), friction)],
+        geoms: vec![cuboid(name, size, Pose::identity())],
     }
 }
 

@@ -8,10 +8,10 @@
 //! 104:65, chamfer crossing, for a support that does not turn).
 
 use super::build;
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::finger::Finger;
 use crate::physics::{Diverged, Engine};
-use crate::scene::{Axis, Body, Joint, Motion, Pose, Scene, Springs};
+use crate::scene::{Body, Friction, Joint, JointAxis, Motion, Pose, Scene, Springs};
 use crate::units::{DEG, GRAM, MM, N_PER_MM};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -31,14 +31,14 @@ const SIZE: [f64; 3] = [8.0 * MM, 12.0 * MM, 20.0 * MM];
 const UPRIGHT: f64 = 100.0;
 
 /// Insertion force over lateral force, T6 rows.
-pub fn t6(engine: &dyn Engine) -> Vec<Row> {
+pub fn t6(engine: &dyn Engine) -> Vec<CheckRow> {
     ANGLES
         .into_iter()
         .map(|angle| {
             let quantity = format!("Fz/(K x) on a chamfer of {angle} deg, mu {FRICTION}");
             let expected = (angle * DEG + FRICTION.atan()).tan();
             let measured = force_ratio(engine, angle * DEG);
-            Row::new(("T6", quantity), expected, measured, "-", Tolerance::Relative(0.02))
+            CheckRow::new(("T6", quantity), expected, measured, "-", Tolerance::Relative(0.02))
         })
         .collect()
 }
@@ -60,7 +60,7 @@ fn force_ratio(engine: &dyn Engine, angle: f64) -> Result<f64, Diverged> {
         name: "plug".into(),
         motion: Motion::Carried(build::box_inertia(MASS, size, centre)),
         pose: Pose::identity(),
-        geoms: vec![build::cuboid("plug", size, middle, FRICTION)],
+        geoms: vec![build::cuboid("plug", size, middle)],
     });
     scene.joint(Joint {
         name: "springs".into(),
@@ -68,10 +68,10 @@ fn force_ratio(engine: &dyn Engine, angle: f64) -> Result<f64, Diverged> {
         child: plug,
         in_parent: middle,
         in_child: middle,
-        springs: Springs::Axes(support.springs().map(Axis::Sprung)),
+        springs: Springs::Axes(support.springs().map(JointAxis::Sprung)),
     });
     let socket = scene.body(chamfer(-size.y / 2.0, angle));
-    scene.contacts.push((socket, plug));
+    scene.contact(socket, plug, Friction::hard(FRICTION));
 
     let mut world = engine.world(&scene);
     for step in 1..=build::steps(world.as_ref(), WAY / SPEED) {
@@ -93,5 +93,5 @@ fn chamfer(y: f64, angle: f64) -> Body {
     let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angle);
     let normal = turn * Vector3::y();
     let pose = Pose::from_parts(Translation3::from(Vector3::y() * y - normal * size.y / 2.0), turn);
-    build::fixed("chamfer", pose, vec![build::cuboid("chamfer", size, Pose::identity(), FRICTION)])
+    build::fixed("chamfer", pose, vec![build::cuboid("chamfer", size, Pose::identity())])
 }

@@ -20,7 +20,7 @@ const ALLOWED_STEPS: OffsetStep = 1;
 
 /// The window of one finger, as simulated and finer.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct WindowRow {
     /// The task.
     pub task: String,
     /// The finger, one of the measured ones.
@@ -33,7 +33,7 @@ pub struct Row {
     pub refined: Window,
 }
 
-impl Row {
+impl WindowRow {
     /// How far the negative and the positive end move outward, mm.
     pub fn moved_mm(&self) -> [f64; 2] {
         self.moved().map(grid_mm)
@@ -70,10 +70,10 @@ pub fn measure(
     designs: &[Measurement],
     robot: &Robot,
     make: &(dyn Fn() -> Box<dyn Engine> + Sync),
-) -> Result<Vec<Row>, RigError> {
+) -> Result<Vec<WindowRow>, RigError> {
     let cases: Vec<(&Task, Measurement)> =
         tasks.iter().flat_map(|task| designs.iter().map(move |design| (task, *design))).collect();
-    let rows: Result<Vec<Vec<Row>>, RigError> =
+    let rows: Result<Vec<Vec<WindowRow>>, RigError> =
         cases.into_par_iter().map(|(task, design)| rows(task, design, robot, make())).collect();
     Ok(rows?.concat())
 }
@@ -83,7 +83,7 @@ fn rows(
     design: Measurement,
     robot: &Robot,
     engine: Box<dyn Engine>,
-) -> Result<Vec<Row>, RigError> {
+) -> Result<Vec<WindowRow>, RigError> {
     let window = |engine| -> Result<Window, RigError> {
         let rig = EngineRig::new(task.clone(), robot, engine)?;
         let finger = agreement::finger(&task.finger, &design);
@@ -92,7 +92,7 @@ fn rows(
     let finer = engine.finer();
     let production = window(engine)?;
     let row = |(finer, engine)| {
-        Ok(Row {
+        Ok(WindowRow {
             task: task.name.clone(),
             design,
             finer,
@@ -104,7 +104,7 @@ fn rows(
 }
 
 /// The rows as an aligned table, at most 100 columns wide.
-pub fn table(rows: &[Row]) -> String {
+pub fn table(rows: &[WindowRow]) -> String {
     let mut text = format!(
         "{:<7}{:>7}{:>12}  {:<19}{:>15}{:>16}{:>14}\n{:>26}  {:19}{:>15}{:>16}{:>14}\n",
         "task",
@@ -145,7 +145,7 @@ fn ends(window: &Window) -> String {
 }
 
 /// The rows as a JSON array of objects.
-pub fn json(rows: &[Row]) -> Value {
+pub fn json(rows: &[WindowRow]) -> Value {
     let window = |window: &Window| json!({"negative_mm": window.negative_mm(), "positive_mm": window.positive_mm()});
     rows.iter()
         .map(|row| {
@@ -183,9 +183,9 @@ mod tests {
         }
     }
 
-    fn row(refined: Window) -> Row {
+    fn row(refined: Window) -> WindowRow {
         let design = three(published::designs())[0];
-        Row {
+        WindowRow {
             task: "usb".into(),
             design,
             finer: "half the step",

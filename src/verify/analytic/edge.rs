@@ -7,9 +7,9 @@
 //! pusher's height, 0.1 mm.
 
 use super::build::{self, GRAVITY};
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::physics::{Diverged, Engine, World};
-use crate::scene::{Body, BodyId, Motion, Pose, Scene};
+use crate::scene::{Body, BodyId, Friction, Motion, Pose, Scene};
 use crate::units::{GRAM, MM};
 use nalgebra::Vector3;
 
@@ -30,10 +30,10 @@ const TIPPING: f64 = 2e-3;
 pub(super) const ALLOWED: f64 = 0.5 * MM;
 
 /// Where a block tips, T8 rows.
-pub fn t8(engine: &dyn Engine) -> Vec<Row> {
+pub fn t8(engine: &dyn Engine) -> Vec<CheckRow> {
     let place = tipping_place(engine).map(|place| place / MM);
     let quantity = "block pushed over an edge tips at".to_owned();
-    vec![Row::new(("T8", quantity), 0.0, place, "mm", Tolerance::Absolute(ALLOWED / MM))]
+    vec![CheckRow::new(("T8", quantity), 0.0, place, "mm", Tolerance::Absolute(ALLOWED / MM))]
 }
 
 /// A block on a ledge that ends at x = 0, and its pusher.
@@ -51,10 +51,10 @@ impl Push {
         let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -GRAVITY), ..Scene::default() };
         let ledge_size = Vector3::new(60.0 * MM, 30.0 * MM, 20.0 * MM);
         let inside = Pose::translation(-ledge_size.x / 2.0, 0.0, -ledge_size.z / 2.0);
-        let ledge = build::cuboid("ledge", ledge_size, inside, FRICTION);
+        let ledge = build::cuboid("ledge", ledge_size, inside);
         let ledge = scene.body(build::fixed("ledge", Pose::identity(), vec![ledge]));
         let pose = Pose::translation(FROM, 0.0, size.z / 2.0);
-        let block = scene.body(build::block("block", MASS, size, FRICTION, pose));
+        let block = scene.body(build::block("block", MASS, size, pose));
         let half_pusher = PUSHER / 2.0;
         let start = Pose::translation(FROM - size.x / 2.0 - half_pusher, 0.0, half_pusher);
         let pusher_size = Vector3::new(PUSHER, size.y, PUSHER);
@@ -62,9 +62,10 @@ impl Push {
             name: "pusher".into(),
             motion: Motion::Driven,
             pose: start,
-            geoms: vec![build::cuboid("pusher", pusher_size, Pose::identity(), 0.0)],
+            geoms: vec![build::cuboid("pusher", pusher_size, Pose::identity())],
         });
-        scene.contacts.extend([(ledge, block), (pusher, block)]);
+        scene.contact(ledge, block, Friction::hard(FRICTION));
+        scene.contact(pusher, block, Friction::hard(0.0));
         Push { world: engine.world(&scene), block, pusher, start, time: 0.0 }
     }
 

@@ -6,7 +6,7 @@
 //! `V t exp(-w t)`, most at `t = 1/w`, and then by nothing.
 
 use super::build;
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::input::robot::{Flange, Servo};
 use crate::physics::{Diverged, Engine};
 use crate::scene::{Pose, Scene};
@@ -26,7 +26,7 @@ const SERVO: Servo = Servo {
 const SPEED: f64 = 100.0 * MM;
 
 /// How far the flange trails along y and z, T13 rows.
-pub fn t13(engine: &dyn Engine) -> Vec<Row> {
+pub fn t13(engine: &dyn Engine) -> Vec<CheckRow> {
     [(1, "y"), (2, "z")]
         .into_iter()
         .flat_map(|(axis, name)| {
@@ -35,7 +35,7 @@ pub fn t13(engine: &dyn Engine) -> Vec<Row> {
             let row = |text, time, expected, tolerance| {
                 let measured = trails(engine, axis, time).map(|by| by / MM);
                 let quantity = format!("flange trails its command along {name}, {text}");
-                Row::new(("T13", quantity), expected, measured, "mm", tolerance)
+                CheckRow::new(("T13", quantity), expected, measured, "mm", tolerance)
             };
             [
                 row("most", 1.0 / frequency, most, Tolerance::Relative(0.05)),

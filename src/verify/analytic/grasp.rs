@@ -9,9 +9,11 @@
 //! A face of points at the radius `r` from its middle then turns at `mu N sqrt(rho^2 + r^2)`.
 
 use super::build;
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::physics::{Diverged, Engine};
-use crate::scene::{Axis, Body, BodyId, Geom, Joint, Motion, Pose, Scene, Spring, Springs};
+use crate::scene::{
+    Body, BodyId, Friction, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs,
+};
 use crate::units::{GRAM, MM};
 use nalgebra::{Rotation2, Translation3, UnitQuaternion, Vector2, Vector3};
 
@@ -36,14 +38,14 @@ const DRAWING: f64 = 4.0;
 
 /// Moments of a pad's friction, T12 rows; on an engine without torsional friction only
 /// those that do not depend on it.
-pub fn t12(engine: &dyn Engine) -> Vec<Row> {
-    let mut rows: Vec<Row> = BESIDE
+pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
+    let mut rows: Vec<CheckRow> = BESIDE
         .into_iter()
         .map(|beside| {
             let quantity = format!("moment of a face loaded {} mm beside", beside / MM);
             let moment = hold(engine, beside, [DRAWN, 0.0]).map(|held| held.moment / MM);
             let expected = FRICTION * LOAD * beside / MM;
-            Row::new(("T12", quantity), expected, moment, "N mm", Tolerance::Relative(0.02))
+            CheckRow::new(("T12", quantity), expected, moment, "N mm", Tolerance::Relative(0.02))
         })
         .collect();
     if engine.turns_with_friction() {
@@ -53,7 +55,7 @@ pub fn t12(engine: &dyn Engine) -> Vec<Row> {
 }
 
 /// The wrench of a face that turns, while drawn along at a speed, m/s.
-fn turning(engine: &dyn Engine, speed: f64) -> Vec<Row> {
+fn turning(engine: &dyn Engine, speed: f64) -> Vec<CheckRow> {
     let held = hold(engine, 0.0, [speed, TURNED]);
     let angle = held.as_ref().map_or(0.0, |held| held.angle);
     let (force, moment) = friction(speed, TURNED, angle);
@@ -61,10 +63,10 @@ fn turning(engine: &dyn Engine, speed: f64) -> Vec<Row> {
     let two_percent = Tolerance::Relative(0.02);
     let measured = held.map(|held| held.moment / MM);
     let name = ("T12", format!("moment of a face, {how}"));
-    let mut rows = vec![Row::new(name, moment / MM, measured, "N mm", two_percent)];
+    let mut rows = vec![CheckRow::new(name, moment / MM, measured, "N mm", two_percent)];
     if speed > 0.0 {
         let name = ("T12", format!("force of a face, {how}"));
-        rows.push(Row::new(name, force, held.map(|held| held.force), "N", two_percent));
+        rows.push(CheckRow::new(name, force, held.map(|held| held.force), "N", two_percent));
     }
     rows
 }
@@ -124,13 +126,10 @@ fn foot() -> Pose {
 fn scene() -> (Scene, BodyId, BodyId) {
     let mut scene = Scene::default();
     let below = Pose::translation(0.0, 0.0, -10.0 * MM);
-    let ground = build::cuboid("floor", Vector3::new(0.2, 0.2, 0.02), below, FRICTION);
-    let ground = Geom { patch: PATCH, ..ground };
+    let ground = build::cuboid("floor", Vector3::new(0.2, 0.2, 0.02), below);
     let floor = scene.body(build::fixed("floor", Pose::identity(), vec![ground]));
-    let mut block = build::block("block", MASS, Vector3::from(SIZE), FRICTION, foot().inverse());
-    block.geoms[0].patch = f64::INFINITY;
-    let block = scene.body(block);
-    scene.contacts.push((floor, block));
+    let block = scene.body(build::block("block", MASS, Vector3::from(SIZE), foot().inverse()));
+    scene.contact(floor, block, Friction { coefficient: FRICTION, patch: PATCH });
     let hand = scene.body(Body {
         name: "hand".into(),
         motion: Motion::Driven,
@@ -139,7 +138,7 @@ fn scene() -> (Scene, BodyId, BodyId) {
     });
     let springs = [HOLD, HOLD, 0.0, 0.0, 0.0, TURN];
     // Damped within a few milliseconds.
-    let sprung = |stiffness: f64| Axis::Sprung(Spring::new(stiffness, stiffness * 2e-3));
+    let sprung = |stiffness: f64| JointAxis::Sprung(Spring::new(stiffness, stiffness * 2e-3));
     scene.joint(Joint {
         name: "springs".into(),
         parent: hand,

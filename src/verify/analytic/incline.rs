@@ -7,9 +7,9 @@
 //! shows at one of the headings.
 
 use super::build::{self, GRAVITY};
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::physics::{Diverged, Engine};
-use crate::scene::{Pose, Scene};
+use crate::scene::{Friction, Pose, Scene};
 use crate::units::{DEG, GRAM, MM};
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
@@ -29,7 +29,7 @@ const SETTLING: f64 = 0.02;
 const WATCHING: f64 = 0.1;
 
 /// Friction of a sliding block and creep of a resting one, T2 rows.
-pub fn t2(engine: &dyn Engine) -> Vec<Row> {
+pub fn t2(engine: &dyn Engine) -> Vec<CheckRow> {
     let mut rows = Vec::new();
     for friction in FRICTIONS {
         for heading in HEADINGS {
@@ -37,10 +37,10 @@ pub fn t2(engine: &dyn Engine) -> Vec<Row> {
             let measured = sliding_friction(engine, friction, heading * DEG);
             let half_percent = Tolerance::Relative(0.005);
             let name = ("T2", format!("friction, {case}"));
-            rows.push(Row::new(name, friction, measured, "-", half_percent));
+            rows.push(CheckRow::new(name, friction, measured, "-", half_percent));
             let creep = creep(engine, friction, heading * DEG, RESTING).map(|speed| speed / MM);
             let name = ("T2", format!("creep, {case}"));
-            rows.push(Row::new(name, 0.0, creep, "mm/s", Tolerance::Absolute(0.01)));
+            rows.push(CheckRow::new(name, 0.0, creep, "mm/s", Tolerance::Absolute(0.01)));
         }
     }
     rows
@@ -79,13 +79,13 @@ fn ways(
     // The slope's surface goes through the origin.
     let ground_size = Vector3::new(0.4, 0.1, 0.02);
     let below = Pose::translation(0.0, 0.0, -ground_size.z / 2.0);
-    let ground = build::cuboid("slope", ground_size, below, friction);
+    let ground = build::cuboid("slope", ground_size, below);
     let turned = Pose::from_parts(Translation3::identity(), tilt);
     let ground = scene.body(build::fixed("slope", turned, vec![ground]));
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading);
     let pose = turned * Pose::from_parts(Translation3::new(0.0, 0.0, size.z / 2.0), turn);
-    let block = scene.body(build::block("block", MASS, size, friction, pose));
-    scene.contacts.push((ground, block));
+    let block = scene.body(build::block("block", MASS, size, pose));
+    scene.contact(ground, block, Friction::hard(friction));
 
     let mut world = engine.world(&scene);
     build::advance(world.as_mut(), SETTLING)?;

@@ -14,7 +14,7 @@
 
 use super::build::Wrench;
 use super::peg::{Peg, REFERENCE};
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::physics::{Diverged, Engine};
 use crate::units::MM;
 use nalgebra::{Vector2, Vector3};
@@ -68,11 +68,11 @@ fn threshold_tilted(peg: &Peg, side: f64) -> f64 {
 }
 
 /// Jamming thresholds, T4 rows.
-pub fn t4(engine: &dyn Engine) -> Vec<Row> {
+pub fn t4(engine: &dyn Engine) -> Vec<CheckRow> {
     let row = |peg: Peg, side: f64, expected: f64, case: &str| {
         let measured = find(engine, &peg, side, expected);
         let quantity = format!("M/(r Fz) that jams, Fx/Fz {side}, {case}");
-        Row::new(("T4", quantity), expected, measured, "-", Tolerance::Relative(0.02))
+        CheckRow::new(("T4", quantity), expected, measured, "-", Tolerance::Relative(0.02))
     };
     let small = SIDE.map(|side| row(tight(), side, threshold(&tight(), side), "tight"));
     let large = SIDE.map(|side| {

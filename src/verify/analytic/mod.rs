@@ -15,6 +15,7 @@
 //! | T11 | static deflection of the arm's TCP under its servos |
 //! | T12 | friction of a face that slides and turns, as in the grasp |
 //! | T13 | a soft flange whose command sets off |
+//! | T14 | net force of a contact that sticks and that slides |
 //!
 //! (T9 compares two engines on trials.) Every expected value is computed from
 //! its formula, which the check's file gives with its source. [`convergence`] asks
@@ -32,6 +33,7 @@ pub mod grasp;
 pub mod incline;
 pub mod jamming;
 pub mod peg;
+pub mod push;
 pub mod spring;
 pub mod step;
 mod table;
@@ -40,7 +42,7 @@ pub mod wedging;
 pub use table::{json, table};
 
 /// Makes the engine to check; the argument scales its production step, so
-/// `make(1.0)` is the production engine and `make(0.5)` has half its step.
+/// `make(1.0)` is the engine as trials use it and `make(0.5)` has half its step.
 pub type Make<'a> = &'a dyn Fn(f64) -> Box<dyn Engine>;
 
 /// Largest error with which a row passes.
@@ -54,7 +56,7 @@ pub enum Tolerance {
 
 /// One quantity, as expected and as measured.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct CheckRow {
     /// Name of the check, `"T1"` and so on.
     pub check: &'static str,
     /// What was measured, and in which case.
@@ -71,7 +73,7 @@ pub struct Row {
     pub passed: bool,
 }
 
-impl Row {
+impl CheckRow {
     /// Compares a measured value with the expected one; a diverged simulation fails.
     fn new(
         (check, quantity): (&'static str, String),
@@ -86,7 +88,7 @@ impl Row {
             Tolerance::Absolute(error) => error,
         };
         let passed = (measured - expected).abs() <= allowed;
-        Row { check, quantity, expected, measured, unit, tolerance, passed }
+        CheckRow { check, quantity, expected, measured, unit, tolerance, passed }
     }
 
     /// The error in the terms of the tolerance.
@@ -100,7 +102,7 @@ impl Row {
 }
 
 /// Runs every check, in order.
-pub fn run(make: Make<'_>) -> Vec<Row> {
+pub fn run(make: Make<'_>) -> Vec<CheckRow> {
     let engine = make(1.0);
     let engine = engine.as_ref();
     let mut rows = spring::t1(engine);
@@ -116,5 +118,6 @@ pub fn run(make: Make<'_>) -> Vec<Row> {
     rows.extend(arm::t11(engine));
     rows.extend(grasp::t12(engine));
     rows.extend(flange::t13(engine));
+    rows.extend(push::t14(engine));
     rows
 }

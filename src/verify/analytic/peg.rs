@@ -9,9 +9,9 @@
 //! peg; the hole's rim lies in the plane z = 0.
 
 use super::build::{self, Wrench};
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::physics::{Diverged, Engine, World};
-use crate::scene::{Body, BodyId, Motion, Pose, Scene};
+use crate::scene::{Body, BodyId, Friction, Motion, Pose, Scene};
 use crate::units::{GRAM, MM};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -76,7 +76,7 @@ impl Peg {
             name: "peg".into(),
             motion: Motion::Carried(build::box_inertia(self.mass, size, self.centre())),
             pose,
-            geoms: vec![build::cuboid("peg", size, middle, self.friction)],
+            geoms: vec![build::cuboid("peg", size, middle)],
         }
     }
 
@@ -84,7 +84,7 @@ impl Peg {
     pub fn wall(&self, side: f64) -> Body {
         let size = Vector3::new(2.0 * DEPTH, WALL, 2.0 * self.inside);
         let pose = Pose::translation(0.0, side * (self.hole + WALL) / 2.0, -self.inside);
-        let geom = build::cuboid("wall", size, Pose::identity(), self.friction);
+        let geom = build::cuboid("wall", size, Pose::identity());
         let name = if side < 0.0 { "wall -y" } else { "wall +y" };
         build::fixed(name, pose, vec![geom])
     }
@@ -95,7 +95,7 @@ impl Peg {
         let peg = scene.body(self.body(pose));
         for side in [-1.0, 1.0] {
             let wall = scene.body(self.wall(side));
-            scene.contacts.push((wall, peg));
+            scene.contact(wall, peg, Friction::hard(self.friction));
         }
         (scene, peg)
     }
@@ -125,7 +125,7 @@ impl Wrench {
 }
 
 /// Tilt of a peg that a moment turns in its hole, T3 rows.
-pub fn t3(engine: &dyn Engine) -> Vec<Row> {
+pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
     let peg = REFERENCE;
     let measured = settled(engine, &peg);
     // The peg may have moved along the hole while it turned: the formula is
@@ -135,14 +135,14 @@ pub fn t3(engine: &dyn Engine) -> Vec<Row> {
     let tilt = measured.map(|(tilt, _)| tilt / 1e-3);
     let name = |text: &str| ("T3", text.to_owned());
     vec![
-        Row::new(
+        CheckRow::new(
             name("tilt in two-point contact"),
             expected / 1e-3,
             tilt,
             "mrad",
             Tolerance::Relative(0.02),
         ),
-        Row::new(
+        CheckRow::new(
             name("length inside, which tilting hardly changes"),
             peg.inside / MM,
             measured.map(|(_, inside)| inside / MM),
@@ -180,12 +180,12 @@ const YIELD: f64 = 0.1 * MM;
 
 /// How far a light plug sinks into the walls that it is wedged between, T10
 /// rows: little, and in proportion to the force.
-pub fn t10(engine: &dyn Engine) -> Vec<Row> {
+pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
     let peg = Peg { mass: LIGHT, ..REFERENCE };
     let sunk = WEDGING.map(|force| sinking(engine, &peg, force));
     let mut rows = Vec::new();
     let mut row = |quantity, expected, measured, unit, allowed| {
-        rows.push(Row::new(("T10", quantity), expected, measured, unit, allowed));
+        rows.push(CheckRow::new(("T10", quantity), expected, measured, unit, allowed));
     };
     let [low, high] = WEDGING;
     for (i, place) in ["tip's corner", "rim"].into_iter().enumerate() {

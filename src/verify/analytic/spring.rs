@@ -6,10 +6,10 @@
 //! turning it; along a line at a distance L from it, it also turns it by F L/k.
 
 use super::build::{self, Wrench};
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::finger::{self, Finger};
 use crate::physics::{Diverged, Engine};
-use crate::scene::{Axis, Body, BodyId, Joint, Motion, Pose, Scene, Springs};
+use crate::scene::{Body, BodyId, Joint, JointAxis, Motion, Pose, Scene, Springs};
 use crate::units::{GRAM, MM, N_PER_MM};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -38,7 +38,7 @@ fn finger() -> Finger {
 }
 
 /// Deflection of the springs under a force and a moment on the remote centre, T1 rows.
-pub fn t1(engine: &dyn Engine) -> Vec<Row> {
+pub fn t1(engine: &dyn Engine) -> Vec<CheckRow> {
     let finger = finger();
     let names = ["x", "y", "z"];
     let row = |axis: usize| {
@@ -51,7 +51,7 @@ pub fn t1(engine: &dyn Engine) -> Vec<Row> {
         let measured = deflection(engine, &finger, axis, load).map(|by| by / scale);
         let expected = load / spring.stiffness / scale;
         let quantity = format!("{kind} {name} of a finger");
-        Row::new(("T1", quantity), expected, measured, unit, Tolerance::Relative(1e-6))
+        CheckRow::new(("T1", quantity), expected, measured, unit, Tolerance::Relative(1e-6))
     };
     (0..6).map(row).collect()
 }
@@ -93,7 +93,7 @@ fn mounted(finger: &Finger) -> (Scene, BodyId) {
         child: body,
         in_parent: centre,
         in_child: centre,
-        springs: Springs::Axes(finger.springs().map(Axis::Sprung)),
+        springs: Springs::Axes(finger.springs().map(JointAxis::Sprung)),
     });
     (scene, body)
 }
@@ -109,7 +109,7 @@ fn centre_moved(pose: &Pose, finger: &Finger) -> Isometry3<f64> {
 }
 
 /// Motion of a part that a finger holds, under a side force, T7 rows.
-pub fn t7(engine: &dyn Engine) -> Vec<Row> {
+pub fn t7(engine: &dyn Engine) -> Vec<CheckRow> {
     let finger = finger();
     let spring = |axis: usize| finger.springs()[axis].stiffness;
     // A force along y turns about x, one along x about y.
@@ -127,7 +127,7 @@ pub fn t7(engine: &dyn Engine) -> Vec<Row> {
                 at.map(|moved| moved.rotation.scaled_axis()[about].abs())
             };
             let row = |text: &str, expected, measured, unit, tolerance| {
-                Row::new(
+                CheckRow::new(
                     ("T7", format!("{text}, along {name}")),
                     expected,
                     measured,
@@ -158,14 +158,14 @@ fn held_part(
 ) -> Result<Isometry3<f64>, Diverged> {
     let (mut scene, holder) = mounted(finger);
     let size = Vector3::repeat(PART_SIZE);
-    let part = scene.body(build::block("part", PART_MASS, size, 0.0, Pose::identity()));
+    let part = scene.body(build::block("part", PART_MASS, size, Pose::identity()));
     scene.joint(Joint {
         name: "grasp".into(),
         parent: holder,
         child: part,
         in_parent: Pose::identity(),
         in_child: Pose::identity(),
-        springs: Springs::Axes([Axis::Locked; 6]),
+        springs: Springs::Axes([JointAxis::Locked; 6]),
     });
     let mut world = engine.world(&scene);
     let mut wrench = Wrench { force: Vector3::zeros(), moment: Vector3::zeros() };

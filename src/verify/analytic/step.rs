@@ -6,7 +6,7 @@
 
 use super::build;
 use super::edge::{self, Push};
-use super::{Make, Row, Tolerance, incline, jamming, wedging};
+use super::{CheckRow, Make, Tolerance, incline, jamming, wedging};
 use crate::physics::{Diverged, Engine, World};
 use crate::scene::{BodyId, Pose};
 use crate::units::{DEG, MM};
@@ -23,9 +23,10 @@ const BEFORE: f64 = 0.3;
 const AFTER: f64 = 0.3;
 
 /// Outcomes that change with the step, and bits that change with a snapshot, T8 rows.
-pub fn t8(make: Make<'_>) -> Vec<Row> {
+pub fn t8(make: Make<'_>) -> Vec<CheckRow> {
     let none = Tolerance::Absolute(0.0);
-    let row = |text: &str, measured| Row::new(("T8", text.to_owned()), 0.0, measured, "-", none);
+    let row =
+        |text: &str, measured| CheckRow::new(("T8", text.to_owned()), 0.0, measured, "-", none);
     let engine = make(1.0);
     vec![
         row("outcomes changed by half the step", changed_outcomes(make)),

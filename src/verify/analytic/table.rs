@@ -1,11 +1,11 @@
 //! The rows of the checks as text and as JSON.
 
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// The rows as an aligned table, at most 100 columns wide.
-pub fn table(rows: &[Row]) -> String {
+pub fn table(rows: &[CheckRow]) -> String {
     let mut text = format!(
         "{:<6}{:<44}{:>9} {:>9} {:<5}{:>9}  {:<8}\n",
         "check", "quantity", "expected", "measured", "unit", "error", "allowed"
@@ -31,7 +31,7 @@ pub fn table(rows: &[Row]) -> String {
 }
 
 /// The rows as a JSON array of objects.
-pub fn json(rows: &[Row]) -> Value {
+pub fn json(rows: &[CheckRow]) -> Value {
     rows.iter()
         .map(|row| {
             let (kind, tolerance) = match row.tolerance {
@@ -75,13 +75,13 @@ mod tests {
     use super::*;
     use crate::physics::Diverged;
 
-    fn rows() -> Vec<Row> {
+    fn rows() -> Vec<CheckRow> {
         let name = |text: &str| ("T1", text.to_owned());
         let tolerance = Tolerance::Relative(0.01);
         vec![
-            Row::new(name("good"), 2.0, Ok(2.01), "mm", tolerance),
-            Row::new(name("bad"), 2.0, Ok(2.03), "mm", tolerance),
-            Row::new(name("diverged"), 2.0, Err(Diverged), "mm", tolerance),
+            CheckRow::new(name("good"), 2.0, Ok(2.01), "mm", tolerance),
+            CheckRow::new(name("bad"), 2.0, Ok(2.03), "mm", tolerance),
+            CheckRow::new(name("diverged"), 2.0, Err(Diverged), "mm", tolerance),
         ]
     }
 

@@ -10,9 +10,9 @@
 
 use super::build;
 use super::peg::{Peg, REFERENCE};
-use super::{Row, Tolerance};
+use super::{CheckRow, Tolerance};
 use crate::physics::{Diverged, Engine};
-use crate::scene::{Axis, Body, Joint, Motion, Pose, Scene, Spring, Springs};
+use crate::scene::{Body, Friction, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs};
 use crate::units::{GRAM, MM};
 use nalgebra::{Point3, Vector3};
 
@@ -39,13 +39,13 @@ const BRACKET: [f64; 2] = [0.5, 2.0];
 const BISECTIONS: usize = 10;
 
 /// Largest l/d at which a peg stays wedged, T5 rows.
-pub fn t5(engine: &dyn Engine) -> Vec<Row> {
+pub fn t5(engine: &dyn Engine) -> Vec<CheckRow> {
     FRICTIONS
         .into_iter()
         .map(|friction| {
             let quantity = format!("l/d up to which a peg wedges, mu {friction}");
             let measured = find(engine, friction);
-            Row::new(("T5", quantity), friction, measured, "-", Tolerance::Relative(0.02))
+            CheckRow::new(("T5", quantity), friction, measured, "-", Tolerance::Relative(0.02))
         })
         .collect()
 }
@@ -72,8 +72,8 @@ pub(super) fn wedges(engine: &dyn Engine, friction: f64, depth: f64) -> Result<b
     let inertia = build::box_inertia(WALL_MASS, size, Point3::origin());
     let wall = scene.body(Body { motion: Motion::Carried(inertia), ..wall });
     let slide = scene.bodies[wall.0].pose;
-    let mut axes = [Axis::Locked; 6];
-    axes[1] = Axis::Sprung(Spring::new(0.0, WALL_DAMPING));
+    let mut axes = [JointAxis::Locked; 6];
+    axes[1] = JointAxis::Sprung(Spring::new(0.0, WALL_DAMPING));
     let ground = scene.body(build::fixed("ground", Pose::identity(), Vec::new()));
     scene.joint(Joint {
         name: "slide".into(),
@@ -83,7 +83,9 @@ pub(super) fn wedges(engine: &dyn Engine, friction: f64, depth: f64) -> Result<b
         in_child: Pose::identity(),
         springs: Springs::Axes(axes),
     });
-    scene.contacts.extend([(fixed, body), (wall, body)]);
+    for side in [fixed, wall] {
+        scene.contact(side, body, Friction::hard(friction));
+    }
 
     let mut world = engine.world(&scene);
     world.push(wall, Vector3::new(0.0, -SQUEEZE, 0.0), Vector3::zeros());

@@ -1,6 +1,5 @@
-//! Shapes for collision detection by parry, in millimetres: some of its
-//! tolerances are absolute and made for metre-sized things (in metres it drops
-//! the crossing of two edges of 1 mm that meet at less than a degree).
+//! Shapes, vectors and poses as parry, and so rapier, has them, in a unit of length of
+//! the caller's choice: `scale` is how many of it make a metre.
 
 use crate::scene::{Pose, Shape};
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
@@ -8,25 +7,22 @@ use parry::math as pm;
 use parry::shape::SharedShape;
 use rapier3d_f64::parry;
 
-/// Millimetres per metre.
-pub(super) const SCALE: f64 = 1e3;
-
 /// The shape, and the turn from parry's frame of it to ours.
-pub(super) fn shared(shape: &Shape) -> (SharedShape, Pose) {
+pub(super) fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
     match shape {
         Shape::Box { half } => {
-            let half = half * SCALE;
+            let half = half * scale;
             (SharedShape::cuboid(half.x, half.y, half.z), Pose::identity())
         }
         Shape::Cylinder { half_height, radius } => {
             // parry's cylinders stand along y, ours along z.
             let quarter = std::f64::consts::FRAC_PI_2;
             let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), quarter);
-            let shape = SharedShape::cylinder(half_height * SCALE, radius * SCALE);
+            let shape = SharedShape::cylinder(half_height * scale, radius * scale);
             (shape, Pose::from_parts(Translation3::identity(), turn))
         }
         Shape::Hull { points } => {
-            let points: Vec<_> = points.iter().map(|p| vector(&(p.coords * SCALE))).collect();
+            let points: Vec<_> = points.iter().map(|p| vector(&(p.coords * scale))).collect();
             // The task file's checks leave no degenerate hull; a ball would be seen at once.
             let hull = SharedShape::convex_hull(&points);
             (hull.unwrap_or_else(|| SharedShape::ball(0.0)), Pose::identity())
@@ -61,9 +57,9 @@ pub(super) fn from_vector(v: pm::Vector) -> Vector3<f64> {
     Vector3::new(v.x, v.y, v.z)
 }
 
-/// A pose in metres to parry's in millimetres.
-pub(super) fn pose(pose: &Pose) -> pm::Pose {
+/// A pose in metres to parry's.
+pub(super) fn pose(pose: &Pose, scale: f64) -> pm::Pose {
     let q = pose.rotation.coords;
     let rotation = pm::Rotation::from_xyzw(q.x, q.y, q.z, q.w);
-    pm::Pose::from_parts(vector(&(pose.translation.vector * SCALE)), rotation)
+    pm::Pose::from_parts(vector(&(pose.translation.vector * scale)), rotation)
 }

@@ -1,72 +1,34 @@
-//! A second, independent engine: MuJoCo. The only file that knows it.
-//!
-//! The scene is written as MJCF ([`crate::physics::mjcf`]) and read by MuJoCo itself. What a
-//! trial does besides goes into the model's numbers: the force that drives a driven
-//! body is set before each step, a servo's gains where its spring is replaced.
+//! A scene in motion in MuJoCo.
 
-use super::{ContactForce, Diverged, Engine, Unsupported, World};
-use crate::physics::mjcf::{self, HEAVY, Settings, axis_name, driven_axis_name, geom_names, servo};
-use crate::scene::{Axis, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
+use crate::physics::mjcf::{HEAVY, axis_name, driven_axis_name, geom_names, servo};
+use crate::physics::{ContactForce, Diverged, World};
+use crate::scene::{
+    Body, BodyId, ContactPair, Joint, JointAxis, JointId, Motion, Pose, Scene, Spring, Springs,
+};
 use mujoco_rs::prelude::{MjData, MjModel, MjtObjBase};
 use nalgebra::{Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::sync::Arc;
 
-/// The engine; see [`Settings`].
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Mujoco {
-    /// How finely and how stiffly it simulates.
-    pub settings: Settings,
-}
-
-impl Engine for Mujoco {
-    fn version(&self) -> String {
-        format!("mujoco {}", mujoco_rs::mujoco_version())
-    }
-
-    fn supports(&self, scene: &Scene) -> Result<(), Unsupported> {
-        mjcf::supports(scene).map_err(|error| Unsupported {
-            engine: self.version(),
-            part: error.part,
-            lacking: error.lacking,
-        })
-    }
-
-    /// # Panics
-    /// On a scene that it does not support, and if MuJoCo refuses the model.
-    fn world(&self, scene: &Scene) -> Box<dyn World> {
-        let text = mjcf::write(scene, "scene", &self.settings);
-        let text = text.unwrap_or_else(|error| panic!("{error}"));
-        let model = MjModel::from_xml_string(&text);
-        let model = model.unwrap_or_else(|error| panic!("MuJoCo refuses the model: {error}"));
-        Box::new(MujocoWorld::new(scene, model))
-    }
-
-    fn halved(&self) -> Box<dyn Engine> {
-        let step_s = 0.5 * self.settings.step_s;
-        Box::new(Mujoco { settings: Settings { step_s, ..self.settings } })
-    }
-}
-
-const NO_FORCE: ContactForce = ContactForce { net: Vector3::new(0.0, 0.0, 0.0), normal_sum: 0.0 };
 /// A speed or coordinate beyond this, SI, has left the finite numbers.
 const HUGE: f64 = 1e6;
 
+/// A scene in motion.
 #[derive(Clone)]
-struct MujocoWorld {
+pub(super) struct MujocoWorld {
     /// State and model; the model is shared by snapshots until a spring is replaced.
     data: MjData<Arc<MjModel>>,
-    bodies: Vec<Body>,
-    joints: Vec<[Handle; 6]>,
+    bodies: Vec<BodyPlaces>,
+    joints: Vec<[AxisPlace; 6]>,
     /// Body of the scene that a geom belongs to.
-    owners: Vec<usize>,
-    pairs: Vec<(usize, usize)>,
+    owners: Vec<BodyId>,
+    pairs: Vec<ContactPair>,
     /// Their forces over the last step.
     forces: Vec<ContactForce>,
 }
 
 /// A body's places in MuJoCo's arrays.
 #[derive(Clone)]
-struct Body {
+struct BodyPlaces {
     id: usize,
     mocap: Option<usize>,
     driven: Option<Driven>,
@@ -85,7 +47,7 @@ struct Driven {
 
 /// One axis of a joint in MuJoCo's arrays.
 #[derive(Clone, Copy)]
-enum Handle {
+enum AxisPlace {
     Locked,
     /// A spring of the joint itself.
     Passive {
@@ -102,7 +64,7 @@ enum Handle {
 }
 
 impl MujocoWorld {
-    fn new(scene: &Scene, mut model: MjModel) -> Self {
+    pub fn new(scene: &Scene, mut model: MjModel) -> Self {
         // The sliders' ranges are for people.
         model.actuator_ctrllimited_mut().fill(false);
         // So are the driven bodies' actuators: here they go where they are told.
@@ -113,16 +75,16 @@ impl MujocoWorld {
                 model.actuator_biasprm_mut()[actuator].fill(0.0);
             }
         }
-        let bodies = scene.bodies.iter().map(|body| new_body(&model, body)).collect();
+        let bodies = scene.bodies.iter().map(|body| body_places(&model, body)).collect();
         let joints = scene
             .joints
             .iter()
-            .map(|joint| std::array::from_fn(|axis| new_handle(&model, joint, axis)))
+            .map(|joint| std::array::from_fn(|axis| axis_place(&model, joint, axis)))
             .collect();
-        let mut owners = vec![usize::MAX; model.geom_bodyid().len()];
+        let mut owners = vec![BodyId(usize::MAX); model.geom_bodyid().len()];
         for (body, names) in geom_names(scene).iter().enumerate() {
             for name in names {
-                owners[id(&model, MjtObjBase::mjOBJ_GEOM, name)] = body;
+                owners[id(&model, MjtObjBase::mjOBJ_GEOM, name)] = BodyId(body);
             }
         }
         let mut data = MjData::new(Arc::new(model));
@@ -132,8 +94,8 @@ impl MujocoWorld {
             bodies,
             joints,
             owners,
-            pairs: scene.contacts.iter().map(|&(a, b)| (a.0, b.0)).collect(),
-            forces: vec![NO_FORCE; scene.contacts.len()],
+            pairs: scene.contacts.clone(),
+            forces: vec![ContactForce::default(); scene.contacts.len()],
         }
     }
 
@@ -163,16 +125,15 @@ impl MujocoWorld {
     }
 
     fn add_forces(&mut self) {
-        self.forces.fill(NO_FORCE);
+        self.forces.fill(ContactForce::default());
         for (i, contact) in self.data.contact().iter().enumerate() {
             // MuJoCo's normal points from the first geom to the second.
             let [from, to] = contact.geom.map(|geom| self.owners[geom as usize]);
-            let place =
-                self.pairs.iter().position(|&(a, b)| (a, b) == (from, to) || (a, b) == (to, from));
-            let Some(place) = place else { continue };
+            let signs = self.pairs.iter().enumerate();
+            let mut signs = signs.filter_map(|(place, pair)| Some((place, pair.sign(from, to)?)));
+            let Some((place, sign)) = signs.next() else { continue };
             let [normal, first, second, ..] = self.data.contact_force(i);
             let axes = Matrix3::from_column_slice(&contact.frame);
-            let sign = if self.pairs[place] == (from, to) { 1.0 } else { -1.0 };
             self.forces[place].net += axes * Vector3::new(normal, first, second) * sign;
             self.forces[place].normal_sum += normal;
         }
@@ -231,8 +192,8 @@ impl World for MujocoWorld {
     /// If a plain spring, without a limit from the start, is given one.
     fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring) {
         match self.joints[joint.0][axis] {
-            Handle::Locked => {}
-            Handle::Passive { joint, position, velocity } => {
+            AxisPlace::Locked => {}
+            AxisPlace::Passive { joint, position, velocity } => {
                 assert!(spring.limit.is_infinite(), "a plain spring has no limit");
                 self.change(|model| {
                     model.jnt_stiffness_mut()[joint] = spring.stiffness;
@@ -240,7 +201,7 @@ impl World for MujocoWorld {
                     model.qpos_spring_mut()[position] = spring.target;
                 });
             }
-            Handle::Servo { actuator, gain, spring: old } => {
+            AxisPlace::Servo { actuator, gain, spring: old } => {
                 if (Spring { target: old.target, ..spring }) != old {
                     self.change(|model| {
                         let bias = &mut model.actuator_biasprm_mut()[actuator];
@@ -248,7 +209,7 @@ impl World for MujocoWorld {
                         model.actuator_forcerange_mut()[actuator] = [-spring.limit, spring.limit];
                         model.actuator_forcelimited_mut()[actuator] = spring.limit.is_finite();
                     });
-                    self.joints[joint.0][axis] = Handle::Servo { actuator, gain, spring };
+                    self.joints[joint.0][axis] = AxisPlace::Servo { actuator, gain, spring };
                 }
                 // force = gain * control - stiffness * position - damping * rate
                 self.data.ctrl_mut()[actuator] = spring.stiffness / gain * spring.target;
@@ -262,16 +223,10 @@ impl World for MujocoWorld {
     }
 
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
-        let ends = (first.0, second.0);
-        for (&pair, &force) in self.pairs.iter().zip(&self.forces) {
-            if pair == ends {
-                return force;
-            }
-            if pair == (ends.1, ends.0) {
-                return ContactForce { net: -force.net, ..force };
-            }
-        }
-        NO_FORCE
+        let signed = |(pair, force): (&ContactPair, &ContactForce)| {
+            Some(ContactForce { net: force.net * pair.sign(first, second)?, ..*force })
+        };
+        self.pairs.iter().zip(&self.forces).find_map(signed).unwrap_or_default()
     }
 
     fn snapshot(&self) -> Box<dyn World> {
@@ -285,7 +240,7 @@ fn id(model: &MjModel, kind: MjtObjBase, name: &str) -> usize {
     model.name_to_id(kind, name).unwrap_or_else(|| panic!("the model has no `{name}`"))
 }
 
-fn new_body(model: &MjModel, body: &crate::scene::Body) -> Body {
+fn body_places(model: &MjModel, body: &Body) -> BodyPlaces {
     let index = id(model, MjtObjBase::mjOBJ_BODY, &body.name);
     let driven = (body.motion == Motion::Driven).then(|| {
         let name = |axis| driven_axis_name(body, axis);
@@ -299,19 +254,19 @@ fn new_body(model: &MjModel, body: &crate::scene::Body) -> Body {
             next: [0.0; 6],
         }
     });
-    Body { id: index, mocap: usize::try_from(model.body_mocapid()[index]).ok(), driven }
+    BodyPlaces { id: index, mocap: usize::try_from(model.body_mocapid()[index]).ok(), driven }
 }
 
-fn new_handle(model: &MjModel, joint: &Joint, axis: usize) -> Handle {
-    let Springs::Axes(axes) = &joint.springs else { return Handle::Locked };
-    let Axis::Sprung(_) = axes[axis] else { return Handle::Locked };
+fn axis_place(model: &MjModel, joint: &Joint, axis: usize) -> AxisPlace {
+    let Springs::Axes(axes) = &joint.springs else { return AxisPlace::Locked };
+    let JointAxis::Sprung(_) = axes[axis] else { return AxisPlace::Locked };
     let name = axis_name(joint, axis);
     if let Some(&spring) = servo(joint, axis) {
         let actuator = id(model, MjtObjBase::mjOBJ_ACTUATOR, &name);
-        return Handle::Servo { actuator, gain: model.actuator_gainprm()[actuator][0], spring };
+        return AxisPlace::Servo { actuator, gain: model.actuator_gainprm()[actuator][0], spring };
     }
     let joint = id(model, MjtObjBase::mjOBJ_JOINT, &name);
-    Handle::Passive {
+    AxisPlace::Passive {
         joint,
         position: model.jnt_qposadr()[joint] as usize,
         velocity: model.jnt_dofadr()[joint] as usize,
@@ -326,100 +281,4 @@ fn coordinates(pose: &Pose) -> [f64; 6] {
     let about_y = turn[(0, 2)].clamp(-1.0, 1.0).asin();
     let about_z = f64::atan2(-turn[(0, 1)], turn[(0, 0)]);
     [at.x, at.y, at.z, about_x, about_y, about_z]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::input::robot::{Flange, Servo};
-    use crate::scene::{Body as SceneBody, Inertia};
-    use crate::trial::cell;
-    use nalgebra::Point3;
-
-    /// A body of 0.1 kg on a servo of 1000 N/m and 5 N along y.
-    fn servo_scene() -> (Scene, BodyId, JointId) {
-        let mut scene = Scene::default();
-        let inertia =
-            Inertia { mass: 0.1, centre: Point3::origin(), moments: Vector3::repeat(1e-4) };
-        let body = |name: &str, motion| SceneBody {
-            name: name.into(),
-            motion,
-            pose: Pose::identity(),
-            geoms: Vec::new(),
-        };
-        let base = scene.body(body("base", Motion::Fixed));
-        let jaw = scene.body(body("jaw", Motion::Carried(inertia)));
-        let mut axes = [Axis::Locked; 6];
-        axes[1] = Axis::Sprung(Spring { limit: 5.0, ..Spring::new(1000.0, 30.0) });
-        let slide = scene.joint(Joint {
-            name: "slide".into(),
-            parent: base,
-            child: jaw,
-            in_parent: Pose::identity(),
-            in_child: Pose::identity(),
-            springs: Springs::Axes(axes),
-        });
-        (scene, jaw, slide)
-    }
-
-    fn advance(world: &mut dyn World, time: f64) {
-        for _ in 0..(time / world.step_s()).round() as usize {
-            world.step().unwrap();
-        }
-    }
-
-    #[test]
-    fn a_servo_pushes_to_its_limit_and_can_be_made_to_hold() {
-        let (scene, jaw, slide) = servo_scene();
-        let mut world = Mujoco::default().world(&scene);
-        let at = |world: &dyn World| world.pose(jaw).translation.y;
-        world.push(jaw, Vector3::new(0.0, 3.0, 0.0), Vector3::zeros());
-        advance(&mut *world, 0.5);
-        assert!((at(&*world) - 3e-3).abs() < 1e-6, "{}", at(&*world));
-        let mut snapshot = world.snapshot();
-        // Beyond the limit it gives way.
-        world.push(jaw, Vector3::new(0.0, 6.0, 0.0), Vector3::zeros());
-        advance(&mut *world, 0.5);
-        assert!(at(&*world) > 0.1, "{}", at(&*world));
-        // Held, it does not; and the model of one world is not that of the other.
-        snapshot.set_spring(slide, 1, cell::holding(3e-3));
-        snapshot.push(jaw, Vector3::new(0.0, 6.0, 0.0), Vector3::zeros());
-        advance(&mut *snapshot, 0.5);
-        assert!((at(&*snapshot) - 3e-3).abs() < 1e-6, "{}", at(&*snapshot));
-    }
-
-    /// Damper and spring act between command and flange, so at a steady speed the
-    /// flange does not trail.
-    #[test]
-    fn a_driven_body_carries_the_flange_along_and_turns_it() {
-        let servo = Servo {
-            stiffness: [1e4; 3],
-            rotational_stiffness: [400.0; 3],
-            mass: 2.0,
-            inertia: 0.01,
-            damping_ratio: 1.0,
-        };
-        let mut scene = Scene::default();
-        let (command, flange) = cell::flange(&mut scene, &Flange::Servo(servo), Pose::identity());
-        let mut world = Mujoco::default().world(&scene);
-        let step = world.step_s();
-        for i in 1..=8000 {
-            let time = f64::from(i) * step;
-            let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5 * time);
-            world.drive(command, Pose::from_parts(Translation3::new(0.0, 0.1 * time, 0.0), turn));
-            world.step().unwrap();
-        }
-        let off = world.pose(command).inv_mul(&world.pose(flange));
-        assert!((world.pose(command).translation.y - 0.04).abs() < 1e-9);
-        assert!((world.pose(command).rotation.angle() - 0.2).abs() < 1e-9);
-        assert!(off.translation.vector.norm() < 1e-5 && off.rotation.angle() < 1e-5, "{off}");
-    }
-
-    #[test]
-    fn the_arm_is_refused_by_name() {
-        let (mut scene, ..) = servo_scene();
-        scene.bodies[1].motion = Motion::Mechanism(nalgebra::Matrix6::identity());
-        let refused = Mujoco::default().supports(&scene).unwrap_err();
-        assert_eq!((refused.part.as_str(), refused.engine.as_str()), ("jaw", "mujoco 3.17.0"));
-    }
 }

@@ -28,7 +28,7 @@ fn all_tasks_are_compared_and_written() {
     assert_eq!(read(&dir.join("validation_summary.csv")).lines().count(), 13);
     for figure in [
         "failures",
-        "simulated_against_in_situ",
+        "simulated_against_bench",
         "range_against_direction",
         "range_against_stiffness_usb",
     ] {

@@ -9,7 +9,7 @@ use std::slice;
 
 /// The sources, and how far their marks stand aside so that none hides another, degrees.
 const SOURCES: [(Source, f64); 3] =
-    [(Source::Ours, -0.9), (Source::Simulation, 0.0), (Source::InSitu, 0.9)];
+    [(Source::Ours, -0.9), (Source::Simulation, 0.0), (Source::Bench, 0.9)];
 
 /// At most two panels in a row.
 pub(super) fn svg(tables: &[TaskTable]) -> Result<String, ReportError> {

@@ -27,7 +27,7 @@ const SERIES: [Colour; 5] = [BLUE, GREEN, ORANGE, RED, MUTED];
 /// If the drawing library refuses.
 pub fn figures(tables: &[TaskTable]) -> Result<Vec<(String, String)>, ReportError> {
     let mut figures = vec![
-        ("simulated_against_in_situ.svg".to_owned(), scatter::svg(tables)?),
+        ("simulated_against_bench.svg".to_owned(), scatter::svg(tables)?),
         ("range_against_direction.svg".to_owned(), direction::svg(tables)?),
         ("failures.svg".to_owned(), failures::svg(tables)?),
     ];
@@ -70,7 +70,7 @@ impl Mark {
         match source {
             Source::Ours => Mark::Disc(BLUE, 5),
             Source::Simulation => Mark::Triangle(ORANGE),
-            Source::InSitu => Mark::Cross(GREEN),
+            Source::Bench => Mark::Cross(GREEN),
         }
     }
 
@@ -111,7 +111,7 @@ fn key(area: &Area<'_>, left: i32, entries: &[Entry<'_>]) -> Drawn {
 
 /// All ranges of some tables, mm.
 fn ranges(tables: &[TaskTable]) -> impl Iterator<Item = f64> {
-    let sources = [Source::Ours, Source::Simulation, Source::InSitu];
+    let sources = [Source::Ours, Source::Simulation, Source::Bench];
     let rows = tables.iter().flat_map(|table| &table.rows);
     rows.flat_map(move |row| sources.map(|source| row.range_mm(source))).flatten()
 }

@@ -11,14 +11,14 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::slice;
 
-/// Three panels: ours, published simulation, published in-situ.
+/// Three panels: ours, published simulation, bench experiments.
 pub(super) fn svg(table: &TaskTable) -> Result<String, ReportError> {
     sheet("range against stiffness", (1240, 420 + HEAD + KEY), |area| {
         let title = format!("{}: tolerable range of the measured fingers", table.task);
         let note = "colour: infill direction · size: infill density · same axes in all panels";
         let body = headed(area, &title, note)?;
         let (panels, strip) = body.split_vertically(420);
-        let sources = [Source::Ours, Source::Simulation, Source::InSitu];
+        let sources = [Source::Ours, Source::Simulation, Source::Bench];
         for (panel, source) in panels.split_evenly((1, 3)).iter().zip(sources) {
             draw(panel, table, source)?;
         }

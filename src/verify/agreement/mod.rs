@@ -28,7 +28,7 @@ pub enum Source {
     /// The publication's simulation.
     Simulation,
     /// The publication's experiments on the robot.
-    InSitu,
+    Bench,
 }
 
 impl Source {
@@ -37,7 +37,7 @@ impl Source {
         match self {
             Source::Ours => "ours",
             Source::Simulation => "published simulation",
-            Source::InSitu => "published in-situ",
+            Source::Bench => "bench experiments",
         }
     }
 
@@ -46,7 +46,7 @@ impl Source {
         match self {
             Source::Ours => "ours",
             Source::Simulation => "simulation",
-            Source::InSitu => "in_situ",
+            Source::Bench => "bench",
         }
     }
 }
@@ -54,8 +54,8 @@ impl Source {
 /// What is compared with what.
 pub const COMPARISONS: [(Source, Source); 3] = [
     (Source::Ours, Source::Simulation),
-    (Source::Ours, Source::InSitu),
-    (Source::Simulation, Source::InSitu),
+    (Source::Ours, Source::Bench),
+    (Source::Simulation, Source::Bench),
 ];
 
 /// Range and failures of one design according to one source.
@@ -75,7 +75,7 @@ pub struct Row {
     /// Our window.
     pub window: Window,
     simulation: Option<Reading>,
-    in_situ: Option<Reading>,
+    bench: Option<Reading>,
 }
 
 impl Row {
@@ -84,7 +84,7 @@ impl Row {
         match source {
             Source::Ours => Some(Reading::from(&self.window)),
             Source::Simulation => self.simulation,
-            Source::InSitu => self.in_situ,
+            Source::Bench => self.bench,
         }
     }
 
@@ -130,14 +130,14 @@ pub struct TaskTable {
 impl TaskTable {
     /// Puts windows beside what is published of a task.
     pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
-        let [simulation, in_situ] =
-            [Origin::Simulation, Origin::InSitu].map(|origin| published::of_task(task, origin));
+        let [simulation, bench] =
+            [Origin::Simulation, Origin::Bench].map(|origin| published::of_task(task, origin));
         let find = |rows: &[Published], design| {
             rows.iter().find(|row| row.design == design).map(Reading::from)
         };
         let row = |(design, window): (Measurement, Window)| Row {
             simulation: find(&simulation, design.design),
-            in_situ: find(&in_situ, design.design),
+            bench: find(&bench, design.design),
             design,
             window,
         };

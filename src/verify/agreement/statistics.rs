@@ -63,8 +63,8 @@ impl Agreement {
 
 /// The paper's deviation: `|range - reference| / reference`, in percent.
 ///
-/// It gives the last column of the paper's in-situ tables from the simulated
-/// and the in-situ range, to the 0.1 % by which those are rounded.
+/// It gives the last column of the paper's bench tables from the simulated
+/// and the bench range, to the 0.1 % by which those are rounded.
 pub fn deviation_percent(range: f64, reference: f64) -> f64 {
     100.0 * (range - reference).abs() / reference
 }
@@ -97,15 +97,15 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
     (n > 0).then(|| values.sum::<f64>() / n as f64)
 }
 
-/// Spearman's rank correlation between published simulation and in-situ ranges
+/// Spearman's rank correlation between published simulation and bench ranges
 /// of a task, and the number of designs it rests on; `None` below 3 designs or
 /// if all ranges are equal.
 pub fn rank_correlation(task: &str) -> Option<(f64, usize)> {
-    let in_situ = of_task(task, Origin::InSitu);
+    let bench = of_task(task, Origin::Bench);
     let pairs: Vec<(f64, f64)> = of_task(task, Origin::Simulation)
         .iter()
         .filter_map(|a| {
-            let b = in_situ.iter().find(|b| b.design == a.design)?;
+            let b = bench.iter().find(|b| b.design == a.design)?;
             Some((a.tolerable_range_mm?, b.tolerable_range_mm?))
         })
         .collect();
@@ -134,8 +134,8 @@ mod tests {
 
     #[test]
     fn the_deviation_is_that_of_the_published_tables() {
-        // (simulated mm, in-situ mm, printed deviation %): rows of all four tables.
-        for (simulated, in_situ, printed) in [
+        // (simulated mm, bench mm, printed deviation %): rows of all four tables.
+        for (simulated, bench, printed) in [
             (7.2, 7.6, 5.2),
             (4.4, 7.8, 43.5),
             (4.5, 7.8, 42.3),
@@ -145,7 +145,7 @@ mod tests {
             (9.0, 4.7, 91.5),
             (6.3, 6.1, 3.3),
         ] {
-            let deviation = deviation_percent(simulated, in_situ);
+            let deviation = deviation_percent(simulated, bench);
             assert!((deviation - printed).abs() < 0.1, "{deviation} is printed as {printed}");
         }
     }

@@ -23,15 +23,15 @@ pub const CSV_HEADER: [&str; 24] = [
     "simulation_range_mm",
     "simulation_failure_negative",
     "simulation_failure_positive",
-    "in_situ_range_mm",
-    "in_situ_failure_negative",
-    "in_situ_failure_positive",
+    "bench_range_mm",
+    "bench_failure_negative",
+    "bench_failure_positive",
     "error_to_simulation_mm",
     "deviation_to_simulation_percent",
-    "error_to_in_situ_mm",
-    "deviation_to_in_situ_percent",
-    "simulation_error_to_in_situ_mm",
-    "simulation_deviation_to_in_situ_percent",
+    "error_to_bench_mm",
+    "deviation_to_bench_percent",
+    "simulation_error_to_bench_mm",
+    "simulation_deviation_to_bench_percent",
 ];
 
 /// Columns of `validation_summary.csv`.
@@ -124,7 +124,7 @@ fn reading_cells(row: &Row) -> Vec<String> {
         end(window.end_negative),
         end(window.end_positive),
     ];
-    for reading in [row.simulation, row.in_situ] {
+    for reading in [row.simulation, row.bench] {
         cells.push(number(reading.and_then(|r| r.range_mm), 1));
         let failures = reading.map_or([None; 2], |r| r.failures);
         cells.extend(failures.map(|c| c.map_or(String::new(), |c| c.number().to_string())));
@@ -177,7 +177,7 @@ fn row_json(row: &Row) -> Value {
         "window": row.window,
         "ours": reading(Some(Reading::from(&row.window))),
         "simulation": reading(row.simulation),
-        "in_situ": reading(row.in_situ),
+        "bench": reading(row.bench),
     })
 }
 

@@ -17,7 +17,7 @@ pub fn text(table: &TaskTable) -> String {
         "assembly",
         "ours: window, range, ends",
         "published sim.",
-        "in-situ"
+        "bench"
     );
     for row in &table.rows {
         text.push_str(&design(row));
@@ -66,7 +66,7 @@ fn design(row: &Row) -> String {
         format!("{:.1}", m.assembly / N_PER_MM),
         ours(&row.window),
         row.simulation.map_or(String::new(), reading),
-        row.in_situ.map_or(String::new(), reading),
+        row.bench.map_or(String::new(), reading),
     )
 }
 

@@ -9,7 +9,7 @@ use crate::input::space::{DENSITY_KEY, DIRECTION_KEY};
 use crate::input::stiffness::Measurement;
 use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Recorded, StudyRecord};
-use crate::verify::agreement::statistics::rank_correlation;
+use crate::verify::compare::published::rank_correlation;
 
 /// A list of names and values; both are escaped.
 pub(super) fn definitions(rows: &[(String, String)]) -> String {

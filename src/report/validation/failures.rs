@@ -5,7 +5,7 @@ use super::super::chart::{Area, Drawn, message, sheet, words};
 use super::super::theme::{INK, LINES, MUTED, ORANGE, PAPER, SCALE};
 use super::{HEAD, headed};
 use crate::outcome::FailureClass;
-use crate::verify::agreement::{Agreement, Source, TaskTable};
+use crate::verify::compare::published::{Agreement, RangeSource, TaskTable};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -29,7 +29,7 @@ pub(super) fn svg(tables: &[TaskTable]) -> Result<String, ReportError> {
         let note = "number of window ends · frame: same class in both · \
                     score: share of ends with the same class";
         let body = headed(area, title, note)?;
-        for (row, source) in [Source::Ours, Source::Simulation].into_iter().enumerate() {
+        for (row, source) in [RangeSource::Ours, RangeSource::Simulation].into_iter().enumerate() {
             for (column, table) in tables.iter().enumerate() {
                 let corner = (WIDTH * column as u32, HEIGHT * row as u32);
                 let panel = body.clone().shrink(corner, (WIDTH, HEIGHT));
@@ -41,11 +41,11 @@ pub(super) fn svg(tables: &[TaskTable]) -> Result<String, ReportError> {
 }
 
 /// Counts of `[simulated][bench]`; index 4 simulated is "no class".
-fn counts(table: &TaskTable, source: Source) -> [[u32; 4]; 5] {
+fn counts(table: &TaskTable, source: RangeSource) -> [[u32; 4]; 5] {
     let index = |class: Option<FailureClass>| class.map_or(4, |class| class as usize);
     let mut counts = [[0; 4]; 5];
     for row in &table.rows {
-        let (Some(simulated), Some(bench)) = (row.reading(source), row.reading(Source::Bench))
+        let (Some(simulated), Some(bench)) = (row.reading(source), row.reading(RangeSource::Bench))
         else {
             continue;
         };
@@ -58,9 +58,9 @@ fn counts(table: &TaskTable, source: Source) -> [[u32; 4]; 5] {
     counts
 }
 
-fn draw(area: &Area<'_>, table: &TaskTable, source: Source) -> Drawn {
+fn draw(area: &Area<'_>, table: &TaskTable, source: RangeSource) -> Drawn {
     let counts = counts(table, source);
-    let found = Agreement::of(&table.rows, source, Source::Bench);
+    let found = Agreement::of(&table.rows, source, RangeSource::Bench);
     let score = found.match_percent().map_or("–".to_owned(), |p| format!("{p:.1} %"));
     let text = |words: TextStyle<'static>, at: (i32, i32), string: &str| {
         area.draw_text(string, &words, at).map_err(message)

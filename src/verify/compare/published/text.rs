@@ -1,6 +1,6 @@
 //! The tables and the summary of a task as text, within 100 columns.
 
-use super::{Reading, Row, TaskTable, targets};
+use super::{DesignRow, Reading, TaskTable, targets};
 use crate::evaluation::Window;
 use crate::outcome::Outcome;
 use crate::units::N_PER_MM;
@@ -55,7 +55,7 @@ pub fn text(table: &TaskTable) -> String {
     text
 }
 
-fn design(row: &Row) -> String {
+fn design(row: &DesignRow) -> String {
     let m = &row.design;
     format!(
         "{:>6} {:>4} % {:>2}° {:>5} N/mm {:>6} N/mm   {:<27} {:<15} {}\n",

@@ -17,8 +17,8 @@ const MISSED: (&str, f64) = ("friction, mu 1, heading 37 deg", 0.02);
 
 #[test]
 fn mujoco_passes_the_analytic_checks_but_one() {
-    let rows = check::run(&mujoco);
-    let table = check::table(&rows);
+    let rows = analytic::run(&mujoco);
+    let table = analytic::table(&rows);
     println!("{table}");
     let (missed, error) = MISSED;
     for row in rows {

@@ -26,7 +26,7 @@ fn windows_on_half_the_step_are_the_same() {
         assert!(row["production"]["positive_mm"].as_f64() > Some(2.0), "{row}");
     }
     let stiffness: Vec<f64> =
-        rows.iter().filter_map(|row| row["compliance_n_per_mm"].as_f64()).collect();
+        rows.iter().filter_map(|row| row["stiffness_compliance_n_per_mm"].as_f64()).collect();
     assert!(stiffness.len() == 3 && stiffness.is_sorted(), "{stiffness:?}");
 }
 
@@ -56,8 +56,21 @@ fn an_evaluation_gives_the_widths_of_the_unsure_bands() {
 }
 
 #[test]
+fn the_quick_search_finds_the_ends_of_the_walk() {
+    let check = ["check", "--searches", "--task", "ket8", "--json"];
+    let rows = optimize(&check).json();
+    for row in rows.as_array().expect("an array") {
+        assert_eq!((&row["passed"], &row["search"]), (&true.into(), &"strides".into()), "{row}");
+        assert_eq!(row["walk"]["failure_negative"], 3, "{row}");
+        let [walk, strides] = [0, 1].map(|way| row["trials"][way].as_u64().expect("a count"));
+        assert!(2 * strides < walk, "{row}");
+    }
+    assert_eq!(rows.as_array().map(Vec::len), Some(3));
+}
+
+#[test]
 fn what_only_the_convergence_has_is_refused_without_it() {
-    optimize(&["check", "--robot", "rigid"]).fails(2, &["--convergence"]);
+    optimize(&["check", "--robot", "rigid"]).fails(2, &["--convergence", "--searches"]);
     optimize(&["check", "--convergence", "--engine", "fake"]).fails(2, &["fake"]);
     optimize(&["check", "--convergence", "--robot", "nobody"]).fails(2, &["nobody", "servo"]);
     optimize(&["check", "--convergence", "--robot", "ur5e", "--engine", "rapier"])

@@ -114,8 +114,8 @@ fn summary(pairs: &[WindowPair]) -> String {
         .collect();
     let trials = |way: usize| pairs.iter().map(|pair| pair.trials[way]).sum::<u32>();
     format!(
-        "both ends the same in {} of {}; ranges differ by {:.2} mm in the mean, {:.1} mm at most; \
-         {} against {} trials\n",
+        "both ends the same in {} of {}; ranges differ by {:.2} mm in the mean, {:.1} mm at most\n\
+         trials: {} against {}\n",
         pairs.iter().filter(|pair| pair.agrees(0)).count(),
         pairs.len(),
         mean(&differences).unwrap_or(0.0),

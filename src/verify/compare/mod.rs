@@ -124,7 +124,10 @@ fn failures(window: &Window) -> [Option<FailureClass>; 2] {
 fn window_json(window: &Window) -> Value {
     let [negative, positive] = failures(window);
     json!({
-        "nominal": outcome_word(window.nominal),
+        "nominal": match window.nominal {
+            Outcome::Failed(_) => "failed",
+            other => outcome_word(other),
+        },
         "negative_mm": window.negative_mm(),
         "positive_mm": window.positive_mm(),
         "range_mm": window.range_mm(),

@@ -1,50 +1,164 @@
 #!/usr/bin/env bash
-# Makes the outputs under results/reference that the documents quote. A few minutes on 2 cores.
+# Makes every figure under results/reference from the present sources, and notes which sources
+# those were (scripts/stale.sh). The one entry; parts can be named:
+#
+#     scripts/reference.sh                          all parts but the last two
+#     scripts/reference.sh validation               one part
+#     scripts/reference.sh landscapes peers         what it leaves out unless named
+#
+# Landscapes are recorded functions that optimizers are measured on, not figures of the
+# present model: renewing them means renewing all of results/reference/optimizers.md. Peers
+# needs the Python packages named there, and hours.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+parts="stiffness check windows validation validation-ur5e trials studies objectives instructions optimizers"
 cargo build --release
-optimize=target/release/optimize
+optimize=${OPTIMIZE:-target/release/optimize}
 reference=results/reference
-studies=$(mktemp -d)
-trap 'rm -rf "$studies"' EXIT
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
-"$optimize" stiffness --svg "$reference/stiffness.svg" > "$reference/stiffness.txt"
-"$optimize" check > "$reference/check.txt"
-"$optimize" check --convergence > "$reference/convergence.txt" ||
-    echo "a window moves with the step: $reference/convergence.txt" >&2
-"$optimize" trial --task usb --density 20 --direction 10 --svg "$reference/trial-usb.svg" \
-    > "$reference/trial-usb.txt"
-for task in ket8 ket12 rj45; do
-    "$optimize" trial --task "$task" --stiffness-compliance 2.6 --stiffness-assembly 45 \
-        --svg "$reference/trial-$task.svg" > /dev/null
-done
-for task in usb ket8 ket12 rj45; do
-    mkdir -p "$reference/$task"
-    /usr/bin/env time -f "%e s wall, %U s processor, %M KiB" -o "$reference/$task/time.txt" \
-        "$optimize" --task "$task" --budget 200 --no-cache --out "$studies/$task" --quiet \
-        > "$reference/$task/summary.txt"
-    sed -i '/^study /d' "$reference/$task/summary.txt"
-    for file in report.html convergence.svg evaluations.csv study.toml; do
-        cp "$studies/$task/$file" "$reference/$task/"
+record() { scripts/stale.sh --record "$@"; }
+
+stiffness() {
+    "$optimize" stiffness --svg "$reference/stiffness.svg" > "$reference/stiffness.txt"
+    record windows "$reference"/stiffness.{svg,txt}
+}
+
+check() {
+    "$optimize" check > "$reference/check.txt"
+    record checks "$reference/check.txt"
+}
+
+# Half the step against production on three fingers, the quick search against the walk on all.
+windows() {
+    "$optimize" check --convergence > "$reference/convergence.txt" ||
+        echo "a window moves with the step: $reference/convergence.txt" >&2
+    "$optimize" check --searches --fingers all > "$reference/window_search.txt" ||
+        echo "the searches differ: $reference/window_search.txt" >&2
+    record windows "$reference"/{convergence,window_search}.txt
+}
+
+validation() {
+    "$optimize" validate --out "$reference/validation" > /dev/null
+    record windows "$reference"/validation/*.{csv,svg} "$reference/validation/accuracy.md"
+}
+
+validation-ur5e() {
+    "$optimize" validate --robot ur5e --out "$reference/validation-ur5e" > /dev/null
+    record windows "$reference"/validation-ur5e/*.{csv,svg} "$reference/validation-ur5e/accuracy.md"
+}
+
+trials() {
+    "$optimize" trial --task usb --density 20 --direction 10 --svg "$reference/trial-usb.svg" \
+        > "$reference/trial-usb.txt"
+    for task in ket8 ket12 rj45; do
+        "$optimize" trial --task "$task" --stiffness-compliance 2.6 --stiffness-assembly 45 \
+            --svg "$reference/trial-$task.svg" > /dev/null
     done
-done
+    record windows "$reference"/trial-*.{svg,txt}
+}
+
+studies() {
+    for task in usb ket8 ket12 rj45; do
+        mkdir -p "$reference/$task"
+        /usr/bin/env time -f "%e s wall, %U s processor, %M KiB" -o "$reference/$task/time.txt" \
+            "$optimize" --task "$task" --budget 200 --no-cache --out "$work/$task" --quiet \
+            > "$reference/$task/summary.txt"
+        sed -i '/^study /d' "$reference/$task/summary.txt"
+        for file in report.html convergence.svg evaluations.csv study.toml; do
+            cp "$work/$task/$file" "$reference/$task/"
+        done
+        record studies "$reference/$task"/*
+    done
+}
 
 # Objectives, constraints and tasks of docs/objectives.md.
-objectives="$reference/objectives"
-mkdir -p "$objectives"
-few="$studies/few.toml"
-sed -e 's/samples = 12/samples = 6/' -e 's/search = "walk"/search = "strides"/' \
-    -e 's/name = "typical"/name = "few"/' uncertainties/typical.toml > "$few"
-run() {
-    "$optimize" "${@:2}" --no-cache --out "$studies/$1" --quiet > "$objectives/$1.txt"
-    sed -i '/^study /d' "$objectives/$1.txt"
+objectives() {
+    local folder="$reference/objectives" few="$work/few.toml"
+    mkdir -p "$folder"
+    sed -e 's/samples = 12/samples = 6/' -e 's/search = "walk"/search = "strides"/' \
+        -e 's/name = "typical"/name = "few"/' uncertainties/typical.toml > "$few"
+    study() {
+        "$optimize" "${@:2}" --no-cache --out "$work/$1" --quiet > "$folder/$1.txt"
+        sed -i '/^study /d' "$folder/$1.txt"
+    }
+    study front --task usb --objective range,peak-force --budget 60
+    cp "$work/front/front.svg" "$folder/"
+    study constrained --task usb --constraint 'peak-force<=110' --budget 24
+    study none --task usb --constraint 'peak-force<=60' --budget 8
+    study robust --task usb --objective robust-range --uncertainty "$few" --budget 12
+    study tasks --task ket8,rj45 --budget 12
+    "$optimize" evaluate --task rj45 --density 10 --direction 0 --uncertainty typical \
+        > "$folder/evaluate.txt"
+    record studies "$folder"/*
 }
-run front --task usb --objective range,peak-force --budget 60
-cp "$studies/front/front.svg" "$objectives/"
-run constrained --task usb --constraint 'peak-force<=110' --budget 24
-run none --task usb --constraint 'peak-force<=60' --budget 8
-run robust --task usb --objective robust-range --uncertainty "$few" --budget 12
-run tasks --task ket8,rj45 --budget 12
-"$optimize" evaluate --task rj45 --density 10 --direction 0 --uncertainty typical \
-    > "$objectives/evaluate.txt"
+
+instructions() {
+    if ! command -v valgrind > /dev/null; then
+        echo "left out: the count of instructions needs valgrind (scripts/tools.sh valgrind)" >&2
+        return
+    fi
+    scripts/instructions.sh --renew
+    record windows "$reference/instructions.txt"
+}
+
+# Every run behind the tables of results/reference/optimizers.md that are ours.
+optimizers() {
+    local folder="$reference/optimizers" landscapes=() task
+    for task in usb ket8 ket12 rj45; do
+        landscapes+=(--landscape "$reference/landscapes/$task.csv")
+    done
+    "$optimize" bench optimizers --functions branin,hartmann6 --optimizers gp \
+        --csv "$work/functions.csv"
+    "$optimize" bench optimizers --functions rastrigin --optimizers cma-es --seeds 400 \
+        --csv "$work/rastrigin.csv"
+    "$optimize" bench optimizers "${landscapes[@]}" --csv "$work/landscapes.csv"
+    { cat "$work/functions.csv"; sed 1d "$work/rastrigin.csv"; sed 1d "$work/landscapes.csv"; } \
+        > "$folder/ours.csv"
+    record optimizers "$folder/ours.csv"
+}
+
+# The named columns of a table without commas in its cells, without the header.
+columns() {
+    awk -F, -v names="$1" 'BEGIN { n = split(names, name, ",") }
+        NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+        { for (i = 1; i <= n; i++) printf "%s%s", $(at[name[i]]), i < n ? "," : "\n" }'
+}
+
+# The coarse ones for the processor time.
+landscapes() {
+    local folder="$reference/landscapes" task
+    sed 's/step = 1.0/step = 2.0/' spaces/infill.toml > "$work/coarse.toml"
+    for task in usb ket8 ket12 rj45; do
+        local space=infill budget=861
+        case $task in ket12 | rj45) space="$work/coarse.toml" budget=231 ;; esac
+        "$optimize" --task "$task" --space "$space" --optimizer grid --budget "$budget" --no-cache \
+            --quiet --out "$work/landscape-$task" > /dev/null
+        local header=infill_density_percent,infill_direction_deg,range_mm,negative_mm,positive_mm
+        header=$header,failure_negative,failure_positive
+        echo "$header" > "$folder/$task.csv"
+        columns "$header" < "$work/landscape-$task/evaluations.csv" | sort -t, -k1,1n -k2,2n \
+            >> "$folder/$task.csv"
+    done
+    record windows "$folder"/*.csv
+}
+
+peers() {
+    local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv"
+    local landscapes=("$reference"/landscapes/{usb,ket8,ket12,rj45}.csv)
+    "$python" scripts/peers.py run tpe --csv "$csv" --landscape "${landscapes[@]}"
+    "$python" scripts/peers.py run gpsampler botorch --seeds 10 --csv "$csv" \
+        --landscape "${landscapes[@]}"
+    "$python" scripts/peers.py run pycma --only "rastrigin 2" --seeds 100 --csv "$csv"
+    mv "$csv" "$reference/optimizers/peers.csv"
+    record optimizers "$reference/optimizers/peers.csv"
+}
+
+for part in ${*:-$parts}; do
+    case " $parts landscapes peers " in
+        *" $part "*) echo "== $part" >&2; "$part" ;;
+        *) echo "no part is called $part; there are: $parts landscapes peers" >&2; exit 2 ;;
+    esac
+done

@@ -3,12 +3,6 @@
 mod common;
 
 use common::optimize;
-use finger_opt::input::published;
-use finger_opt::input::robot::Robot;
-use finger_opt::input::shipped::{ROBOTS, TASKS};
-use finger_opt::input::task::Task;
-use finger_opt::physics::direct::Direct;
-use finger_opt::verify::analytic::convergence;
 
 /// Window of -3.33 to 1.40 mm; friction moves its lower end by a tenth.
 const CLOSED_FORM: [&str; 8] = [
@@ -32,22 +26,23 @@ fn windows_on_half_the_step_are_the_same() {
         assert!(row["production"]["positive_mm"].as_f64() > Some(2.0), "{row}");
     }
     let stiffness: Vec<f64> =
-        rows.iter().filter_map(|row| row["compliance_n_per_mm"].as_f64()).collect();
+        rows.iter().filter_map(|row| row["stiffness_compliance_n_per_mm"].as_f64()).collect();
     assert!(stiffness.len() == 3 && stiffness.is_sorted(), "{stiffness:?}");
 }
 
 /// Not with the softest finger: its positive end is not firm (docs/simulation.md, "The step").
 #[test]
 fn windows_of_the_stiffer_fingers_on_usb_are_the_same_on_half_the_step() {
-    let usb = TASKS.iter().find(|file| file.name == "usb").expect("shipped");
-    let usb = Task::parse(usb.text, usb.file).expect("valid");
-    let servo = ROBOTS.iter().find(|file| file.name == "servo").expect("shipped");
-    let servo = Robot::parse(servo.text, servo.file).expect("valid");
-    let stiffer = convergence::three(published::designs()).split_off(1);
-    let rows = convergence::measure(&[usb], &stiffer, &servo, &|| Box::<Direct>::default());
-    let rows = rows.expect("the engine can simulate the two");
-    assert_eq!(rows.len(), 2);
-    assert!(rows.iter().all(convergence::WindowRow::passed), "{}", convergence::table(&rows));
+    let ran = optimize(&["check", "--convergence", "--task", "usb", "--json"]);
+    let rows: serde_json::Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    let stiffer: Vec<&serde_json::Value> = rows
+        .as_array()
+        .expect("an array")
+        .iter()
+        .filter(|row| row["stiffness_compliance_n_per_mm"].as_f64() > Some(1.5))
+        .collect();
+    assert_eq!(stiffer.len(), 2);
+    assert!(stiffer.iter().all(|row| row["passed"] == true), "{rows}");
 }
 
 #[test]
@@ -76,8 +71,21 @@ fn an_evaluation_gives_the_widths_of_the_unsure_bands() {
 }
 
 #[test]
+fn the_quick_search_finds_the_ends_of_the_walk() {
+    let check = ["check", "--searches", "--task", "ket8", "--json"];
+    let rows = optimize(&check).json();
+    for row in rows.as_array().expect("an array") {
+        assert_eq!((&row["passed"], &row["search"]), (&true.into(), &"strides".into()), "{row}");
+        assert_eq!(row["walk"]["failure_negative"], 3, "{row}");
+        let [walk, strides] = [0, 1].map(|way| row["trials"][way].as_u64().expect("a count"));
+        assert!(2 * strides < walk, "{row}");
+    }
+    assert_eq!(rows.as_array().map(Vec::len), Some(3));
+}
+
+#[test]
 fn what_only_the_convergence_has_is_refused_without_it() {
-    optimize(&["check", "--robot", "rigid"]).fails(2, &["--convergence"]);
+    optimize(&["check", "--robot", "rigid"]).fails(2, &["--convergence", "--searches"]);
     optimize(&["check", "--convergence", "--engine", "fake"]).fails(2, &["fake"]);
     optimize(&["check", "--convergence", "--robot", "nobody"]).fails(2, &["nobody", "servo"]);
     optimize(&["check", "--convergence", "--robot", "ur5e", "--engine", "rapier"])

@@ -1,4 +1,5 @@
-//! `optimize validate` on the fake engine: output, files, and what is said of bad input.
+//! `optimize validate`: output, files and what is said of bad input on the fake engine; the
+//! windows of the real one, and the figures that the README gives of them.
 
 mod common;
 
@@ -14,21 +15,26 @@ fn all_tasks_are_compared_and_written() {
     let folder = Studies::new();
     let dir = folder.dir("all");
     let ran = validate(&[], &dir);
-    for part in ["ket8", "ket12", "rj45", "usb", "target", "27.3 %", "54.5 %", "100.0 %"] {
+    for part in
+        ["ket8", "ket12", "rj45", "usb", "target", "27.3 %", "54.5 %", "100.0 %", "- bench |"]
+    {
         assert!(ran.succeeds().contains(part), "{part} is not in {}", ran.stdout);
     }
     assert!(
         ran.stdout
             .lines()
-            .all(|line| { line.starts_with("tables and figures") || line.chars().count() <= 100 })
+            .all(|line| line.starts_with("tables and figures") || line.chars().count() <= 100),
+        "{}",
+        ran.stdout
     );
     let csv = read(&dir.join("validation.csv"));
     assert!(csv.starts_with("task,design,infill_density_percent,infill_direction_deg,"));
     assert_eq!(csv.lines().count(), 45);
     assert_eq!(read(&dir.join("validation_summary.csv")).lines().count(), 13);
+    assert_eq!(read(&dir.join("accuracy.md")).lines().count(), 6);
     for figure in [
         "failures",
-        "simulated_against_in_situ",
+        "simulated_against_bench",
         "range_against_direction",
         "range_against_stiffness_usb",
     ] {
@@ -47,11 +53,13 @@ fn one_task_prints_json_that_threads_do_not_change() {
     };
     let result = ran("one", "1");
     let found = result.json();
-    assert_eq!(found["engine"], "fake");
+    assert_eq!((&found["engine"], &found["search"]), (&"fake".into(), &"walk".into()));
+    assert_eq!(found["agreement_with_bench"][0]["simulation"]["matched_ends"], 6);
     let task = &found["tasks"][0];
     assert_eq!(task["designs"].as_array().map(Vec::len), Some(11));
     // The measured stiffness, not the surrogate's.
     assert_eq!(task["designs"][4]["stiffness_compliance_n_per_mm"], 2.6);
+    assert_eq!(task["designs"][4]["infill_direction_deg"], 10.0);
     assert_eq!(task["agreement"][2]["compared"], "simulation");
     assert_eq!(task["agreement"][2]["matched_ends"], 6);
     assert_eq!(ran("eight", "8").stdout, result.stdout);
@@ -68,4 +76,47 @@ fn a_task_that_is_not_published_is_refused() {
     std::fs::write(&mine, text.replacen("name = \"usb\"", "name = \"mine\"", 1)).unwrap();
     let mine = mine.to_str().unwrap();
     validate(&["--task", mine], &folder.dir("b")).fails(2, &["mine.toml", "nothing is published"]);
+}
+
+#[test]
+fn the_walk_stays_a_word_and_strides_are_another_search() {
+    let folder = Studies::new();
+    let dir = folder.dir("a");
+    validate(&["--task", "usb", "--walk"], &dir).succeeds();
+    assert!(validate(&["--task", "usb", "--strides"], &dir).succeeds().contains(", strides;"));
+    validate(&["--walk", "--strides"], &dir).fails(2, &["--strides"]);
+}
+
+const REFERENCE: &str = "results/reference/validation";
+
+/// The windows of three fingers on every task by the real engine; `scripts/reference.sh
+/// validation` measures all 44.
+#[test]
+fn the_windows_are_the_committed_ones() {
+    let folder = Studies::new();
+    let out = folder.dir("golden");
+    let path = out.to_str().expect("a path in UTF-8");
+    optimize(&["validate", "--fingers", "three", "--out", path]).succeeds();
+    let found = read(&out.join("validation.csv"));
+    let golden = read(&std::path::Path::new(REFERENCE).join("validation.csv"));
+    let golden: Vec<&str> = golden.lines().collect();
+    let changed: Vec<&str> = found.lines().filter(|line| !golden.contains(line)).collect();
+    assert_eq!(found.lines().count(), 1 + 4 * 3);
+    assert!(
+        changed.is_empty(),
+        "the windows are not those of {REFERENCE}/validation.csv. If physics was changed on \
+         purpose: scripts/reference.sh validation, put accuracy.md into README.md, mend \
+         docs/calibration.md, and say in the commit what moved them.\n{}",
+        changed.join("\n")
+    );
+}
+
+#[test]
+fn the_readme_gives_the_accuracy_that_was_measured() {
+    let table = read(&std::path::Path::new(REFERENCE).join("accuracy.md"));
+    let readme = read(std::path::Path::new("README.md"));
+    assert!(
+        table.lines().count() == 6 && readme.contains(&table),
+        "README.md does not hold {REFERENCE}/accuracy.md:\n{table}"
+    );
 }

@@ -1,13 +1,23 @@
-//! `optimize check`: does the contact engine, as it is set, reproduce known results,
-//! and do the windows depend on how finely it cuts time?
+//! `optimize check`: does the contact engine, as it is set, reproduce known results, and do
+//! the windows depend on how finely it cuts time, or on how they are looked for?
 
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
-use super::{Failure, print, print_json, validate};
-use crate::input::published;
+use super::validate::{Fingers, search_name, tasks};
+use super::{Failure, print, print_json};
+use crate::evaluation::OffsetStep;
+use crate::evaluation::tolerance::Search;
+use crate::input::robot::Robot;
+use crate::input::task::Task;
 use crate::physics::Engine;
 use crate::physics::rapier::Rapier;
-use crate::verify::analytic::{self, convergence};
+use crate::trial::run::EngineRig;
+use crate::verify::analytic;
+use crate::verify::compare::{TaskWays, Way, pairs};
 use clap::Args;
+use std::sync::Arc;
+
+/// Farthest that half the step may move an end, in grid steps: 0.1 mm.
+const ALLOWED_STEPS: OffsetStep = 1;
 
 /// Compare the contact engine with analytic results.
 #[derive(Debug, Args)]
@@ -15,14 +25,20 @@ pub struct Arguments {
     /// Contact engine
     #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
     engine: EngineKind,
-    /// Compare tolerance windows with finer ones instead: three fingers on each task
-    #[arg(long)]
+    /// Compare tolerance windows with finer ones instead
+    #[arg(long, group = "windows")]
     convergence: bool,
-    /// Tasks of the convergence: ket8, ket12, rj45, usb or all
-    #[arg(long, value_name = "NAME", default_value = "all", requires = "convergence")]
+    /// Compare the windows of the step-by-step walk with those of the quick search instead
+    #[arg(long, group = "windows")]
+    searches: bool,
+    /// Tasks of the windows: ket8, ket12, rj45, usb or all
+    #[arg(long, value_name = "NAME", default_value = "all", requires = "windows")]
     task: String,
-    /// Robot of the convergence
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, requires = "convergence")]
+    /// Measured fingers of the windows
+    #[arg(long, value_enum, default_value = "three", requires = "windows")]
+    fingers: Fingers,
+    /// Robot of the windows
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, requires = "windows")]
     robot: String,
     /// Print the result as JSON
     #[arg(long)]
@@ -39,8 +55,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // `build` answers alike whatever the step, so the second engine is never needed.
     let make =
         |factor: f64| engine.build(factor).engine().unwrap_or_else(|| Box::<Rapier>::default());
-    if arguments.convergence {
-        return arguments.converge(&|| make(1.0));
+    if arguments.convergence || arguments.searches {
+        return arguments.windows(&|| make(1.0));
     }
     let rows = analytic::run(&make);
     let failed = rows.iter().filter(|row| !row.passed).count();
@@ -49,19 +65,45 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
-    fn converge(&self, make: &(dyn Fn() -> Box<dyn Engine> + Sync)) -> Result<(), Failure> {
-        let tasks = validate::tasks(&self.task)?;
+    fn windows(&self, make: &dyn Fn() -> Box<dyn Engine>) -> Result<(), Failure> {
         let robot = setup::robot(&self.robot)?;
-        let designs = convergence::three(published::designs());
-        let rows = convergence::measure(&tasks, &designs, &robot, make).map_err(Failure::input)?;
-        let failed = rows.iter().filter(|row| !row.passed()).count();
-        self.show(convergence::table(&rows), &convergence::json(&rows))?;
-        verdict("windows", failed, rows.len())
+        let ways = if self.convergence { finer } else { searches };
+        let tasks = tasks(&self.task)?.into_iter().map(|task| ways(task, &robot, make()));
+        let tasks = tasks.collect::<Result<Vec<_>, _>>()?;
+        let (allowed, way, keys) = match self.convergence {
+            true => (ALLOWED_STEPS, "finer", ["production", "refined"]),
+            false => (0, "search", ["walk", "strides"]),
+        };
+        let found = pairs::measure(&tasks, &self.fingers.designs());
+        let failed = found.iter().filter(|pair| !pair.agrees(allowed)).count();
+        let json = pairs::json(&found, Some(allowed), way, keys);
+        self.show(pairs::text(&found, Some(allowed)), &json.into())?;
+        verdict("windows", failed, found.len())
     }
 
     fn show(&self, table: String, json: &serde_json::Value) -> Result<(), Failure> {
         if self.json { print_json(json) } else { print(&table) }
     }
+}
+
+/// The engine as it is, and finer in each way that it can be.
+fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
+    let finer = engine.finer();
+    let ways = std::iter::once(("production", engine)).chain(finer).map(|(name, engine)| {
+        let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
+        Ok(Way { name: name.to_owned(), rig: Arc::new(rig), search: Search::Strides })
+    });
+    let ways = ways.collect::<Result<_, Failure>>()?;
+    Ok(TaskWays { task, ways })
+}
+
+/// Both searches on the same rig.
+fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
+    let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
+    let rig = Arc::new(rig);
+    let way = |search| Way { name: search_name(search).to_owned(), rig: rig.clone(), search };
+    let ways = [Search::Walk, Search::Strides].map(way).to_vec();
+    Ok(TaskWays { task, ways })
 }
 
 fn verdict(what: &str, failed: usize, all: usize) -> Result<(), Failure> {

@@ -1,14 +1,12 @@
 //! `optimize cross-check`: do two engines agree on what goes in?
 
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
-use super::validate::tasks;
+use super::validate::{Fingers, tasks};
 use super::{Failure, print, print_json};
-use crate::input::published;
-use crate::input::stiffness::Measurement;
+use crate::evaluation::tolerance::Search;
 use crate::input::task::Task;
-use crate::trial::Rig;
-use crate::verify::agreement;
-use crate::verify::cross_check::{self, Pair, Set};
+use crate::verify::compare::engines::{self, TrialSet};
+use crate::verify::compare::{TaskWays, Way};
 use clap::Args;
 
 /// Compare the outcomes of the same trials in two contact engines (check T9)
@@ -44,47 +42,39 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let names = [arguments.engine.name(), arguments.against.name()];
-    let tasks = tasks(&arguments.task)?;
+    let kinds = [arguments.engine, arguments.against];
+    let names = kinds.map(EngineKind::name);
     let robot = setup::robot(&arguments.robot)?;
-    let rig = |engine, task| setup::rig(engine, task, &robot).map_err(Failure::input);
-    let rigs = tasks
-        .iter()
-        .map(|task| Ok([rig(arguments.engine, task)?, rig(arguments.against, task)?]))
-        .collect::<Result<Vec<_>, Failure>>()?;
-    let pairs: Vec<Pair> =
-        tasks.iter().zip(&rigs).flat_map(|(task, rigs)| pairs(task, rigs)).collect();
+    let ways = |task: Task| {
+        let way = |engine: EngineKind| {
+            let rig = setup::rig(engine, &task, &robot).map_err(Failure::input)?.into();
+            Ok(Way { name: engine.name().to_owned(), rig, search: Search::Strides })
+        };
+        let ways = kinds.into_iter().map(way).collect::<Result<_, Failure>>()?;
+        Ok(TaskWays { task, ways })
+    };
+    let tasks =
+        tasks(&arguments.task)?.into_iter().map(ways).collect::<Result<Vec<_>, Failure>>()?;
+    // The softest and the stiffest.
+    let mut designs = Fingers::Three.designs();
+    designs.remove(1);
     if arguments.time {
-        let rows = cross_check::time(&pairs);
+        let rows = engines::time(&tasks, &designs);
         return if arguments.json {
-            print_json(&cross_check::time_json(&rows, names))
+            print_json(&engines::time_json(&rows, names))
         } else {
-            print(&cross_check::time_text(&rows, names))
+            print(&engines::time_text(&rows, names))
         };
     }
-    let set = if arguments.reduced { Set::Reduced } else { Set::Full };
-    let check = cross_check::run(&pairs, set);
+    let set = if arguments.reduced { TrialSet::Reduced } else { TrialSet::Full };
+    let check = engines::run(&tasks, &designs, set);
     if arguments.json {
-        print_json(&cross_check::json(&check, names))?;
+        print_json(&engines::json(&check, names))?;
     } else {
-        print(&cross_check::text(&check, names))?;
+        print(&engines::text(&check, names))?;
     }
     if check.passed() {
         return Ok(());
     }
     Err(Failure::running(format!("{} and {} do not agree well enough", names[0], names[1])))
-}
-
-/// The softest and the stiffest of the measured fingers on a task.
-fn pairs<'a>(task: &'a Task, rigs: &'a [Box<dyn Rig>; 2]) -> Vec<Pair<'a>> {
-    let designs = published::designs();
-    let compliance = |a: &&Measurement, b: &&Measurement| a.compliance.total_cmp(&b.compliance);
-    let ends = [designs.iter().min_by(compliance), designs.iter().max_by(compliance)];
-    let pair = |design: &Measurement| Pair {
-        task: task.name.clone(),
-        finger_name: format!("{} %, {} deg", design.density_percent, design.direction_deg),
-        finger: agreement::finger(&task.finger, design),
-        rigs: rigs.each_ref().map(|rig| &**rig),
-    };
-    ends.into_iter().flatten().map(pair).collect()
 }

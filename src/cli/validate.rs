@@ -2,37 +2,63 @@
 
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
 use super::{Failure, print, print_json};
-use crate::evaluation::Window;
-use crate::evaluation::tolerance::{self, Search};
+use crate::evaluation::tolerance::Search;
 use crate::input::published::{self, Origin};
 use crate::input::robot::Robot;
 use crate::input::shipped::TASKS;
+use crate::input::stiffness::Measurement;
 use crate::input::task::Task;
 use crate::report::validation;
 use crate::study::write_file;
-use crate::verify::agreement::{self, TaskTable};
-use clap::Args;
-use rayon::prelude::*;
+use crate::verify::compare::published::{self as beside, TaskTable};
+use crate::verify::compare::{self, TaskWays, Way};
+use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
+/// Which of the measured fingers are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Fingers {
+    /// All 11
+    All,
+    /// Those of lowest, middle and highest compliance stiffness
+    Three,
+}
+
+impl Fingers {
+    /// Their infill and stiffness.
+    pub fn designs(self) -> Vec<Measurement> {
+        match self {
+            Fingers::All => published::designs(),
+            Fingers::Three => compare::three(published::designs()),
+        }
+    }
+}
+
 /// Compare our tolerance windows with the published ones.
 ///
-/// Measures the windows of all published designs, with their measured stiffness,
-/// and writes validation.csv, validation_summary.csv and figures.
+/// Measures the windows of all published designs, with their measured stiffness, step by
+/// step as the paper does, and writes validation.csv, validation_summary.csv, accuracy.md
+/// and figures.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Task: ket8, ket12, rj45, usb, all, or the path of a task file of such a name
     #[arg(long, value_name = "NAME", default_value = "all")]
     task: String,
+    /// Measured fingers
+    #[arg(long, value_enum, default_value = "all")]
+    fingers: Fingers,
     /// Robot: see `optimize tasks`, or the path of a robot file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     robot: String,
     /// Contact engine
     #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
     engine: EngineKind,
-    /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
+    /// Look every 0.5 mm and bisect: a third of the trials, but blind to gaps narrower than that
     #[arg(long)]
+    strides: bool,
+    /// The default: step by step to the first failure
+    #[arg(long, hide = true, conflicts_with = "strides")]
     walk: bool,
     /// Folder that tables and figures are written to
     #[arg(long, value_name = "DIR", default_value = "results/validation")]
@@ -46,23 +72,39 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let tasks = tasks(&arguments.task)?;
     let robot = setup::robot(&arguments.robot)?;
-    let tables = arguments.measure(&tasks, &robot)?;
+    let search = if arguments.strides { Search::Strides } else { Search::Walk };
+    let tables = arguments.measure(tasks, &robot, search)?;
     write(&arguments.out, &tables)?;
+    let engine = arguments.engine.name();
     if arguments.json {
         return print_json(&json!({
             "robot": robot.name,
-            "engine": arguments.engine.name(),
-            "tasks": agreement::json(&tables),
+            "engine": engine,
+            "search": search_name(search),
+            "tasks": beside::json(&tables),
+            "agreement_with_bench": beside::accuracy_json(&tables),
         }));
     }
-    let (engine, out) = (arguments.engine.name(), arguments.out.display());
-    let texts: Vec<String> = tables.iter().map(agreement::text).collect();
+    let texts: Vec<String> = tables.iter().map(beside::text).collect();
     print(&format!(
-        "robot {}, engine {engine}; ends: failure class (1 lost early, 2 missed, 3 jammed, 4 lost)\n\n\
-         {}\ntables and figures are in {out}\n",
+        "robot {}, engine {engine}, {}; ends: failure class (1 lost early, 2 missed, 3 jammed, 4 lost)\n\n\
+         {}\nmean error of the range, rank correlation (Spearman), failure classes matched; starts: \
+         nominal ones\nthat insert; bench: the published experiments\n\n{}\n\
+         tables and figures are in {}\n",
         robot.name,
+        search_name(search),
         texts.join("\n"),
+        beside::accuracy(&tables),
+        arguments.out.display(),
     ))
+}
+
+/// What tables call a search.
+pub fn search_name(search: Search) -> &'static str {
+    match search {
+        Search::Walk => "walk",
+        Search::Strides => "strides",
+    }
 }
 
 /// The task of that name, or `all` of them; only such of which something is published.
@@ -75,27 +117,25 @@ pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
 }
 
 impl Arguments {
-    /// All windows, in parallel over tasks and designs; collected in order, so
-    /// the number of threads changes nothing.
-    fn measure(&self, tasks: &[Task], robot: &Robot) -> Result<Vec<TaskTable>, Failure> {
-        let designs = published::designs();
-        let search = if self.walk { Search::Walk } else { Search::Strides };
-        let rig = |task| setup::rig(self.engine, task, robot).map_err(Failure::input);
-        let rigs: Vec<_> = tasks.iter().map(rig).collect::<Result<_, _>>()?;
-        let pairs: Vec<_> = tasks
-            .iter()
-            .zip(&rigs)
-            .flat_map(|(task, rig)| designs.iter().map(move |design| (task, rig, design)))
-            .collect();
-        let windows: Vec<Window> = pairs
-            .into_par_iter()
-            .map(|(task, rig, design)| {
-                tolerance::evaluate(&**rig, &agreement::finger(&task.finger, design), search).window
-            })
-            .collect();
+    fn measure(
+        &self,
+        tasks: Vec<Task>,
+        robot: &Robot,
+        search: Search,
+    ) -> Result<Vec<TaskTable>, Failure> {
+        let designs = self.fingers.designs();
+        let ways = |task: Task| {
+            let rig = setup::rig(self.engine, &task, robot).map_err(Failure::input)?;
+            let way = Way { name: search_name(search).to_owned(), rig: rig.into(), search };
+            Ok(TaskWays { task, ways: vec![way] })
+        };
+        let tasks = tasks.into_iter().map(ways).collect::<Result<Vec<_>, Failure>>()?;
+        let windows = compare::each(&tasks, &designs, |subject, ways| {
+            (subject.design, ways[0].evaluate(&subject.finger).window)
+        });
         let of_tasks = windows.chunks(designs.len().max(1));
-        let table = |(task, windows): (&Task, &[Window])| {
-            TaskTable::new(&task.name, designs.iter().copied().zip(windows.iter().cloned()))
+        let table = |(on, windows): (&TaskWays, &[_])| {
+            TaskTable::new(&on.task.name, windows.iter().cloned())
         };
         Ok(tasks.iter().zip(of_tasks).map(table).collect())
     }
@@ -118,8 +158,9 @@ fn task(name: &str) -> Result<Task, Failure> {
 }
 
 fn write(out: &Path, tables: &[TaskTable]) -> Result<(), Failure> {
-    write_file(&out.join("validation.csv"), &agreement::csv(tables))?;
-    write_file(&out.join("validation_summary.csv"), &agreement::summary_csv(tables))?;
+    write_file(&out.join("validation.csv"), &beside::csv(tables))?;
+    write_file(&out.join("validation_summary.csv"), &beside::summary_csv(tables))?;
+    write_file(&out.join("accuracy.md"), &beside::accuracy(tables))?;
     let figures = validation::figures(tables)
         .map_err(|error| Failure::running(format!("cannot draw the figures: {error}")))?;
     for (name, svg) in figures {

@@ -217,4 +217,42 @@ mod tests {
             assert_eq!(a, b, "{finger:?}");
         }
     }
+
+    /// Inserts up to 2 mm either way, but for some steps on the positive side.
+    struct Gap(std::ops::Range<OffsetStep>);
+
+    impl Rig for Gap {
+        fn grasp_in(&self, _: &Finger, _: &Conditions) -> Box<dyn Grasped + '_> {
+            Box::new(Gap(self.0.clone()))
+        }
+    }
+
+    impl Grasped for Gap {
+        fn trial(&self, offset: f64) -> Trial {
+            let step = (offset / (OFFSET_STEP_MM * MM)).round() as OffsetStep;
+            let inserts = step.abs() <= 20 && !self.0.contains(&step);
+            let any = FakeRig::default().grasp(&Finger::new(N_PER_MM, N_PER_MM)).trial(0.0);
+            let failed = Outcome::Failed(FailureClass::Jammed);
+            Trial { outcome: if inserts { Outcome::Inserted } else { failed }, ..any }
+        }
+    }
+
+    #[test]
+    fn the_walk_stops_at_a_gap_and_strides_may_step_over_a_narrow_one() {
+        let finger = Finger::new(N_PER_MM, N_PER_MM);
+        let mut over = 0;
+        for (width, from) in (1..8).flat_map(|width| (1..20).map(move |from| (width, from))) {
+            let gap = Gap(from..from + width);
+            let end = |search| evaluate(&gap, &finger, search).window.positive_steps;
+            assert_eq!(end(Search::Walk), from - 1);
+            let found = end(Search::Strides);
+            // Whatever it steps over, it ends where one start inserts and the next does not.
+            assert!(
+                found == from - 1 || (found == 20 && width < 5),
+                "{width} from {from}: {found}"
+            );
+            over += usize::from(found == 20);
+        }
+        assert!(over > 0, "no gap was stepped over");
+    }
 }

@@ -1,11 +1,11 @@
-//! The published ranges: simulation and in-situ, 11 designs, four tasks.
+//! The published ranges: simulation and bench, 11 designs, four tasks.
 
 use crate::input::stiffness::{Measurement, SHIPPED_CSV, SHIPPED_FILE, parse};
 use crate::outcome::FailureClass;
 use serde::Deserialize;
 
 const SIMULATION: &str = include_str!("../../data/published_simulation.csv");
-const IN_SITU: &str = include_str!("../../data/published_in_situ.csv");
+const BENCH: &str = include_str!("../../data/published_bench.csv");
 
 /// Where a published range comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub enum Origin {
     /// The publication's MuJoCo simulation.
     Simulation,
     /// The publication's robot.
-    InSitu,
+    Bench,
 }
 
 /// One published result.
@@ -46,7 +46,7 @@ impl Published {
 pub fn of_task(task: &str, origin: Origin) -> Vec<Published> {
     let text = match origin {
         Origin::Simulation => SIMULATION,
-        Origin::InSitu => IN_SITU,
+        Origin::Bench => BENCH,
     };
     let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize::<Published>();
     rows.flatten().filter(|row| row.task == task).collect()
@@ -65,9 +65,9 @@ mod tests {
     fn all_published_rows_are_read() {
         for task in ["ket8", "ket12", "rj45", "usb"] {
             assert_eq!(of_task(task, Origin::Simulation).len(), 11, "{task}");
-            assert_eq!(of_task(task, Origin::InSitu).len(), 11, "{task}");
+            assert_eq!(of_task(task, Origin::Bench).len(), 11, "{task}");
         }
-        assert!(of_task("mine", Origin::InSitu).is_empty());
+        assert!(of_task("mine", Origin::Bench).is_empty());
         assert_eq!(designs().len(), 11);
     }
 }

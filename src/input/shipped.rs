@@ -159,11 +159,4 @@ mod tests {
         }
         assert_eq!(nearest("hexapod", &["usb", "rj45"]), None);
     }
-
-    #[test]
-    fn every_shipped_file_has_contents() {
-        for shipped in [TASKS, SPACES, ROBOTS, UNCERTAINTIES, STIFFNESS].concat() {
-            assert!(!shipped.text.trim().is_empty(), "{}", shipped.file);
-        }
-    }
 }

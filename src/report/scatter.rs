@@ -27,7 +27,7 @@ pub(super) fn svg(
 struct Points {
     ours: Vec<(f64, f64)>,
     simulation: Vec<(f64, f64)>,
-    in_situ: Vec<(f64, f64)>,
+    bench: Vec<(f64, f64)>,
 }
 
 impl Points {
@@ -50,12 +50,12 @@ impl Points {
         Points {
             ours: ours.collect(),
             simulation: published(Origin::Simulation),
-            in_situ: published(Origin::InSitu),
+            bench: published(Origin::Bench),
         }
     }
 
     fn all(&self) -> impl Iterator<Item = &(f64, f64)> {
-        self.ours.iter().chain(&self.simulation).chain(&self.in_situ)
+        self.ours.iter().chain(&self.simulation).chain(&self.bench)
     }
 }
 
@@ -87,12 +87,12 @@ fn draw(area: &Area<'_>, points: &Points) -> Drawn {
             .label("published simulation")
             .legend(move |(x, y)| TriangleMarker::new((x + 10, y), 6, style));
     }
-    if !points.in_situ.is_empty() {
+    if !points.bench.is_empty() {
         let style = GREEN.rgb().stroke_width(2);
         chart
-            .draw_series(points.in_situ.iter().map(|&p| Cross::new(p, 5, style)))
+            .draw_series(points.bench.iter().map(|&p| Cross::new(p, 5, style)))
             .map_err(message)?
-            .label("published in-situ")
+            .label("bench experiments")
             .legend(move |(x, y)| Cross::new((x + 10, y), 5, style));
     }
     legend(&mut chart, SeriesLabelPosition::UpperLeft)

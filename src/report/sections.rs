@@ -9,7 +9,7 @@ use crate::input::space::{DENSITY_KEY, DIRECTION_KEY};
 use crate::input::stiffness::Measurement;
 use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Provenance, Recorded, StudyRecord};
-use crate::verify::agreement::statistics::rank_correlation;
+use crate::verify::compare::published::rank_correlation;
 
 /// A list of names and values; both are escaped.
 pub(super) fn definitions(rows: &[(String, String)]) -> String {
@@ -58,8 +58,8 @@ fn of_design<'a>(record: &'a StudyRecord, m: &Measurement) -> Option<&'a Recorde
 pub(super) fn published(record: &StudyRecord, place: usize) -> String {
     let task = record.config.tasks().nth(place).unwrap_or_default();
     let simulation = of_task(task, Origin::Simulation);
-    let in_situ = of_task(task, Origin::InSitu);
-    if simulation.is_empty() && in_situ.is_empty() {
+    let bench = of_task(task, Origin::Bench);
+    if simulation.is_empty() && bench.is_empty() {
         return format!("<p>No ranges are published for the task {}.</p>\n", escape(task));
     }
     let cell = |rows: &[Published], design| {
@@ -75,11 +75,11 @@ pub(super) fn published(record: &StudyRecord, place: usize) -> String {
                     .and_then(|found| found.on(place))
                     .map_or(String::new(), |found| ours(&found.window)),
                 cell(&simulation, m.design),
-                cell(&in_situ, m.design),
+                cell(&bench, m.design),
             ]
         })
         .collect();
-    let head = ["design", "infill", "this study", "published simulation", "published in-situ"];
+    let head = ["design", "infill", "this study", "published simulation", "bench experiments"];
     format!(
         "<p>Tolerable range, and in brackets the failure class beyond the negative | positive \
          end. Blank: this study did not evaluate the design. Published ranges come without an \
@@ -204,7 +204,7 @@ pub(super) fn limits(record: &StudyRecord) -> String {
     let here = |task: &str| {
         let (r, n) = rank_correlation(task)?;
         Some(format!(
-            " On {task} the rank correlation between published simulated and in-situ \
+            " On {task} the rank correlation between published simulated and bench \
              ranges is {r:+.2} over {n} designs (+1: same order, −1: opposite order)."
         ))
     };

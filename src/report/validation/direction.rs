@@ -3,13 +3,13 @@
 use super::super::ReportError;
 use super::super::chart::{Area, AxisOf, Drawn, around, axes, message, sheet};
 use super::{Entry, HEAD, KEY, Mark, distinct, headed, key, top};
-use crate::verify::agreement::{Row, Source, TaskTable};
+use crate::verify::compare::published::{DesignRow, RangeSource, TaskTable};
 use plotters::prelude::*;
 use std::slice;
 
 /// The sources, and how far their marks stand aside so that none hides another, degrees.
-const SOURCES: [(Source, f64); 3] =
-    [(Source::Ours, -0.9), (Source::Simulation, 0.0), (Source::InSitu, 0.9)];
+const SOURCES: [(RangeSource, f64); 3] =
+    [(RangeSource::Ours, -0.9), (RangeSource::Simulation, 0.0), (RangeSource::Bench, 0.9)];
 
 /// At most two panels in a row.
 pub(super) fn svg(tables: &[TaskTable]) -> Result<String, ReportError> {
@@ -55,7 +55,7 @@ fn draw(area: &Area<'_>, table: &TaskTable) -> Drawn {
 }
 
 /// The mean range of each direction that has one.
-fn means(rows: &[Row], source: Source) -> Vec<(f64, f64)> {
+fn means(rows: &[DesignRow], source: RangeSource) -> Vec<(f64, f64)> {
     let mean = |direction: f64| {
         let here = rows.iter().filter(|row| row.design.direction_deg == direction);
         let ranges: Vec<f64> = here.filter_map(|row| row.range_mm(source)).collect();

@@ -5,7 +5,7 @@ use super::super::chart::{Area, Drawn, message, sheet, words};
 use super::super::theme::{INK, LINES, MUTED, ORANGE, PAPER, SCALE};
 use super::{HEAD, headed};
 use crate::outcome::FailureClass;
-use crate::verify::agreement::{Agreement, Source, TaskTable};
+use crate::verify::compare::published::{Agreement, RangeSource, TaskTable};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -25,11 +25,11 @@ pub(super) fn svg(tables: &[TaskTable]) -> Result<String, ReportError> {
     let columns = tables.len().max(1);
     let size = ((WIDTH * columns as u32 + 20).max(700), 2 * HEIGHT + HEAD);
     sheet("failures", size, |area| {
-        let title = "Failures at the ends of the windows: simulated against in-situ";
+        let title = "Failures at the ends of the windows: simulated against bench experiments";
         let note = "number of window ends · frame: same class in both · \
                     score: share of ends with the same class";
         let body = headed(area, title, note)?;
-        for (row, source) in [Source::Ours, Source::Simulation].into_iter().enumerate() {
+        for (row, source) in [RangeSource::Ours, RangeSource::Simulation].into_iter().enumerate() {
             for (column, table) in tables.iter().enumerate() {
                 let corner = (WIDTH * column as u32, HEIGHT * row as u32);
                 let panel = body.clone().shrink(corner, (WIDTH, HEIGHT));
@@ -40,27 +40,27 @@ pub(super) fn svg(tables: &[TaskTable]) -> Result<String, ReportError> {
     })
 }
 
-/// Counts of `[simulated][in-situ]`; index 4 simulated is "no class".
-fn counts(table: &TaskTable, source: Source) -> [[u32; 4]; 5] {
+/// Counts of `[simulated][bench]`; index 4 simulated is "no class".
+fn counts(table: &TaskTable, source: RangeSource) -> [[u32; 4]; 5] {
     let index = |class: Option<FailureClass>| class.map_or(4, |class| class as usize);
     let mut counts = [[0; 4]; 5];
     for row in &table.rows {
-        let (Some(simulated), Some(in_situ)) = (row.reading(source), row.reading(Source::InSitu))
+        let (Some(simulated), Some(bench)) = (row.reading(source), row.reading(RangeSource::Bench))
         else {
             continue;
         };
-        for (simulated, in_situ) in simulated.failures.into_iter().zip(in_situ.failures) {
-            if let Some(in_situ) = in_situ {
-                counts[index(simulated)][in_situ as usize] += 1;
+        for (simulated, bench) in simulated.failures.into_iter().zip(bench.failures) {
+            if let Some(bench) = bench {
+                counts[index(simulated)][bench as usize] += 1;
             }
         }
     }
     counts
 }
 
-fn draw(area: &Area<'_>, table: &TaskTable, source: Source) -> Drawn {
+fn draw(area: &Area<'_>, table: &TaskTable, source: RangeSource) -> Drawn {
     let counts = counts(table, source);
-    let found = Agreement::of(&table.rows, source, Source::InSitu);
+    let found = Agreement::of(&table.rows, source, RangeSource::Bench);
     let score = found.match_percent().map_or("–".to_owned(), |p| format!("{p:.1} %"));
     let text = |words: TextStyle<'static>, at: (i32, i32), string: &str| {
         area.draw_text(string, &words, at).map_err(message)
@@ -79,8 +79,8 @@ fn draw(area: &Area<'_>, table: &TaskTable, source: Source) -> Drawn {
             (LEFT - 6, y + CELL / 2),
             NAMES[simulated],
         )?;
-        for (in_situ, &count) in line.iter().enumerate() {
-            cell(area, (LEFT + CELL * in_situ as i32, y), count, most)?;
+        for (bench, &count) in line.iter().enumerate() {
+            cell(area, (LEFT + CELL * bench as i32, y), count, most)?;
         }
     }
     let corner = (LEFT - 6, ABOVE - 4);
@@ -95,7 +95,7 @@ fn draw(area: &Area<'_>, table: &TaskTable, source: Source) -> Drawn {
         text(words(14, INK, HPos::Center, VPos::Top), below, name)?;
     }
     let below = (LEFT + 2 * CELL, ABOVE + CELL * rows as i32 + 26);
-    text(words(14, MUTED, HPos::Center, VPos::Top), below, "class in-situ (published)")
+    text(words(14, MUTED, HPos::Center, VPos::Top), below, "class in the bench experiments")
 }
 
 /// One cell: darker for more, white without any.

@@ -10,7 +10,7 @@ mod tests;
 use super::ReportError;
 use super::chart::{Area, Drawn, message, words};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
-use crate::verify::agreement::{Source, TaskTable};
+use crate::verify::compare::published::{RangeSource, TaskTable};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -27,7 +27,7 @@ const SERIES: [Colour; 5] = [BLUE, GREEN, ORANGE, RED, MUTED];
 /// If the drawing library refuses.
 pub fn figures(tables: &[TaskTable]) -> Result<Vec<(String, String)>, ReportError> {
     let mut figures = vec![
-        ("simulated_against_in_situ.svg".to_owned(), scatter::svg(tables)?),
+        ("simulated_against_bench.svg".to_owned(), scatter::svg(tables)?),
         ("range_against_direction.svg".to_owned(), direction::svg(tables)?),
         ("failures.svg".to_owned(), failures::svg(tables)?),
     ];
@@ -66,11 +66,11 @@ enum Mark {
 
 impl Mark {
     /// The mark of a source wherever sources are told apart.
-    fn of(source: Source) -> Self {
+    fn of(source: RangeSource) -> Self {
         match source {
-            Source::Ours => Mark::Disc(BLUE, 5),
-            Source::Simulation => Mark::Triangle(ORANGE),
-            Source::InSitu => Mark::Cross(GREEN),
+            RangeSource::Ours => Mark::Disc(BLUE, 5),
+            RangeSource::Simulation => Mark::Triangle(ORANGE),
+            RangeSource::Bench => Mark::Cross(GREEN),
         }
     }
 
@@ -111,7 +111,7 @@ fn key(area: &Area<'_>, left: i32, entries: &[Entry<'_>]) -> Drawn {
 
 /// All ranges of some tables, mm.
 fn ranges(tables: &[TaskTable]) -> impl Iterator<Item = f64> {
-    let sources = [Source::Ours, Source::Simulation, Source::InSitu];
+    let sources = [RangeSource::Ours, RangeSource::Simulation, RangeSource::Bench];
     let rows = tables.iter().flat_map(|table| &table.rows);
     rows.flat_map(move |row| sources.map(|source| row.range_mm(source))).flatten()
 }

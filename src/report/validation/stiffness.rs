@@ -6,19 +6,19 @@ use super::super::theme::MUTED;
 use super::{Entry, HEAD, KEY, Mark, SERIES, distinct, headed, key, top};
 use crate::input::stiffness::Measurement;
 use crate::units::N_PER_MM;
-use crate::verify::agreement::{Source, TaskTable};
+use crate::verify::compare::published::{RangeSource, TaskTable};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::slice;
 
-/// Three panels: ours, published simulation, published in-situ.
+/// Three panels: ours, published simulation, bench experiments.
 pub(super) fn svg(table: &TaskTable) -> Result<String, ReportError> {
     sheet("range against stiffness", (1240, 420 + HEAD + KEY), |area| {
         let title = format!("{}: tolerable range of the measured fingers", table.task);
         let note = "colour: infill direction · size: infill density · same axes in all panels";
         let body = headed(area, &title, note)?;
         let (panels, strip) = body.split_vertically(420);
-        let sources = [Source::Ours, Source::Simulation, Source::InSitu];
+        let sources = [RangeSource::Ours, RangeSource::Simulation, RangeSource::Bench];
         for (panel, source) in panels.split_evenly((1, 3)).iter().zip(sources) {
             draw(panel, table, source)?;
         }
@@ -26,7 +26,7 @@ pub(super) fn svg(table: &TaskTable) -> Result<String, ReportError> {
     })
 }
 
-fn draw(area: &Area<'_>, table: &TaskTable, source: Source) -> Drawn {
+fn draw(area: &Area<'_>, table: &TaskTable, source: RangeSource) -> Drawn {
     let stiffness = |m: &Measurement| m.compliance / N_PER_MM;
     let x = around(table.rows.iter().map(|row| stiffness(&row.design)), 0.14);
     let y = 0.0..top(slice::from_ref(table));

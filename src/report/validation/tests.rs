@@ -4,13 +4,15 @@ use super::*;
 use crate::evaluation::tolerance::{Search, evaluate};
 use crate::input::finger::FingerModel;
 use crate::input::published;
+use crate::input::stiffness::Measurement;
 use crate::trial::fake::FakeRig;
-use crate::verify::agreement::finger;
+use crate::verify::compare::Subject;
 
 fn tables(tasks: &[&str]) -> Vec<TaskTable> {
     let designs = published::designs();
-    let window = |m: &_| {
-        evaluate(&FakeRig::default(), &finger(&FingerModel::default(), m), Search::Strides).window
+    let window = |m: &Measurement| {
+        let subject = Subject::new("usb", &FingerModel::default(), *m);
+        evaluate(&FakeRig::default(), &subject.finger, Search::Strides).window
     };
     let table = |task: &&str| TaskTable::new(task, designs.iter().map(|m| (*m, window(m))));
     tasks.iter().map(table).collect()

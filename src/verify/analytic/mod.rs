@@ -18,15 +18,14 @@
 //! | T14 | net force of a contact that sticks and that slides |
 //!
 //! (T9 compares two engines on trials.) Every expected value is computed from
-//! its formula, which the check's file gives with its source. [`convergence`] asks
-//! what no formula answers: whether the windows depend on the step.
+//! its formula, which the check's file gives with its source. What no formula
+//! answers, whether the windows depend on the step, [`compare`](super::compare) asks.
 
 use crate::physics::{Diverged, Engine};
 
 pub mod arm;
 mod build;
 pub mod chamfer;
-pub mod convergence;
 pub mod edge;
 pub mod flange;
 pub mod grasp;

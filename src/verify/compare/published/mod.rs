@@ -1,61 +1,62 @@
 //! Our tolerance windows beside the published ones: tables and statistics,
 //! pure functions of windows that were measured elsewhere.
 
-pub mod statistics;
+mod accuracy;
+mod agreement;
 mod table;
 mod targets;
 #[cfg(test)]
 mod tests;
 mod text;
 
-pub use statistics::Agreement;
+pub use accuracy::{accuracy, accuracy_json};
+pub use agreement::{Agreement, rank_correlation};
 pub use table::{CSV_HEADER, SUMMARY_HEADER, csv, json, summary_csv};
 pub use targets::{Target, targets};
 pub use text::text;
 
+use super::failures;
 use crate::evaluation::Window;
-use crate::finger::Finger;
-use crate::input::finger::FingerModel;
 use crate::input::published::{self, Origin, Published};
 use crate::input::stiffness::Measurement;
 use crate::outcome::{FailureClass, Outcome};
 
 /// Where a range and the failures at its ends come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum RangeSource {
     /// This program's simulation.
     Ours,
     /// The publication's simulation.
     Simulation,
     /// The publication's experiments on the robot.
-    InSitu,
+    Bench,
 }
 
-impl Source {
+impl RangeSource {
     /// A name for tables and plots.
     pub fn label(self) -> &'static str {
         match self {
-            Source::Ours => "ours",
-            Source::Simulation => "published simulation",
-            Source::InSitu => "published in-situ",
+            RangeSource::Ours => "ours",
+            RangeSource::Simulation => "published simulation",
+            RangeSource::Bench => "bench experiments",
         }
     }
 
     /// A name for keys and columns.
     pub fn key(self) -> &'static str {
         match self {
-            Source::Ours => "ours",
-            Source::Simulation => "simulation",
-            Source::InSitu => "in_situ",
+            RangeSource::Ours => "ours",
+            RangeSource::Simulation => "simulation",
+            RangeSource::Bench => "bench",
         }
     }
 }
 
 /// What is compared with what.
-pub const COMPARISONS: [(Source, Source); 3] = [
-    (Source::Ours, Source::Simulation),
-    (Source::Ours, Source::InSitu),
-    (Source::Simulation, Source::InSitu),
+pub const COMPARISONS: [(RangeSource, RangeSource); 3] = [
+    (RangeSource::Ours, RangeSource::Simulation),
+    (RangeSource::Ours, RangeSource::Bench),
+    (RangeSource::Simulation, RangeSource::Bench),
 ];
 
 /// Range and failures of one design according to one source.
@@ -69,27 +70,27 @@ pub struct Reading {
 
 /// One measured design: our window and what was published of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct DesignRow {
     /// The design and its measured stiffness.
     pub design: Measurement,
     /// Our window.
     pub window: Window,
     simulation: Option<Reading>,
-    in_situ: Option<Reading>,
+    bench: Option<Reading>,
 }
 
-impl Row {
+impl DesignRow {
     /// What a source says of this design, if anything.
-    pub fn reading(&self, source: Source) -> Option<Reading> {
+    pub fn reading(&self, source: RangeSource) -> Option<Reading> {
         match source {
-            Source::Ours => Some(Reading::from(&self.window)),
-            Source::Simulation => self.simulation,
-            Source::InSitu => self.in_situ,
+            RangeSource::Ours => Some(Reading::from(&self.window)),
+            RangeSource::Simulation => self.simulation,
+            RangeSource::Bench => self.bench,
         }
     }
 
     /// The range according to a source, mm.
-    pub fn range_mm(&self, source: Source) -> Option<f64> {
+    pub fn range_mm(&self, source: RangeSource) -> Option<f64> {
         self.reading(source)?.range_mm
     }
 }
@@ -98,13 +99,9 @@ impl From<&Window> for Reading {
     /// A nominal start that diverges says nothing of the range; one that fails
     /// makes it 0. Either way there is no window, so no ends to be credited with.
     fn from(window: &Window) -> Self {
-        let class = |end| match (window.nominal, end) {
-            (Outcome::Inserted, Some(Outcome::Failed(class))) => Some(class),
-            _ => None,
-        };
         Reading {
             range_mm: (window.nominal != Outcome::Diverged).then(|| window.range_mm()),
-            failures: [class(window.end_negative), class(window.end_positive)],
+            failures: failures(window),
         }
     }
 }
@@ -124,20 +121,20 @@ pub struct TaskTable {
     /// Name of the task.
     pub task: String,
     /// One row per design, in the order of the designs.
-    pub rows: Vec<Row>,
+    pub rows: Vec<DesignRow>,
 }
 
 impl TaskTable {
     /// Puts windows beside what is published of a task.
     pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
-        let [simulation, in_situ] =
-            [Origin::Simulation, Origin::InSitu].map(|origin| published::of_task(task, origin));
+        let [simulation, bench] =
+            [Origin::Simulation, Origin::Bench].map(|origin| published::of_task(task, origin));
         let find = |rows: &[Published], design| {
             rows.iter().find(|row| row.design == design).map(Reading::from)
         };
-        let row = |(design, window): (Measurement, Window)| Row {
+        let row = |(design, window): (Measurement, Window)| DesignRow {
             simulation: find(&simulation, design.design),
-            in_situ: find(&in_situ, design.design),
+            bench: find(&bench, design.design),
             design,
             window,
         };
@@ -153,9 +150,4 @@ impl TaskTable {
     pub fn nominal_inserted(&self) -> usize {
         self.rows.iter().filter(|row| row.window.nominal == Outcome::Inserted).count()
     }
-}
-
-/// The finger of a measured design: its measured stiffness, not the surrogate's.
-pub fn finger(model: &FingerModel, design: &Measurement) -> Finger {
-    Finger::new(design.compliance, design.assembly).shaped(model, design.direction_deg)
 }

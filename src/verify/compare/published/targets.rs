@@ -1,6 +1,6 @@
 //! What we ask of our simulation against the published one, and whether it holds.
 
-use super::{Source, TaskTable, statistics::Agreement};
+use super::{RangeSource, TaskTable, agreement::Agreement};
 
 /// Largest mean absolute error of the range, mm.
 const LARGEST_ERROR_MM: f64 = 1.0;
@@ -38,7 +38,7 @@ impl Target {
 
 /// The targets of a task, all against the published simulation.
 pub fn targets(table: &TaskTable) -> Vec<Target> {
-    let agreement = Agreement::of(&table.rows, Source::Ours, Source::Simulation);
+    let agreement = Agreement::of(&table.rows, RangeSource::Ours, RangeSource::Simulation);
     let mut targets = vec![Target {
         quantity: "mean absolute error of the range",
         found: agreement.mean_absolute_error_mm,

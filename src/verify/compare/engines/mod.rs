@@ -6,7 +6,6 @@
 //! each on every task, started at fixed distances from both ends of the window
 //! that the first engine finds, inside and outside, and in its middle.
 
-mod remembered;
 mod text;
 mod time;
 
@@ -16,13 +15,12 @@ mod tests;
 pub use text::{json, text};
 pub use time::{Timing, time, time_json, time_text};
 
-use crate::evaluation::tolerance::{self, Search};
-use crate::evaluation::{OffsetStep, Window, grid_mm};
-use crate::finger::Finger;
+use super::pairs::{self, WindowPair};
+use super::{Subject, TaskWays, Way, each};
+use crate::evaluation::{OffsetStep, Window, tolerance};
+use crate::input::stiffness::Measurement;
 use crate::outcome::Outcome;
-use crate::trial::{Rig, Trial};
-use rayon::prelude::*;
-use remembered::Remembered;
+use crate::trial::Trial;
 use std::collections::BTreeSet;
 
 /// Share of the trials on which the engines are to agree.
@@ -32,27 +30,27 @@ pub const END_DIFFERENCE_MM: f64 = 0.5;
 
 /// Which trials are run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Set {
+pub enum TrialSet {
     /// All of them, and the second engine's windows.
     Full,
     /// Far from the ends only, without windows: a few for each task.
     Reduced,
 }
 
-impl Set {
+impl TrialSet {
     /// Distances from an end on its inner side, grid steps.
     fn inside(self) -> &'static [OffsetStep] {
         match self {
-            Set::Full => &[1, 3, 10, 20],
-            Set::Reduced => &[10],
+            TrialSet::Full => &[1, 3, 10, 20],
+            TrialSet::Reduced => &[10],
         }
     }
 
     /// The same on its outer side.
     fn outside(self) -> &'static [OffsetStep] {
         match self {
-            Set::Full => &[1, 3, 10, 20, 40],
-            Set::Reduced => &[20],
+            TrialSet::Full => &[1, 3, 10, 20, 40],
+            TrialSet::Reduced => &[20],
         }
     }
 
@@ -72,25 +70,11 @@ impl Set {
     }
 }
 
-/// One finger on one task, in both engines.
-pub struct Pair<'a> {
-    /// Name of the task.
-    pub task: String,
-    /// What the finger is called.
-    pub finger_name: String,
-    /// The finger.
-    pub finger: Finger,
-    /// Where it is tried, in the first engine and in the second.
-    pub rigs: [&'a dyn Rig; 2],
-}
-
 /// The same trial in both engines.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Case {
-    /// Name of the task.
-    pub task: String,
-    /// What the finger is called.
-    pub finger: String,
+pub struct TrialPair {
+    /// The finger and its task.
+    pub subject: Subject,
     /// Shift of the start, grid steps.
     pub offset: OffsetStep,
     /// From the nearer end of the first engine's window, grid steps; negative inside.
@@ -101,7 +85,7 @@ pub struct Case {
     pub tip_mm: Option<f64>,
 }
 
-impl Case {
+impl TrialPair {
     /// Whether both inserted the plug, or neither.
     pub fn agrees(&self) -> bool {
         let [first, second] = self.outcomes.map(|outcome| outcome == Outcome::Inserted);
@@ -109,48 +93,24 @@ impl Case {
     }
 }
 
-/// The windows of one finger on one task in both engines.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Windows {
-    /// Name of the task.
-    pub task: String,
-    /// What the finger is called.
-    pub finger: String,
-    /// As found by both.
-    pub windows: [Window; 2],
-}
-
-impl Windows {
-    /// Differences of the negative and of the positive end, second less first, mm.
-    pub fn differences_mm(&self) -> [f64; 2] {
-        let [first, second] = &self.windows;
-        [
-            grid_mm(second.negative_steps - first.negative_steps),
-            grid_mm(second.positive_steps - first.positive_steps),
-        ]
-    }
-}
-
 /// What the two engines made of the set.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CrossCheck {
     /// The trials, by task, finger and offset.
-    pub cases: Vec<Case>,
+    pub trials: Vec<TrialPair>,
     /// The windows, if the set has them.
-    pub windows: Vec<Windows>,
+    pub windows: Vec<WindowPair>,
 }
 
 impl CrossCheck {
     /// Share of the trials on which the engines agree, 0 to 1.
     pub fn agreement(&self) -> f64 {
-        self.cases.iter().filter(|case| case.agrees()).count() as f64 / self.cases.len() as f64
+        self.trials.iter().filter(|pair| pair.agrees()).count() as f64 / self.trials.len() as f64
     }
 
     /// Mean difference of the windows' ends, mm; `None` without windows.
     pub fn end_difference_mm(&self) -> Option<f64> {
-        let ends = self.windows.iter().flat_map(Windows::differences_mm);
-        let sizes: Vec<f64> = ends.map(f64::abs).collect();
-        (!sizes.is_empty()).then(|| sizes.iter().sum::<f64>() / sizes.len() as f64)
+        pairs::mean_end_difference_mm(&self.windows)
     }
 
     /// Whether both targets are met.
@@ -160,40 +120,44 @@ impl CrossCheck {
     }
 }
 
-/// Runs the set; in parallel over the pairs, collected in their order.
-pub fn run(pairs: &[Pair<'_>], set: Set) -> CrossCheck {
-    let results: Vec<_> = pairs.par_iter().map(|pair| run_pair(pair, set)).collect();
+/// Runs the set with the first two ways of every task; in parallel over tasks and fingers.
+pub fn run(tasks: &[TaskWays], designs: &[Measurement], set: TrialSet) -> CrossCheck {
+    let results = each(tasks, designs, |subject, ways| match ways {
+        [first, second, ..] => in_both(subject, [first, second], set),
+        _ => CrossCheck::default(),
+    });
     let mut all = CrossCheck::default();
-    for (cases, windows) in results {
-        all.cases.extend(cases);
-        all.windows.extend(windows);
+    for result in results {
+        all.trials.extend(result.trials);
+        all.windows.extend(result.windows);
     }
     all
 }
 
-fn run_pair(pair: &Pair<'_>, set: Set) -> (Vec<Case>, Option<Windows>) {
-    let grasped = pair.rigs.map(|rig| rig.grasp(&pair.finger));
-    let [first, second] = grasped.each_ref().map(|grasped| Remembered::new(&**grasped));
-    let window = |rig: &Remembered| tolerance::evaluate(rig, &pair.finger, Search::Strides).window;
-    let reference = window(&first);
-    let case = |offset: OffsetStep| {
-        let trials = [&first, &second].map(|rig| rig.at(offset));
-        Case {
-            task: pair.task.clone(),
-            finger: pair.finger_name.clone(),
+fn in_both(subject: &Subject, ways: [&Way; 2], set: TrialSet) -> CrossCheck {
+    let reference = ways[0].evaluate(&subject.finger);
+    let grasped = ways.map(|way| way.rig.grasp(&subject.finger));
+    let trial = |offset: OffsetStep| {
+        let trials = grasped.each_ref().map(|grasped| grasped.trial(tolerance::offset(offset)));
+        TrialPair {
+            subject: subject.clone(),
             offset,
-            from_end: from_end(&reference, offset),
+            from_end: from_end(&reference.window, offset),
             outcomes: trials.each_ref().map(|trial| trial.outcome),
             tip_mm: tip_distance(&trials),
         }
     };
-    let cases = set.offsets(&reference).into_iter().map(case).collect();
-    let windows = (set == Set::Full).then(|| Windows {
-        task: pair.task.clone(),
-        finger: pair.finger_name.clone(),
-        windows: [reference.clone(), window(&second)],
-    });
-    (cases, windows)
+    let trials = set.offsets(&reference.window).into_iter().map(trial).collect();
+    let pair = || {
+        let second = ways[1].evaluate(&subject.finger);
+        WindowPair {
+            subject: subject.clone(),
+            ways: ways.map(|way| way.name.clone()),
+            trials: [reference.trials, second.trials],
+            windows: [reference.window, second.window],
+        }
+    };
+    CrossCheck { trials, windows: (set == TrialSet::Full).then(pair).into_iter().collect() }
 }
 
 /// Beyond the nearer end, grid steps.

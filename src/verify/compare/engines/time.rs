@@ -1,7 +1,8 @@
 //! How long the same trial takes in both engines.
 
-use super::Pair;
+use crate::input::stiffness::Measurement;
 use crate::outcome::Outcome;
+use crate::verify::compare::{Subject, TaskWays, Way, merged, subject_json};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Instant;
@@ -9,13 +10,11 @@ use std::time::Instant;
 /// Runs of each trial; the median counts.
 const RUNS: usize = 5;
 
-/// The nominal trial of a pair, from the grasp to the end, in both engines.
+/// The nominal trial of a finger, from the grasp to the end, in both engines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timing {
-    /// Name of the task.
-    pub task: String,
-    /// What the finger is called.
-    pub finger: String,
+    /// The finger and its task.
+    pub subject: Subject,
     /// How it ended.
     pub outcomes: [Outcome; 2],
     /// Simulated time, s.
@@ -32,25 +31,30 @@ impl Timing {
     }
 }
 
-/// Times every pair, one after the other, on this thread, the engines in turn.
-pub fn time(pairs: &[Pair<'_>]) -> Vec<Timing> {
-    pairs.iter().map(time_pair).collect()
+/// Times every design on every task, one after the other, on this thread, the engines (the
+/// first two ways of the task) in turn.
+pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
+    let timing = |task: &TaskWays, design: &Measurement| {
+        let [first, second, ..] = &task.ways[..] else { return None };
+        let subject = Subject::new(&task.task.name, &task.task.finger, *design);
+        Some(time_both(subject, [first, second]))
+    };
+    tasks.iter().flat_map(|task| designs.iter().filter_map(move |d| timing(task, d))).collect()
 }
 
-fn time_pair(pair: &Pair<'_>) -> Timing {
+fn time_both(subject: Subject, ways: [&Way; 2]) -> Timing {
     let mut walls = [Vec::new(), Vec::new()];
     let mut ends = [(Outcome::Diverged, 0.0); 2];
     for _ in 0..RUNS {
-        for (i, rig) in pair.rigs.iter().enumerate() {
+        for (i, way) in ways.iter().enumerate() {
             let clock = Instant::now();
-            let trial = rig.grasp(&pair.finger).trial(0.0);
+            let trial = way.rig.grasp(&subject.finger).trial(0.0);
             walls[i].push(clock.elapsed().as_secs_f64());
             ends[i] = (trial.outcome, trial.simulated_s);
         }
     }
     Timing {
-        task: pair.task.clone(),
-        finger: pair.finger_name.clone(),
+        subject,
         outcomes: ends.map(|end| end.0),
         simulated_s: ends.map(|end| end.1),
         wall_s: walls.map(|mut walls| {
@@ -82,8 +86,8 @@ pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
         let _ = writeln!(
             text,
             "{:<7}{:<13}{a:>20}{b:>20}{:>8.3}{}",
-            row.task,
-            row.finger,
+            row.subject.task,
+            row.subject.infill(),
             row.ratio(),
             if same { "" } else { "  another outcome" }
         );
@@ -98,13 +102,15 @@ pub fn time_json(rows: &[Timing], names: [&str; 2]) -> Value {
         "engines": names,
         "runs": RUNS,
         "mean_ratio": mean_ratio(rows),
-        "trials": rows.iter().map(|row| json!({
-            "task": row.task,
-            "finger": row.finger,
-            "simulated_s": row.simulated_s,
-            "wall_s": row.wall_s,
-            "ratio": row.ratio(),
-        })).collect::<Vec<_>>(),
+        "trials": rows.iter().map(|row| {
+            let measured = json!({
+                "finger": row.subject.infill(),
+                "simulated_s": row.simulated_s,
+                "wall_s": row.wall_s,
+                "ratio": row.ratio(),
+            });
+            merged(subject_json(&row.subject.task, &row.subject.design), measured)
+        }).collect::<Vec<_>>(),
     })
 }
 

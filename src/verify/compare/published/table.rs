@@ -1,9 +1,10 @@
 //! `validation.csv`, `validation_summary.csv` and the JSON of the command.
 
-use super::statistics::deviation_percent;
-use super::{Agreement, COMPARISONS, Reading, Row, TaskTable, targets};
+use super::agreement::deviation_percent;
+use super::{Agreement, COMPARISONS, DesignRow, Reading, TaskTable, targets};
 use crate::outcome::Outcome;
 use crate::units::N_PER_MM;
+use crate::verify::compare::{merged, subject_json, window_json};
 use serde_json::{Value, json};
 
 /// Columns of `validation.csv`; a deviation is `|range - reference| / reference`.
@@ -23,15 +24,15 @@ pub const CSV_HEADER: [&str; 24] = [
     "simulation_range_mm",
     "simulation_failure_negative",
     "simulation_failure_positive",
-    "in_situ_range_mm",
-    "in_situ_failure_negative",
-    "in_situ_failure_positive",
+    "bench_range_mm",
+    "bench_failure_negative",
+    "bench_failure_positive",
     "error_to_simulation_mm",
     "deviation_to_simulation_percent",
-    "error_to_in_situ_mm",
-    "deviation_to_in_situ_percent",
-    "simulation_error_to_in_situ_mm",
-    "simulation_deviation_to_in_situ_percent",
+    "error_to_bench_mm",
+    "deviation_to_bench_percent",
+    "simulation_error_to_bench_mm",
+    "simulation_deviation_to_bench_percent",
 ];
 
 /// Columns of `validation_summary.csv`.
@@ -51,7 +52,7 @@ pub const SUMMARY_HEADER: [&str; 11] = [
 
 /// One line per task and design. Errors are signed: range minus reference.
 pub fn csv(tables: &[TaskTable]) -> String {
-    let line = |table: &TaskTable, row: &Row| {
+    let line = |table: &TaskTable, row: &DesignRow| {
         let mut cells = vec![table.task.clone()];
         cells.extend(design_cells(row));
         cells.extend(reading_cells(row));
@@ -92,7 +93,7 @@ fn lines_of(header: &[&str], lines: impl Iterator<Item = String>) -> String {
     [header.join(",")].into_iter().chain(lines).map(|line| line + "\n").collect()
 }
 
-fn design_cells(row: &Row) -> [String; 5] {
+fn design_cells(row: &DesignRow) -> [String; 5] {
     let design = &row.design;
     [
         design.design.to_string(),
@@ -103,7 +104,7 @@ fn design_cells(row: &Row) -> [String; 5] {
     ]
 }
 
-fn reading_cells(row: &Row) -> Vec<String> {
+fn reading_cells(row: &DesignRow) -> Vec<String> {
     let window = &row.window;
     let word = |end: Option<Outcome>| match end {
         Some(Outcome::Failed(class)) => class.number().to_string(),
@@ -124,7 +125,7 @@ fn reading_cells(row: &Row) -> Vec<String> {
         end(window.end_negative),
         end(window.end_positive),
     ];
-    for reading in [row.simulation, row.in_situ] {
+    for reading in [row.simulation, row.bench] {
         cells.push(number(reading.and_then(|r| r.range_mm), 1));
         let failures = reading.map_or([None; 2], |r| r.failures);
         cells.extend(failures.map(|c| c.map_or(String::new(), |c| c.number().to_string())));
@@ -143,7 +144,7 @@ pub fn json(tables: &[TaskTable]) -> Value {
     let task = |table: &TaskTable| {
         json!({
             "task": table.task,
-            "designs": table.rows.iter().map(row_json).collect::<Vec<_>>(),
+            "designs": table.rows.iter().map(|row| row_json(&table.task, row)).collect::<Vec<_>>(),
             "agreement": table.agreements().iter().map(agreement_json).collect::<Vec<_>>(),
             "targets": targets(table).iter().map(|target| json!({
                 "quantity": target.quantity,
@@ -158,7 +159,7 @@ pub fn json(tables: &[TaskTable]) -> Value {
     tables.iter().map(task).collect()
 }
 
-fn row_json(row: &Row) -> Value {
+fn row_json(task: &str, row: &DesignRow) -> Value {
     let reading = |reading: Option<Reading>| {
         reading.map(|r| {
             json!({
@@ -168,20 +169,16 @@ fn row_json(row: &Row) -> Value {
             })
         })
     };
-    json!({
-        "design": row.design.design,
-        "density_percent": row.design.density_percent,
-        "direction_deg": row.design.direction_deg,
-        "stiffness_assembly_n_per_mm": row.design.assembly / N_PER_MM,
-        "stiffness_compliance_n_per_mm": row.design.compliance / N_PER_MM,
-        "window": row.window,
+    let measured = json!({
+        "window": window_json(&row.window),
         "ours": reading(Some(Reading::from(&row.window))),
         "simulation": reading(row.simulation),
-        "in_situ": reading(row.in_situ),
-    })
+        "bench": reading(row.bench),
+    });
+    merged(subject_json(task, &row.design), measured)
 }
 
-fn agreement_json(found: &Agreement) -> Value {
+pub(super) fn agreement_json(found: &Agreement) -> Value {
     json!({
         "compared": found.source.key(),
         "reference": found.reference.key(),

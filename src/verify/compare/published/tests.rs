@@ -4,6 +4,7 @@ use super::*;
 use crate::evaluation::tolerance::{Search, evaluate};
 use crate::input::finger::FingerModel;
 use crate::trial::fake::FakeRig;
+use crate::verify::compare::Subject;
 
 fn window([negative, positive]: [i32; 2], ends: [FailureClass; 2]) -> Window {
     let [end_negative, end_positive] = ends.map(|class| Some(Outcome::Failed(class)));
@@ -20,7 +21,8 @@ fn window([negative, positive]: [i32; 2], ends: [FailureClass; 2]) -> Window {
 fn table(task: &str) -> TaskTable {
     let measured = published::designs();
     let window = |m: &Measurement| {
-        evaluate(&FakeRig::default(), &finger(&FingerModel::default(), m), Search::Strides).window
+        let subject = Subject::new(task, &FingerModel::default(), *m);
+        evaluate(&FakeRig::default(), &subject.finger, Search::Strides).window
     };
     TaskTable::new(task, measured.iter().map(|m| (*m, window(m))))
 }
@@ -28,15 +30,15 @@ fn table(task: &str) -> TaskTable {
 #[test]
 fn published_match_scores_are_the_papers() {
     for (task, score) in [("ket12", 100.0), ("ket8", 100.0), ("rj45", 54.5), ("usb", 27.3)] {
-        let found = Agreement::of(&table(task).rows, Source::Simulation, Source::InSitu);
+        let found = Agreement::of(&table(task).rows, RangeSource::Simulation, RangeSource::Bench);
         assert_eq!(found.ends, 22, "{task}");
         assert!((found.match_percent().unwrap() - score).abs() < 0.05, "{task}: {found:?}");
     }
 }
 
 #[test]
-fn missing_in_situ_ranges_are_skipped() {
-    let found = Agreement::of(&table("ket12").rows, Source::Simulation, Source::InSitu);
+fn missing_bench_ranges_are_skipped() {
+    let found = Agreement::of(&table("ket12").rows, RangeSource::Simulation, RangeSource::Bench);
     assert_eq!(found.designs, 7);
     // |4.5-7.8| + |4.4-7.5| + |4.7-7.8| + |4.6-7.7| + |4.6-7.2| + |4.6-6.5| + |4.6-6.6|
     // = 3.3 + 3.1 + 3.1 + 3.1 + 2.6 + 1.9 + 2.0 = 19.1, all below the experiment.
@@ -100,8 +102,10 @@ fn tables_are_complete_and_fit_a_terminal() {
     let summary = summary_csv(&tables);
     assert_eq!(summary.lines().count(), 1 + 4 * 3);
     assert!(summary.lines().all(|line| line.split(',').count() == SUMMARY_HEADER.len()));
-    for table in &tables {
-        let text = text(table);
+    let accuracy = accuracy(&tables);
+    assert!(accuracy.contains("2.73 mm, +0.00, 100.0 % |\n| rj45 |"), "{accuracy}");
+    assert_eq!(accuracy_json(&tables)[3]["simulation"]["matched_ends"], 6);
+    for text in tables.iter().map(text).chain([accuracy]) {
         assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     }
 }

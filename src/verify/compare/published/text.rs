@@ -1,6 +1,6 @@
 //! The tables and the summary of a task as text, within 100 columns.
 
-use super::{Reading, Row, TaskTable, targets};
+use super::{DesignRow, Reading, TaskTable, targets};
 use crate::evaluation::Window;
 use crate::outcome::Outcome;
 use crate::units::N_PER_MM;
@@ -17,7 +17,7 @@ pub fn text(table: &TaskTable) -> String {
         "assembly",
         "ours: window, range, ends",
         "published sim.",
-        "in-situ"
+        "bench"
     );
     for row in &table.rows {
         text.push_str(&design(row));
@@ -55,7 +55,7 @@ pub fn text(table: &TaskTable) -> String {
     text
 }
 
-fn design(row: &Row) -> String {
+fn design(row: &DesignRow) -> String {
     let m = &row.design;
     format!(
         "{:>6} {:>4} % {:>2}° {:>5} N/mm {:>6} N/mm   {:<27} {:<15} {}\n",
@@ -66,7 +66,7 @@ fn design(row: &Row) -> String {
         format!("{:.1}", m.assembly / N_PER_MM),
         ours(&row.window),
         row.simulation.map_or(String::new(), reading),
-        row.in_situ.map_or(String::new(), reading),
+        row.bench.map_or(String::new(), reading),
     )
 }
 

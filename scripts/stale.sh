@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Which committed figures are older than the sources that decide them.
+#
+#     scripts/stale.sh                        lists them; no failure, since any edit of a source counts
+#     scripts/stale.sh --record SCOPE FILE..  notes that these files were made from the present sources
+#
+# results/reference/SOURCE holds a line for each file: scope, hash of the scope's sources, path.
+# Sources are the rooms that decide numbers, not how they are drawn: a scope counts neither
+# tests nor reports.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+export LC_ALL=C
+reference=results/reference
+record=$reference/SOURCE
+
+simulation="units stream outcome scene input finger surrogate physics trial evaluation"
+# The libraries that compute; the others may change without changing a number.
+libraries='^name = "(nalgebra|simba|libm|rapier3d.*|parry3d.*|rand.*|sobol_burley|linfa.*|egobox.*|argmin.*)"'
+
+# The folders and files of a scope.
+sources() {
+    case $1 in
+        windows) rooms=$simulation; folders="data tasks robots" ;;
+        studies) rooms="$simulation optimizer study"; folders="data tasks robots spaces uncertainties" ;;
+        checks) rooms="$simulation verify"; folders="robots" ;;
+        optimizers) rooms="stream optimizer verify/problems"; folders="results/reference/landscapes" ;;
+        *) echo "scripts/stale.sh: no scope is called $1" >&2; exit 2 ;;
+    esac
+    for room in $rooms; do
+        for path in "src/$room" "src/$room.rs"; do
+            if [ -e "$path" ]; then echo "$path"; fi
+        done
+    done
+    for folder in $folders; do echo "$folder"; done
+}
+
+hash_of() {
+    local paths
+    paths=$(sources "$1")
+    # shellcheck disable=SC2086
+    {
+        find $paths -type f ! -name tests.rs ! -path '*/tests/*' ! -name '*.md' -print0 |
+            sort -z | xargs -0 sha256sum
+        grep -E -A 1 "$libraries" Cargo.lock
+    } | sha256sum | cut -c 1-16
+}
+
+if [ "${1:-}" = --record ]; then
+    scope=$2
+    shift 2
+    hash=$(hash_of "$scope")
+    touch "$record"
+    for file in "$@"; do
+        if [ ! -f "$file" ]; then continue; fi
+        { grep -v " $file\$" "$record" || true; echo "$scope $hash $file"; } | sort -k 3 > "$record.new"
+        mv "$record.new" "$record"
+    done
+    exit
+fi
+
+declare -A present recorded
+while read -r scope hash file; do
+    recorded[$file]="$scope $hash"
+done < <(cat "$record" 2> /dev/null || true)
+old=0
+while read -r file; do
+    if [ -z "${recorded[$file]:-}" ]; then
+        echo "not known from which sources: $file"
+        old=$((old + 1))
+        continue
+    fi
+    read -r scope hash <<< "${recorded[$file]}"
+    if [ -z "${present[$scope]:-}" ]; then present[$scope]=$(hash_of "$scope"); fi
+    if [ "$hash" != "${present[$scope]}" ]; then
+        echo "older than its sources ($scope): $file"
+        old=$((old + 1))
+    fi
+done < <(find "$reference" -type f \( ! -name "*.md" -o -name accuracy.md \) ! -name SOURCE | sort)
+echo "$old figures are older than their sources; scripts/reference.sh makes them again"

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Installs optional tools on Debian by their package names; those already there are left alone.
+#
+#     scripts/tools.sh                     what .ci/run uses: valgrind python3-venv python3-pip
+#     scripts/tools.sh chromium slurm-wlm  these
+#
+# Needs root or sudo. Says what it could not install, and exits with 1 then; whatever needs a
+# tool that is missing is left out and says so.
+set -euo pipefail
+
+packages=("$@")
+if [ $# -eq 0 ]; then
+    packages=(valgrind python3-venv python3-pip)
+fi
+missing=()
+for package in "${packages[@]}"; do
+    case $package in
+        gcc | libc6-dev | valgrind | python3-venv | python3-pip | chromium | prusa-slicer | slurm-wlm | munge | nodejs | npm) ;;
+        *) echo "scripts/tools.sh: no part of this project uses the package $package" >&2; exit 2 ;;
+    esac
+    if ! dpkg -s "$package" > /dev/null 2>&1; then missing+=("$package"); fi
+done
+if [ ${#missing[@]} -eq 0 ]; then exit; fi
+if ! command -v apt-get > /dev/null; then
+    echo "scripts/tools.sh: no apt-get here; install by other means: ${missing[*]}" >&2
+    exit 1
+fi
+root=()
+if [ "$(id -u)" -ne 0 ]; then root=(sudo); fi
+"${root[@]}" apt-get update -q
+failed=()
+for package in "${missing[@]}"; do
+    DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -q --no-install-recommends "$package" ||
+        failed+=("$package")
+done
+if [ ${#failed[@]} -gt 0 ]; then
+    echo "scripts/tools.sh: could not install ${failed[*]}" >&2
+    exit 1
+fi

@@ -89,8 +89,8 @@ fn errors_from_a_file_are_kept_with_the_study() {
     is_durable(&studies, "s", 10, &more);
     for line in evaluations(&studies, "s") {
         let robust = &line["user_attrs"]["tasks"][0];
-        assert_eq!(robust["ranges_mm"].as_array().map(Vec::len), Some(5));
-        assert_eq!(line["values"][0], robust["value_mm"]);
+        assert_eq!(robust["robust_ranges_mm"].as_array().map(Vec::len), Some(5));
+        assert_eq!(line["values"][0], robust["robust_range_mm"]);
         assert!(line["user_attrs"]["tasks"][0].get("success_rate").is_none(), "not asked for");
     }
     fs::remove_file(&file).unwrap();
@@ -257,7 +257,7 @@ fn several_tasks_are_evaluated_and_aggregated() {
         evaluations(&studies, name)
     };
     let range = |window: &Value| {
-        let end = |key: &str| number(&window["window"][key]);
+        let end = |key: &str| number(&window[key]);
         end("positive_mm") - end("negative_mm")
     };
     let alone: Vec<f64> = {
@@ -300,7 +300,7 @@ fn a_study_of_several_tasks_is_durable_and_has_its_own_folder() {
     assert!(read(&studies.dir("s").join("inputs/task_2.toml")).contains("\"far\""));
     optimize(&["report", studies.dir("s").to_str().unwrap()]).succeeds();
     let line = &evaluations(&studies, "s")[0];
-    let rate = |of: &Value| number(&of["success_rate"]["rate"]);
+    let rate = |of: &Value| number(&of["success_rate"]);
     let (usb, far) = (rate(&line["user_attrs"]["tasks"][0]), rate(&line["user_attrs"]["tasks"][1]));
     assert_eq!(number(&line["values"][0]), usb.min(far));
     let mut named = common::command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);

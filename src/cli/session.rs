@@ -78,6 +78,7 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         bad_input => bad_input,
     };
     let ending = ended.map_err(hint)?;
+    let known = cache.as_ref().map_or(0, Cache::found);
     if ending != Ending::Interrupted {
         let walker = simulated(Search::Walk, &Plan::WINDOW);
         walk_best(&study, &walker, &pool, &stop).map_err(hint)?;
@@ -87,7 +88,6 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {
         return Err(Failure::running(format!("interrupted; {}", resume_hint(&study))));
     }
-    let known = cache.as_ref().map_or(0, Cache::found);
     summary::show(study.dir(), &record, ending, known, arguments.json)
 }
 

@@ -1,10 +1,10 @@
 //! The resolved configuration of a study, as `study.toml` keeps it.
 
+use super::differences::differences;
 use super::provenance::Provenance;
 use crate::evaluation::objective::{Aggregate, Constraint, Goals, Objectives};
 use crate::input::space::Space;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
 
 /// Everything that decides what a study measures. The number of threads is not
 /// part of it: it changes no result.
@@ -106,44 +106,4 @@ fn is_zero(number: &u64) -> bool {
 /// `<task>-<optimizer>-seed<seed>`.
 pub fn study_name(task: &str, optimizer: &str, seed: u64) -> String {
     format!("{task}-{optimizer}-seed{seed}")
-}
-
-/// The fields in which two values differ, one line each, `None` if there is no such field.
-pub(super) fn differences<T: Serialize>(ours: &T, theirs: &T, who: [&str; 2]) -> Option<String> {
-    let (ours, theirs) = (flat(ours), flat(theirs));
-    let keys: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
-    let show = |value: Option<&String>| value.map_or("nothing".to_owned(), Clone::clone);
-    let lines: Vec<String> = keys
-        .into_iter()
-        .filter(|key| ours.get(*key) != theirs.get(*key))
-        .map(|key| {
-            let (a, b) = (show(ours.get(key)), show(theirs.get(key)));
-            format!("  {key}: {} has {a}, {} has {b}", who[0], who[1])
-        })
-        .collect();
-    (!lines.is_empty()).then(|| lines.join("\n"))
-}
-
-/// Every leaf of a value as text, by its path (`space.parameter.0.low`).
-fn flat(value: &impl Serialize) -> BTreeMap<String, String> {
-    fn walk(value: &serde_json::Value, path: &str, leaves: &mut BTreeMap<String, String>) {
-        let join =
-            |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
-        match value {
-            serde_json::Value::Object(fields) => {
-                fields.iter().for_each(|(key, value)| walk(value, &join(key), leaves));
-            }
-            serde_json::Value::Array(items) => {
-                let items = items.iter().enumerate();
-                items.for_each(|(i, value)| walk(value, &join(&i.to_string()), leaves));
-            }
-            leaf => {
-                leaves.insert(path.to_owned(), leaf.to_string());
-            }
-        }
-    }
-    let mut leaves = BTreeMap::new();
-    // A value that is not JSON has no leaves; configurations always are.
-    walk(&serde_json::to_value(value).unwrap_or_default(), "", &mut leaves);
-    leaves
 }

@@ -1,6 +1,7 @@
 //! The first two lines of a journal: whose it is.
 
-use super::config::{StudyConfig, differences};
+use super::config::StudyConfig;
+use super::differences::differences;
 use super::error::LineError;
 use super::line::WORKER;
 use super::provenance::Segment;

@@ -3,6 +3,7 @@
 
 mod cache;
 mod config;
+mod differences;
 mod error;
 mod folder;
 mod header;

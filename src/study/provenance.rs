@@ -1,6 +1,6 @@
 //! What a study's values were measured with.
 
-use super::config::differences;
+use super::differences::differences;
 use crate::trial::engine::{EngineKind, EngineRecord};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,14 +1,14 @@
 //! Named random streams: every random number is a function of the study seed,
 //! the evaluation it serves and its purpose, never of what was drawn before.
 
-use rand::{Rng, RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sha2::{Digest, Sha256};
 
 /// The generator of the stream named by `(study_seed, evaluation, purpose)`.
 ///
 /// Two different names give independent streams (SHA-256 of the name seeds
-/// ChaCha8); the same name gives the same stream on every platform.
+/// ChaCha8); the same name gives the same bits on every platform.
 pub fn stream(study_seed: u64, evaluation: u64, purpose: &str) -> ChaCha8Rng {
     let mut hash = Sha256::new();
     hash.update(study_seed.to_le_bytes());
@@ -17,16 +17,10 @@ pub fn stream(study_seed: u64, evaluation: u64, purpose: &str) -> ChaCha8Rng {
     ChaCha8Rng::from_seed(hash.finalize().into())
 }
 
-/// One standard normal number by Box and Muller, from two uniform ones.
-pub fn normal(random: &mut impl Rng) -> f64 {
-    // 1 - u lies in (0, 1], so the logarithm is finite.
-    let (radius, angle) = (1.0 - random.random::<f64>(), random.random::<f64>());
-    (-2.0 * libm::log(radius)).sqrt() * libm::cos(2.0 * std::f64::consts::PI * angle)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::Rng;
 
     #[test]
     fn each_part_of_the_name_changes_the_stream() {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
-const OPTIMIZERS: [&str; 6] = ["gp", "cma-es", "nelder-mead", "random", "sobol", "grid"];
+const OPTIMIZERS: [&str; 5] = ["gp", "cma-es", "random", "sobol", "grid"];
 
 /// A running program; ended when dropped.
 struct Talk {

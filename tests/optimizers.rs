@@ -1,8 +1,9 @@
-//! One suite for every optimizer: what the trait promises, checked for all of them.
+//! What the trait states, checked for every optimizer.
 
 use finger_opt::evaluation::pareto::hypervolume;
 use finger_opt::input::space::GridPoint;
 use finger_opt::optimizer::{Grid, Observation, Optimizer, OptimizerKind, StopReason, build};
+use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 
 /// The value told for a point at the given position in the history.
@@ -129,6 +130,46 @@ fn the_seed_decides_and_nothing_else() {
     });
 }
 
+/// Twenty points of the process on a coarse grid, searched whole, and on a fine one, searched by
+/// L-BFGS, and of CMA-ES.
+fn proposals_of_three() -> Vec<GridPoint> {
+    let of = |kind, levels: Vec<u32>| {
+        let grid = Grid::new(levels);
+        run(&mut *build(kind, grid.clone(), 7), &grid, hill, (10, 2))
+    };
+    [
+        of(OptimizerKind::Gp, vec![21, 41]),
+        of(OptimizerKind::Gp, vec![1001, 1001, 1001]),
+        of(OptimizerKind::CmaEs, vec![1001, 1001]),
+    ]
+    .concat()
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(proposals_of_three)
+    };
+    let one = with(1);
+    assert!([1, 2, 8].into_iter().all(|threads| with(threads) == one));
+}
+
+/// What `docs/reproducibility.md` says of proposals, as far as one machine can tell.
+#[test]
+#[cfg(all(target_arch = "x86_64", target_os = "linux"))]
+fn the_proposals_are_those_of_every_other_machine() {
+    let text = format!("{:?}", proposals_of_three());
+    let hash: String =
+        Sha256::digest(text).iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!(
+        hash, "PINNED",
+        "the optimizers propose other points than they did. If an optimizer, the streams or a \
+         library under them was changed, put the new hash here and say in the changelog that \
+         studies change; if nothing was changed, this machine computes other bits"
+    );
+}
+
 #[test]
 fn a_history_told_again_leads_to_the_same_proposals() {
     each(|kind| {
@@ -184,7 +225,7 @@ fn those_that_learn_find_the_hill_and_those_that_spread_come_near_it() {
         let best = points.iter().filter_map(|p| hill(&grid, p, 0)).fold(f64::MIN, f64::max);
         let enough = match kind {
             OptimizerKind::Gp => 1e-9,
-            OptimizerKind::CmaEs | OptimizerKind::NelderMead => 1e-2,
+            OptimizerKind::CmaEs => 1e-2,
             _ => 3e-2,
         };
         assert!(best > -enough, "{kind}: {best}");
@@ -219,8 +260,7 @@ fn a_constraint_that_binds_is_kept_by_the_best_and_does_not_keep_it_away() {
         let violations = vec![unit[0].powi(2) + unit[1].powi(2) - 0.5];
         Observation { violations, ..Observation::new(point.clone(), Some(unit[0] + unit[1])) }
     };
-    let kinds = [OptimizerKind::Gp, OptimizerKind::CmaEs, OptimizerKind::NelderMead];
-    for (kind, evaluations) in kinds.into_iter().zip([32, 200, 200]) {
+    for (kind, evaluations) in [(OptimizerKind::Gp, 32), (OptimizerKind::CmaEs, 200)] {
         for seed in 0..5 {
             let mut optimizer = build(kind, grid.clone(), seed);
             let told = told(&mut *optimizer, &problem, evaluations);

@@ -51,13 +51,13 @@ enum Other {
 }
 
 /// What one task took.
-struct Row {
+struct TaskSpeed {
     task: String,
     trials_per_s: f64,
     evaluations_per_min: f64,
 }
 
-impl Row {
+impl TaskSpeed {
     /// Time of a study of [`BUDGET`] evaluations, s.
     fn study_s(&self) -> f64 {
         60.0 * BUDGET / self.evaluations_per_min
@@ -77,11 +77,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let task = Task::parse(file.text, file.file).map_err(Failure::input)?;
             measure(&task, &robot, arguments)
         })
-        .collect::<Result<Vec<Row>, Failure>>()?;
+        .collect::<Result<Vec<TaskSpeed>, Failure>>()?;
     if arguments.json { print_json(&json(arguments, &rows)) } else { print(&table(&rows)) }
 }
 
-fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<Row, Failure> {
+fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<TaskSpeed, Failure> {
     let rig = setup::rig(arguments.engine, task, robot).map_err(Failure::input)?;
     let finger = Finger::new(COMPLIANCE * N_PER_MM, ASSEMBLY * N_PER_MM);
     let finger = finger.shaped(&task.finger, 0.0);
@@ -96,14 +96,14 @@ fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<Row, Fai
         }
     });
     let wall_s = clock.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
-    Ok(Row {
+    Ok(TaskSpeed {
         task: task.name.clone(),
         trials_per_s: f64::from(trials.into_inner()) / wall_s,
         evaluations_per_min: 60.0 * f64::from(arguments.repeats) / wall_s,
     })
 }
 
-fn table(rows: &[Row]) -> String {
+fn table(rows: &[TaskSpeed]) -> String {
     let mut text = format!(
         "{} threads, finger of {COMPLIANCE} and {ASSEMBLY} N/mm\n\
          task     trials/s  evaluations/min  budget of {BUDGET} takes about\n",
@@ -121,8 +121,8 @@ fn table(rows: &[Row]) -> String {
     text
 }
 
-fn json(arguments: &Arguments, rows: &[Row]) -> serde_json::Value {
-    let row = |row: &Row| {
+fn json(arguments: &Arguments, rows: &[TaskSpeed]) -> serde_json::Value {
+    let row = |row: &TaskSpeed| {
         json!({
             "task": row.task,
             "trials_per_s": row.trials_per_s,

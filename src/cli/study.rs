@@ -40,7 +40,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
           allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=1_000_000))]
     polish: u64,
-    /// Optimizer: gp, cma-es, nelder-mead, random, sobol or grid
+    /// Optimizer: gp, cma-es, random, sobol or grid
     #[arg(long, value_name = "NAME", default_value = "gp")]
     optimizer: OptimizerKind,
     /// What is optimized: range, centred-range, success-rate, robust-range, peak-force or slip;

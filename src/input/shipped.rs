@@ -1,6 +1,7 @@
 //! The files shipped within the program, so that it runs from any folder.
 
 use std::path::Path;
+use strsim::levenshtein;
 
 /// One shipped file.
 #[derive(Debug, Clone, Copy)]
@@ -120,36 +121,14 @@ pub fn resolve(
 
 /// The name that differs least from `name`, if less than half of it differs.
 pub fn nearest(name: &str, names: &[&'static str]) -> Option<&'static str> {
-    let distance = |other: &&&str| edits(name, other);
+    let distance = |other: &&&str| levenshtein(name, other);
     let best = names.iter().min_by_key(distance)?;
-    (2 * edits(name, best) <= name.chars().count()).then_some(*best)
-}
-
-/// Insertions, deletions and replacements that turn `a` into `b` (Levenshtein).
-fn edits(a: &str, b: &str) -> usize {
-    let mut row: Vec<usize> = (0..=b.chars().count()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.chars().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[b.chars().count()]
+    (2 * levenshtein(name, best) <= name.chars().count()).then_some(*best)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn edit_distances() {
-        for (a, b, distance) in [("", "usb", 3), ("ubs", "usb", 2), ("ket", "ket8", 1)] {
-            assert_eq!(edits(a, b), distance);
-        }
-    }
 
     #[test]
     fn an_unknown_name_is_answered_with_the_nearest_and_all() {

@@ -2,7 +2,7 @@
 
 use super::cmaes::CmaEsOptimizer;
 use super::gp::{DEFAULT_NOISE_FLOOR, GpOptimizer};
-use super::{Grid, GridSearch, NelderMeadOptimizer, Optimizer, RandomSearch, SobolSearch};
+use super::{Grid, GridSearch, Optimizer, RandomSearch, SobolSearch};
 use std::fmt;
 use std::str::FromStr;
 
@@ -13,8 +13,6 @@ pub enum OptimizerKind {
     Gp,
     /// `cma-es`: CMA-ES with BIPOP restarts.
     CmaEs,
-    /// `nelder-mead`: Nelder-Mead with restarts.
-    NelderMead,
     /// `random`: uniform, without replacement.
     Random,
     /// `sobol`: scrambled Sobol sequence.
@@ -25,15 +23,14 @@ pub enum OptimizerKind {
 
 impl OptimizerKind {
     /// All kinds, in the order in which help texts list them.
-    pub const ALL: [OptimizerKind; 6] =
-        [Self::Gp, Self::CmaEs, Self::NelderMead, Self::Random, Self::Sobol, Self::Grid];
+    pub const ALL: [OptimizerKind; 5] =
+        [Self::Gp, Self::CmaEs, Self::Random, Self::Sobol, Self::Grid];
 
     /// The name as written on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gp => "gp",
             Self::CmaEs => "cma-es",
-            Self::NelderMead => "nelder-mead",
             Self::Random => "random",
             Self::Sobol => "sobol",
             Self::Grid => "grid",
@@ -43,7 +40,7 @@ impl OptimizerKind {
     /// Whether it can look for a front of several objectives: it models each of them, or
     /// looks everywhere alike.
     pub fn takes_several_objectives(self) -> bool {
-        !matches!(self, Self::CmaEs | Self::NelderMead)
+        self != Self::CmaEs
     }
 }
 
@@ -90,7 +87,6 @@ pub fn build_for(
     match kind {
         OptimizerKind::Gp => Box::new(GpOptimizer::with_noise_floors(grid, seed, noise_floors)),
         OptimizerKind::CmaEs => Box::new(CmaEsOptimizer::new(grid, seed)),
-        OptimizerKind::NelderMead => Box::new(NelderMeadOptimizer::new(grid, seed)),
         OptimizerKind::Random => Box::new(RandomSearch::new(grid, seed)),
         OptimizerKind::Sobol => Box::new(SobolSearch::new(grid, seed)),
         OptimizerKind::Grid => Box::new(GridSearch::new(grid)),
@@ -109,7 +105,7 @@ mod tests {
         let error = "bayes".parse::<OptimizerKind>().unwrap_err().to_string();
         assert_eq!(
             error,
-            "unknown optimizer 'bayes'; valid names are gp, cma-es, nelder-mead, random, sobol, grid"
+            "unknown optimizer 'bayes'; valid names are gp, cma-es, random, sobol, grid"
         );
     }
 }

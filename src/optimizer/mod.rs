@@ -8,16 +8,14 @@ pub mod cmaes;
 pub mod gp;
 mod kind;
 mod lattice;
-mod neldermead;
+mod nelder_mead;
 mod polish;
 mod proposed;
 mod random;
-mod simplex;
 mod sobol;
 
 pub use kind::{OptimizerKind, UnknownOptimizer, build, build_for};
 pub use lattice::GridSearch;
-pub use neldermead::NelderMeadOptimizer;
 pub use polish::Polished;
 pub use proposed::Proposed;
 pub use random::RandomSearch;
@@ -72,6 +70,21 @@ impl Grid {
     pub fn cell(&self, unit: &[f64]) -> GridPoint {
         let level = |(&u, &n): (&f64, &u32)| ((u.max(0.0) * f64::from(n)) as u32).min(n - 1);
         GridPoint(unit.iter().zip(&self.levels).map(level).collect())
+    }
+
+    /// The axes with more than one level.
+    pub fn free_axes(&self) -> Vec<usize> {
+        (0..self.dimension()).filter(|&axis| self.levels[axis] > 1).collect()
+    }
+
+    /// The grid point nearest to a point of R^n, one coordinate for each free axis, folded onto
+    /// the cube by reflection at its faces (`x -> |x - 2 round(x / 2)|`).
+    pub fn folded(&self, x: &[f64]) -> GridPoint {
+        let mut unit = vec![0.5; self.dimension()];
+        for (axis, x) in self.free_axes().into_iter().zip(x) {
+            unit[axis] = (x - 2.0 * (x / 2.0).round()).abs();
+        }
+        self.snap(&unit)
     }
 
     /// The grid point nearest to `unit`; coordinates outside [0, 1] are clamped.
@@ -154,6 +167,14 @@ pub trait Optimizer {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn folding_reflects_at_both_faces() {
+        let grid = Grid::new(vec![101, 1]);
+        for (x, level) in [(0.3, 30), (-0.3, 30), (1.25, 75), (2.5, 50), (-1.75, 25)] {
+            assert_eq!(grid.folded(&[x]), GridPoint(vec![level, 0]));
+        }
+    }
 
     #[test]
     fn merit_puts_feasible_points_first_and_then_the_smaller_violation() {

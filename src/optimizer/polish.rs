@@ -1,6 +1,7 @@
 //! Local polish of the best point that another optimizer has found.
 
-use super::{Grid, NelderMeadOptimizer, Observation, Optimizer, StopReason};
+use super::nelder_mead::NelderMead;
+use super::{Grid, Observation, Optimizer, StopReason};
 use crate::input::space::GridPoint;
 
 /// Asks another optimizer for a number of points, then Nelder-Mead for up to a number of
@@ -16,7 +17,7 @@ pub struct Polished {
     /// Points that the polish may still have.
     polish_left: u64,
     told: Vec<Observation>,
-    polish: Option<NelderMeadOptimizer>,
+    polish: Option<NelderMead>,
     converged: bool,
 }
 
@@ -51,7 +52,7 @@ impl Optimizer for Polished {
             self.search_left = 0;
         }
         let (grid, told) = (&self.grid, &self.told);
-        let start = || NelderMeadOptimizer::polish(grid.clone(), told);
+        let start = || NelderMead::new(grid.clone(), told);
         let points = self.polish.get_or_insert_with(start).ask(at_most(n, self.polish_left));
         self.polish_left = self.polish_left.saturating_sub(points.len() as u64);
         self.converged = points.is_empty();
@@ -69,7 +70,7 @@ impl Optimizer for Polished {
     }
 
     fn stop(&self) -> Option<StopReason> {
-        let exhausted = self.polish.as_ref().map_or_else(|| self.inner.stop(), Optimizer::stop);
+        let exhausted = self.polish.as_ref().map_or_else(|| self.inner.stop(), NelderMead::stop);
         exhausted.or_else(|| self.converged.then_some(StopReason::Converged))
     }
 }

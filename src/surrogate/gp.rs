@@ -21,14 +21,14 @@
 //! restarts, so the fit is the same on every run.
 
 use super::link::{Link, Sum};
-use super::{Estimate, Fitted};
+use super::{Estimate, Fitted, Measured, infills};
 use crate::input::stiffness::{Axis, Infill};
 use crate::units::DEG;
 use egobox_gp::correlation_models::Matern52Corr;
 use egobox_gp::mean_models::RegressionModel;
 use egobox_gp::{GaussianProcess, GpParams, ThetaTuning};
 use linfa::prelude::{Dataset, Fit};
-use ndarray::{Array1, Array2, ArrayBase, Data, Ix1, Ix2, array};
+use ndarray::{Array2, ArrayBase, Data, Ix1, Ix2, array};
 
 /// Inverse correlation lengths tried, per standard deviation of the inputs.
 const THETAS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, 0.8];
@@ -66,7 +66,7 @@ impl RegressionModel<f64> for PhysicalMean {
 
 /// A fitted process.
 #[derive(Debug)]
-pub(super) struct Gp {
+pub(super) struct PhysicalProcess {
     link: Link,
     exponent: f64,
     nugget: f64,
@@ -91,13 +91,14 @@ fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
 }
 
 /// Fits by maximum likelihood over the grid; `None` if nothing can be fitted.
-pub(super) fn fit(axis: Axis, infills: &[Infill], stiffness: &[f64]) -> Option<Gp> {
+pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess> {
     let (sum, exponents) = physics(axis);
-    let link = Link::new(sum, stiffness);
-    let y: Array1<f64> = stiffness.iter().map(|&k| link.forward(k)).collect();
-    let mut best: Option<Gp> = None;
+    let link = Link::new(sum, measured.targets());
+    let y = measured.targets().mapv(|k| link.forward(k));
+    let mut best: Option<PhysicalProcess> = None;
     for &exponent in exponents {
-        let rows: Vec<[f64; 3]> = infills.iter().map(|&p| inputs(p, exponent)).collect();
+        let rows: Vec<[f64; 3]> =
+            infills(measured).map(|infill| inputs(infill, exponent)).collect();
         let data = Dataset::new(Array2::from(rows), y.clone());
         for (theta, nugget) in THETAS.iter().flat_map(|&t| NUGGETS.map(|n| (t, n))) {
             // The kernel does not see the feature: its inverse length is 0.
@@ -106,17 +107,23 @@ pub(super) fn fit(axis: Axis, infills: &[Infill], stiffness: &[f64]) -> Option<G
                 .nugget(nugget)
                 .fit(&data);
             let Ok(process) = fitted else { continue };
-            let better = |old: &Gp| process.likelihood() > old.process.likelihood();
+            let better = |old: &PhysicalProcess| process.likelihood() > old.process.likelihood();
             if process.likelihood().is_finite() && best.as_ref().is_none_or(better) {
-                let n = infills.len() as f64;
-                best = Some(Gp { link, exponent, nugget, process, unbias: n / (n - 2.0) });
+                let n = y.len() as f64;
+                best = Some(PhysicalProcess {
+                    link,
+                    exponent,
+                    nugget,
+                    process,
+                    unbias: n / (n - 2.0),
+                });
             }
         }
     }
     best
 }
 
-impl Fitted for Gp {
+impl Fitted for PhysicalProcess {
     fn predict(&self, infill: Infill) -> Estimate {
         let x = Array2::from(vec![inputs(infill, self.exponent)]);
         let Ok((mean, variance)) = self.process.predict_valvar(&x) else {

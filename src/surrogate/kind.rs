@@ -1,8 +1,8 @@
 //! The candidates for the model of one axis.
 
 use super::link::{Link, Sum};
-use super::{Fitted, gp, ridge};
-use crate::input::stiffness::{Axis, Infill};
+use super::{Fitted, Measured, gp, ridge};
+use crate::input::stiffness::Axis;
 
 /// A model of one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -42,20 +42,19 @@ impl ModelKind {
 pub(super) fn fit_axis(
     axis: Axis,
     kind: ModelKind,
-    infills: &[Infill],
-    stiffness: &[f64],
+    measured: &Measured,
 ) -> Option<Box<dyn Fitted>> {
     let polynomial = |degree: u8, link: Link, penalties: &[f64]| {
-        let fitted = ridge::fit(infills, stiffness, degree, link, penalties)?;
+        let fitted = ridge::fit(measured, degree, link, penalties)?;
         Some(Box::new(fitted) as Box<dyn Fitted>)
     };
-    let positive = Link::new(Sum::Parallel, stiffness);
+    let positive = Link::new(Sum::Parallel, measured.targets());
     match kind {
         ModelKind::Linear => polynomial(1, Link::identity(), &[0.0]),
         ModelKind::RidgeLinear => polynomial(1, positive, &ridge::PENALTIES),
         ModelKind::RidgeQuadratic => polynomial(2, positive, &ridge::PENALTIES),
         ModelKind::GaussianProcess => {
-            let fitted = gp::fit(axis, infills, stiffness)?;
+            let fitted = gp::fit(axis, measured)?;
             Some(Box::new(fitted) as Box<dyn Fitted>)
         }
     }

@@ -24,9 +24,10 @@ pub(super) struct Link {
 
 impl Link {
     /// A link for these stiffnesses, N/m.
-    pub fn new(sum: Sum, stiffness: &[f64]) -> Self {
+    pub fn new<'a>(sum: Sum, stiffness: impl IntoIterator<Item = &'a f64>) -> Self {
         let plain = Link { sum, scale: None };
-        let smallest = stiffness.iter().map(|&k| plain.forward(k)).fold(f64::INFINITY, f64::min);
+        let smallest =
+            stiffness.into_iter().map(|&k| plain.forward(k)).fold(f64::INFINITY, f64::min);
         Link { sum, scale: Some(smallest / 4.0) }
     }
 

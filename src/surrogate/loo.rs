@@ -1,8 +1,8 @@
 //! Leave-one-out errors: how well a model predicts a finger it has not seen.
 
 use super::kind::fit_axis;
-use super::{Fitted, ModelKind};
-use crate::input::stiffness::{Axis, Infill};
+use super::{Estimate, Fitted, Measured, ModelKind, infills};
+use crate::input::stiffness::Axis;
 use crate::units::N_PER_MM;
 use rayon::prelude::*;
 
@@ -27,29 +27,20 @@ pub struct Loo {
 }
 
 /// Fits `kind` without each design in turn and predicts that design.
-pub(super) fn leave_one_out(
-    axis: Axis,
-    kind: ModelKind,
-    infills: &[Infill],
-    stiffness: &[f64],
-) -> Loo {
-    let n = infills.len();
+pub(super) fn leave_one_out(axis: Axis, kind: ModelKind, measured: &Measured) -> Loo {
     // Collected by index: the thread count changes nothing.
-    let pairs: Vec<Option<(f64, f64)>> = (0..n)
+    let predicted: Vec<Estimate> = measured
+        .fold(measured.targets().len())
         .into_par_iter()
-        .map(|out| {
-            let keep = |i: &usize| *i != out;
-            let x: Vec<Infill> = (0..n).filter(keep).map(|i| infills[i]).collect();
-            let k: Vec<f64> = (0..n).filter(keep).map(|i| stiffness[i]).collect();
-            let fitted: Box<dyn Fitted> = fit_axis(axis, kind, &x, &k)?;
-            let estimate = fitted.predict(infills[out]);
-            Some((estimate.mean, estimate.sd))
+        .map(|(others, one)| {
+            let fitted = fit_axis(axis, kind, &others);
+            let predict = |fitted: Box<dyn Fitted>| infills(&one).next().map(|x| fitted.predict(x));
+            fitted.and_then(predict).unwrap_or(Estimate { mean: f64::NAN, sd: f64::NAN })
         })
         .collect();
-    let pairs: Vec<(f64, f64)> =
-        pairs.into_iter().map(|pair| pair.unwrap_or((f64::NAN, f64::NAN))).collect();
     let mean = |term: &dyn Fn(f64, f64, f64) -> f64| {
-        pairs.iter().zip(stiffness).map(|(&(m, sd), &k)| term(m, sd, k)).sum::<f64>() / n as f64
+        let terms = predicted.iter().zip(measured.targets()).map(|(e, &k)| term(e.mean, e.sd, k));
+        terms.sum::<f64>() / predicted.len() as f64
     };
     Loo {
         axis,
@@ -57,7 +48,7 @@ pub(super) fn leave_one_out(
         rmse_n_per_mm: mean(&|m, _, k| (m - k).powi(2)).sqrt() / N_PER_MM,
         mean_absolute_percent: 100.0 * mean(&|m, _, k| (m / k - 1.0).abs()),
         standardised_rms: mean(&|m, sd, k| ((m - k) / sd).powi(2)).sqrt(),
-        left_out: pairs.iter().map(|pair| pair.0).collect(),
+        left_out: predicted.iter().map(|estimate| estimate.mean).collect(),
         chosen: false,
     }
 }

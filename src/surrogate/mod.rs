@@ -22,6 +22,8 @@ mod row;
 mod tests;
 
 use crate::input::stiffness::{Axis, Infill};
+use linfa::prelude::Dataset;
+use ndarray::{Array1, Array2, Ix1};
 
 pub use kind::ModelKind;
 pub use loo::Loo;
@@ -68,6 +70,19 @@ impl Prediction {
             Axis::Compliance => self.compliance,
         }
     }
+}
+
+/// Designs and their stiffness along one axis: a row of density (percent) and direction
+/// (degrees) each, and N/m.
+type Measured = Dataset<f64, f64, Ix1>;
+
+fn measured(infills: &[Infill], stiffness: &[f64]) -> Measured {
+    Dataset::new(Array2::from(infills.to_vec()), Array1::from(stiffness.to_vec()))
+}
+
+/// The infill of each design.
+fn infills(measured: &Measured) -> impl Iterator<Item = Infill> {
+    measured.records().rows().into_iter().map(|row| [row[0], row[1]])
 }
 
 /// A fitted model of one axis; stiffness in N/m.

@@ -3,7 +3,7 @@
 use super::hull::Hull;
 use super::kind::fit_axis;
 use super::loo::{Loo, leave_one_out};
-use super::{Estimate, Fitted, ModelKind, Prediction};
+use super::{Estimate, Fitted, ModelKind, Prediction, measured};
 use crate::input::stiffness::check_all;
 use crate::input::stiffness::{Axis, Infill, Measurement, SurrogateError};
 
@@ -57,10 +57,9 @@ fn choose(
     infills: &[Infill],
 ) -> Result<(Chosen, Vec<Loo>), SurrogateError> {
     let stiffness: Vec<f64> = measurements.iter().map(|m| m.stiffness(axis)).collect();
-    let mut loo: Vec<Loo> = ModelKind::ALL
-        .into_iter()
-        .map(|kind| leave_one_out(axis, kind, infills, &stiffness))
-        .collect();
+    let data = measured(infills, &stiffness);
+    let mut loo: Vec<Loo> =
+        ModelKind::ALL.into_iter().map(|kind| leave_one_out(axis, kind, &data)).collect();
     let unfittable = SurrogateError::Unfittable { axis: axis.label() };
     let best = loo
         .iter_mut()
@@ -70,7 +69,7 @@ fn choose(
     best.chosen = true;
     // Too sure of itself: widen until the left-out errors fit. Never narrow.
     let widen = best.standardised_rms.max(1.0);
-    let fitted = fit_axis(axis, best.model, infills, &stiffness).ok_or(unfittable)?;
+    let fitted = fit_axis(axis, best.model, &data).ok_or(unfittable)?;
     Ok((Chosen { fitted, widen }, loo))
 }
 

@@ -32,7 +32,7 @@ impl<'a> Repeats<'a> {
     pub fn new(rigs: [&'a dyn Rig; 2], finger: &Finger, seed: u64, count: u32) -> Self {
         let run = |index: u32| {
             let mut random = stream(seed, u64::from(index), PURPOSE);
-            let mut around = |half_width: f64| half_width * (2.0 * random.random::<f64>() - 1.0);
+            let mut around = |half_width: f64| half_width * random.random_range(-1.0..1.0);
             let conditions = Conditions {
                 friction_finger: 1.0 + around(FRICTION_SHARE),
                 friction_socket: 1.0 + around(FRICTION_SHARE),

@@ -2,10 +2,11 @@
 
 use super::Errors;
 use crate::finger::Finger;
-use crate::stream::{normal, stream};
+use crate::stream::stream;
 use crate::surrogate::{Estimate, Prediction};
 use crate::trial::Conditions;
 use rand::RngExt;
+use rand_distr::StandardNormal;
 
 /// Names the stream of the errors.
 const PURPOSE: &str = "errors";
@@ -34,17 +35,18 @@ pub fn draws(errors: &Errors, seed: u64, count: u32) -> Vec<Draw> {
 /// off leaves the others as they were.
 fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
     let mut random = stream(seed, index, PURPOSE);
-    let [offset, yaw, compliance, assembly, across] = std::array::from_fn(|_| normal(&mut random));
-    let [finger, socket, clearance, low] = std::array::from_fn(|_| random.random::<f64>());
-    let centred = |uniform: f64| 2.0 * uniform - 1.0;
-    let factor = |uniform| 1.0 + errors.friction_half_width * centred(uniform);
+    let [offset, yaw, compliance, assembly, across]: [f64; 5] =
+        std::array::from_fn(|_| random.sample(StandardNormal));
+    let [finger, socket, clearance] = std::array::from_fn(|_| random.random_range(-1.0..1.0));
+    let low = random.random::<f64>();
+    let factor = |centred: f64| 1.0 + errors.friction_half_width * centred;
     Draw {
         offset: offset * errors.offset_sd,
         conditions: Conditions {
             yaw: yaw * errors.yaw_sd,
             friction_finger: factor(finger),
             friction_socket: factor(socket),
-            clearance: centred(clearance) * errors.clearance_half_width,
+            clearance: clearance * errors.clearance_half_width,
             grasp_across: across * errors.grasp_across_sd,
             grasp_low: low * errors.grasp_low_max,
         },

@@ -1,7 +1,7 @@
 //! The points of one batch on their way out and their values on the way back.
 
 use super::AskTellError;
-use super::message::Told;
+use super::message::PointValue;
 use crate::input::space::GridPoint;
 use crate::optimizer::Observation;
 use std::collections::BTreeMap;
@@ -45,9 +45,9 @@ impl Batch {
     }
 
     /// Whether these can all be told.
-    pub fn check(&self, told: &[Told]) -> Result<(), AskTellError> {
+    pub fn check(&self, told: &[PointValue]) -> Result<(), AskTellError> {
         let mut seen: Vec<u64> = Vec::with_capacity(told.len());
-        for Told { id, .. } in told {
+        for PointValue { id, .. } in told {
             if *id >= self.first + self.asked as u64 {
                 return Err(AskTellError::UnknownId(*id));
             }

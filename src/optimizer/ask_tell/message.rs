@@ -49,7 +49,7 @@ impl Direction {
 /// The value of one point.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Told {
+pub struct PointValue {
     /// Which point.
     pub id: u64,
     /// Its value; `null` if the evaluation failed. It may not be left out.
@@ -71,14 +71,14 @@ struct AskLine {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TellLine {
-    tell: Vec<Told>,
+    tell: Vec<PointValue>,
 }
 
 /// A line that was understood.
 pub(super) enum Line {
     Header(Header),
     Ask(usize),
-    Tell(Vec<Told>),
+    Tell(Vec<PointValue>),
 }
 
 impl Line {

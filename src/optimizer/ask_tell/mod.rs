@@ -10,6 +10,6 @@ mod parameter;
 mod session;
 
 pub use error::AskTellError;
-pub use message::{Direction, Header, LARGEST_BATCH, Told};
-pub use parameter::{Axis, ParameterLine};
+pub use message::{Direction, Header, LARGEST_BATCH, PointValue};
+pub use parameter::{Parameter, ParameterLine};
 pub use session::{Best, Session};

@@ -27,7 +27,7 @@ pub struct ParameterLine {
 
 /// A checked parameter.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct Parameter {
     /// Its name.
     pub name: String,
     low: f64,
@@ -36,9 +36,9 @@ pub struct Axis {
     steps: u32,
 }
 
-impl Axis {
+impl Parameter {
     /// Checks a parameter.
-    pub fn new(line: &ParameterLine) -> Result<Axis, AskTellError> {
+    pub fn new(line: &ParameterLine) -> Result<Parameter, AskTellError> {
         let fail = |problem| {
             let name = line.name.clone();
             Err(AskTellError::Parameter { name, problem })
@@ -69,7 +69,7 @@ impl Axis {
             return fail("step must not be larger than high - low");
         }
         let (low, high, step) = (line.low, line.high, line.step);
-        Ok(Axis { name: line.name.clone(), low, high, step, steps })
+        Ok(Parameter { name: line.name.clone(), low, high, step, steps })
     }
 
     /// Number of distinct values.
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn values_read_as_they_would_be_written() {
-        let axis = Axis::new(&line(0.1, 0.9, Some(0.1))).unwrap();
+        let axis = Parameter::new(&line(0.1, 0.9, Some(0.1))).unwrap();
         assert_eq!(axis.levels(), 9);
         let values: Vec<f64> = (0..9).map(|k| axis.value(k)).collect();
         assert_eq!(values, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]);
@@ -117,11 +117,11 @@ mod tests {
 
     #[test]
     fn without_a_step_the_grid_is_fine_and_both_ends_are_on_it() {
-        let axis = Axis::new(&line(-2.0, 3.0, None)).unwrap();
+        let axis = Parameter::new(&line(-2.0, 3.0, None)).unwrap();
         assert_eq!(axis.levels(), 1_000_000_001);
         assert_eq!((axis.value(0), axis.value(1_000_000_000)), (-2.0, 3.0));
         assert_eq!((axis.value(1), axis.value(500_000_000)), (-1.999999995, 0.5));
-        assert_eq!(Axis::new(&line(4.0, 4.0, None)).unwrap().levels(), 1);
+        assert_eq!(Parameter::new(&line(4.0, 4.0, None)).unwrap().levels(), 1);
     }
 
     #[test]
@@ -134,7 +134,7 @@ mod tests {
             (line(0.0, 1.0, Some(0.0)), "above 0"),
             (line(0.0, 1.0, Some(1e9)), "larger than"),
         ] {
-            let error = Axis::new(&wrong).unwrap_err().to_string();
+            let error = Parameter::new(&wrong).unwrap_err().to_string();
             assert!(error.contains(word) && error.contains("`x`"), "{error}");
         }
     }

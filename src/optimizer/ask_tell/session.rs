@@ -2,8 +2,8 @@
 
 use super::AskTellError;
 use super::batch::Batch;
-use super::message::{Direction, Header, LARGEST_BATCH, Line, Told};
-use super::parameter::Axis;
+use super::message::{Direction, Header, LARGEST_BATCH, Line, PointValue};
+use super::parameter::Parameter;
 use crate::input::space::GridPoint;
 use crate::optimizer::{Grid, Optimizer, OptimizerKind, StopReason, build};
 use serde_json::{Map, Value, json};
@@ -26,7 +26,7 @@ pub struct Session {
 }
 
 struct Begun {
-    axes: Vec<Axis>,
+    axes: Vec<Parameter>,
     direction: Direction,
     /// Points proposed at a time; `None`: as many as are asked.
     size: Option<usize>,
@@ -78,9 +78,9 @@ impl Begun {
         if let Some(size) = header.batch.filter(|size| !(1..=LARGEST_BATCH).contains(size)) {
             return Err(AskTellError::Batch(size));
         }
-        let axes = header.parameters.iter().map(Axis::new).collect::<Result<Vec<_>, _>>()?;
+        let axes = header.parameters.iter().map(Parameter::new).collect::<Result<Vec<_>, _>>()?;
         let kind: OptimizerKind = header.optimizer.parse()?;
-        let grid = Grid::new(axes.iter().map(Axis::levels).collect());
+        let grid = Grid::new(axes.iter().map(Parameter::levels).collect());
         Ok(Begun {
             axes,
             direction: header.direction,
@@ -108,10 +108,10 @@ impl Begun {
         Ok(json!({"asked": asked.into_iter().map(one).collect::<Vec<_>>()}))
     }
 
-    fn tell(&mut self, told: &[Told]) -> Result<Value, AskTellError> {
+    fn tell(&mut self, told: &[PointValue]) -> Result<Value, AskTellError> {
         self.batch.check(told)?;
         let was_open = !self.batch.complete();
-        for &Told { id, value } in told {
+        for &PointValue { id, value } in told {
             let point = self.batch.keep(id, value.map(|v| self.direction.flip(v)));
             let better = |value: f64, best: &Best| {
                 let (value, best_value) =

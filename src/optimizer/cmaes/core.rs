@@ -1,13 +1,17 @@
 //! One run of CMA-ES on R^n by ask and tell.
 
-use super::eigen::symmetric_eigen;
 use super::parameters::Parameters;
 use super::stop::{History, Stop, Tolerances};
-use crate::stream::{normal, stream};
+use crate::stream::stream;
 use libm::{exp, pow, sqrt};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use rand::RngExt;
+use rand_distr::StandardNormal;
 
 /// Largest condition number of C; above it a run ends.
 const CONDITION: f64 = 1e14;
+/// Iterations after which an eigen decomposition is given up (it takes a few per axis).
+const EIGEN_ITERATIONS: usize = 1000;
 
 /// Where and how a run starts.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,16 +45,16 @@ pub struct CmaEs {
     n: usize,
     start: Start,
     parameters: Parameters,
-    mean: Vec<f64>,
+    mean: DVector<f64>,
     sigma: f64,
-    /// Covariance matrix C, row-major.
-    c: Vec<f64>,
-    /// Eigenvectors of C in columns, row-major.
-    b: Vec<f64>,
+    /// Covariance matrix C; only the lower triangle is kept up.
+    c: DMatrix<f64>,
+    /// Eigenvectors of C, in columns.
+    b: DMatrix<f64>,
     /// Square roots of the eigenvalues of C.
-    d: Vec<f64>,
-    p_sigma: Vec<f64>,
-    p_c: Vec<f64>,
+    d: DVector<f64>,
+    p_sigma: DVector<f64>,
+    p_c: DVector<f64>,
     generation: u64,
     history: History,
     seed: u64,
@@ -62,18 +66,16 @@ impl CmaEs {
     /// A run that draws its samples from the streams `(seed, sample number, purpose)`.
     pub fn new(start: Start, seed: u64, purpose: &str) -> Self {
         let n = start.mean.len();
-        let identity: Vec<f64> =
-            (0..n * n).map(|k| if k / n == k % n { 1.0 } else { 0.0 }).collect();
         let mut run = CmaEs {
             n,
             parameters: Parameters::new(n, start.lambda, start.active),
-            mean: start.mean.clone(),
+            mean: DVector::from_column_slice(&start.mean),
             sigma: start.sigma,
-            c: identity.clone(),
-            b: identity,
-            d: vec![1.0; n],
-            p_sigma: vec![0.0; n],
-            p_c: vec![0.0; n],
+            c: DMatrix::identity(n, n),
+            b: DMatrix::identity(n, n),
+            d: DVector::repeat(n, 1.0),
+            p_sigma: DVector::zeros(n),
+            p_c: DVector::zeros(n),
             generation: 0,
             history: History::default(),
             seed,
@@ -93,7 +95,7 @@ impl CmaEs {
 
     /// The mean m of the distribution.
     pub fn mean(&self) -> &[f64] {
-        &self.mean
+        self.mean.as_slice()
     }
 
     /// The step size sigma.
@@ -103,7 +105,7 @@ impl CmaEs {
 
     /// Standard deviation of coordinate `i`, units of x.
     pub fn std(&self, i: usize) -> f64 {
-        self.sigma * sqrt(self.c[i * self.n + i].max(0.0))
+        self.sigma * sqrt(self.c[(i, i)].max(0.0))
     }
 
     /// Generations told.
@@ -113,13 +115,10 @@ impl CmaEs {
 
     /// Draws one candidate, `x = m + sigma B D z` (38) to (40).
     pub fn sample(&mut self) -> Vec<f64> {
-        let z = normals(self.n, self.seed, self.samples, &self.purpose);
+        let mut random = stream(self.seed, self.samples, &self.purpose);
         self.samples += 1;
-        let scaled: Vec<f64> = z.iter().zip(&self.d).map(|(z, d)| z * d).collect();
-        let row = |i: usize| -> f64 {
-            self.b[i * self.n..(i + 1) * self.n].iter().zip(&scaled).map(|(b, s)| b * s).sum()
-        };
-        (0..self.n).map(|i| self.mean[i] + self.sigma * row(i)).collect()
+        let scaled = self.d.map(|d| d * random.sample::<f64, _>(StandardNormal));
+        (&self.mean + self.sigma * (&self.b * scaled)).as_slice().to_vec()
     }
 
     /// Draws a generation of lambda candidates.
@@ -144,86 +143,61 @@ impl CmaEs {
         } else {
             Parameters::new(self.n, ranked.len(), self.start.active)
         };
-        let steps: Vec<Vec<f64>> = ranked
-            .iter()
-            .map(|s| s.x.iter().zip(&self.mean).map(|(x, m)| (x - m) / self.sigma).collect())
-            .collect();
+        let step = |s: &&Solution| (DVector::from_column_slice(&s.x) - &self.mean) / self.sigma;
+        let steps: Vec<DVector<f64>> = ranked.iter().map(step).collect();
         self.generation += 1;
         let mean_step = self.recombine(&p, &steps);
         let h_sigma = self.update_paths(&p, &mean_step);
         self.update_covariance(&p, &steps, h_sigma);
         // (44); the exponent is limited to 1 as in the tutorial's example code.
-        let surplus = norm(&self.p_sigma) / p.chi_n - 1.0;
+        let surplus = self.p_sigma.norm() / p.chi_n - 1.0;
         self.sigma *= exp((p.c_sigma / p.d_sigma * surplus).min(1.0));
         self.keep_min_std();
         self.decompose();
     }
 
     /// Moves the mean (42) with `c_m = 1` and returns the step in units of sigma (41).
-    fn recombine(&mut self, p: &Parameters, steps: &[Vec<f64>]) -> Vec<f64> {
-        let mut mean_step = vec![0.0; self.n];
-        for (w, y) in p.weights[..p.mu].iter().zip(steps) {
-            mean_step.iter_mut().zip(y).for_each(|(m, y)| *m += w * y);
+    fn recombine(&mut self, p: &Parameters, steps: &[DVector<f64>]) -> DVector<f64> {
+        let mut mean_step = DVector::zeros(self.n);
+        for (&w, y) in p.weights[..p.mu].iter().zip(steps) {
+            mean_step.axpy(w, y, 1.0);
         }
-        self.mean.iter_mut().zip(&mean_step).for_each(|(m, y)| *m += self.sigma * y);
+        self.mean.axpy(self.sigma, &mean_step, 1.0);
         mean_step
     }
 
     /// Updates both paths (43), (45) and returns `h_sigma`.
-    fn update_paths(&mut self, p: &Parameters, mean_step: &[f64]) -> bool {
-        let whitened = self.whiten(mean_step);
+    fn update_paths(&mut self, p: &Parameters, mean_step: &DVector<f64>) -> bool {
         let gain = sqrt(p.c_sigma * (2.0 - p.c_sigma) * p.mu_eff);
-        for (path, w) in self.p_sigma.iter_mut().zip(&whitened) {
-            *path = (1.0 - p.c_sigma) * *path + gain * w;
-        }
+        self.p_sigma.axpy(gain, &self.whiten(mean_step), 1.0 - p.c_sigma);
         let warm = sqrt(1.0 - pow(1.0 - p.c_sigma, 2.0 * self.generation as f64));
         let limit = (1.4 + 2.0 / (self.n as f64 + 1.0)) * p.chi_n;
-        let h_sigma = norm(&self.p_sigma) / warm < limit;
+        let h_sigma = self.p_sigma.norm() / warm < limit;
         let gain = if h_sigma { sqrt(p.c_c * (2.0 - p.c_c) * p.mu_eff) } else { 0.0 };
-        for (path, y) in self.p_c.iter_mut().zip(mean_step) {
-            *path = (1.0 - p.c_c) * *path + gain * y;
-        }
+        self.p_c.axpy(gain, mean_step, 1.0 - p.c_c);
         h_sigma
     }
 
     /// Updates C (46), (47).
-    fn update_covariance(&mut self, p: &Parameters, steps: &[Vec<f64>], h_sigma: bool) {
-        let weights: Vec<f64> = p
-            .weights
-            .iter()
-            .zip(steps)
-            .map(|(&w, y)| {
-                if w >= 0.0 {
-                    return w;
-                }
-                let length = norm(&self.whiten(y));
-                w * self.n as f64 / (length * length).max(f64::MIN_POSITIVE)
-            })
-            .collect();
+    fn update_covariance(&mut self, p: &Parameters, steps: &[DVector<f64>], h_sigma: bool) {
+        let weight = |(&w, y): (&f64, &DVector<f64>)| {
+            let scale = || self.n as f64 / self.whiten(y).norm_squared().max(f64::MIN_POSITIVE);
+            if w >= 0.0 { w } else { w * scale() }
+        };
+        let weights: Vec<f64> = p.weights.iter().zip(steps).map(weight).collect();
         let lost = if h_sigma { 0.0 } else { p.c_c * (2.0 - p.c_c) };
         let sum: f64 = p.weights.iter().sum();
         let keep = 1.0 + p.c_1 * lost - p.c_1 - p.c_mu * sum;
-        for i in 0..self.n {
-            for j in 0..=i {
-                let rank_mu: f64 = weights.iter().zip(steps).map(|(w, y)| w * y[i] * y[j]).sum();
-                let c = keep * self.c[i * self.n + j]
-                    + p.c_1 * self.p_c[i] * self.p_c[j]
-                    + p.c_mu * rank_mu;
-                self.c[i * self.n + j] = c;
-                self.c[j * self.n + i] = c;
-            }
+        self.c.syger(p.c_1, &self.p_c, &self.p_c, keep);
+        for (w, y) in weights.iter().zip(steps) {
+            self.c.syger(p.c_mu * w, y, y, 1.0);
         }
     }
 
     /// `C^(-1/2) y = B D^-1 B^T y`.
-    fn whiten(&self, y: &[f64]) -> Vec<f64> {
-        let n = self.n;
-        let mut inner = vec![0.0; n];
-        for (y, row) in y.iter().zip(self.b.chunks_exact(n.max(1))) {
-            inner.iter_mut().zip(row).for_each(|(v, b)| *v += b * y);
-        }
-        inner.iter_mut().zip(&self.d).for_each(|(v, d)| *v /= d.max(f64::MIN_POSITIVE));
-        (0..n).map(|i| (0..n).map(|j| self.b[i * n + j] * inner[j]).sum()).collect()
+    fn whiten(&self, y: &DVector<f64>) -> DVector<f64> {
+        let along = self.b.tr_mul(y).zip_map(&self.d, |v, d| v / d.max(f64::MIN_POSITIVE));
+        &self.b * along
     }
 
     /// Keeps every coordinate's standard deviation at or above its minimum, so that a discrete
@@ -239,17 +213,23 @@ impl CmaEs {
         }
         for i in 0..self.n {
             let variance = (least(i) / self.sigma) * (least(i) / self.sigma);
-            let c = &mut self.c[i * self.n + i];
+            let c = &mut self.c[(i, i)];
             if *c < variance {
                 *c = variance;
             }
         }
     }
 
+    /// Keeps the last axes where C has none (it is not finite, and the run stops).
     fn decompose(&mut self) {
-        let (values, vectors) = symmetric_eigen(&self.c, self.n);
-        self.d = values.iter().map(|v| sqrt(v.max(0.0))).collect();
-        self.b = vectors;
+        if self.n == 0 {
+            return;
+        }
+        let parts = SymmetricEigen::try_new(self.c.clone(), f64::EPSILON, EIGEN_ITERATIONS);
+        if let Some(parts) = parts {
+            self.d = parts.eigenvalues.map(|value| sqrt(value.max(0.0)));
+            self.b = parts.eigenvectors;
+        }
     }
 
     /// Why the run should end, if it should.
@@ -288,21 +268,11 @@ impl CmaEs {
         }
         // One axis a generation, in turn, as the tutorial has it.
         let axis = (self.generation % self.n.max(1) as u64) as usize;
-        let along = |i: usize| 0.1 * self.sigma * self.d[axis] * self.b[i * self.n + axis];
+        let along = |i: usize| 0.1 * self.sigma * self.d[axis] * self.b[(i, axis)];
         if axes.clone().all(|i| self.mean[i] == self.mean[i] + along(i)) {
             return Some(Stop::NoEffectAxis);
         }
         let dead = axes.clone().any(|i| self.mean[i] == self.mean[i] + 0.2 * self.std(i));
         dead.then_some(Stop::NoEffectCoord)
     }
-}
-
-fn norm(v: &[f64]) -> f64 {
-    sqrt(v.iter().map(|x| x * x).sum())
-}
-
-/// `n` standard normal numbers from the stream of that name.
-fn normals(n: usize, seed: u64, counter: u64, purpose: &str) -> Vec<f64> {
-    let mut random = stream(seed, counter, purpose);
-    (0..n).map(|_| normal(&mut random)).collect()
 }

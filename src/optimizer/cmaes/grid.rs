@@ -35,8 +35,6 @@ const EXTRA_DRAWS: u32 = 50;
 pub struct CmaEsOptimizer {
     proposed: Proposed,
     restarts: Restarts,
-    /// Axes with more than one level.
-    free: Vec<usize>,
     generation: Vec<Candidate>,
     /// Negated values; infinite for points without one.
     values: BTreeMap<GridPoint, f64>,
@@ -55,7 +53,7 @@ struct Candidate {
 impl CmaEsOptimizer {
     /// CMA-ES over `grid`.
     pub fn new(grid: Grid, seed: u64) -> Self {
-        let free: Vec<usize> = (0..grid.dimension()).filter(|&i| grid.levels()[i] > 1).collect();
+        let free = grid.free_axes();
         let step = |&i: &usize| MIN_STD_STEPS / f64::from(grid.levels()[i] - 1);
         let start = StartBox {
             low: vec![0.0; free.len()],
@@ -76,7 +74,6 @@ impl CmaEsOptimizer {
         CmaEsOptimizer {
             restarts: Restarts::new(Strategy::Bipop, start, seed),
             proposed: Proposed::new(grid, seed),
-            free,
             generation: Vec::new(),
             values: BTreeMap::new(),
             fruitful: false,
@@ -87,11 +84,7 @@ impl CmaEsOptimizer {
 
     fn draw(&mut self) -> Candidate {
         let x = self.restarts.sample();
-        let mut unit = vec![0.5; self.proposed.grid().dimension()];
-        for (&axis, &x) in self.free.iter().zip(&x) {
-            unit[axis] = fold(x);
-        }
-        let point = self.proposed.grid().snap(&unit);
+        let point = self.proposed.grid().folded(&x);
         Candidate { x, point }
     }
 
@@ -142,16 +135,11 @@ impl CmaEsOptimizer {
     }
 }
 
-/// Reflects R onto [0, 1].
-pub(in crate::optimizer) fn fold(x: f64) -> f64 {
-    (x - 2.0 * (x / 2.0).round()).abs()
-}
-
 impl Optimizer for CmaEsOptimizer {
     fn ask(&mut self, n: usize) -> Vec<GridPoint> {
         let mut points = Vec::new();
         while points.len() < n && !self.proposed.exhausted() {
-            let found = if self.free.is_empty() { None } else { self.next() };
+            let found = if self.restarts.current().mean().is_empty() { None } else { self.next() };
             let Some(point) = found.or_else(|| self.proposed.next_unseen()) else { break };
             self.barren_restarts = 0;
             points.push(point);
@@ -180,13 +168,6 @@ impl Optimizer for CmaEsOptimizer {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn folding_reflects_at_both_faces() {
-        for (x, unit) in [(0.3, 0.3), (-0.3, 0.3), (1.25, 0.75), (2.5, 0.5), (-1.75, 0.25)] {
-            assert!((fold(x) - unit).abs() < 1e-12);
-        }
-    }
 
     #[test]
     fn a_slope_leads_to_its_corner() {

@@ -9,16 +9,13 @@
 //!   [`Optimizer`](super::Optimizer).
 
 mod core;
-mod eigen;
 mod grid;
 mod parameters;
 mod restarts;
 mod stop;
 
 pub use self::core::{CmaEs, Solution, Start};
-pub use eigen::symmetric_eigen;
 pub use grid::CmaEsOptimizer;
-pub(super) use grid::fold;
 pub use parameters::{Parameters, default_lambda};
-pub use restarts::{Restarts, Run, StartBox, Strategy};
+pub use restarts::{FinishedRun, Restarts, StartBox, Strategy};
 pub use stop::{Stop, Tolerances};

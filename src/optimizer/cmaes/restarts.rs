@@ -38,7 +38,7 @@ pub struct StartBox {
 
 /// A finished run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Run {
+pub struct FinishedRun {
     /// Its population size.
     pub lambda: usize,
     /// Solutions told to it.
@@ -59,7 +59,7 @@ pub struct Restarts {
     small_budget: u64,
     large_budget: u64,
     large_runs: i32,
-    finished: Vec<Run>,
+    finished: Vec<FinishedRun>,
 }
 
 impl Restarts {
@@ -88,7 +88,7 @@ impl Restarts {
     }
 
     /// The runs that have ended, oldest first.
-    pub fn finished(&self) -> &[Run] {
+    pub fn finished(&self) -> &[FinishedRun] {
         &self.finished
     }
 
@@ -118,7 +118,7 @@ impl Restarts {
 
     fn end(&mut self, stop: Option<Stop>) {
         let lambda = self.current.parameters().lambda;
-        self.finished.push(Run { lambda, evaluations: self.evaluations, stop });
+        self.finished.push(FinishedRun { lambda, evaluations: self.evaluations, stop });
         if self.small {
             self.small_budget += self.evaluations;
         } else {
@@ -196,7 +196,11 @@ mod tests {
         }
     }
 
-    fn minimise(strategy: Strategy, f: fn(&[f64]) -> f64, generations: usize) -> (f64, Vec<Run>) {
+    fn minimise(
+        strategy: Strategy,
+        f: fn(&[f64]) -> f64,
+        generations: usize,
+    ) -> (f64, Vec<FinishedRun>) {
         let mut cma = Restarts::new(strategy, start(2), 1);
         let mut best = f64::INFINITY;
         for _ in 0..generations {

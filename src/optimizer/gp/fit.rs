@@ -49,7 +49,7 @@ pub fn fit(
         bounds
     };
     let (low, high) = (bound(|b| b.0), bound(|b| b.1));
-    let limits = Limits { low: &low, high: &high, evaluations: effort.evaluations, gradient: 1e-3 };
+    let limits = Limits { low: &low, high: &high, evaluations: effort.evaluations };
     let mut starts: Vec<Vec<f64>> = warm.map(Hyperparameters::to_vec).into_iter().collect();
     if effort.restarts || starts.is_empty() {
         let shifted = |by: f64, noise: f64| {

@@ -1,7 +1,8 @@
 //! Log posterior of the hyperparameters and its gradient.
 
+use super::factor::{Factor, factor, inverse};
 use super::kernel::{Hyperparameters, distance2, matern52, matern52_slope};
-use super::linalg::{Cholesky, dot, offset, row};
+use nalgebra::{DMatrix, DVector};
 
 /// Value and gradient at one setting of the hyperparameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,34 +26,39 @@ pub(super) fn priors(dimension: usize) -> Vec<(f64, f64)> {
 }
 
 /// What the values tell of the constant mean, which has a flat prior.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Drift {
+#[derive(Debug, Clone)]
+pub(super) struct ConstantMean {
     /// `K^-1 1`.
-    pub weights: Vec<f64>,
+    pub weights: DVector<f64>,
     /// `1' K^-1 1`: one over the variance of the mean; 0 without values.
     pub precision: f64,
 }
 
-impl Drift {
+impl ConstantMean {
     /// Of as many values as `factor` has rows.
-    pub fn new(factor: &Cholesky, n: usize) -> Self {
-        let weights = factor.solve(&vec![1.0; n]);
-        let precision = weights.iter().sum::<f64>().max(0.0);
-        Drift { weights, precision }
+    pub fn new(factor: &Factor) -> Self {
+        let weights = factor.solve(&DVector::repeat(factor.l_dirty().nrows(), 1.0));
+        let precision = weights.sum().max(0.0);
+        ConstantMean { weights, precision }
     }
 
     /// The generalised least squares mean, and `K^-1 (y - mean)` with it.
-    pub fn residual(&self, factor: &Cholesky, y: &[f64]) -> (f64, Vec<f64>) {
+    pub fn residual(&self, factor: &Factor, y: &DVector<f64>) -> (f64, DVector<f64>) {
         let known = self.precision > 0.0;
-        let mean = if known { dot(&self.weights, y) / self.precision } else { 0.0 };
-        let centred: Vec<f64> = y.iter().map(|v| v - mean).collect();
-        (mean, factor.solve(&centred))
+        let mean = if known { self.weights.dot(y) / self.precision } else { 0.0 };
+        (mean, factor.solve(&y.add_scalar(-mean)))
+    }
+
+    /// `(1 - k' K^-1 1) / (1' K^-1 1)` for covariances `k`: how a point leans on the mean.
+    pub fn leaning(&self, k: &DVector<f64>) -> f64 {
+        let rest = 1.0 - k.dot(&self.weights);
+        if self.precision > 0.0 { rest / self.precision } else { 0.0 }
     }
 
     /// Variance that the unknown mean adds at a point with covariances `k`.
-    pub fn variance(&self, k: &[f64]) -> f64 {
-        let rest = 1.0 - dot(k, &self.weights);
-        if self.precision > 0.0 { rest * rest / self.precision } else { 0.0 }
+    pub fn variance(&self, k: &DVector<f64>) -> f64 {
+        let leaning = self.leaning(k);
+        leaning * leaning * self.precision
     }
 }
 
@@ -70,40 +76,40 @@ pub fn log_posterior(
     let (n, d) = (y.len(), theta.log_length.len());
     let scaled: Vec<Vec<f64>> = x.iter().map(|p| theta.scale(p)).collect();
     let (signal, noise) = (libm::exp(theta.log_signal), libm::exp(theta.log_noise));
-    let mut k = Vec::with_capacity(offset(n));
-    let mut slope = Vec::with_capacity(offset(n));
-    for i in 0..n {
-        for j in 0..=i {
+    let (mut k, mut slope) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
+    for j in 0..n {
+        for i in j..n {
             let r2 = distance2(&scaled[i], &scaled[j]);
-            k.push(signal * matern52(r2));
-            slope.push(2.0 * signal * matern52_slope(r2));
+            k[(i, j)] = signal * matern52(r2);
+            slope[(i, j)] = 2.0 * signal * matern52_slope(r2);
         }
-        k[offset(i) + i] += noise_floor + noise;
+        k[(j, j)] += noise_floor + noise;
     }
-    let factor = Cholesky::new(&k, n)?;
-    let drift = Drift::new(&factor, n);
-    let (mean, alpha) = drift.residual(&factor, y);
-    let quadratic: f64 = alpha.iter().zip(y).map(|(a, y)| a * (y - mean)).sum();
-    let precision = drift.precision.max(f64::MIN_POSITIVE);
-    let w: Vec<f64> = drift.weights.iter().map(|w| w / precision.sqrt()).collect();
-    let mut value = -0.5 * (quadratic + factor.log_determinant() + libm::log(precision));
+    let factor = factor(k.clone())?;
+    let constant = ConstantMean::new(&factor);
+    let y = DVector::from_column_slice(y);
+    let (mean, alpha) = constant.residual(&factor, &y);
+    let quadratic = alpha.dot(&y.add_scalar(-mean));
+    let precision = constant.precision.max(f64::MIN_POSITIVE);
+    let w = constant.weights / precision.sqrt();
+    let log_determinant: f64 =
+        factor.l_dirty().diagonal().iter().map(|pivot| 2.0 * libm::log(*pivot)).sum();
+    let mut value = -0.5 * (quadratic + log_determinant + libm::log(precision));
 
     // d value / d theta = 1/2 sum_ij (alpha_i alpha_j + w_i w_j - (K^-1)_ij) dK_ij / d theta.
-    let inverse = factor.inverse();
+    let inverse = inverse(&factor);
     let mut gradient = vec![0.0; d + 2];
     let (mut through_k, mut trace) = (0.0, 0.0);
-    for i in 0..n {
-        let (ki, si, vi) = (row(&k, i), row(&slope, i), row(&inverse, i));
-        for j in 0..i {
-            let weight = alpha[i] * alpha[j] + w[i] * w[j] - vi[j];
-            through_k += weight * ki[j];
-            let by_length = weight * si[j];
-            for a in 0..d {
-                let difference = scaled[i][a] - scaled[j][a];
-                gradient[a] += by_length * difference * difference;
+    for j in 0..n {
+        let weight = |i: usize| alpha[i] * alpha[j] + w[i] * w[j] - inverse[(i, j)];
+        for i in j + 1..n {
+            through_k += weight(i) * k[(i, j)];
+            let by_length = weight(i) * slope[(i, j)];
+            for (gradient, (a, b)) in gradient.iter_mut().zip(scaled[i].iter().zip(&scaled[j])) {
+                *gradient += by_length * (a - b) * (a - b);
             }
         }
-        trace += alpha[i] * alpha[i] + w[i] * w[i] - vi[i];
+        trace += weight(j);
     }
     gradient[d] = through_k + 0.5 * trace * signal;
     gradient[d + 1] = 0.5 * trace * noise;

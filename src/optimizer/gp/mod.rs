@@ -7,16 +7,17 @@
 //! them, and the improvement times the probability of keeping them; with several objectives a
 //! model for each, and the expected hypervolume improvement.
 //!
-//! The linear algebra is our own and plain: libraries that choose their kernels by the CPU at
-//! hand would let the proposals depend on the machine.
+//! The linear algebra is nalgebra's, and only what it does without `matrixmultiply`, which
+//! chooses its kernels by the processor: factors, triangular solutions and scalar products, but
+//! no product of two matrices.
 
 mod acquisition;
 mod data;
+mod factor;
 mod fit;
 mod kernel;
 mod lbfgs;
 mod likelihood;
-mod linalg;
 mod model;
 mod optimizer;
 mod search;

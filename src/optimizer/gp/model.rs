@@ -1,8 +1,9 @@
 //! The trained Gaussian process.
 
-use super::kernel::{Hyperparameters, matern52};
-use super::likelihood::Drift;
-use super::linalg::{Cholesky, dot, offset};
+use super::factor::{Factor, factor, half_solved, with_point};
+use super::kernel::{Hyperparameters, matern52, matern52_slope};
+use super::likelihood::ConstantMean;
+use nalgebra::{DMatrix, DVector};
 
 /// A Gaussian process conditioned on observations. Inputs in the unit cube, outputs in the
 /// units of the training values.
@@ -16,20 +17,20 @@ pub struct Gp {
     mean: f64,
     /// Scaled inputs by axis: `columns[a][i]` is coordinate `a` of observation `i`.
     columns: Vec<Vec<f64>>,
-    factor: Cholesky,
+    factor: Factor,
     /// `K^-1 (y - mean)`; zero for believed points.
-    alpha: Vec<f64>,
+    alpha: DVector<f64>,
     /// What is known of the mean.
-    drift: Drift,
+    constant: ConstantMean,
 }
 
-/// What a candidate's covariances tell before any triangular solve.
-pub(super) struct Glance {
-    /// Posterior mean.
+/// Posterior of the function (without noise) at a point, and its derivatives by the point's
+/// coordinates. The variance holds that of the constant mean (ordinary kriging).
+pub(super) struct Sloped {
     pub mean: f64,
-    /// A bound on the posterior variance: that given the most correlated observation alone,
-    /// and that of the mean.
-    pub variance_bound: f64,
+    pub variance: f64,
+    pub mean_slope: Vec<f64>,
+    pub variance_slope: Vec<f64>,
 }
 
 impl Gp {
@@ -46,33 +47,31 @@ impl Gp {
         let axes = theta.log_length.len();
         let columns: Vec<Vec<f64>> =
             (0..axes).map(|a| scaled.iter().map(|p| p[a]).collect()).collect();
-        let mut noise = noise_floor + libm::exp(theta.log_noise);
-        let mut gp = Gp {
-            inverse_length: theta.log_length.iter().map(|l| libm::exp(-l)).collect(),
-            theta,
-            signal,
-            noise,
-            mean: 0.0,
-            columns,
-            factor: Cholesky::default(),
-            alpha: Vec::new(),
-            drift: Drift::default(),
-        };
-        let mut packed = Vec::with_capacity(offset(y.len()));
-        let mut row = Vec::new();
-        for (i, point) in scaled.iter().enumerate() {
-            gp.covariances(point, i + 1, &mut row);
-            packed.extend_from_slice(&row);
+        let mut covariance = DMatrix::zeros(y.len(), y.len());
+        for (mut column, point) in covariance.column_iter_mut().zip(&scaled) {
+            column.copy_from(&covariances(&columns, signal, point));
         }
+        let mut noise = noise_floor + libm::exp(theta.log_noise);
+        let y = DVector::from_column_slice(y);
         for _ in 0..8 {
-            let mut noisy = packed.clone();
-            (0..y.len()).for_each(|i| noisy[offset(i) + i] += noise);
-            if let Some(factor) = Cholesky::new(&noisy, y.len()) {
-                gp.drift = Drift::new(&factor, y.len());
-                (gp.mean, gp.alpha) = gp.drift.residual(&factor, y);
-                (gp.factor, gp.noise) = (factor, noise);
-                let finite = gp.mean.is_finite() && gp.alpha.iter().all(|a| a.is_finite());
-                return finite.then_some(gp);
+            let mut noisy = covariance.clone();
+            (0..y.len()).for_each(|i| noisy[(i, i)] += noise);
+            if let Some(factor) = factor(noisy) {
+                let constant = ConstantMean::new(&factor);
+                let (mean, alpha) = constant.residual(&factor, &y);
+                let finite = mean.is_finite() && alpha.iter().all(|a| a.is_finite());
+                let inverse_length = theta.log_length.iter().map(|l| libm::exp(-l)).collect();
+                return finite.then_some(Gp {
+                    theta,
+                    inverse_length,
+                    signal,
+                    noise,
+                    mean,
+                    columns,
+                    factor,
+                    alpha,
+                    constant,
+                });
             }
             noise = (noise * 10.0).max(1e-8 * signal);
         }
@@ -97,72 +96,86 @@ impl Gp {
     /// Posterior mean and variance of the function (without noise) at a point; the variance
     /// holds that of the constant mean (ordinary kriging).
     pub fn predict(&self, x: &[f64]) -> (f64, f64) {
-        let mut k = Vec::new();
-        self.covariances(&self.scale(x), self.len(), &mut k);
-        let v = self.factor.forward(&k);
-        let variance = (self.signal - dot(&v, &v)).max(0.0) + self.drift.variance(&k);
-        (self.mean + dot(&k, &self.alpha), variance)
+        let k = self.covariances(x);
+        (self.mean_at(&k), self.variance_at(&k))
     }
 
     /// Takes the posterior mean at `x` for observed (kriging believer). The mean stays as it is,
     /// the variance falls. Nothing changes if `x` cannot be told from points already there.
     pub fn believe(&mut self, x: &[f64]) {
-        let scaled = self.scale(x);
-        let mut k = Vec::new();
-        self.covariances(&scaled, self.len(), &mut k);
-        if self.factor.append(&k, self.signal + self.noise) {
-            self.columns.iter_mut().zip(&scaled).for_each(|(c, x)| c.push(*x));
-            self.alpha.push(0.0);
-            self.drift = Drift::new(&self.factor, self.alpha.len());
+        let k = self.covariances(x);
+        if let Some(factor) = with_point(&self.factor, &k, self.signal + self.noise) {
+            let scaled = self.scale(x);
+            self.columns.iter_mut().zip(scaled).for_each(|(c, x)| c.push(x));
+            self.alpha = self.alpha.push(0.0);
+            self.constant = ConstantMean::new(&factor);
+            self.factor = factor;
         }
     }
 
-    /// Posterior mean and a bound of the variance from the covariances `k` of a candidate.
-    pub(super) fn glance(&self, k: &[f64]) -> Glance {
+    /// The posterior at a point with its derivatives.
+    pub(super) fn sloped(&self, x: &[f64]) -> Sloped {
+        let (k, scaled) = (self.covariances(x), self.scale(x));
+        // The variance is signal - k' K^-1 k + leaning^2 precision.
+        let by_k =
+            -2.0 * (self.factor.solve(&k) + self.constant.leaning(&k) * &self.constant.weights);
+        let mut slopes = (Vec::new(), Vec::new());
+        let r2: Vec<f64> = distances2(&self.columns, &scaled, self.len());
+        for ((column, x), inverse_length) in
+            self.columns.iter().zip(&scaled).zip(&self.inverse_length)
+        {
+            let slope = |(c, r2): (&f64, &f64)| -2.0 * (x - c) * matern52_slope(*r2);
+            let slope = DVector::from_iterator(self.len(), column.iter().zip(&r2).map(slope));
+            slopes.0.push(self.signal * inverse_length * slope.dot(&self.alpha));
+            slopes.1.push(self.signal * inverse_length * slope.dot(&by_k));
+        }
+        let (mean, variance) = (self.mean_at(&k), self.variance_at(&k));
+        Sloped { mean, variance, mean_slope: slopes.0, variance_slope: slopes.1 }
+    }
+
+    /// Posterior mean from the covariances `k` of a candidate.
+    pub(super) fn mean_at(&self, k: &DVector<f64>) -> f64 {
+        self.mean + k.dot(&self.alpha)
+    }
+
+    /// A bound on the posterior variance that needs no triangular solution: that given the most
+    /// correlated observation alone, and that of the mean.
+    pub(super) fn variance_bound(&self, k: &DVector<f64>) -> f64 {
         let largest = k.iter().copied().fold(0.0, f64::max);
-        let alone = self.signal - largest * largest / (self.signal + self.noise);
-        Glance {
-            mean: self.mean + dot(k, &self.alpha),
-            variance_bound: alone + self.drift.variance(k),
-        }
+        self.signal - largest * largest / (self.signal + self.noise) + self.constant.variance(k)
     }
 
-    /// Posterior variance from the covariances `k`, or `None` as soon as `hopeless` says of an
-    /// upper bound that it is too small to matter.
-    pub(super) fn variance(&self, k: &[f64], hopeless: impl Fn(f64) -> bool) -> Option<f64> {
-        const BLOCK: usize = 32;
-        let mut v: Vec<f64> = Vec::with_capacity(k.len());
-        let drift = self.drift.variance(k);
-        let mut variance = self.signal;
-        for (i, &b) in k.iter().enumerate() {
-            let next = self.factor.forward_step(&v, b);
-            variance -= next * next;
-            v.push(next);
-            if i % BLOCK == BLOCK - 1 && hopeless(variance.max(0.0) + drift) {
-                return None;
-            }
-        }
-        Some(variance.max(0.0) + drift)
+    /// Posterior variance from the covariances `k` of a candidate.
+    pub(super) fn variance_at(&self, k: &DVector<f64>) -> f64 {
+        let known = half_solved(&self.factor, k).norm_squared();
+        (self.signal - known).max(0.0) + self.constant.variance(k)
     }
 
-    /// Covariances of a candidate of the unit cube with all observations.
-    pub(super) fn cross(&self, x: &[f64], k: &mut Vec<f64>) {
-        self.covariances(&self.scale(x), self.len(), k);
+    /// Covariances of a point of the unit cube with all observations.
+    pub(super) fn covariances(&self, x: &[f64]) -> DVector<f64> {
+        covariances(&self.columns, self.signal, &self.scale(x))
     }
 
     fn scale(&self, x: &[f64]) -> Vec<f64> {
         x.iter().zip(&self.inverse_length).map(|(x, i)| x * i).collect()
     }
+}
 
-    /// Covariances of a scaled point with the first `n` observations.
-    fn covariances(&self, scaled: &[f64], n: usize, k: &mut Vec<f64>) {
-        k.clear();
-        k.resize(n, 0.0);
-        for (column, x) in self.columns.iter().zip(scaled) {
-            k.iter_mut().zip(column).for_each(|(r2, c)| *r2 += (c - x) * (c - x));
-        }
-        k.iter_mut().for_each(|r2| *r2 = self.signal * matern52(*r2));
+/// Squared distances of a scaled point from `n` observations.
+fn distances2(columns: &[Vec<f64>], scaled: &[f64], n: usize) -> Vec<f64> {
+    let mut r2 = vec![0.0; n];
+    for (column, x) in columns.iter().zip(scaled) {
+        r2.iter_mut().zip(column).for_each(|(r2, c)| *r2 += (c - x) * (c - x));
     }
+    r2
+}
+
+/// Covariances of a scaled point with the observations.
+fn covariances(columns: &[Vec<f64>], signal: f64, scaled: &[f64]) -> DVector<f64> {
+    let n = columns.first().map_or(0, Vec::len);
+    let mut k = distances2(columns, scaled, n);
+    k.iter_mut().for_each(|r2| *r2 = signal * matern52(*r2));
+    DVector::from_vec(k)
 }
 
 #[cfg(test)]
@@ -220,15 +233,27 @@ mod tests {
     }
 
     #[test]
-    fn the_glance_bounds_the_variance() {
+    fn the_bound_holds_and_the_slopes_are_those_of_finite_differences() {
         let gp = model();
-        let mut k = Vec::new();
         for x in [0.03, 0.2, 0.77, 1.0] {
-            gp.cross(&[x], &mut k);
-            let (mean, variance) = gp.predict(&[x]);
-            let glance = gp.glance(&k);
-            assert!((glance.mean - mean).abs() < 1e-12 && glance.variance_bound >= variance);
-            assert!((gp.variance(&k, |_| false).unwrap() - variance).abs() < 1e-12);
+            let at = |x: f64| gp.predict(&[x]);
+            let (mean, variance) = at(x);
+            let k = gp.covariances(&[x]);
+            assert!((gp.mean_at(&k) - mean).abs() < 1e-12 && gp.variance_bound(&k) >= variance);
+            let sloped = gp.sloped(&[x]);
+            assert!(
+                (sloped.mean - mean).abs() < 1e-12 && (sloped.variance - variance).abs() < 1e-12
+            );
+            let (up, down) = (at(x + 1e-5), at(x - 1e-5));
+            for (slope, up, down) in
+                [(sloped.mean_slope[0], up.0, down.0), (sloped.variance_slope[0], up.1, down.1)]
+            {
+                let expected = (up - down) / 2e-5;
+                assert!(
+                    (slope - expected).abs() < 1e-4 * (1.0 + expected.abs()),
+                    "{slope} {expected}"
+                );
+            }
         }
     }
 

@@ -60,7 +60,7 @@ impl GpOptimizer {
     /// what is missing or not a positive number counts as zero.
     pub fn with_noise_floors(grid: Grid, seed: u64, noise_floors: &[f64]) -> Self {
         let floor = |&floor: &f64| if floor.is_finite() { floor.max(0.0) } else { 0.0 };
-        let free: Vec<usize> = (0..grid.dimension()).filter(|&i| grid.levels()[i] > 1).collect();
+        let free = grid.free_axes();
         GpOptimizer {
             design: SobolSequence::new(grid.dimension(), seed, 0, "gp design"),
             proposed: Proposed::new(grid, seed),

@@ -1,11 +1,13 @@
 //! Where on the grid the acquisition is largest.
 
+use super::lbfgs::{Limits, minimise};
 use super::trained::Trained;
 use crate::input::space::GridPoint;
 use crate::optimizer::sobol::SobolSequence;
 use crate::optimizer::{Grid, Proposed};
 use crate::stream::stream;
 use rand::RngExt;
+use rand_distr::StandardNormal;
 use std::collections::BTreeMap;
 
 /// Grids up to this size are searched completely.
@@ -14,6 +16,10 @@ const EXHAUSTIVE: u64 = 20_000;
 const EXHAUSTIVE_WORK: u64 = 1_000_000;
 /// Starts of the local search.
 const STARTS: usize = 6;
+/// What an acquisition with its derivatives costs, in acquisitions.
+const COST_OF_SLOPE: usize = 3;
+/// Most of them from one start.
+const MOST_SLOPES: usize = 40;
 
 /// One search for the best unseen point.
 pub(super) struct Search<'a> {
@@ -28,8 +34,8 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The unseen grid point found with the largest promise; `None` if no unseen point was
-    /// met or none has a finite one.
+    /// The unseen grid point found with the largest acquisition; `None` if no unseen point
+    /// was met or none has a finite one.
     pub fn maximise(&self) -> Option<GridPoint> {
         let (size, known) = (self.grid().size(), self.trained.len() * self.trained.models());
         if size <= EXHAUSTIVE && size.saturating_mul(known as u64) <= EXHAUSTIVE_WORK {
@@ -52,12 +58,11 @@ impl Search<'_> {
     /// of the variance bounds it, and constraints only take away from it. Points are taken by falling bound until the bound is
     /// below the best found, and few need the triangular solve.
     fn exhaustive(&self) -> Option<GridPoint> {
-        let mut k = Vec::new();
         let mut bounds: Vec<(f64, GridPoint)> = Vec::new();
         let mut point = GridPoint(vec![0; self.grid().dimension()]);
         loop {
             if !self.proposed.contains(&point) {
-                bounds.push((self.trained.bound(&self.unit(&point), &mut k), point.clone()));
+                bounds.push((self.trained.bound(&self.unit(&point)), point.clone()));
             }
             if !advance(&mut point, self.grid().levels()) {
                 break;
@@ -71,39 +76,50 @@ impl Search<'_> {
             if bound <= record {
                 break;
             }
-            let promise = self.trained.promise_above(record, &self.unit(&point), &mut k);
-            if let Some(value) = promise.filter(|value| *value > record) {
+            let value = self.trained.acquisition(&self.unit(&point));
+            if value > record {
                 best = Some((value, point));
             }
         }
         best.map(|(_, point)| point)
     }
 
-    /// Sobol points and perturbations of the incumbents, the best of them improved by a
-    /// coordinate search on the lattice with halving steps.
+    /// Sobol points and perturbations of the incumbents, the best of them improved by L-BFGS
+    /// within the cube and by single levels about the grid point nearest to where it ends.
     fn sampled(&self) -> Option<GridPoint> {
         let (n, models) = (self.trained.len(), self.trained.models().max(1));
         // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
-        let mut budget = (6_000_000 / models / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
+        let budget = (6_000_000 / models / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
         let mut memory: BTreeMap<GridPoint, f64> = BTreeMap::new();
-        let spread = budget / 3;
-        let mut candidates = self.candidates(spread);
-        let mut ranked: Vec<(f64, GridPoint)> = Vec::with_capacity(candidates.len());
+        let mut candidates = self.candidates(budget / 3);
         candidates.sort();
         candidates.dedup();
-        for point in candidates {
-            budget = budget.saturating_sub(1);
-            ranked.push((self.value(&point, &mut memory), point));
-        }
+        let value = |point| (self.value(&point, &mut memory), point);
+        let mut ranked: Vec<(f64, GridPoint)> = candidates.into_iter().map(value).collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         ranked.truncate(STARTS);
-        let share = budget / ranked.len().max(1);
-        for (value, point) in ranked {
-            self.climb(point, value, share, &mut memory);
+        let share = (budget - budget / 3) / ranked.len().max(1);
+        for (_, point) in ranked {
+            let top = self.ascend(&point, (share / 2 / COST_OF_SLOPE).min(MOST_SLOPES));
+            self.step_uphill(top, share / 2, &mut memory);
         }
         let unseen = memory.into_iter().filter(|(p, _)| !self.proposed.contains(p));
         let best = unseen.filter(|(_, v)| *v > f64::NEG_INFINITY);
         best.reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(point, _)| point)
+    }
+
+    /// The grid point nearest to where L-BFGS ends.
+    fn ascend(&self, from: &GridPoint, evaluations: usize) -> GridPoint {
+        let axes = self.free.len();
+        let limits = Limits { low: &vec![0.0; axes], high: &vec![1.0; axes], evaluations };
+        let negated = |x: &[f64]| {
+            let (value, slope) = self.trained.sloped_acquisition(x)?;
+            Some((-value, slope.into_iter().map(|g| -g).collect()))
+        };
+        let Some((top, _)) = minimise(negated, &self.unit(from), &limits) else {
+            return from.clone();
+        };
+        self.grid().folded(&top)
     }
 
     fn candidates(&self, count: usize) -> Vec<GridPoint> {
@@ -117,7 +133,7 @@ impl Search<'_> {
             // Radii from a twohundredth of the edge to a third, on a logarithmic scale.
             let radius = libm::exp(-5.3 + 4.2 * random.random::<f64>());
             for u in &mut unit {
-                *u += radius * (random.random::<f64>() + random.random::<f64>() - 1.0) * 1.7;
+                *u += 0.7 * radius * random.sample::<f64, _>(StandardNormal);
             }
             points.push(grid.snap(&unit));
         }
@@ -128,51 +144,40 @@ impl Search<'_> {
         if let Some(&value) = memory.get(point) {
             return value;
         }
-        let value = self.trained.promise(&self.unit(point));
+        let value = self.trained.acquisition(&self.unit(point));
         memory.insert(point.clone(), value);
         value
     }
 
-    /// Coordinate search: steps along each axis, doubled along after a success, halved when no
-    /// axis improves, down to single levels. Leaves every point it tried in `memory`.
-    fn climb(
+    /// Single levels along each axis while they improve and `budget` lasts. Leaves every point
+    /// it tried in `memory`.
+    fn step_uphill(
         &self,
         mut at: GridPoint,
-        mut value: f64,
         mut budget: usize,
         memory: &mut BTreeMap<GridPoint, f64>,
     ) {
-        let mut scale = 1.0 / 16.0;
-        loop {
+        let mut value = self.value(&at, memory);
+        let mut axes_left = self.free.len();
+        for &axis in self.free.iter().cycle() {
+            let beside = [at.0[axis].checked_add(1), at.0[axis].checked_sub(1)];
             let mut improved = false;
-            for &axis in self.free {
-                let levels = self.grid().levels()[axis];
-                let step = ((f64::from(levels) * scale) as i64).max(1);
-                for signed in [step, -step] {
-                    let moved = (i64::from(at.0[axis]) + signed).clamp(0, i64::from(levels) - 1);
-                    let mut next = at.clone();
-                    next.0[axis] = moved as u32;
-                    if next == at {
-                        continue;
-                    }
-                    if budget == 0 {
-                        return;
-                    }
-                    budget -= 1;
-                    let there = self.value(&next, memory);
-                    if there > value {
-                        (at, value, improved) = (next, there, true);
-                        break;
-                    }
-                }
-            }
-            if !improved {
-                let finest =
-                    self.free.iter().all(|&a| f64::from(self.grid().levels()[a]) * scale < 2.0);
-                if finest {
+            for level in beside.into_iter().flatten().filter(|&k| k < self.grid().levels()[axis]) {
+                if budget == 0 {
                     return;
                 }
-                scale /= 2.0;
+                budget -= 1;
+                let mut next = at.clone();
+                next.0[axis] = level;
+                let there = self.value(&next, memory);
+                if there > value {
+                    (at, value, improved) = (next, there, true);
+                    break;
+                }
+            }
+            axes_left = if improved { self.free.len() } else { axes_left - 1 };
+            if axes_left == 0 {
+                return;
             }
         }
     }

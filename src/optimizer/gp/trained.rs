@@ -1,8 +1,18 @@
 //! The models of all objectives and constraints, and what is looked for with them.
 
 use super::acquisition::{log_expected_improvement, log_expected_volume, log_probability_above};
-use super::model::Gp;
+use super::model::{Gp, Sloped};
 use crate::evaluation::pareto::{Cell, front, undominated};
+
+/// Step of the differences by the moments, in standard deviations.
+const DIFFERENCE: f64 = 1e-4;
+
+/// Mean and standard deviation of one process at a point.
+#[derive(Debug, Clone, Copy)]
+struct Moments {
+    mean: f64,
+    deviation: f64,
+}
 
 /// Models of what was told, and the goal they are used for.
 #[derive(Debug, Clone)]
@@ -96,45 +106,79 @@ impl Trained {
         self.margins.iter().map(log).sum()
     }
 
-    /// Log of what a point promises: its expected improvement or volume, times its probability
-    /// of keeping the constraints (Gardner et al. 2014, ICML 32:937).
-    pub fn promise(&self, x: &[f64]) -> f64 {
-        let moments = || self.objectives.iter().map(|gp| gp.predict(x));
-        let gain = match &self.goal {
-            Goal::Feasible => 0.0,
-            Goal::Improve(best) => {
-                moments().next().map_or(f64::NEG_INFINITY, |m| log_ei(m.0, m.1, *best))
-            }
-            Goal::Volume(front) => {
-                let moments: Vec<_> = moments().map(|(mean, v)| (mean, v.sqrt())).collect();
-                log_expected_volume(&moments, &front.cells)
-            }
-        };
-        gain + self.log_feasible(x)
+    /// Log of what a point is wanted for: its expected improvement or volume, times its
+    /// probability of keeping the constraints (Gardner et al. 2014, ICML 32:937).
+    pub fn acquisition(&self, x: &[f64]) -> f64 {
+        let moments: Vec<Moments> = self
+            .processes()
+            .map(|gp| {
+                let (mean, variance) = gp.predict(x);
+                Moments { mean, deviation: variance.sqrt() }
+            })
+            .collect();
+        self.acquisition_of(&moments)
     }
 
-    /// A bound of [`promise`](Self::promise) that needs no triangular solve; `k` is scratch.
-    pub fn bound(&self, x: &[f64], k: &mut Vec<f64>) -> f64 {
+    /// The acquisition and its derivatives by the coordinates of the point; `None` where it
+    /// is not finite. Exact through the processes; by the moments of each, which cost next to
+    /// nothing, central differences.
+    pub fn sloped_acquisition(&self, x: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let sloped: Vec<Sloped> = self.processes().map(|gp| gp.sloped(x)).collect();
+        let of = |s: &Sloped| Moments { mean: s.mean, deviation: s.variance.sqrt() };
+        let mut moments: Vec<Moments> = sloped.iter().map(of).collect();
+        let value = self.acquisition_of(&moments);
+        let mut slope = vec![0.0; x.len()];
+        for (i, sloped) in sloped.iter().enumerate() {
+            let here = moments[i];
+            let step = DIFFERENCE * here.deviation;
+            let mut at = |mean: f64, deviation: f64| {
+                moments[i] = Moments { mean, deviation };
+                self.acquisition_of(&moments)
+            };
+            let Moments { mean, deviation } = here;
+            let by_mean = (at(mean + step, deviation) - at(mean - step, deviation)) / (2.0 * step);
+            let by_deviation =
+                (at(mean, deviation + step) - at(mean, deviation - step)) / (2.0 * step);
+            moments[i] = here;
+            for (axis, slope) in slope.iter_mut().enumerate() {
+                *slope += by_mean * sloped.mean_slope[axis]
+                    + by_deviation * sloped.variance_slope[axis] / (2.0 * deviation);
+            }
+        }
+        let finite = value.is_finite() && slope.iter().all(|g| g.is_finite());
+        finite.then_some((value, slope))
+    }
+
+    /// Objectives, then constraints.
+    fn processes(&self) -> impl Iterator<Item = &Gp> {
+        self.objectives.iter().chain(self.margins.iter().map(|margin| &margin.gp))
+    }
+
+    /// Of the moments of all processes, in their order.
+    fn acquisition_of(&self, moments: &[Moments]) -> f64 {
+        let (objectives, margins) = moments.split_at(self.objectives.len());
+        let gain = match &self.goal {
+            Goal::Feasible => 0.0,
+            Goal::Improve(best) => objectives.first().map_or(f64::NEG_INFINITY, |m| {
+                log_expected_improvement(m.mean, m.deviation, *best)
+            }),
+            Goal::Volume(front) => {
+                let pairs: Vec<_> = objectives.iter().map(|m| (m.mean, m.deviation)).collect();
+                log_expected_volume(&pairs, &front.cells)
+            }
+        };
+        let feasible = margins.iter().zip(&self.margins);
+        gain + feasible
+            .map(|(m, margin)| log_probability_above(m.mean, m.deviation, margin.zero))
+            .sum::<f64>()
+    }
+
+    /// A bound of [`acquisition`](Self::acquisition) that needs no triangular solution.
+    pub fn bound(&self, x: &[f64]) -> f64 {
         let (Goal::Improve(best), Some(gp)) = (&self.goal, self.objectives.first()) else {
             return f64::INFINITY;
         };
-        gp.cross(x, k);
-        let glance = gp.glance(k);
-        log_ei(glance.mean, glance.variance_bound, *best)
+        let k = gp.covariances(x);
+        log_expected_improvement(gp.mean_at(&k), gp.variance_bound(&k).sqrt(), *best)
     }
-
-    /// The promise, or `None` as soon as it is known not to be above `record`; `k` is scratch.
-    pub fn promise_above(&self, record: f64, x: &[f64], k: &mut Vec<f64>) -> Option<f64> {
-        let (Goal::Improve(best), [gp]) = (&self.goal, &self.objectives[..]) else {
-            return Some(self.promise(x));
-        };
-        gp.cross(x, k);
-        let mean = gp.glance(k).mean;
-        let variance = gp.variance(k, |variance| log_ei(mean, variance, *best) <= record)?;
-        Some(log_ei(mean, variance, *best) + self.log_feasible(x))
-    }
-}
-
-fn log_ei(mean: f64, variance: f64, best: f64) -> f64 {
-    log_expected_improvement(mean, variance.sqrt(), best)
 }

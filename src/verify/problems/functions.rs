@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// A function of the suite, to be minimised.
+/// A test function, to be minimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Function {
     /// Sum of squares.

@@ -38,7 +38,7 @@ impl Landscape {
         Self::of(&rows, axes).map_err(fail)
     }
 
-    fn of(rows: &[Row], axes: usize) -> Result<Self, String> {
+    fn of(rows: &[DesignRow], axes: usize) -> Result<Self, String> {
         let levels: Vec<Vec<f64>> = (0..axes)
             .map(|axis| {
                 let mut levels: Vec<f64> = rows.iter().map(|row| row.at[axis]).collect();
@@ -88,12 +88,12 @@ fn index(grid: &Grid, point: &[u32]) -> usize {
     point.iter().zip(grid.levels()).fold(0, |index, (&k, &n)| index * n as usize + k as usize)
 }
 
-struct Row {
+struct DesignRow {
     at: Vec<f64>,
     value: Option<f64>,
 }
 
-fn row(line: &str, axes: usize) -> Option<Row> {
+fn row(line: &str, axes: usize) -> Option<DesignRow> {
     let number = |cell: &str| cell.parse::<f64>().ok().filter(|number| number.is_finite());
     let mut cells = line.split(',');
     let at = cells.by_ref().take(axes).map(number).collect::<Option<Vec<f64>>>()?;
@@ -101,7 +101,7 @@ fn row(line: &str, axes: usize) -> Option<Row> {
         "" => None,
         cell => Some(number(cell)?),
     };
-    (at.len() == axes).then_some(Row { at, value })
+    (at.len() == axes).then_some(DesignRow { at, value })
 }
 
 #[cfg(test)]

@@ -59,7 +59,7 @@ fn one_task_prints_json_that_threads_do_not_change() {
     assert_eq!(task["designs"].as_array().map(Vec::len), Some(11));
     // The measured stiffness, not the surrogate's.
     assert_eq!(task["designs"][4]["stiffness_compliance_n_per_mm"], 2.6);
-    assert_eq!(task["designs"][4]["infill_direction_deg"], 10.0);
+    assert_eq!(task["designs"][4]["infill_direction_deg"], 20.0);
     assert_eq!(task["agreement"][2]["compared"], "simulation");
     assert_eq!(task["agreement"][2]["matched_ends"], 6);
     assert_eq!(ran("eight", "8").stdout, result.stdout);

@@ -30,13 +30,23 @@ impl FailureClass {
         self as u8 + 1
     }
 
-    /// A short name for tables and plots.
+    /// Its name, for texts and tables.
     pub fn label(self) -> &'static str {
         match self {
             FailureClass::ContactLossBeforeSearch => "contact loss before search",
             FailureClass::PlugMissed => "plug missed",
             FailureClass::Jammed => "jammed",
             FailureClass::ContactLossInInsertion => "contact loss in insertion",
+        }
+    }
+
+    /// A word or two, for plots.
+    pub fn short(self) -> &'static str {
+        match self {
+            FailureClass::ContactLossBeforeSearch => "lost early",
+            FailureClass::PlugMissed => "missed",
+            FailureClass::Jammed => "jammed",
+            FailureClass::ContactLossInInsertion => "lost",
         }
     }
 }
@@ -67,4 +77,39 @@ pub enum Outcome {
     Failed(FailureClass),
     /// The simulation left the finite numbers; says nothing about the design.
     Diverged,
+}
+
+impl Outcome {
+    /// `inserted`, `failed` or `diverged`, as files and JSON have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Outcome::Inserted => "inserted",
+            Outcome::Failed(_) => "failed",
+            Outcome::Diverged => "diverged",
+        }
+    }
+
+    /// The same for readers: of a failure the name of its class.
+    pub fn label(self) -> &'static str {
+        match self {
+            Outcome::Failed(class) => class.label(),
+            other => other.word(),
+        }
+    }
+
+    /// A word or two, for plots.
+    pub fn short(self) -> &'static str {
+        match self {
+            Outcome::Failed(class) => class.short(),
+            other => other.word(),
+        }
+    }
+
+    /// The failure class, 1 to 4, if it was a failure.
+    pub fn failure(self) -> Option<u8> {
+        match self {
+            Outcome::Failed(class) => Some(class.number()),
+            _ => None,
+        }
+    }
 }

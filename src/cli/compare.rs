@@ -1,11 +1,10 @@
 //! `optimize compare DIR..`: studies of the same problem side by side.
 
 use super::{Failure, print, print_json};
-use crate::report::compare::{Comparison, Quartiles, TOLERANCE_MM, compare};
+use crate::report::compare::{Comparison, TOLERANCE_MM, compare};
 use crate::report::compare_svg;
 use crate::study::{StudyRecord, write_file};
 use clap::Args;
-use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// Compare optimizers over studies of the same task and objective.
@@ -31,7 +30,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let drawn = compare_svg(&comparison);
         write_file(file, &drawn.map_err(|error| Failure::running(error.to_string()))?)?;
     }
-    if arguments.json { print_json(&to_json(&comparison)) } else { print(&table(&comparison)) }
+    if arguments.json {
+        let json = serde_json::to_value(&comparison);
+        return print_json(&json.map_err(|error| Failure::running(error.to_string()))?);
+    }
+    print(&table(&comparison))
 }
 
 fn table(comparison: &Comparison) -> String {
@@ -41,7 +44,7 @@ fn table(comparison: &Comparison) -> String {
          {:<14} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8}\n",
         comparison.task,
         comparison.objective,
-        best - TOLERANCE_MM,
+        comparison.target_mm,
         "optimizer",
         "batch",
         "studies",
@@ -52,36 +55,11 @@ fn table(comparison: &Comparison) -> String {
     );
     for group in &comparison.groups {
         let number = |n: Option<f64>| n.map_or("-".to_owned(), |n| format!("{n:.1}"));
-        let [low, median, high] = group.evaluations_to_target().map(number);
+        let [low, median, high] = group.evaluations_to_target.all().map(number);
         text.push_str(&format!(
             "{:<14} {:>5} {:>8} {:>8} {low:>8} {median:>8} {high:>8}\n",
-            group.optimizer,
-            group.batch,
-            group.studies,
-            group.reached(),
+            group.optimizer, group.batch, group.studies, group.reached,
         ));
     }
     text
-}
-
-fn to_json(comparison: &Comparison) -> Value {
-    let quartiles =
-        |[low, median, high]: Quartiles| json!({"q25": low, "median": median, "q75": high});
-    let group = |group: &crate::report::compare::Group| {
-        json!({
-            "optimizer": group.optimizer,
-            "batch": group.batch,
-            "studies": group.studies,
-            "reached": group.reached(),
-            "evaluations_to_target": quartiles(group.evaluations_to_target()),
-            "best_so_far_mm": group.best_so_far.iter().copied().map(quartiles).collect::<Vec<_>>(),
-        })
-    };
-    json!({
-        "task": comparison.task,
-        "objective": comparison.objective,
-        "best_known_mm": comparison.best_known_mm,
-        "target_mm": comparison.best_known_mm - TOLERANCE_MM,
-        "optimizers": comparison.groups.iter().map(group).collect::<Vec<_>>(),
-    })
 }

@@ -2,9 +2,9 @@
 
 use super::setup::{self, STIFFNESS_DATA};
 use super::{Failure, print};
-use crate::input::stiffness::Measurement;
 use crate::report;
 use crate::study::{StudyRecord, write_evaluations_csv, write_file};
+use crate::surrogate::Model;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let record = StudyRecord::load(dir)?;
     let inputs = record.inputs(dir)?;
     let surrogate = setup::surrogate(&setup::input(&inputs, STIFFNESS_DATA)?)?;
-    write(dir, &record, surrogate.measurements())?;
+    write(dir, &record, &surrogate)?;
     let count = record.evaluations.len();
     let page = dir.join(PAGE);
     print(&format!("wrote the report of {count} evaluations: {}\n", page.display()))
@@ -31,17 +31,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 pub const PAGE: &str = "report.html";
 
 /// Writes all that is made of a study into its folder: table, plot and page.
-pub fn write(
-    dir: &Path,
-    record: &StudyRecord,
-    measurements: &[Measurement],
-) -> Result<(), Failure> {
+pub fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(), Failure> {
     let drawn = |error: report::ReportError| Failure::running(error.to_string());
     write_evaluations_csv(dir, record)?;
     write_file(&dir.join("convergence.svg"), &report::convergence_svg(record).map_err(drawn)?)?;
     if let Some(front) = report::front_svg(record).map_err(drawn)? {
         write_file(&dir.join("front.svg"), &front)?;
     }
-    write_file(&dir.join(PAGE), &report::html(record, measurements).map_err(drawn)?)?;
+    write_file(&dir.join(PAGE), &report::page(record, model).map_err(drawn)?)?;
     Ok(())
 }

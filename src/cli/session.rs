@@ -83,7 +83,7 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         walk_best(&study, &walker, &pool, &stop).map_err(hint)?;
     }
     let record = study.record();
-    report::write(study.dir(), &record, setup.evaluator.surrogate.measurements())?;
+    report::write(study.dir(), &record, &setup.evaluator.surrogate)?;
     if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {
         return Err(Failure::running(format!("interrupted; {}", resume_hint(&study))));
     }

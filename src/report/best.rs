@@ -1,169 +1,162 @@
 //! The best design in words.
 
-use super::text::{design, end, escape, infill, is_infill, outcome_words, stiffness, values};
-use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
+use super::elements::definitions;
+use super::text::{design, infill, is_infill, outcome, stiffness, values};
+use crate::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
 use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Recorded, StudyRecord, nearest};
+use maud::{Markup, html};
 
 /// The section; says so if no design can be recommended.
-pub(super) fn section(record: &StudyRecord) -> String {
-    let Some(best) = record.best() else { return none(record) };
+pub(super) fn section(record: &StudyRecord) -> Markup {
+    let Some(best) = record.recommended() else { return none(record) };
     let objectives = &record.config.objective;
     let found = best.feasible().unwrap_or_default();
-    let mut html = format!("<p class=\"big\">{}</p>\n", escape(&infill(&best.design)));
-    let several = objectives.single().is_none();
-    if several {
-        html += &format!(
-            "<p>has the best {}: {}. No one design is best in all objectives; see the front \
-             below.</p>\n",
-            objectives.first(),
-            escape(&objectives.show(found))
-        );
+    html! {
+        p.big { (infill(&best.design)) }
+        @if objectives.single().is_none() {
+            p {
+                "has the best " (objectives.first().name()) ": " (objectives.show(found))
+                ". No one design is best in all objectives; see the front below."
+            }
+        }
+        @for (task, evaluation) in record.config.tasks().zip(best.tasks()) {
+            (tolerated(record, task, &evaluation.window))
+        }
+        @if best.stiffness.inside_hull() {
+            p { "Inside the hull of the measured designs: the stiffness is interpolated." }
+        } @else {
+            p.warn {
+                "Outside the hull of the measured designs, by "
+                (format!("{:.2}", best.stiffness.hull_distance)) " of the measured span: the \
+                stiffness is extrapolated. Print and measure this finger before you trust the \
+                result."
+            }
+        }
+        (definitions(&facts(record, best, found)))
     }
-    for (task, evaluation) in record.config.tasks().zip(best.tasks()) {
-        html += &tolerated(record, task, evaluation);
-    }
-    html += &hull_note(best);
-    html += &facts(record, best, found);
-    html
 }
 
-fn none(record: &StudyRecord) -> String {
+fn none(record: &StudyRecord) -> Markup {
     let count = record.evaluations.len();
-    match nearest(&record.evaluations) {
-        None => format!(
-            "<p class=\"warn\">No design has a value: of {count} evaluations none gave one \
-             (none were run, or every simulation diverged at the nominal start, or none inserted \
-             there and so had no force or slip).</p>"
-        ),
-        Some(nearest) => {
-            let tasks = nearest.tasks();
-            let words = record.config.constraints.iter().map(|c| c.words(&tasks));
-            format!(
-                "<p class=\"warn\">No design keeps all constraints, so none is recommended. Of \
-                 {count} evaluations number {}, {}, violates them least: {}.</p>\n",
-                nearest.index + 1,
-                escape(&design(&nearest.design)),
-                escape(&words.collect::<Vec<_>>().join("; "))
-            )
+    let Some(nearest) = nearest(&record.evaluations) else {
+        return html! {
+            p.warn {
+                "No design has a value: of " (count) " evaluations none gave one (none were run, \
+                or every simulation diverged at the nominal start, or none inserted there and so \
+                had no force or slip)."
+            }
+        };
+    };
+    let tasks = nearest.tasks();
+    let words: Vec<String> = record.config.constraints.iter().map(|c| c.words(&tasks)).collect();
+    html! {
+        p.warn {
+            "No design keeps all constraints, so none is recommended. Of " (count) " evaluations, \
+            evaluation " (nearest.index) " (" (design(&nearest.design)) ") violates them least: "
+            (words.join("; ")) "."
         }
     }
 }
 
 /// What the best design tolerates on one task, and whether that is of any use.
-fn tolerated(record: &StudyRecord, task: &str, evaluation: &Evaluation) -> String {
-    let window = &evaluation.window;
-    let on = match !record.config.several_tasks() {
-        true => String::new(),
-        false => format!(" on {}", escape(task)),
-    };
-    let mut html = format!(
-        "<p>tolerates a start shifted by <b>{:.1} mm</b> in all{on}</p>\n",
-        window.range_mm()
-    );
-    if window.nominal != Outcome::Inserted {
-        html += &format!(
-            "<p class=\"warn\">Even the best design fails at the nominal start{on} ({}), so its \
-             range is 0 mm. No design of this study is usable as it is.</p>\n",
-            outcome_words(window.nominal)
-        );
-    }
-    html
-}
-
-fn hull_note(best: &Recorded) -> String {
-    if best.stiffness.inside_hull() {
-        return "<p>Inside the hull of the measured designs: the stiffness is interpolated.</p>\n"
-            .to_owned();
-    }
-    format!(
-        "<p class=\"warn\">Outside the hull of the measured designs, by {:.2} of the measured \
-         span: the stiffness is extrapolated. Print and measure this finger before you trust \
-         the result.</p>\n",
-        best.stiffness.hull_distance
-    )
-}
-
-type Rows = Vec<(String, String)>;
-
-fn facts(record: &StudyRecord, best: &Recorded, found: &[f64]) -> String {
-    let objectives = &record.config.objective;
-    let others = best.design.0.iter().filter(|(key, _)| !is_infill(key));
-    let mut rows: Rows = others.map(|(key, value)| (key.clone(), value.to_string())).collect();
-    let value = match objectives.single() {
-        Some(measure) => format!("{measure} = {}", values(objectives, found)),
-        None => objectives.show(found),
-    };
-    rows.push(("objective".to_owned(), value));
-    let tasks = best.tasks();
-    let constraints = record.config.constraints.iter();
-    rows.extend(constraints.map(|c| ("constraint".to_owned(), c.words(&tasks))));
-    for (task, evaluation) in record.config.tasks().zip(&tasks) {
-        if record.config.several_tasks() {
-            rows.push(("on the task".to_owned(), task.to_owned()));
+fn tolerated(record: &StudyRecord, task: &str, window: &Window) -> Markup {
+    let on = if record.config.several_tasks() { format!(" on {task}") } else { String::new() };
+    html! {
+        p {
+            "tolerates a start shifted by " b { (format!("{:.1} mm", window.range_mm())) }
+            " in all" (on)
         }
-        rows.extend(of_task(evaluation));
+        @if window.nominal != Outcome::Inserted {
+            p.warn {
+                "Even the best design fails at the nominal start" (on) " ("
+                (outcome(window.nominal)) "), so its range is 0 mm. No design of this study is \
+                usable as it is."
+            }
+        }
     }
-    rows.extend([
-        ("compliance stiffness (y), one finger".to_owned(), stiffness(best.stiffness.compliance)),
-        ("assembly stiffness (z), one finger".to_owned(), stiffness(best.stiffness.assembly)),
-        (
-            "evaluation".to_owned(),
-            format!("number {} of {}", best.index + 1, record.evaluations.len()),
-        ),
+}
+
+type Facts = Vec<(String, String)>;
+
+fn fact(name: &str, value: String) -> (String, String) {
+    (name.to_owned(), value)
+}
+
+fn facts(record: &StudyRecord, best: &Recorded, found: &[f64]) -> Facts {
+    let config = &record.config;
+    let others = best.design.0.iter().filter(|(key, _)| !is_infill(key));
+    let mut facts: Facts = others.map(|(key, value)| fact(key, value.to_string())).collect();
+    let name = config.objective.single().map_or(String::new(), |measure| format!("{measure} = "));
+    facts.push(fact("objective", name + &values(&config.objective, found)));
+    let tasks = best.tasks();
+    facts.extend(config.constraints.iter().map(|c| fact("constraint", c.words(&tasks))));
+    for (task, evaluation) in config.tasks().zip(&tasks) {
+        if config.several_tasks() {
+            facts.push(fact("on the task", task.to_owned()));
+        }
+        facts.extend(of_task(evaluation));
+    }
+    let of = format!("{} (the {} are counted from 0)", best.index, record.evaluations.len());
+    facts.extend([
+        fact("compliance stiffness (y), one finger", stiffness(best.stiffness.compliance)),
+        fact("assembly stiffness (z), one finger", stiffness(best.stiffness.assembly)),
+        fact("evaluation", of),
     ]);
-    super::sections::definitions(&rows)
+    facts
 }
 
 /// What was measured on one task.
-fn of_task(found: &Evaluation) -> Rows {
-    let window = &found.window;
-    let mut rows = vec![
-        (
-            "window".to_owned(),
-            format!(
-                "{:+.1} mm to {:+.1} mm; each end is the last 0.1 mm step that inserts, so the \
-                 range is known to within +0.2 mm",
-                window.negative_mm(),
-                window.positive_mm()
-            ),
-        ),
-        ("beyond the negative end".to_owned(), end(window.end_negative)),
-        ("beyond the positive end".to_owned(), end(window.end_positive)),
-        (
-            "largest contact force plug to socket".to_owned(),
+fn of_task(found: &Evaluation) -> Facts {
+    let mut facts = window(&found.window);
+    facts.extend([
+        fact(
+            "largest contact force plug to socket",
             format!("{:.1} N (over the inserted trials)", found.peak_force_n),
         ),
-        (
-            "largest slip in the grasp".to_owned(),
+        fact(
+            "largest slip in the grasp",
             format!("{:.2} mm (over the inserted trials)", found.slip_mm),
         ),
-    ];
-    rows.extend(found.success.iter().flat_map(success));
-    rows.extend(found.robust.iter().map(robust));
-    rows
+    ]);
+    facts.extend(found.success.iter().flat_map(success));
+    facts.extend(found.robust.iter().map(robust));
+    facts
 }
 
-fn success(success: &SuccessRate) -> Rows {
+fn window(window: &Window) -> Facts {
+    if window.nominal != Outcome::Inserted {
+        let ends = outcome(window.nominal);
+        return vec![fact("window", format!("none: the nominal start ends with {ends}"))];
+    }
+    let end = |end: Option<Outcome>| {
+        end.map_or("no failure up to the limit of the search".to_owned(), outcome)
+    };
+    let span = format!(
+        "{:+.1} mm to {:+.1} mm: the last 0.1 mm step found to insert on each side",
+        window.negative_mm(),
+        window.positive_mm()
+    );
+    vec![
+        fact("window", span),
+        fact("beyond the negative end", end(window.end_negative)),
+        fact("beyond the positive end", end(window.end_positive)),
+    ]
+}
+
+fn success(success: &SuccessRate) -> Facts {
     let [low, high] = success.interval();
     let rate = success.rate().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
+    let rate = format!(
+        "{rate} ({} of {} trials; {} % interval {low:.3} to {high:.3})",
+        success.inserted,
+        success.counted(),
+        100.0 * success.confidence
+    );
     let classes = FailureClass::ALL.into_iter().zip(success.failure_counts);
-    let failed = classes.map(|(class, count)| format!("{count} {}", class.label()));
-    vec![
-        (
-            "success rate under drawn errors".to_owned(),
-            format!(
-                "{rate} ({} of {} trials; {} % interval {low:.3} to {high:.3})",
-                success.inserted,
-                success.counted(),
-                100.0 * success.confidence
-            ),
-        ),
-        (
-            "failures under drawn errors".to_owned(),
-            format!("{}, {} diverged", failed.collect::<Vec<_>>().join(", "), success.diverged),
-        ),
-    ]
+    let failed: Vec<String> = classes.map(|(class, n)| format!("{n} {}", class.label())).collect();
+    let failed = format!("{}, {} diverged", failed.join(", "), success.diverged);
+    vec![fact("success rate under drawn errors", rate), fact("failures under drawn errors", failed)]
 }
 
 fn robust(robust: &RobustRange) -> (String, String) {
@@ -175,5 +168,5 @@ fn robust(robust: &RobustRange) -> (String, String) {
         robust.sd_mm(),
         robust.diverged
     );
-    ("robust range under drawn errors".to_owned(), text)
+    fact("robust range under drawn errors", text)
 }

@@ -1,8 +1,10 @@
 //! Studies of the same problem beside each other: optimizers against evaluations.
 
 use super::convergence::best_so_far;
+use super::quartiles::Quartiles;
 use crate::evaluation::objective::{Aggregate, Constraint};
 use crate::study::{StudyConfig, StudyRecord};
+use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// How far below the best known value a study may be to have reached it, mm.
@@ -61,27 +63,27 @@ pub enum CompareError {
     NoValue,
 }
 
-/// Lower quartile, median and upper quartile; `None` where it is not known: a value that
-/// was not there yet, an evaluation that never came.
-pub type Quartiles = [Option<f64>; 3];
-
 /// Studies of one optimizer with different seeds.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Group {
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OptimizerGroup {
     /// Name of the optimizer, with its polish.
     pub optimizer: String,
     /// Designs it proposes at a time.
     pub batch: u64,
     /// Number of studies.
     pub studies: usize,
-    /// Best value so far (mm) over the studies after 1, 2, .. evaluations, up to the end of the shortest.
-    pub best_so_far: Vec<Quartiles>,
-    /// Evaluations until the target, one number a study; `None` if it was not reached.
-    pub to_target: Vec<Option<u64>>,
+    /// Studies that reached the target.
+    pub reached: usize,
+    /// Number of evaluations to the target; a study that did not reach it counts as later than
+    /// all that did.
+    pub evaluations_to_target: Quartiles,
+    /// Best value so far over the studies after 1, 2, .. evaluations, up to the end of the
+    /// shortest, mm.
+    pub best_so_far_mm: Vec<Quartiles>,
 }
 
-/// Studies side by side.
-#[derive(Debug, Clone, PartialEq)]
+/// Studies side by side; serialized it is what `optimize compare --json` prints.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// Their task.
     pub task: String,
@@ -89,20 +91,25 @@ pub struct Comparison {
     pub objective: String,
     /// The best value of them all, mm.
     pub best_known_mm: f64,
+    /// The value whose evaluations are counted: [`TOLERANCE_MM`] below the best, mm.
+    pub target_mm: f64,
     /// By optimizer and batch.
-    pub groups: Vec<Group>,
+    #[serde(rename = "optimizers")]
+    pub groups: Vec<OptimizerGroup>,
 }
 
-impl Group {
-    /// Studies that reached the target.
-    pub fn reached(&self) -> usize {
-        self.to_target.iter().flatten().count()
-    }
-
-    /// Quartiles of the evaluations to the target; a study that did not reach it counts as
-    /// later than all that did.
-    pub fn evaluations_to_target(&self) -> Quartiles {
-        quartiles(self.to_target.iter().map(|n| n.map_or(f64::INFINITY, |n| n as f64)).collect())
+impl OptimizerGroup {
+    fn of(optimizer: String, batch: u64, records: &[&StudyRecord], target_mm: f64) -> Self {
+        let to_target: Vec<Option<u64>> = records.iter().map(|r| reached(r, target_mm)).collect();
+        let late = |n: &Option<u64>| n.map_or(f64::INFINITY, |n| n as f64);
+        OptimizerGroup {
+            optimizer,
+            batch,
+            studies: records.len(),
+            reached: to_target.iter().flatten().count(),
+            evaluations_to_target: Quartiles::of(to_target.iter().map(late).collect()),
+            best_so_far_mm: band(records),
+        }
     }
 }
 
@@ -134,21 +141,16 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, CompareE
     }
     let best = studies.iter().filter_map(|(_, record)| record.best()?.value()).reduce(f64::max);
     let best_known_mm = best.ok_or(CompareError::NoValue)?;
-    let group =
-        |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| Group {
-            optimizer,
-            batch,
-            studies: studies.len(),
-            best_so_far: band(&studies),
-            to_target: studies
-                .iter()
-                .map(|(_, r)| reached(r, best_known_mm - TOLERANCE_MM))
-                .collect(),
-        };
+    let target_mm = best_known_mm - TOLERANCE_MM;
+    let group = |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| {
+        let records: Vec<&StudyRecord> = studies.iter().map(|(_, record)| record).collect();
+        OptimizerGroup::of(optimizer, batch, &records, target_mm)
+    };
     Ok(Comparison {
         task: first.1.config.task_name(),
         objective: objective.to_string(),
         best_known_mm,
+        target_mm,
         groups: groups.into_iter().map(group).collect(),
     })
 }
@@ -158,49 +160,46 @@ fn constraints(config: &StudyConfig) -> String {
     if constraints.is_empty() { "none".to_owned() } else { constraints.join(", ") }
 }
 
+/// What a study asks, each part with its name.
+fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
+    let aggregate = config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string);
+    [
+        ("task", config.task_name()),
+        ("objective", config.objective.to_string()),
+        ("constraints", constraints(config)),
+        ("aggregate", aggregate),
+        ("robot", config.robot.clone()),
+        ("engine", config.provenance.engine.name.clone()),
+        ("space", config.space.name().to_owned()),
+    ]
+}
+
 /// Whether two studies measure the same.
 fn alike(
     (first, ours): &(String, StudyRecord),
     (second, theirs): &(String, StudyRecord),
 ) -> Result<(), CompareError> {
-    let fields = |config: &StudyConfig| {
-        let mut fields: Vec<(String, String)> = [
-            ("task", config.task_name()),
-            ("objective", config.objective.to_string()),
-            ("constraints", constraints(config)),
-            (
-                "aggregate",
-                config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string),
-            ),
-            ("robot", config.robot.clone()),
-            ("engine", config.provenance.engine.name.clone()),
-        ]
-        .map(|(what, value)| (what.to_owned(), value))
-        .into();
-        fields.push(("space".to_owned(), config.space.name().to_owned()));
-        fields
-    };
-    let (ours, theirs) = (fields(&ours.config), fields(&theirs.config));
-    match ours.into_iter().zip(theirs).find(|(ours, theirs)| ours != theirs) {
+    let mut parts = problem(&ours.config).into_iter().zip(problem(&theirs.config));
+    match parts.find(|(ours, theirs)| ours != theirs) {
         None => Ok(()),
         Some(((what, ours), (_, theirs))) => {
-            let (first, second) = (first.clone(), second.clone());
+            let (first, second, what) = (first.clone(), second.clone(), what.to_owned());
             Err(CompareError::Different { first, second, what, ours, theirs })
         }
     }
 }
 
-/// Evaluations until a value of at least `target`, mm.
+/// Number of evaluations until a value of at least `target`, mm.
 fn reached(record: &StudyRecord, target: f64) -> Option<u64> {
     let values = record.evaluations.iter().map(|r| r.feasible()?.first().copied());
     let place = values.into_iter().position(|v| v.is_some_and(|v| v >= target - ROUNDING_MM));
     place.map(|index| index as u64 + 1)
 }
 
-fn band(studies: &[&(String, StudyRecord)]) -> Vec<Quartiles> {
-    let shortest = studies.iter().map(|(_, r)| r.evaluations.len()).min().unwrap_or(0);
-    let curves: Vec<Vec<f64>> = studies.iter().map(|(_, record)| curve(record)).collect();
-    (0..shortest).map(|n| quartiles(curves.iter().map(|curve| curve[n]).collect())).collect()
+fn band(records: &[&StudyRecord]) -> Vec<Quartiles> {
+    let shortest = records.iter().map(|record| record.evaluations.len()).min().unwrap_or(0);
+    let curves: Vec<Vec<f64>> = records.iter().map(|record| curve(record)).collect();
+    (0..shortest).map(|n| Quartiles::of(curves.iter().map(|curve| curve[n]).collect())).collect()
 }
 
 /// Best so far after each evaluation; minus infinity before the first value.
@@ -209,32 +208,4 @@ fn curve(record: &StudyRecord) -> Vec<f64> {
     let none = record.evaluations.len() - known.len();
     let values = known.into_iter().map(|(_, value)| value);
     std::iter::repeat_n(f64::NEG_INFINITY, none).chain(values).collect()
-}
-
-/// By linear interpolation between the sorted values; `None` where that meets an infinity.
-fn quartiles(mut values: Vec<f64>) -> Quartiles {
-    values.sort_by(f64::total_cmp);
-    [0.25, 0.5, 0.75].map(|share| {
-        let place = share * values.len().checked_sub(1)? as f64;
-        let (low, high) = (values[place.floor() as usize], values[place.ceil() as usize]);
-        let part = place - place.floor();
-        let value = if part == 0.0 { low } else { low + part * (high - low) };
-        value.is_finite().then_some(value)
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quartiles_interpolate_and_do_not_invent() {
-        let five = vec![5.0, 1.0, 3.0, 2.0, 4.0];
-        assert_eq!(quartiles(five), [Some(2.0), Some(3.0), Some(4.0)]);
-        assert_eq!(quartiles(vec![1.0, 2.0]), [Some(1.25), Some(1.5), Some(1.75)]);
-        assert_eq!(quartiles(vec![7.0, f64::INFINITY]), [None; 3]);
-        let late = vec![7.0, 9.0, f64::INFINITY];
-        assert_eq!(quartiles(late), [Some(8.0), Some(9.0), None]);
-        assert_eq!(quartiles(vec![]), [None; 3]);
-    }
 }

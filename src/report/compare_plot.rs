@@ -1,8 +1,9 @@
 //! The plot of a comparison.
 
 use super::ReportError;
-use super::chart::{Area, AxisOf, Chart, Drawn, around, axes, legend, message, sheet};
-use super::compare::{Comparison, Group, TOLERANCE_MM};
+use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet};
+use super::compare::{Comparison, OptimizerGroup, TOLERANCE_MM};
+use super::marks::{line, stairs};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
 use plotters::prelude::*;
 
@@ -18,66 +19,38 @@ pub fn svg(comparison: &Comparison) -> Result<String, ReportError> {
 
 fn draw(area: &Area<'_>, comparison: &Comparison) -> Drawn {
     let groups = &comparison.groups;
-    let longest = groups.iter().map(|g| g.best_so_far.len()).max().unwrap_or(0).max(1) as f64;
-    let values = groups.iter().flat_map(|g| g.best_so_far.iter().flatten().flatten().copied());
-    let range = around(values.chain([comparison.best_known_mm]), 0.06);
+    let longest = groups.iter().map(|g| g.best_so_far_mm.len()).max().unwrap_or(0).max(1) as f64;
+    let values = groups.iter().flat_map(|g| g.best_so_far_mm.iter().flat_map(|q| q.all()));
+    let range = around(values.flatten().chain([comparison.best_known_mm]), 0.06);
     let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
     let label = format!("{} (mm)", comparison.objective);
-    let x = AxisOf { label: "evaluations", range: 0.0..longest * 1.02 + 0.5 };
+    let x = AxisOf { label: "number of evaluations", range: 0.0..longest * 1.02 + 0.5 };
     let mut chart = axes(area, &title, x, AxisOf { label: &label, range })?;
-    for (group, colour) in groups.iter().zip(COLOURS.iter().cycle()) {
-        band(&mut chart, group, *colour)?;
+    let coloured = || groups.iter().zip(COLOURS.iter().cycle());
+    for (group, colour) in coloured().filter(|(group, _)| group.studies > 1) {
+        let mut outline = quartile(group, 0);
+        outline.extend(quartile(group, 2).into_iter().rev());
+        if !outline.is_empty() {
+            let band = Polygon::new(outline, colour.rgb().mix(0.16).filled());
+            chart.draw_series([band]).map_err(message)?;
+        }
     }
-    let several = |g: &Group| groups.iter().filter(|o| o.optimizer == g.optimizer).count() > 1;
-    for (group, colour) in groups.iter().zip(COLOURS.iter().cycle()) {
+    let several =
+        |g: &OptimizerGroup| groups.iter().filter(|o| o.optimizer == g.optimizer).count() > 1;
+    for (group, colour) in coloured() {
         let batch = if several(group) { format!(", batch {}", group.batch) } else { String::new() };
         let plural = if group.studies == 1 { "study" } else { "studies" };
         let label = format!("{}{batch} ({} {plural})", group.optimizer, group.studies);
-        median(&mut chart, group, *colour, label)?;
+        line(&mut chart, quartile(group, 1), colour.rgb().stroke_width(3), label)?;
     }
-    let target = comparison.best_known_mm - TOLERANCE_MM;
-    let line = DashedLineSeries::new(
-        [(0.0, target), (longest, target)],
-        5,
-        4,
-        MUTED.rgb().stroke_width(1),
-    );
-    chart
-        .draw_series(line)
-        .map_err(message)?
-        .label(format!("best known - {TOLERANCE_MM} mm"))
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 20, y)], MUTED.rgb()));
+    let target = vec![(0.0, comparison.target_mm), (longest, comparison.target_mm)];
+    let label = format!("best known - {TOLERANCE_MM} mm");
+    line(&mut chart, target, MUTED.rgb().stroke_width(1), label)?;
     legend(&mut chart, SeriesLabelPosition::LowerRight)
 }
 
 /// One of the quartiles as stairs, from the first evaluation on at which it is known.
-fn stairs(group: &Group, which: usize) -> Vec<(f64, f64)> {
-    let mut stairs: Vec<(f64, f64)> = Vec::new();
-    for (n, quartiles) in group.best_so_far.iter().enumerate() {
-        let Some(value) = quartiles[which] else { continue };
-        let n = (n + 1) as f64;
-        stairs.extend(stairs.last().map(|&(_, before)| (n, before)));
-        stairs.push((n, value));
-    }
-    stairs
-}
-
-fn band(chart: &mut Chart<'_, '_>, group: &Group, colour: Colour) -> Drawn {
-    let mut outline = stairs(group, 0);
-    outline.extend(stairs(group, 2).into_iter().rev());
-    if group.studies < 2 || outline.is_empty() {
-        return Ok(());
-    }
-    let polygon = Polygon::new(outline, colour.rgb().mix(0.16).filled());
-    chart.draw_series([polygon]).map(|_| ()).map_err(message)
-}
-
-fn median<'a>(chart: &mut Chart<'a, '_>, group: &Group, colour: Colour, label: String) -> Drawn {
-    let style = colour.rgb().stroke_width(3);
-    chart
-        .draw_series(LineSeries::new(stairs(group, 1), style))
-        .map_err(message)?
-        .label(label)
-        .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
-    Ok(())
+fn quartile(group: &OptimizerGroup, which: usize) -> Vec<(f64, f64)> {
+    let numbered = (1..).zip(&group.best_so_far_mm);
+    stairs(numbered.filter_map(|(n, quartiles)| Some((f64::from(n), quartiles.all()[which]?))))
 }

@@ -1,10 +1,14 @@
 //! Best so far, and each value, against evaluations; of several objectives the hypervolume.
 
 use super::ReportError;
-use super::chart::{Area, AxisOf, Chart, Drawn, around, axes, legend, message, sheet, words};
+use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet, words};
+use super::elements::figure;
+use super::marks::{PointMark, line, points, stairs};
 use super::text::volume_unit;
 use super::theme::{BLUE, MUTED, ORANGE, RED};
+use crate::evaluation::objective::Measure;
 use crate::study::{Recorded, StudyRecord, volume};
+use maud::Markup;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -13,22 +17,36 @@ pub(super) fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, Repo
     sheet("the convergence", size, |area| draw(area, record))
 }
 
+/// The plot with what it shows.
+pub(super) fn section(record: &StudyRecord, size: (u32, u32)) -> Result<Markup, ReportError> {
+    let caption = match record.config.objective.single() {
+        Some(Measure::Range | Measure::CentredRange) => {
+            "Value of each evaluation, and the best so far. Values are multiples of 0.1 mm."
+        }
+        Some(_) => "Value of each evaluation, and the best so far.",
+        None => {
+            "Hypervolume of the front after each evaluation, from the reference stated with the \
+             front."
+        }
+    };
+    Ok(figure(&svg(record, size)?, "best value against evaluations", caption))
+}
+
 /// Best value of a design that keeps all constraints after each evaluation, from the first
-/// such value on; of several objectives the hypervolume: `(evaluations, value)`.
+/// such value on; of several objectives the hypervolume: `(evaluation, value)`.
 pub(super) fn best_so_far(record: &StudyRecord) -> Vec<(f64, f64)> {
     let goals = record.config.goals();
-    let numbered = |index: usize| (index + 1) as f64;
     let Some(measure) = goals.objectives.single() else {
         let volume = volume(&goals, &record.evaluations);
-        return volume.so_far.iter().enumerate().map(|(n, &v)| (numbered(n), v)).collect();
+        return volume.so_far.iter().enumerate().map(|(n, &v)| (n as f64, v)).collect();
     };
     let mut best: Option<f64> = None;
     let mut steps = Vec::new();
-    for (n, recorded) in record.evaluations.iter().enumerate() {
+    for recorded in &record.evaluations {
         let value = recorded.feasible().and_then(|values| values.first().copied());
         let better = |a: f64, b: f64| if measure.sense() * b > measure.sense() * a { b } else { a };
         best = [best, value].into_iter().flatten().reduce(better);
-        steps.extend(best.map(|value| (numbered(n), value)));
+        steps.extend(best.map(|value| (recorded.index as f64, value)));
     }
     steps
 }
@@ -37,101 +55,44 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     let count = record.evaluations.len();
     let objectives = &record.config.objective;
     let best = best_so_far(record);
-    let all = record.evaluations.iter().filter_map(Recorded::value);
     // The values of one of several objectives have no place beside a volume.
-    let values: Vec<f64> = if objectives.single().is_some() {
-        all.collect()
-    } else {
-        best.iter().map(|b| b.1).collect()
+    let values: Vec<f64> = match objectives.single() {
+        Some(_) => record.evaluations.iter().filter_map(Recorded::value).collect(),
+        None => best.iter().map(|b| b.1).collect(),
     };
     let mut range = around(values.iter().copied().chain([0.0]), 0.12);
     if values.iter().all(|&value| value >= 0.0) {
         range.start = range.start.max(-0.02 * range.end);
     }
-    let bottom = range.start;
-    let x = AxisOf { label: "evaluations", range: 0.0..(count.max(1) as f64 * 1.02 + 0.5) };
-    let label = match objectives.single() {
-        Some(measure) => measure.label(),
-        None => format!("hypervolume ({})", volume_unit(objectives)),
+    let bottom = range.start.max(0.0);
+    let last = count.max(2) as f64 - 1.0;
+    let x = AxisOf { label: "evaluation", range: -0.02 * last..1.02 * last };
+    let (label, name) = match objectives.single() {
+        Some(measure) => (measure.label(), "best so far"),
+        None => (format!("hypervolume ({})", volume_unit(objectives)), "hypervolume so far"),
     };
     let mut chart = axes(area, "", x, AxisOf { label: &label, range })?;
     if count == 0 {
         let style = words(17, MUTED, HPos::Center, VPos::Center);
-        let note = Text::new("no evaluations yet", (0.75, 0.5), style);
+        let note = Text::new("no evaluations yet", (0.5, 0.5), style);
         return chart.draw_series([note]).map(|_| ()).map_err(message);
     }
+    let at = |r: &Recorded| Some((r.index as f64, r.value()?));
     if objectives.single().is_some() {
-        dots(&mut chart, record)?;
+        let (inside, outside): (Vec<&Recorded>, Vec<&Recorded>) =
+            record.evaluations.iter().partition(|r| r.feasible().is_some());
+        let (inside, outside) =
+            (inside.into_iter().filter_map(at), outside.into_iter().filter_map(at));
+        points(&mut chart, inside, PointMark::dot(BLUE, 3), "each evaluation")?;
+        points(&mut chart, outside, PointMark::ring(MUTED, 3, 1), "violates a constraint")?;
     }
-    lost(&mut chart, record, bottom)?;
+    let lost = record.evaluations.iter().filter(|r| r.score.is_none());
+    let lost = lost.map(|r| (r.index as f64, bottom));
+    points(&mut chart, lost, PointMark::cross(RED, 4), "no value")?;
+    line(&mut chart, stairs(best), ORANGE.rgb().stroke_width(3), name)?;
     let corner = match objectives.single() {
         Some(measure) if measure.sense() < 0.0 => SeriesLabelPosition::UpperRight,
         _ => SeriesLabelPosition::LowerRight,
     };
-    let name = if objectives.single().is_some() { "best so far" } else { "hypervolume so far" };
-    stairs(&mut chart, &best, name)?;
     legend(&mut chart, corner)
-}
-
-fn numbered(record: &StudyRecord) -> impl Iterator<Item = (f64, &Recorded)> {
-    record.evaluations.iter().enumerate().map(|(n, recorded)| ((n + 1) as f64, recorded))
-}
-
-/// Each evaluation that has a value.
-fn dots(chart: &mut Chart<'_, '_>, record: &StudyRecord) -> Drawn {
-    let style = BLUE.rgb().mix(0.55).filled();
-    let of = |feasible: bool| {
-        numbered(record)
-            .filter(move |(_, recorded)| recorded.feasible().is_some() == feasible)
-            .filter_map(|(n, recorded)| Some((n, recorded.value()?)))
-    };
-    chart
-        .draw_series(of(true).map(|point| Circle::new(point, 3, style)))
-        .map_err(message)?
-        .label("each evaluation")
-        .legend(move |(x, y)| Circle::new((x + 10, y), 4, style));
-    let outside: Vec<(f64, f64)> = of(false).collect();
-    if !outside.is_empty() {
-        let style = MUTED.rgb().stroke_width(1);
-        chart
-            .draw_series(outside.into_iter().map(|point| Circle::new(point, 3, style)))
-            .map_err(message)?
-            .label("violates a constraint")
-            .legend(move |(x, y)| Circle::new((x + 10, y), 4, style));
-    }
-    Ok(())
-}
-
-/// Each evaluation that has none.
-fn lost(chart: &mut Chart<'_, '_>, record: &StudyRecord, bottom: f64) -> Drawn {
-    let lost: Vec<f64> =
-        numbered(record).filter(|(_, recorded)| recorded.score.is_none()).map(|(n, _)| n).collect();
-    if lost.is_empty() {
-        return Ok(());
-    }
-    let crosses = lost.iter().map(|&n| Cross::new((n, bottom.max(0.0)), 4, RED.rgb()));
-    chart
-        .draw_series(crosses)
-        .map_err(message)?
-        .label("no value")
-        .legend(|(x, y)| Cross::new((x + 10, y), 4, RED.rgb()));
-    Ok(())
-}
-
-fn stairs(chart: &mut Chart<'_, '_>, best: &[(f64, f64)], name: &str) -> Drawn {
-    let mut stairs: Vec<(f64, f64)> = Vec::new();
-    for &(n, value) in best {
-        if let Some(&(_, before)) = stairs.last() {
-            stairs.push((n, before));
-        }
-        stairs.push((n, value));
-    }
-    if !stairs.is_empty() {
-        chart
-            .draw_series(LineSeries::new(stairs, ORANGE.rgb().stroke_width(3)))
-            .map_err(message)?
-            .label(name)
-            .legend(|(x, y)| PathElement::new([(x, y), (x + 20, y)], ORANGE.rgb().stroke_width(3)));
-    }
-    Ok(())
 }

@@ -2,49 +2,41 @@
 
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, axes, message, sheet, words};
+use super::elements::figure;
+use super::marks::{PointMark, points};
 use super::theme::{Colour, INK, LINES, MUTED, ORANGE, RED, SCALE};
 use crate::evaluation::objective::Measure;
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Space};
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Parameter};
 use crate::input::stiffness::Measurement;
 use crate::study::{Recorded, StudyRecord};
+use maud::{Markup, html};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use std::ops::Range;
 
-/// The map, `size` pixels; `None` if the space has no density and direction.
-pub(super) fn svg(
+/// The map, `size` pixels, or that the space has no density and direction.
+pub(super) fn section(
     record: &StudyRecord,
     measurements: &[Measurement],
     size: (u32, u32),
-) -> Result<Option<String>, ReportError> {
-    let space = &record.config.space;
-    let (Some(x), Some(y)) = (Side::of(space, DENSITY_KEY), Side::of(space, DIRECTION_KEY)) else {
-        return Ok(None);
+) -> Result<Markup, ReportError> {
+    let parameters = record.config.space.parameters();
+    let side = |key| parameters.iter().find(|parameter| parameter.key == key);
+    let (Some(x), Some(y)) = (side(DENSITY_KEY), side(DIRECTION_KEY)) else {
+        return Ok(html! { p { "The space of this study has no infill density and direction." } });
     };
-    let drawn = sheet("the map", size, |area| {
+    let svg = sheet("the map", size, |area| {
         let (plot, key) = area.split_vertically(size.1.saturating_sub(54));
-        draw(&plot, [&x, &y], record, measurements)?;
+        draw(&plot, [x, y], record, measurements)?;
         draw_key(&key, &Scale::of(record))
-    });
-    drawn.map(Some)
-}
-
-/// One side of the map: bounds and step of its parameter.
-struct Side {
-    low: f64,
-    high: f64,
-    step: f64,
-}
-
-impl Side {
-    fn of(space: &Space, key: &str) -> Option<Self> {
-        let found = space.parameters().iter().find(|p| p.key == key)?;
-        Some(Side { low: found.low, high: found.high, step: found.step })
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.low - self.step..self.high + self.step
-    }
+    })?;
+    let caption = format!(
+        "Coloured cells: evaluated designs, by {}. Rings: designs whose stiffness was measured. \
+         Cross in a frame: the best design. Red outline: no value. Grey outline: violates a \
+         constraint. Outside the rings' hull the stiffness is extrapolated. Of designs with the \
+         same infill the best is on top.",
+        record.config.objective.first()
+    );
+    Ok(figure(&svg, "map over infill density and direction", &caption))
 }
 
 /// Values and the colours between them.
@@ -77,19 +69,19 @@ impl Scale {
 
 fn draw(
     area: &Area<'_>,
-    [x, y]: [&Side; 2],
+    [x, y]: [&Parameter; 2],
     record: &StudyRecord,
     measurements: &[Measurement],
 ) -> Drawn {
     let scale = Scale::of(record);
-    let mut chart = axes(
-        area,
-        "",
-        AxisOf { label: "infill density (%)", range: x.range() },
-        AxisOf { label: "infill direction (°)", range: y.range() },
-    )?;
+    let axis = |label, side: &Parameter| AxisOf {
+        label,
+        range: side.low - side.step..side.high + side.step,
+    };
+    let (density, direction) = (axis("infill density (%)", x), axis("infill direction (°)", y));
+    let mut chart = axes(area, "", density, direction)?;
     // At least as large as can be seen, however fine the steps are.
-    let half = |side: &Side| (side.step / 2.0).max((side.high - side.low) / 90.0);
+    let half = |side: &Parameter| (side.step / 2.0).max((side.high - side.low) / 90.0);
     let (dx, dy) = (half(x), half(y));
     let cell = |density: f64, direction: f64, style: ShapeStyle| {
         Rectangle::new([(density - dx, direction - dy), (density + dx, direction + dy)], style)
@@ -100,11 +92,7 @@ fn draw(
     let merit = |r: &Recorded| r.value().map_or(f64::NEG_INFINITY, |value| sense * value);
     evaluations.sort_by(|a, b| merit(a).total_cmp(&merit(b)));
     for recorded in evaluations {
-        let (Some(density), Some(direction)) =
-            (recorded.design.get(DENSITY_KEY), recorded.design.get(DIRECTION_KEY))
-        else {
-            continue;
-        };
+        let Some((density, direction)) = infill(recorded) else { continue };
         let style = match (recorded.value(), recorded.feasible()) {
             (Some(value), Some(_)) => scale.colour(value).rgb().filled(),
             (Some(_), None) => MUTED.rgb().stroke_width(1),
@@ -112,20 +100,16 @@ fn draw(
         };
         chart.draw_series([cell(density, direction, style)]).map_err(message)?;
     }
-    let rings = measurements.iter().map(|m| {
-        Circle::new((m.density_percent, m.direction_deg), 6, ORANGE.rgb().stroke_width(2))
-    });
-    chart.draw_series(rings).map_err(message)?;
-    if let Some((density, direction)) = record
-        .best()
-        .and_then(|best| Some((best.design.get(DENSITY_KEY)?, best.design.get(DIRECTION_KEY)?)))
-    {
-        let frame = cell(density, direction, INK.rgb().stroke_width(3));
-        let cross = Cross::new((density, direction), 9, INK.rgb().stroke_width(2));
-        chart.draw_series([frame]).map_err(message)?;
-        chart.draw_series([cross]).map_err(message)?;
-    }
-    Ok(())
+    let measured = measurements.iter().map(|m| (m.density_percent, m.direction_deg));
+    points(&mut chart, measured, PointMark::ring(ORANGE, 6, 2), "")?;
+    let Some((density, direction)) = record.recommended().and_then(infill) else { return Ok(()) };
+    let frame = cell(density, direction, INK.rgb().stroke_width(3));
+    chart.draw_series([frame]).map_err(message)?;
+    points(&mut chart, [(density, direction)], PointMark::cross(INK, 9), "")
+}
+
+fn infill(recorded: &Recorded) -> Option<(f64, f64)> {
+    Some((recorded.design.get(DENSITY_KEY)?, recorded.design.get(DIRECTION_KEY)?))
 }
 
 /// The colour scale with its values, below the map.

@@ -6,13 +6,18 @@ mod chart;
 pub mod compare;
 mod compare_plot;
 mod convergence;
+mod elements;
 mod front;
-mod html;
+mod limits;
 mod map;
+mod marks;
 mod others;
-mod scatter;
-mod sections;
+mod page;
+mod provenance;
+mod published;
+pub mod quartiles;
 pub mod stiffness;
+mod stiffness_plot;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -23,7 +28,7 @@ mod windows;
 use crate::study::StudyRecord;
 
 pub use compare_plot::svg as compare_svg;
-pub use html::html;
+pub use page::page;
 pub use text::volume_unit;
 
 /// Why a plot could not be made.

@@ -4,20 +4,21 @@ use crate::evaluation::tolerance::{Search, evaluate};
 use crate::evaluation::{Evaluation, Window};
 use crate::finger::Finger;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use crate::input::stiffness::{Measurement, SHIPPED_CSV, SHIPPED_FILE, parse};
+use crate::input::stiffness::{Axis, SHIPPED_CSV, SHIPPED_FILE, parse};
 use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Provenance, Recorded, Segment, StudyConfig, Timing};
 use crate::surrogate::{Model, fit};
 use crate::trial::engine::EngineKind;
 use crate::trial::fake::FakeRig;
+use crate::trial::{Conditions, Grasped, Rig, Trial};
+use crate::units::{MM, N_PER_MM};
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
-fn measured() -> Vec<Measurement> {
-    parse(SHIPPED_CSV, SHIPPED_FILE).unwrap()
-}
-
-fn model() -> Model {
-    fit(&measured()).unwrap()
+/// The shipped model, fitted once.
+fn model() -> &'static Model {
+    static MODEL: OnceLock<Model> = OnceLock::new();
+    MODEL.get_or_init(|| fit(&parse(SHIPPED_CSV, SHIPPED_FILE).unwrap()).unwrap())
 }
 
 fn provenance() -> Provenance {
@@ -84,8 +85,8 @@ fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
         nominal,
         negative_steps: 0,
         positive_steps: 0,
-        end_negative: None,
-        end_positive: None,
+        end_negative: Some(nominal),
+        end_positive: Some(nominal),
     };
     let evaluation = Evaluation {
         window,
@@ -124,13 +125,13 @@ fn check_page(page: &str) {
 #[test]
 fn the_page_is_whole_and_its_numbers_are_the_records() {
     let study = study();
-    let page = html(&study, &measured()).unwrap();
-    check_page(&page);
+    let html = page(&study, model()).unwrap();
+    check_page(&html);
     let best = study.best().unwrap();
     let window = &best.tasks[0].window;
     for number in [
         format!("<b>{:.1} mm</b>", window.range_mm()),
-        format!("{:+.1} mm to {:+.1} mm", window.negative_mm(), window.positive_mm()),
+        format!("{:+.1} mm to {:+.1} mm: the last", window.negative_mm(), window.positive_mm()),
         text::stiffness(best.stiffness.compliance),
         text::stiffness(best.stiffness.assembly),
         text::design(&best.design),
@@ -138,12 +139,12 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
         "2 plug missed".to_owned(),
         "9f86d081884c7d65".repeat(4),
     ] {
-        assert!(page.contains(&number), "{number}");
+        assert!(html.contains(&number), "{number}");
     }
     let trials: u32 = study.evaluations.iter().map(|r| r.tasks[0].trials).sum();
-    assert!(page.contains(&format!("{trials} trials in 60 window searches")));
-    assert!(page.contains("9.0 mm (4 | 3)") && page.contains("4.7 mm (4 | 4)"));
-    assert_eq!(page.matches("<svg ").count(), 4);
+    assert!(html.contains(&format!("{trials} trials in 60 window searches")));
+    assert!(html.contains("9.0 mm (4 | 3)") && html.contains("4.7 mm (4 | 4)"));
+    assert_eq!(html.matches("<svg ").count(), 4);
 }
 
 #[test]
@@ -154,10 +155,10 @@ fn a_measured_design_shows_our_value_beside_the_published_ones() {
     let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
     let ours = format!("<td>{:.1} mm (3 | 2)</td>", evaluation.window.range_mm());
     let one = record("usb", vec![recorded(0, [20.0, 20.0], stiffness, evaluation)]);
-    let page = html(&one, &measured()).unwrap();
-    check_page(&page);
-    assert!(page.contains(&format!("<td>5</td><td>20 %, 20°</td>{ours}")), "{ours}");
-    assert!(page.contains("<td>6</td><td>20 %, 40°</td><td></td>"));
+    let html = page(&one, model).unwrap();
+    check_page(&html);
+    assert!(html.contains(&format!("<td>5</td><td>20 %, 20°</td>{ours}")), "{ours}");
+    assert!(html.contains("<td>6</td><td>20 %, 40°</td><td></td>"));
 }
 
 #[test]
@@ -166,10 +167,9 @@ fn a_best_design_outside_the_hull_is_warned_of() {
     let stiffness = model.predict(10.0, 40.0);
     let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
     let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
-    let page =
-        html(&record("usb", vec![recorded(0, [10.0, 40.0], stiffness, evaluation)]), &measured());
+    let one = record("usb", vec![recorded(0, [10.0, 40.0], stiffness, evaluation)]);
     let distance = format!("by {:.2} of the measured span", stiffness.hull_distance);
-    assert!(page.unwrap().contains(&distance), "{distance}");
+    assert!(page(&one, model).unwrap().contains(&distance), "{distance}");
 }
 
 #[test]
@@ -185,11 +185,10 @@ fn empty_failed_and_diverged_studies_still_have_a_page() {
         ),
     ] {
         let study = record("usb", evaluations);
-        let page = html(&study, &measured()).unwrap();
-        check_page(&page);
-        assert!(page.contains(words), "{words}");
-        assert!(convergence_svg(&study).unwrap().contains("evaluations"));
-        check_page(&html(&study, &[]).unwrap());
+        let html = page(&study, model()).unwrap();
+        check_page(&html);
+        assert!(html.contains(words), "{words}");
+        assert!(convergence_svg(&study).unwrap().contains("evaluation"));
     }
 }
 
@@ -200,12 +199,12 @@ fn what_comes_from_files_is_escaped_and_unknown_tasks_are_told() {
     study.config.uncertainty = Some("<b>errors".to_owned());
     study.evaluations[0].design.0.insert("<i>key".to_owned(), 1.0);
     study.segments[0].provenance.input_sha256.insert("<u>".to_owned(), "<s>".to_owned());
-    let page = html(&study, &measured()).unwrap();
-    check_page(&page);
+    let html = page(&study, model()).unwrap();
+    check_page(&html);
     for raw in ["<img", "<b>errors", "<i>", "<u>", "<s>"] {
-        assert!(!page.contains(raw), "{raw}");
+        assert!(!html.contains(raw), "{raw}");
     }
-    assert!(page.contains("No ranges are published for the task &lt;img"));
+    assert!(html.contains("No ranges are published for the task &lt;img"));
 }
 
 /// Two objectives and a constraint on two tasks that measure the same.
@@ -221,23 +220,23 @@ fn fronts_constraints_and_tasks_have_their_places_on_the_page() {
         recorded.tasks.push(recorded.tasks[0].clone());
         recorded.score = goals.score(&recorded.tasks());
     }
-    let page = html(&study, &measured()).unwrap();
-    check_page(&page);
-    assert!(page.contains("<h3>&lt;s&gt;other</h3>") && !page.contains("<s>other"));
-    assert!(page.contains("keeps range&lt;=6") && page.contains("violates a constraint"));
+    let html = page(&study, model()).unwrap();
+    check_page(&html);
+    assert!(html.contains("<h3>&lt;s&gt;other</h3>") && !html.contains("<s>other"));
+    assert!(html.contains("keeps range&lt;=6") && html.contains("violates a constraint"));
     let front = study.front();
     let ranges: Vec<f64> = front.iter().filter_map(|recorded| recorded.value()).collect();
     assert!(ranges.is_sorted_by(|a, b| a > b) && ranges[0] <= 6.0, "{ranges:?}");
-    assert!(page.contains(&format!("{} of 60 evaluated designs are on the front", front.len())));
+    assert!(html.contains(&format!("{} of 60 evaluated designs are on the front", front.len())));
     assert!(front_svg(&study).unwrap().unwrap().contains("range (mm)"));
     let volumes = convergence::best_so_far(&study);
     assert!(volumes.len() == 60 && volumes.windows(2).all(|pair| pair[0].1 <= pair[1].1));
     for recorded in &mut study.evaluations {
         recorded.score.as_mut().unwrap().violations = vec![1.0 + recorded.index as f64];
     }
-    let page = html(&study, &measured()).unwrap();
-    assert!(page.contains("No design keeps all constraints, so none is recommended"));
-    assert!(page.contains("evaluations number 1, "), "the one that violates least");
+    let html = page(&study, model()).unwrap();
+    assert!(html.contains("No design keeps all constraints, so none is recommended"));
+    assert!(html.contains("evaluation 0 ("), "the one that violates least");
     assert!(study.best().is_none() && study.front().is_empty());
 }
 
@@ -256,15 +255,15 @@ fn convergence_never_falls_and_ends_at_the_best() {
 #[test]
 fn the_stiffness_report_has_every_model_and_both_axes() {
     let model = model();
-    let table = stiffness::table(&model);
+    let table = stiffness::table(model);
     for word in ["1.64", "10.00", "<- used", "RMSE N/mm", "assembly (z)", "compliance (y)"] {
         assert!(table.contains(word), "{word}: {table}");
     }
-    let json = stiffness::json(&model);
+    let json = stiffness::json(model);
     assert_eq!(json["models"].as_array().map(Vec::len), Some(8));
     let percent = json["models"][0]["loo_mean_absolute_percent"].as_f64().unwrap();
     assert!((percent - 1.64).abs() < 0.01);
-    let svg = stiffness::svg(&model).unwrap();
+    let svg = stiffness::svg(model).unwrap();
     for word in ["stiffness in compliance (y) (N/mm)", "density 20 %", "direction 40°"] {
         assert!(svg.contains(word), "{word}");
     }
@@ -282,9 +281,78 @@ fn other_spaces_have_no_map_but_a_page() {
             (DIRECTION_KEY.to_owned(), direction),
         ]));
     }
-    let page = html(&study, &measured()).unwrap();
-    check_page(&page);
-    assert!(page.contains("has no infill density and direction"));
+    let html = page(&study, model()).unwrap();
+    check_page(&html);
+    assert!(html.contains("has no infill density and direction"));
+}
+
+/// The closed-form rig with a gap: it jams at 0.2 mm.
+struct GapRig;
+
+struct GapGrasp<'a>(Box<dyn Grasped + 'a>);
+
+impl Rig for GapRig {
+    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+        static RIG: FakeRig = FakeRig { delay: std::time::Duration::ZERO };
+        Box::new(GapGrasp(RIG.grasp_in(finger, conditions)))
+    }
+}
+
+impl Grasped for GapGrasp<'_> {
+    fn trial(&self, offset: f64) -> Trial {
+        let trial = self.0.trial(offset);
+        match (offset - 0.2 * MM).abs() < 1e-9 {
+            true => Trial { outcome: Outcome::Failed(FailureClass::Jammed), ..trial },
+            false => trial,
+        }
+    }
+}
+
+/// What the page says of its own limits holds for the searches, models and spaces there are.
+#[test]
+fn the_limits_are_those_of_what_was_done() {
+    // Ends at -4.0 and 1.8 mm with a gap at 0.2 mm: the default search steps over it.
+    let finger = Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM);
+    let range = |search| evaluate(&GapRig, &finger, search).window.range_mm();
+    assert_eq!((range(Search::Strides), range(Search::Walk)), (5.8, 4.1));
+    let html = page(&study(), model()).unwrap();
+    for statement in [
+        "the range is up to 0.2 mm wider",
+        "it can step over a gap",
+        "optimize evaluate --walk",
+        "along a straight line over the infill direction",
+        "its error is not carried into the range",
+        "two of four tasks. On usb the rank correlation",
+    ] {
+        assert!(html.contains(statement), "{statement}");
+    }
+    for axis in Axis::ALL {
+        let percent = model().chosen(axis).unwrap().mean_absolute_percent;
+        let error = format!("by {percent:.1} % in {}", axis.label());
+        assert!(html.contains(&error), "{error}");
+    }
+    for wrong in ["known to within", "centre of rotation of the finger is fixed"] {
+        assert!(!html.contains(wrong), "{wrong}");
+    }
+    let mut codesign = study();
+    let text = include_str!("../../spaces/codesign.toml");
+    codesign.config.space = Space::parse(text, "codesign.toml").unwrap();
+    codesign.config.objective = Objectives::of(Measure::RobustRange);
+    let html = page(&codesign, model()).unwrap();
+    for statement in ["remote centre is a number of the design", "alone carries its error"] {
+        assert!(html.contains(statement), "{statement}");
+    }
+}
+
+/// Evaluations are counted from 0, as in the journal and on the command line.
+#[test]
+fn evaluations_are_counted_from_0() {
+    let study = study();
+    let steps = convergence::best_so_far(&study);
+    assert_eq!((steps[0].0, steps[steps.len() - 1].0), (0.0, 59.0));
+    let best = study.best().unwrap().index;
+    let fact = format!("<dt>evaluation</dt><dd>{best} (the 60 are counted from 0)</dd>");
+    assert!(page(&study, model()).unwrap().contains(&fact), "{fact}");
 }
 
 /// Every page and plot can be drawn; they are written to `$FINGER_OPT_LOOK`, if
@@ -300,9 +368,9 @@ fn everything_can_be_drawn() {
     };
     let jammed = Outcome::Failed(FailureClass::Jammed);
     let failed = record("usb", vec![at_nominal(0, [10.0, 0.0], jammed)]);
-    write("report.html", html(&study(), &measured()).unwrap());
-    write("failed.html", html(&failed, &measured()).unwrap());
+    write("report.html", page(&study(), model()).unwrap());
+    write("failed.html", page(&failed, model()).unwrap());
     write("convergence.svg", convergence_svg(&study()).unwrap());
-    write("stiffness.svg", stiffness::svg(&model()).unwrap());
-    write("stiffness.txt", stiffness::table(&model()));
+    write("stiffness.svg", stiffness::svg(model()).unwrap());
+    write("stiffness.txt", stiffness::table(model()));
 }

@@ -2,25 +2,9 @@
 
 use crate::evaluation::objective::Objectives;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use crate::outcome::{FailureClass, Outcome};
+use crate::outcome::Outcome;
 use crate::surrogate::Estimate;
 use crate::units::N_PER_MM;
-
-/// Text that is safe within HTML, in elements and in quoted attributes.
-pub(super) fn escape(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            '\'' => safe.push_str("&#39;"),
-            c => safe.push(c),
-        }
-    }
-    safe
-}
 
 /// A stiffness with its standard deviation, N/mm.
 pub(super) fn stiffness(estimate: Estimate) -> String {
@@ -29,36 +13,18 @@ pub(super) fn stiffness(estimate: Estimate) -> String {
     format!("{mean:.digits$} ± {sd:.digits$} N/mm")
 }
 
-/// What ended a window at one side.
-pub(super) fn end(outcome: Option<Outcome>) -> String {
-    match outcome {
-        None => "no failure up to the search limit".to_owned(),
-        Some(outcome) => outcome_words(outcome),
-    }
+/// An outcome in words, a failure with its class number: `3 jammed`.
+pub(super) fn outcome(outcome: Outcome) -> String {
+    numbered(outcome, outcome.label())
 }
 
-/// An outcome in words, a failure with its class number.
-pub(super) fn outcome_words(outcome: Outcome) -> String {
-    match outcome {
-        Outcome::Inserted => "inserted".to_owned(),
-        Outcome::Failed(class) => format!("{} {}", class.number(), class.label()),
-        Outcome::Diverged => "simulation diverged".to_owned(),
-    }
+/// What ended a window at one side, short enough for a plot.
+pub(super) fn end_short(end: Option<Outcome>) -> String {
+    end.map_or("no failure".to_owned(), |outcome| numbered(outcome, outcome.short()))
 }
 
-/// The same, short enough for a plot.
-pub(super) fn end_short(outcome: Option<Outcome>) -> &'static str {
-    match outcome {
-        None => "no failure",
-        Some(Outcome::Inserted) => "inserted",
-        Some(Outcome::Diverged) => "diverged",
-        Some(Outcome::Failed(class)) => match class {
-            FailureClass::ContactLossBeforeSearch => "1 lost early",
-            FailureClass::PlugMissed => "2 missed",
-            FailureClass::Jammed => "3 jammed",
-            FailureClass::ContactLossInInsertion => "4 lost",
-        },
-    }
+fn numbered(outcome: Outcome, words: &str) -> String {
+    outcome.failure().map_or(words.to_owned(), |number| format!("{number} {words}"))
 }
 
 /// A design in words: infill first, then whatever else the space names.
@@ -91,12 +57,7 @@ pub(super) fn is_infill(key: &str) -> bool {
 
 /// The infill of a design in words; empty if it has none.
 pub(super) fn infill(design: &Design) -> String {
-    let mut parts = Vec::new();
-    if let Some(density) = design.get(DENSITY_KEY) {
-        parts.push(format!("{density} %"));
-    }
-    if let Some(direction) = design.get(DIRECTION_KEY) {
-        parts.push(format!("{direction}°"));
-    }
-    parts.join(", ")
+    let density = design.get(DENSITY_KEY).map(|density| format!("{density} %"));
+    let direction = design.get(DIRECTION_KEY).map(|direction| format!("{direction}°"));
+    density.into_iter().chain(direction).collect::<Vec<_>>().join(", ")
 }

@@ -71,22 +71,13 @@ pub(super) fn variables(dark: bool) -> String {
     ALL.iter().map(|c| format!("--{}:{};", c.name, value(c))).collect()
 }
 
-/// Makes a drawn SVG fit for the page: colours become variables, the size
-/// becomes that of its place, and a reader that cannot see it gets `label`.
-pub(super) fn inline(svg: &str, label: &str) -> String {
-    let mut svg = svg.to_owned();
-    for colour in ALL {
-        svg = svg.replace(&colour.hex(), &format!("var(--{})", colour.name));
-    }
-    let label = super::text::escape(label);
+/// Makes a drawn SVG fit for the page: colours become variables, and the size that of its place.
+pub(super) fn inline(svg: &str) -> String {
+    let variable = |svg: String, colour: &Colour| {
+        svg.replace(&colour.hex(), &format!("var(--{})", colour.name))
+    };
+    let svg = ALL.iter().fold(svg.to_owned(), variable);
     let view_box = svg.find("viewBox").unwrap_or(0);
-    match svg.find("<svg ") {
-        Some(start) if start < view_box => {
-            let head = format!("<svg role=\"img\" aria-label=\"{label}\" ");
-            // The namespace is implied in HTML, and would look like an address.
-            let rest = svg[view_box..].replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-            head + &rest
-        }
-        _ => svg,
-    }
+    // The namespace is implied in HTML, and would look like an address.
+    format!("<svg {}", svg[view_box..].replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1))
 }

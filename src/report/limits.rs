@@ -1,0 +1,101 @@
+//! What the numbers of a study do not say.
+
+use crate::evaluation::objective::Measure;
+use crate::input::stiffness::Axis;
+use crate::study::StudyRecord;
+use crate::surrogate::Model;
+use crate::verify::compare::published::rank_correlation;
+use maud::{Markup, html};
+
+/// Key of the remote centre, where a space has it among its parameters.
+const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
+
+/// The statements, one after the other.
+pub(super) fn section(record: &StudyRecord, model: &Model) -> Markup {
+    let goals = record.config.goals();
+    html! {
+        ul {
+            li {
+                "These are results of a contact simulation. No finger was printed for this study."
+            }
+            li { (published_order(record)) }
+            li {
+                "The ends of a window are known to the 0.1 mm grid: the next step does not insert, \
+                so the end lies within 0.1 mm beyond the one given, and the range is up to 0.2 mm \
+                wider. Differences of 0.2 mm between designs are at this resolution."
+            }
+            li { (gaps(record)) }
+            li { (stiffness(model, goals.need(Measure::RobustRange))) }
+            @if goals.need_draws() {
+                li {
+                    "Success rate and robust range are those of the assumed errors, not of your \
+                    cell. All designs meet the same draws, so differences between designs are \
+                    surer than the values."
+                }
+            }
+            li { (remote_centre(record)) }
+        }
+    }
+}
+
+fn gaps(record: &StudyRecord) -> String {
+    let walked = match record.walked.len() {
+        0 => "No design was walked, step by step. For any design ".to_owned(),
+        count => format!("The best {count} designs were walked, step by step. For any other "),
+    };
+    format!(
+        "Not every step of a window was tried. A study looks every 0.5 mm outward and bisects \
+         before the first failure, so it can step over a gap: starts that fail between starts \
+         that insert. {walked}use optimize evaluate --walk before you print."
+    )
+}
+
+fn published_order(record: &StudyRecord) -> String {
+    let here = |task: &str| {
+        let (r, n) = rank_correlation(task)?;
+        Some(format!(
+            " On {task} the rank correlation between published simulated and bench \
+             ranges is {r:+.2} over {n} designs (+1: same order, −1: opposite order)."
+        ))
+    };
+    let here: String = record.config.tasks().filter_map(here).collect();
+    format!(
+        "In the published simulation of these tasks, ranges rank the designs in the opposite \
+         order to the robot on two of four tasks.{here} Confirm the best design, and a very \
+         different one, on the robot."
+    )
+}
+
+fn stiffness(model: &Model, robust: bool) -> String {
+    let error = |axis| {
+        let used = model.chosen(axis)?;
+        Some(format!("{:.1} % in {}", used.mean_absolute_percent, axis.label()))
+    };
+    let errors: Vec<String> = Axis::ALL.into_iter().filter_map(error).collect();
+    let carried = if robust {
+        "The windows shown are those of fingers of exactly the predicted stiffness; the robust \
+         range alone carries its error."
+    } else {
+        "The range is that of a finger of exactly the predicted stiffness; its error is not \
+         carried into the range."
+    };
+    format!(
+        "Stiffness is predicted from {} measured designs. Each left out of the fit in turn, they \
+         are missed by {} on average. {carried}",
+        model.measurements().len(),
+        errors.join(" and by ")
+    )
+}
+
+fn remote_centre(record: &StudyRecord) -> &'static str {
+    let parameters = record.config.space.parameters();
+    if parameters.iter().any(|parameter| parameter.key == REMOTE_CENTRE_KEY) {
+        "The finger's remote centre is a number of the design here, set apart from the infill. In \
+         truth it moves with the infill direction; whether a finger with this infill and this \
+         remote centre can be made was not checked. It matters for long, slender plugs."
+    } else {
+        "The finger's remote centre is where the task file puts it: at one distance for all \
+         designs, or along a straight line over the infill direction. On a printed finger it moves \
+         with the infill; how far was not measured. It matters for long, slender plugs."
+    }
+}

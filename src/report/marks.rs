@@ -1,0 +1,108 @@
+//! What is drawn in plots: marked points, lines, stairs.
+
+use super::chart::{Chart, Drawn, message};
+use super::theme::{Colour, MUTED};
+use plotters::prelude::*;
+
+/// How a point is marked: a shape of a size in pixels, and its style.
+#[derive(Clone, Copy)]
+pub(super) struct PointMark {
+    shape: PointShape,
+    size: i32,
+    style: ShapeStyle,
+}
+
+#[derive(Clone, Copy)]
+enum PointShape {
+    Circle,
+    Triangle,
+    Cross,
+}
+
+impl PointMark {
+    /// A filled circle through which others can be seen.
+    pub fn dot(colour: Colour, size: i32) -> Self {
+        PointMark { shape: PointShape::Circle, size, style: colour.rgb().mix(0.55).filled() }
+    }
+
+    /// A filled circle.
+    pub fn disc(colour: Colour, size: i32) -> Self {
+        PointMark { shape: PointShape::Circle, size, style: colour.rgb().filled() }
+    }
+
+    /// An open circle.
+    pub fn ring(colour: Colour, size: i32, width: u32) -> Self {
+        PointMark { shape: PointShape::Circle, size, style: colour.rgb().stroke_width(width) }
+    }
+
+    /// A triangle.
+    pub fn triangle(colour: Colour) -> Self {
+        let style = colour.rgb().stroke_width(2);
+        PointMark { shape: PointShape::Triangle, size: 6, style }
+    }
+
+    /// A cross.
+    pub fn cross(colour: Colour, size: i32) -> Self {
+        PointMark { shape: PointShape::Cross, size, style: colour.rgb().stroke_width(2) }
+    }
+
+    fn at<'a, C: Clone + 'static>(self, at: C) -> DynElement<'static, SVGBackend<'a>, C> {
+        match self.shape {
+            PointShape::Circle => Circle::new(at, self.size, self.style).into_dyn(),
+            PointShape::Triangle => TriangleMarker::new(at, self.size, self.style).into_dyn(),
+            PointShape::Cross => Cross::new(at, self.size, self.style).into_dyn(),
+        }
+    }
+}
+
+/// Marks points; `label` is for the legend, empty for none.
+pub(super) fn points<'a, 'b: 'a>(
+    chart: &mut Chart<'a, 'b>,
+    points: impl IntoIterator<Item = (f64, f64)>,
+    mark: PointMark,
+    label: &str,
+) -> Drawn {
+    let mut elements = points.into_iter().map(|at| mark.at(at)).peekable();
+    if elements.peek().is_none() {
+        return Ok(());
+    }
+    let series = chart.draw_series(elements).map_err(message)?;
+    if !label.is_empty() {
+        series.label(label).legend(move |(x, y)| mark.at((x + 10, y)));
+    }
+    Ok(())
+}
+
+/// A line through points; `label` is for the legend, empty for none.
+pub(super) fn line(
+    chart: &mut Chart<'_, '_>,
+    points: Vec<(f64, f64)>,
+    style: ShapeStyle,
+    label: impl Into<String>,
+) -> Drawn {
+    if points.is_empty() {
+        return Ok(());
+    }
+    let (series, label) =
+        (chart.draw_series(LineSeries::new(points, style)).map_err(message)?, label.into());
+    if !label.is_empty() {
+        series.label(label).legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
+    }
+    Ok(())
+}
+
+/// A thin dashed line between two points.
+pub(super) fn dashed(chart: &mut Chart<'_, '_>, ends: [(f64, f64); 2]) -> Drawn {
+    let line = DashedLineSeries::new(ends, 5, 4, MUTED.rgb().stroke_width(1));
+    chart.draw_series(line).map(|_| ()).map_err(message)
+}
+
+/// The corners of stairs that rise (or fall) at each point.
+pub(super) fn stairs(points: impl IntoIterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    let mut stairs: Vec<(f64, f64)> = Vec::new();
+    for (x, y) in points {
+        stairs.extend(stairs.last().map(|&(_, before)| (x, before)));
+        stairs.push((x, y));
+    }
+    stairs
+}

@@ -1,0 +1,103 @@
+//! `report.html`: one file, no scripts, nothing fetched.
+
+use super::theme::variables;
+use super::{
+    ReportError, best, convergence, front, limits, map, others, provenance, published, windows,
+};
+use crate::study::StudyRecord;
+use crate::surrogate::Model;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// Pixels of a plot in the page: narrow, so that its text stays readable when
+/// a phone shrinks it to fit.
+const PLOT: (u32, u32) = (560, 400);
+
+/// The report of a study as a page that opens offline. `model` is the stiffness model of the
+/// study; the map marks the designs it was fitted to.
+///
+/// # Errors
+/// If the drawing library refuses.
+pub fn page(record: &StudyRecord, model: &Model) -> Result<String, ReportError> {
+    let config = &record.config;
+    let title = format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed);
+    let sections = sections(record, model)?;
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (title) }
+                style { (PreEscaped(style())) }
+            }
+            body {
+                main {
+                    header {
+                        h1 { (title) }
+                        p.muted {
+                            "Robustness of a compliant finger in a connector insertion, by \
+                            contact simulation: " (record.evaluations.len()) " of "
+                            (config.evaluations()) " evaluations."
+                        }
+                    }
+                    @for (id, title, body) in sections {
+                        section id=(id) { h2 { (title) } (body) }
+                    }
+                }
+            }
+        }
+    };
+    Ok(page.into_string())
+}
+
+type Section = (&'static str, String, Markup);
+
+/// Id, title and body of each section; what does not apply is left out.
+fn sections(record: &StudyRecord, model: &Model) -> Result<Vec<Section>, ReportError> {
+    let first = record.config.objective.first().name();
+    let first = first[..1].to_uppercase() + &first[1..];
+    let map = map::section(record, model.measurements(), (PLOT.0, 500))?;
+    let windows = each_task(record, |task| windows::section(record, task, PLOT.0))?;
+    let published = each_task(record, |task| published::section(record, task, PLOT))?;
+    let section = |id, title: &str, body| Some((id, title.to_owned(), body));
+    let sections = [
+        section("best", "Best design", best::section(record)),
+        section("convergence", "Convergence", convergence::section(record, PLOT)?),
+        front::section(record, PLOT)?
+            .and_then(|front| section("front", "Between the objectives", front)),
+        section("map", &format!("{first} over density and direction"), map),
+        others::section(record, PLOT.0)?.and_then(|others| {
+            section("others", &format!("{first} over the other parameters"), others)
+        }),
+        section("windows", "Tolerance windows of the best designs", windows),
+        section("published", "Published ranges beside ours", published),
+        section("failures", "How the trials ended", provenance::outcomes(record)),
+        section("limits", "What this does not say", limits::section(record, model)),
+        section("provenance", "Provenance", provenance::provenance(record)),
+    ];
+    Ok(sections.into_iter().flatten().collect())
+}
+
+/// A part for each task, under its name if there are several.
+fn each_task(
+    record: &StudyRecord,
+    part: impl Fn(usize) -> Result<Markup, ReportError>,
+) -> Result<Markup, ReportError> {
+    let parts = (0..record.config.tasks().count()).map(part).collect::<Result<Vec<_>, _>>()?;
+    let several = parts.len() > 1;
+    Ok(html! {
+        @for (name, part) in record.config.tasks().zip(parts) {
+            @if several { h3 { (name) } }
+            (part)
+        }
+    })
+}
+
+fn style() -> String {
+    let (light, dark) = (variables(false), variables(true));
+    format!(
+        ":root{{{light}}}\n@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{}",
+        include_str!("style.css")
+    )
+}

@@ -1,0 +1,142 @@
+//! The stiffness model as curves, with what was measured.
+
+use super::ReportError;
+use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet, words};
+use super::marks::{PointMark, dashed, line, points};
+use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
+use crate::input::stiffness::{Axis, Measurement};
+use crate::surrogate::{Estimate, Model};
+use crate::units::N_PER_MM;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+/// Four panels: both axes of stiffness against direction and against density;
+/// curves with a band of one standard deviation, and the measured designs.
+///
+/// # Errors
+/// If the drawing library refuses.
+pub fn svg(model: &Model) -> Result<String, ReportError> {
+    sheet("the stiffness model", (1160, 880), |area| {
+        let (head, body) = area.split_vertically(58);
+        let style = |size, colour| words(size, colour, HPos::Left, VPos::Top);
+        let title = "Stiffness of one finger: model and measurements";
+        head.draw_text(title, &style(20, INK), (20, 8)).map_err(message)?;
+        let note = "band: ± 1 standard deviation of a new finger    filled: measured at the \
+                     curve's value    open: measured in between (colour of the nearest curve)    \
+                     dashed: limits of the measurements";
+        head.draw_text(note, &style(15, MUTED), (20, 36)).map_err(message)?;
+        for (panel, (axis, by)) in body.split_evenly((2, 2)).iter().zip(PANELS) {
+            draw(panel, model, axis, by)?;
+        }
+        Ok(())
+    })
+}
+
+/// What a panel has along its x axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum By {
+    Direction,
+    Density,
+}
+
+const PANELS: [(Axis, By); 4] = [
+    (Axis::Compliance, By::Direction),
+    (Axis::Compliance, By::Density),
+    (Axis::Assembly, By::Direction),
+    (Axis::Assembly, By::Density),
+];
+
+const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
+
+impl By {
+    /// `(value along x, value that tells the curves apart)` of a measurement.
+    fn of(self, m: &Measurement) -> (f64, f64) {
+        match self {
+            By::Direction => (m.direction_deg, m.density_percent),
+            By::Density => (m.density_percent, m.direction_deg),
+        }
+    }
+
+    fn predict(self, model: &Model, axis: Axis, x: f64, curve: f64) -> Estimate {
+        let found = match self {
+            By::Direction => model.predict(curve, x),
+            By::Density => model.predict(x, curve),
+        };
+        let Estimate { mean, sd } = found.axis(axis);
+        Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }
+    }
+
+    /// Label of the x axis, and what a curve is called.
+    fn labels(self, curve: f64) -> (&'static str, String) {
+        match self {
+            By::Direction => ("infill direction (°)", format!("density {curve} %")),
+            By::Density => ("infill density (%)", format!("direction {curve}°")),
+        }
+    }
+}
+
+fn draw(area: &Area<'_>, model: &Model, axis: Axis, by: By) -> Drawn {
+    let measured = model.measurements();
+    let limits = around(measured.iter().map(|m| by.of(m).0), 0.0);
+    let span = limits.end - limits.start;
+    let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
+    let curves = levels(measured.iter().map(|m| by.of(m).1));
+    let samples: Vec<f64> =
+        (0..=80).map(|i| x.start + (x.end - x.start) * f64::from(i) / 80.0).collect();
+    let bands: Vec<Vec<(f64, Estimate)>> = curves
+        .iter()
+        .map(|&curve| samples.iter().map(|&x| (x, by.predict(model, axis, x, curve))).collect())
+        .collect();
+    let tops = bands.iter().flatten().map(|(_, e)| e.mean + e.sd);
+    let readings = measured.iter().map(|m| m.stiffness(axis) / N_PER_MM);
+    let mut y = around(tops.chain(readings).chain([0.0]), 0.05);
+    y.start = 0.0;
+    let top = y.end;
+    let label = format!("stiffness in {} (N/mm)", axis.label());
+    let x_axis = AxisOf { label: by.labels(0.0).0, range: x };
+    let mut chart = axes(area, "", x_axis, AxisOf { label: &label, range: y })?;
+    for limit in [limits.start, limits.end] {
+        dashed(&mut chart, [(limit, 0.0), (limit, top)])?;
+    }
+    for (band, colour) in bands.iter().zip(SERIES) {
+        let upper = band.iter().map(|(x, e)| (*x, e.mean + e.sd));
+        let lower = band.iter().rev().map(|(x, e)| (*x, (e.mean - e.sd).max(0.0)));
+        let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
+        chart
+            .draw_series([Polygon::new(outline, colour.rgb().mix(0.15).filled())])
+            .map_err(message)?;
+    }
+    for ((band, colour), &curve) in bands.iter().zip(SERIES).zip(&curves) {
+        let means = band.iter().map(|(x, e)| (*x, e.mean)).collect();
+        line(&mut chart, means, colour.rgb().stroke_width(2), by.labels(curve).1)?;
+    }
+    for m in measured {
+        let (x, level) = by.of(m);
+        let at = (x, m.stiffness(axis) / N_PER_MM);
+        points(&mut chart, [at], mark(level, &curves), "")?;
+    }
+    let corner = match axis {
+        Axis::Compliance => SeriesLabelPosition::LowerRight,
+        Axis::Assembly => SeriesLabelPosition::UpperRight,
+    };
+    legend(&mut chart, corner)
+}
+
+/// In the colour of the nearest curve, filled if the design lies on it.
+fn mark(level: f64, curves: &[f64]) -> PointMark {
+    let distances = curves.iter().map(|curve| (curve - level).abs()).zip(SERIES);
+    let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0));
+    let (distance, colour) = nearest.unwrap_or((f64::INFINITY, MUTED));
+    if distance < 1e-9 { PointMark::disc(colour, 5) } else { PointMark::ring(colour, 5, 2) }
+}
+
+/// Smallest, middle and largest of the distinct values.
+fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    match sorted.len() {
+        0..=3 => sorted,
+        n => vec![sorted[0], sorted[n / 2], sorted[n - 1]],
+    }
+}

@@ -90,7 +90,7 @@ fn of_design<'a>(record: &'a StudyRecord, m: &Measurement) -> Option<&'a Recorde
     })
 }
 
-/// `(compliance stiffness in N/mm, range in mm)`: ours, published simulation, bench experiments.
+/// `(compliance stiffness in N/mm, range in mm)`: ours, published simulation, bench.
 fn clouds(
     record: &StudyRecord,
     task: usize,

@@ -2,7 +2,6 @@
 
 use super::StudyConfig;
 use super::provenance::Segment;
-use super::walked::Walked;
 use crate::evaluation::Evaluation;
 use crate::evaluation::objective::{Goals, Measure, Score};
 use crate::evaluation::pareto;
@@ -20,6 +19,13 @@ pub struct StudyRecord {
     pub evaluations: Vec<Recorded>,
     /// What the walk found of the best designs, best first; empty if they were not walked.
     pub walked: Vec<Walked>,
+}
+
+/// A design that was measured again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Walked {
+    /// The evaluation with the windows that the walk found, and the score of those.
+    pub recorded: Recorded,
 }
 
 /// One evaluation of a study.

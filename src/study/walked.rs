@@ -5,101 +5,48 @@
 //! is recommended the best three are walked. What that finds is kept beside the journal, in
 //! `walk.json`, and is no part of the budget.
 
-use super::error::StudyError;
-use super::folder::{Study, write_file};
 use super::provenance::Provenance;
-use super::record::Recorded;
+use super::record::{Recorded, Walked};
 use crate::evaluation::Evaluation;
-use crate::evaluation::evaluator::Evaluate;
 use crate::evaluation::objective::{Goals, Measure};
-use rayon::ThreadPool;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Name of the file.
-const WALK_FILE: &str = "walk.json";
+pub(super) const WALK_FILE: &str = "walk.json";
 /// How many designs are walked.
 const COUNT: usize = 3;
 
-/// A design that was measured again.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Walked {
-    /// The evaluation with the windows that the walk found, and the score of those.
-    pub recorded: Recorded,
-}
-
 #[derive(Serialize, Deserialize)]
-struct WalkFile {
+pub(super) struct WalkFile {
     /// What walked: of another provenance it says nothing.
-    provenance: Provenance,
-    walked: Vec<WalkedRow>,
+    pub provenance: Provenance,
+    /// The designs that were walked.
+    pub walked: Vec<WalkedRow>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct WalkedRow {
-    evaluation: u64,
-    tasks: Vec<Evaluation>,
+pub(super) struct WalkedRow {
+    /// Index of the evaluation.
+    pub evaluation: u64,
+    /// What the walk found on each task.
+    pub tasks: Vec<Evaluation>,
 }
 
 /// Whether the windows of the best designs are to be walked: where they decide.
-pub fn decides(goals: &Goals) -> bool {
+pub(super) fn decides(goals: &Goals) -> bool {
     matches!(goals.objectives.single(), Some(Measure::Range | Measure::CentredRange))
 }
 
 /// The designs to be walked: the best three that insert anywhere, earlier ones first of equals.
-fn candidates<'a>(goals: &Goals, current: &'a [Recorded]) -> Vec<&'a Recorded> {
+pub(super) fn candidates<'a>(goals: &Goals, current: &'a [Recorded]) -> Vec<&'a Recorded> {
     let first_value = |recorded: &Recorded| recorded.value().unwrap_or(0.0);
     let mut known: Vec<(&Recorded, &[f64])> =
         current.iter().filter_map(|recorded| Some((recorded, recorded.feasible()?))).collect();
     known.retain(|(recorded, _)| first_value(recorded) > 0.0);
     known.sort_by(|(_, a), (_, b)| goals.order(b, a));
     known.into_iter().take(COUNT).map(|(recorded, _)| recorded).collect()
-}
-
-/// Walks the best designs of a study, those that were walked before left out, and keeps what
-/// that finds. Nothing is kept once `stop` is set.
-pub fn walk_best(
-    study: &Study,
-    walker: &dyn Evaluate,
-    pool: &ThreadPool,
-    stop: &AtomicBool,
-) -> Result<Vec<Walked>, StudyError> {
-    let (record, goals) = (study.record(), study.config.goals());
-    if !decides(&goals) {
-        return Ok(Vec::new());
-    }
-    let best = candidates(&goals, record.current());
-    let known = |index: u64| record.walked.iter().find(|w| w.recorded.index == index);
-    let walk = |recorded: &&Recorded| -> Result<WalkedRow, StudyError> {
-        let tasks = match known(recorded.index) {
-            Some(walked) => walked.recorded.tasks.clone(),
-            None => {
-                walker
-                    .evaluate(&recorded.design)
-                    .map_err(|source| StudyError::Impossible {
-                        index: recorded.index,
-                        design: recorded.design.to_string(),
-                        source,
-                    })?
-                    .tasks
-            }
-        };
-        Ok(WalkedRow { evaluation: recorded.index, tasks })
-    };
-    let rows = pool.install(|| best.par_iter().map(walk).collect::<Result<Vec<_>, _>>())?;
-    if stop.load(Ordering::SeqCst) || rows.is_empty() {
-        return Ok(Vec::new());
-    }
-    let walked = ranked(&goals, record.current(), &rows);
-    let file = WalkFile { provenance: study.provenance().clone(), walked: rows };
-    let path = study.dir().join(WALK_FILE);
-    let text = serde_json::to_string(&file)
-        .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
-    write_file(&path, &(text + "\n"))?;
-    Ok(walked)
 }
 
 /// What was walked in `dir` with this provenance, best first; nothing where the file is
@@ -119,7 +66,7 @@ pub(super) fn read(
 
 /// The evaluations with the windows of the walk, best first; what was measured under drawn
 /// errors stays.
-fn ranked(goals: &Goals, current: &[Recorded], rows: &[WalkedRow]) -> Vec<Walked> {
+pub(super) fn ranked(goals: &Goals, current: &[Recorded], rows: &[WalkedRow]) -> Vec<Walked> {
     let apply = |row: &WalkedRow| {
         let before = current.iter().find(|recorded| recorded.index == row.evaluation)?;
         let mut recorded = before.clone();

@@ -364,6 +364,7 @@ fn every_help_shows_an_example_and_the_shell_and_man_are_served() {
     assert!(help.succeeds().contains("Example: optimize --task usb --budget 200"));
     for command in [
         "resume",
+        "finger",
         "report",
         "evaluate",
         "trial",
@@ -386,4 +387,29 @@ fn every_help_shows_an_example_and_the_shell_and_man_are_served() {
     assert!(optimize(&["completions", "bash"]).succeeds().contains("_optimize"));
     assert!(optimize(&["man"]).succeeds().starts_with(".ie"));
     assert_eq!(optimize(&["task"]).succeeds(), optimize(&["tasks"]).succeeds());
+}
+
+#[test]
+fn a_finger_is_computed_from_its_ribs() {
+    let studies = Studies::new();
+    let svg = studies.dir("finger.svg").to_str().unwrap().to_owned();
+    let infill = ["finger", "--density", "20", "--direction", "20"];
+    let json = optimize(&[&infill[..], &["--json", "--svg", &svg]].concat()).json();
+    for key in ["finger", "infill_density_percent", "infill_direction_deg", "area_mm2", "mass_g"] {
+        assert!(json.get(key).is_some(), "{key} is not in {json}");
+    }
+    for (contact, compliance, assembly) in [("pad", 2.29, 33.4), ("pad_and_roof", 2.29, 46.2)] {
+        let of = |key: &str| json[contact][key].as_f64().unwrap_or_else(|| panic!("{key}: {json}"));
+        assert!((of("compliance_n_per_mm") / compliance - 1.0).abs() < 0.03, "{json}");
+        assert!((of("assembly_n_per_mm") / assembly - 1.0).abs() < 0.03, "{json}");
+        assert!(of("coupling_yz") > 0.5 && of("tilting_nm_per_rad") > 1.0, "{json}");
+        let matrix = &json[contact]["stiffness_matrix"];
+        assert_eq!(matrix[0][2], matrix[2][0]);
+    }
+    assert!(common::read(std::path::Path::new(&svg)).contains("</svg>"));
+    assert!(optimize(&infill).succeeds().contains("pad and roof"));
+    let dense = ["finger", "--density", "120", "--direction", "0"];
+    optimize(&dense).fails(2, &["finray9.toml", "density"]);
+    let unknown = [&infill[..], &["--finger", "finray"]].concat();
+    optimize(&unknown).fails(2, &["did you mean `finray9`"]);
 }

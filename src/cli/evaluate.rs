@@ -1,8 +1,8 @@
 //! `optimize evaluate`: the tolerance window of one finger.
 
-use super::finger::{Chosen, FingerArguments};
 use super::repeat::{self, RepeatArguments};
 use super::setup::{self, Setup, SetupArguments};
+use super::specimen::{Chosen, FingerArguments};
 use super::words::{self, merge};
 use super::{Failure, print, print_json};
 use crate::evaluation::Evaluation;

@@ -1,8 +1,8 @@
 //! `optimize export`: the scene of a trial for other programs.
 
 use super::Failure;
-use super::finger::FingerArguments;
 use super::setup::{Setup, SetupArguments};
+use super::specimen::FingerArguments;
 use crate::evaluation::evaluator::Specimen;
 use crate::physics::mjcf::{self, MjcfSettings};
 use crate::study::write_file;

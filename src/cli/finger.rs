@@ -1,167 +1,183 @@
-//! Which finger and task a trial or an evaluation is of.
+//! `optimize finger`: what a finger's ribs say of its stiffness.
 
-use super::Failure;
-use super::setup::Setup;
-use super::words;
-use crate::evaluation::evaluator::Specimen;
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use crate::surrogate::Prediction;
-use crate::units::{MM, N_PER_MM};
+use super::setup::find;
+use super::{Failure, print, print_json};
+use crate::finger::printed::geometry::{Design, Geometry};
+use crate::finger::printed::mechanics::{self, FingerStiffness};
+use crate::finger::printed::picture;
+use crate::finger::printed::stiffness::PlanarStiffness;
+use crate::input::printed::PrintedFinger;
+use crate::input::shipped::FINGERS;
+use crate::study::write_file;
+use crate::units::{GRAM, MM, N_PER_MM};
 use clap::Args;
-use serde_json::{Value, json};
+use nalgebra::Matrix3;
+use serde::Serialize;
+use std::path::PathBuf;
 
-/// Which finger, and on what task.
-#[derive(Debug, Clone, Args)]
-pub struct FingerArguments {
+/// Load of the picture: a grasp of 5 N, which presses the pad back, N in y and z.
+const PICTURE_LOAD: [f64; 2] = [-5.0, 0.0];
+
+/// Compute the stiffness of a printed finger from its ribs.
+///
+/// Plane stress on the exact profile: free stiffnesses at the pad's middle at the modulus of the
+/// finger file, before any measured correction. Nothing is fitted. Studies and trials do not use
+/// it yet: they take measured springs and the paper's remote centre.
+#[derive(Debug, Args)]
+pub struct Arguments {
     /// Infill density, percent
-    #[arg(
-        long,
-        value_name = "PERCENT",
-        required_unless_present = "stiffness_compliance",
-        allow_negative_numbers = true
-    )]
-    density: Option<f64>,
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
+    density: f64,
     /// Infill direction, degrees
-    #[arg(
-        long,
-        value_name = "DEG",
-        required_unless_present = "stiffness_compliance",
-        allow_negative_numbers = true
-    )]
-    direction: Option<f64>,
-    /// Stiffness in the compliance direction, N/mm: bypasses the surrogate
-    #[arg(long, value_name = "K", requires = "stiffness_assembly", value_parser = stiffness,
-          allow_negative_numbers = true)]
-    stiffness_compliance: Option<f64>,
-    /// Stiffness in the direction of assembly, N/mm: bypasses the surrogate
-    #[arg(long, value_name = "K", requires = "stiffness_compliance", value_parser = stiffness,
-          allow_negative_numbers = true)]
-    stiffness_assembly: Option<f64>,
-    /// A number of the task or the finger, as in spaces/codesign.toml; may be given several times
-    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
-    set: Vec<(String, f64)>,
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    direction: f64,
+    /// Finger: finray9, or the path of a finger file
+    #[arg(long, value_name = "NAME", default_value = "finray9")]
+    finger: String,
+    /// Where the first rib lies, mm [default: the finger file's]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    phase_mm: Option<f64>,
+    /// Draw the finger, at rest and under a grasp of 5 N
+    #[arg(long, value_name = "FILE.svg")]
+    svg: Option<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
 }
 
-/// A finger on a task, and where its stiffness comes from.
-pub struct Chosen {
-    pub specimen: Specimen,
-    /// What was set beside the infill.
-    pub set: Design,
-    /// Whether the stiffness was given, not predicted.
-    pub given: bool,
+/// The result as it is printed.
+#[derive(Serialize)]
+struct FingerRow {
+    finger: String,
+    infill_density_percent: f64,
+    infill_direction_deg: f64,
+    phase_mm: f64,
+    area_mm2: f64,
+    mass_g: f64,
+    pad: PlanarRow,
+    pad_and_roof: PlanarRow,
+    across: AcrossRow,
 }
 
-impl FingerArguments {
-    /// The finger, checked against the space.
-    pub fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
-        let template = setup.only_task()?;
-        for (flag, key, value) in [
-            ("--density", DENSITY_KEY, self.density),
-            ("--direction", DIRECTION_KEY, self.direction),
-        ] {
-            if let Some(value) = value {
-                check(setup, flag, key, value)?;
-            }
-        }
-        let set = self.settings(setup)?;
-        let mut design = set.clone();
-        design.0.extend(self.density.map(|density| (DENSITY_KEY.to_owned(), density)));
-        design.0.extend(self.direction.map(|direction| (DIRECTION_KEY.to_owned(), direction)));
-        let (stiffness, given) = match (self.stiffness_compliance, self.stiffness_assembly) {
-            (Some(compliance), Some(assembly)) => {
-                (Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM), true)
-            }
-            _ if self.density.is_some() && self.direction.is_some() => {
-                (setup.evaluator.predict(&design), false)
-            }
-            _ => return Err(Failure::usage("give --density and --direction")),
-        };
-        let specimen =
-            setup.evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
-        Ok(Chosen { specimen, set, given })
-    }
-
-    /// What is set beside the infill; a key of the space must keep to its bounds there.
-    fn settings(&self, setup: &Setup) -> Result<Design, Failure> {
-        let mut set = Design::default();
-        for (key, value) in &self.set {
-            if [DENSITY_KEY, DIRECTION_KEY].contains(&key.as_str()) {
-                return Err(Failure::usage(format!(
-                    "--set {key}: give the infill by --density and --direction"
-                )));
-            }
-            if setup.space.parameters().iter().any(|parameter| parameter.key == *key) {
-                check(setup, "--set", key, *value)?;
-            }
-            if set.0.insert(key.clone(), *value).is_some() {
-                return Err(Failure::usage(format!("--set {key}: is given twice")));
-            }
-        }
-        Ok(set)
-    }
+#[derive(Serialize)]
+struct PlanarRow {
+    compliance_n_per_mm: f64,
+    assembly_n_per_mm: f64,
+    tilting_nm_per_rad: f64,
+    centre_below_pad_mm: f64,
+    centre_from_pad_mm: f64,
+    coupling_yz: f64,
+    /// y, z, rx at the pad's middle: N/mm, N, N mm.
+    stiffness_matrix: [[f64; 3]; 3],
 }
 
-impl Chosen {
-    /// The keys that say what was measured.
-    pub fn json(&self, setup: &Setup, arguments: &FingerArguments) -> Value {
-        json!({
-            "task": self.specimen.task.name,
-            "robot": setup.evaluator.robot.name,
-            "infill_density_percent": arguments.density,
-            "infill_direction_deg": arguments.direction,
-            "set": self.set,
-            "rcc_mm": self.specimen.finger.rcc / MM,
-            "stiffness": self.specimen.stiffness,
-        })
-    }
-
-    /// What was set, and the stiffness, a line each.
-    pub fn text(&self) -> String {
-        let stiffness = &self.specimen.stiffness;
-        let stiffness = match self.given {
-            false => words::stiffness(stiffness),
-            true => format!(
-                "stiffness     compliance {} N/mm, assembly {} N/mm, as given",
-                stiffness.compliance.mean / N_PER_MM,
-                stiffness.assembly.mean / N_PER_MM
-            ),
-        };
-        if self.set.0.is_empty() {
-            return stiffness;
-        }
-        format!("set           {}\n{stiffness}", self.set)
-    }
+#[derive(Serialize)]
+struct AcrossRow {
+    depth_n_per_mm: f64,
+    about_y_nm_per_rad: f64,
+    about_z_nm_per_rad: f64,
 }
 
-/// A value must lie within the bounds its key has in the space.
-fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure> {
-    let parameters = setup.space.parameters();
-    match parameters.iter().find(|parameter| parameter.key == key) {
-        // Written so that a NaN is outside.
-        Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
-        Some(parameter) => Err(Failure::usage(format!(
-            "{flag} {value}: {key} must lie between {} and {} in the space `{}`",
-            parameter.low,
-            parameter.high,
-            setup.space.name()
-        ))),
-        None => {
-            Err(Failure::usage(format!("{flag}: the space `{}` has no {key}", setup.space.name())))
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = find("finger", FINGERS, &arguments.finger)?;
+    let finger = PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let design = Design {
+        density_percent: arguments.density,
+        direction_deg: arguments.direction,
+        phase_mm: arguments.phase_mm,
+    };
+    let geometry = Geometry::new(&finger, &design).map_err(Failure::input)?;
+    let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
+    if let Some(file) = &arguments.svg {
+        write_file(file, &picture::svg(&geometry, PICTURE_LOAD).map_err(Failure::input)?)?;
+    }
+    let row = FingerRow::new(&geometry, &computed);
+    if arguments.json {
+        let value = serde_json::to_value(&row)
+            .map_err(|error| Failure::running(format!("cannot write the result: {error}")))?;
+        return print_json(&value);
+    }
+    print(&text(&row, &finger))
+}
+
+impl FingerRow {
+    fn new(geometry: &Geometry, computed: &FingerStiffness) -> Self {
+        let (design, cross) = (&geometry.design, &computed.cross);
+        FingerRow {
+            finger: geometry.finger.name.clone(),
+            infill_density_percent: design.density_percent,
+            infill_direction_deg: design.direction_deg,
+            phase_mm: design.phase_mm.unwrap_or(geometry.finger.ribs.phase / MM),
+            area_mm2: computed.area / (MM * MM),
+            mass_g: computed.mass / GRAM,
+            pad: PlanarRow::from(&computed.pad),
+            pad_and_roof: PlanarRow::from(&computed.pad_and_roof),
+            across: AcrossRow {
+                depth_n_per_mm: cross.in_depth() / N_PER_MM,
+                about_y_nm_per_rad: cross.about_y(),
+                about_z_nm_per_rad: cross.about_z(),
+            },
         }
     }
 }
 
-fn stiffness(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("a stiffness is a number above 0, in N/mm".to_owned()),
+impl From<&PlanarStiffness> for PlanarRow {
+    fn from(stiffness: &PlanarStiffness) -> Self {
+        PlanarRow {
+            compliance_n_per_mm: stiffness.in_compliance() / N_PER_MM,
+            assembly_n_per_mm: stiffness.in_assembly() / N_PER_MM,
+            tilting_nm_per_rad: stiffness.tilting(),
+            centre_below_pad_mm: stiffness.centre_below_pad() / MM,
+            centre_from_pad_mm: stiffness.centre_in_front() / MM,
+            coupling_yz: stiffness.coupling_yz(),
+            stiffness_matrix: in_mm(stiffness.matrix()),
+        }
     }
 }
 
-fn setting(text: &str) -> Result<(String, f64), String> {
-    let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse()));
-    match parts {
-        Some((key, Ok(value))) if !key.is_empty() => Ok((key.to_owned(), value)),
-        _ => Err("a setting is KEY=NUMBER, as in task.strategy.tilt_deg=8".to_owned()),
-    }
+/// N/m, N/rad and N m/rad as N/mm, N and N mm.
+fn in_mm(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    let unit = |i: usize, j: usize| match (i == 2, j == 2) {
+        (false, false) => 1.0 / N_PER_MM,
+        (true, true) => 1.0 / MM,
+        _ => 1.0,
+    };
+    std::array::from_fn(|i| std::array::from_fn(|j| matrix[(i, j)] * unit(i, j)))
+}
+
+fn text(row: &FingerRow, finger: &PrintedFinger) -> String {
+    let modulus = finger.material.modulus / 1e9;
+    let planar = |name: &str, planar: &PlanarRow| {
+        format!(
+            "{name:<13} {:>9.2} {:>9.1} {:>9.2} {:>9.1} {:>9.1} {:>9.2}\n",
+            planar.compliance_n_per_mm,
+            planar.assembly_n_per_mm,
+            planar.tilting_nm_per_rad,
+            planar.centre_below_pad_mm,
+            planar.centre_from_pad_mm,
+            planar.coupling_yz,
+        )
+    };
+    format!(
+        "finger        {}, {} %, {}°, first rib at {} mm\n\
+         material      {}, {modulus} GPa ({})\n\
+         area, mass    {:.1} mm2, {:.2} g\n\n\
+         the part      compliance assembly   tilting    centre    centre  coupling\n\
+         touches           N/mm      N/mm    Nm/rad  below, mm front, mm       y-z\n{}{}\n\
+         across        {:.1} N/mm in x, {:.2} Nm/rad about y, {:.2} about z\n",
+        row.finger,
+        row.infill_density_percent,
+        row.infill_direction_deg,
+        row.phase_mm,
+        finger.material.name,
+        finger.material.source,
+        row.area_mm2,
+        row.mass_g,
+        planar("pad", &row.pad),
+        planar("pad and roof", &row.pad_and_roof),
+        row.across.depth_n_per_mm,
+        row.across.about_y_nm_per_rad,
+        row.across.about_z_nm_per_rad,
+    )
 }

@@ -17,6 +17,7 @@ mod report;
 mod resume;
 mod session;
 mod setup;
+mod specimen;
 mod stiffness;
 mod study;
 mod summary;
@@ -102,6 +103,8 @@ enum Command {
     /// Show the stiffness model and how well it fits
     #[command(after_help = "Example: optimize stiffness --stiffness-data mine.csv --svg model.svg")]
     Stiffness(stiffness::Arguments),
+    #[command(after_help = "Example: optimize finger --density 20 --direction 20 --svg finger.svg")]
+    Finger(finger::Arguments),
     /// Compare optimizers over studies of the same task and objective
     #[command(
         after_help = "Example: optimize compare results/usb-gp-seed0 results/usb-sobol-seed0"
@@ -163,6 +166,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
         Some(Command::Trial(arguments)) => trial::run(&arguments),
         Some(Command::Stiffness(arguments)) => stiffness::run(&arguments),
+        Some(Command::Finger(arguments)) => finger::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::CrossCheck(arguments)) => cross_check::run(&arguments),

@@ -1,8 +1,8 @@
 //! `--repeat N` of `trial` and `evaluate`: do small changes change the outcome?
 
 use super::Failure;
-use super::finger::Chosen;
 use super::setup::Setup;
+use super::specimen::Chosen;
 use super::words::outcome_word;
 use crate::evaluation::Window;
 use crate::evaluation::robustness::repeat::{Band, Bands, Repeats};

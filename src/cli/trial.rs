@@ -1,8 +1,8 @@
 //! `optimize trial`: one simulated insertion.
 
-use super::finger::FingerArguments;
 use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
+use super::specimen::FingerArguments;
 use super::words::{failure, merge, outcome_word};
 use super::{Failure, print, print_json};
 use crate::outcome::Outcome;

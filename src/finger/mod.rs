@@ -1,6 +1,8 @@
 //! One printed finger as the paper models it: six springs about a remote
 //! centre of compliance (RCC), Sec. "Stiffness model" and Table "Simulation Inputs".
 
+pub mod printed;
+
 use crate::input::finger::{Coupling, FingerModel};
 use crate::scene::{Coupled, Geom, Inertia, JointAxis, Pose, Shape, Spring, Springs};
 use crate::units::{GRAM, MM, N_PER_MM};

@@ -2,6 +2,7 @@
 
 pub mod arm;
 pub mod finger;
+pub mod printed;
 pub mod published;
 pub mod robot;
 pub mod shipped;

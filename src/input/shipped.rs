@@ -45,6 +45,9 @@ pub const ROBOTS: &[Shipped] = shipped! {
     "ur5e": "robots/ur5e.toml",
 };
 
+/// Printed fingers.
+pub const FINGERS: &[Shipped] = shipped! { "finray9": "fingers/finray9.toml" };
+
 /// Distributions of the errors under which a finger is to work.
 pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typical.toml" };
 

@@ -1,0 +1,167 @@
+//! Which finger and task a trial or an evaluation is of.
+
+use super::Failure;
+use super::setup::Setup;
+use super::words;
+use crate::evaluation::evaluator::Specimen;
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::surrogate::Prediction;
+use crate::units::{MM, N_PER_MM};
+use clap::Args;
+use serde_json::{Value, json};
+
+/// Which finger, and on what task.
+#[derive(Debug, Clone, Args)]
+pub struct FingerArguments {
+    /// Infill density, percent
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        required_unless_present = "stiffness_compliance",
+        allow_negative_numbers = true
+    )]
+    density: Option<f64>,
+    /// Infill direction, degrees
+    #[arg(
+        long,
+        value_name = "DEG",
+        required_unless_present = "stiffness_compliance",
+        allow_negative_numbers = true
+    )]
+    direction: Option<f64>,
+    /// Stiffness in the compliance direction, N/mm: bypasses the surrogate
+    #[arg(long, value_name = "K", requires = "stiffness_assembly", value_parser = stiffness,
+          allow_negative_numbers = true)]
+    stiffness_compliance: Option<f64>,
+    /// Stiffness in the direction of assembly, N/mm: bypasses the surrogate
+    #[arg(long, value_name = "K", requires = "stiffness_compliance", value_parser = stiffness,
+          allow_negative_numbers = true)]
+    stiffness_assembly: Option<f64>,
+    /// A number of the task or the finger, as in spaces/codesign.toml; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    set: Vec<(String, f64)>,
+}
+
+/// A finger on a task, and where its stiffness comes from.
+pub struct Chosen {
+    pub specimen: Specimen,
+    /// What was set beside the infill.
+    pub set: Design,
+    /// Whether the stiffness was given, not predicted.
+    pub given: bool,
+}
+
+impl FingerArguments {
+    /// The finger, checked against the space.
+    pub fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
+        let template = setup.only_task()?;
+        for (flag, key, value) in [
+            ("--density", DENSITY_KEY, self.density),
+            ("--direction", DIRECTION_KEY, self.direction),
+        ] {
+            if let Some(value) = value {
+                check(setup, flag, key, value)?;
+            }
+        }
+        let set = self.settings(setup)?;
+        let mut design = set.clone();
+        design.0.extend(self.density.map(|density| (DENSITY_KEY.to_owned(), density)));
+        design.0.extend(self.direction.map(|direction| (DIRECTION_KEY.to_owned(), direction)));
+        let (stiffness, given) = match (self.stiffness_compliance, self.stiffness_assembly) {
+            (Some(compliance), Some(assembly)) => {
+                (Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM), true)
+            }
+            _ if self.density.is_some() && self.direction.is_some() => {
+                (setup.evaluator.predict(&design), false)
+            }
+            _ => return Err(Failure::usage("give --density and --direction")),
+        };
+        let specimen =
+            setup.evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
+        Ok(Chosen { specimen, set, given })
+    }
+
+    /// What is set beside the infill; a key of the space must keep to its bounds there.
+    fn settings(&self, setup: &Setup) -> Result<Design, Failure> {
+        let mut set = Design::default();
+        for (key, value) in &self.set {
+            if [DENSITY_KEY, DIRECTION_KEY].contains(&key.as_str()) {
+                return Err(Failure::usage(format!(
+                    "--set {key}: give the infill by --density and --direction"
+                )));
+            }
+            if setup.space.parameters().iter().any(|parameter| parameter.key == *key) {
+                check(setup, "--set", key, *value)?;
+            }
+            if set.0.insert(key.clone(), *value).is_some() {
+                return Err(Failure::usage(format!("--set {key}: is given twice")));
+            }
+        }
+        Ok(set)
+    }
+}
+
+impl Chosen {
+    /// The keys that say what was measured.
+    pub fn json(&self, setup: &Setup, arguments: &FingerArguments) -> Value {
+        json!({
+            "task": self.specimen.task.name,
+            "robot": setup.evaluator.robot.name,
+            "infill_density_percent": arguments.density,
+            "infill_direction_deg": arguments.direction,
+            "set": self.set,
+            "rcc_mm": self.specimen.finger.rcc / MM,
+            "stiffness": self.specimen.stiffness,
+        })
+    }
+
+    /// What was set, and the stiffness, a line each.
+    pub fn text(&self) -> String {
+        let stiffness = &self.specimen.stiffness;
+        let stiffness = match self.given {
+            false => words::stiffness(stiffness),
+            true => format!(
+                "stiffness     compliance {} N/mm, assembly {} N/mm, as given",
+                stiffness.compliance.mean / N_PER_MM,
+                stiffness.assembly.mean / N_PER_MM
+            ),
+        };
+        if self.set.0.is_empty() {
+            return stiffness;
+        }
+        format!("set           {}\n{stiffness}", self.set)
+    }
+}
+
+/// A value must lie within the bounds its key has in the space.
+fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure> {
+    let parameters = setup.space.parameters();
+    match parameters.iter().find(|parameter| parameter.key == key) {
+        // Written so that a NaN is outside.
+        Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
+        Some(parameter) => Err(Failure::usage(format!(
+            "{flag} {value}: {key} must lie between {} and {} in the space `{}`",
+            parameter.low,
+            parameter.high,
+            setup.space.name()
+        ))),
+        None => {
+            Err(Failure::usage(format!("{flag}: the space `{}` has no {key}", setup.space.name())))
+        }
+    }
+}
+
+fn stiffness(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("a stiffness is a number above 0, in N/mm".to_owned()),
+    }
+}
+
+fn setting(text: &str) -> Result<(String, f64), String> {
+    let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse()));
+    match parts {
+        Some((key, Ok(value))) if !key.is_empty() => Ok((key.to_owned(), value)),
+        _ => Err("a setting is KEY=NUMBER, as in task.strategy.tilt_deg=8".to_owned()),
+    }
+}

@@ -1,0 +1,98 @@
+//! Plane stress in a quadratic triangle (Zienkiewicz and Taylor, The Finite Element
+//! Method, vol. 1).
+
+use super::condense::Element;
+use nalgebra::Point2;
+
+/// A plate in its own plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaneStress {
+    /// Young's modulus, N/m2.
+    pub modulus: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Thickness of the plate, m.
+    pub thickness: f64,
+}
+
+/// Shape functions of a six-node triangle at a point, and their gradients, 1/m.
+#[derive(Debug, Clone, Copy)]
+pub struct Shape {
+    /// Value of each node's function.
+    pub values: [f64; 6],
+    /// Gradient of each.
+    pub gradients: [[f64; 2]; 6],
+}
+
+/// Area coordinates of three points whose mean integrates quadratic functions exactly.
+const POINTS: [[f64; 3]; 3] = {
+    const A: f64 = 2.0 / 3.0;
+    const B: f64 = 1.0 / 6.0;
+    [[A, B, B], [B, A, B], [B, B, A]]
+};
+
+/// Area of a triangle, m2.
+pub fn area([a, b, c]: [Point2<f64>; 3]) -> f64 {
+    (b - a).perp(&(c - a)) / 2.0
+}
+
+/// Shape functions at a point given by its area coordinates.
+pub fn shape([a, b, c]: [Point2<f64>; 3], [l, m, n]: [f64; 3]) -> Shape {
+    let double = 2.0 * area([a, b, c]);
+    // Gradient of an area coordinate: the opposite side, turned.
+    let gradient =
+        |from: Point2<f64>, to: Point2<f64>| [(from.y - to.y) / double, (to.x - from.x) / double];
+    let [gl, gm, gn] = [gradient(b, c), gradient(c, a), gradient(a, b)];
+    let corner = |l: f64, g: [f64; 2]| g.map(|g| (4.0 * l - 1.0) * g);
+    let side = |l: f64, gl: [f64; 2], m: f64, gm: [f64; 2]| {
+        [4.0 * (l * gm[0] + m * gl[0]), 4.0 * (l * gm[1] + m * gl[1])]
+    };
+    Shape {
+        values: [
+            l * (2.0 * l - 1.0),
+            m * (2.0 * m - 1.0),
+            n * (2.0 * n - 1.0),
+            4.0 * l * m,
+            4.0 * m * n,
+            4.0 * n * l,
+        ],
+        gradients: [
+            corner(l, gl),
+            corner(m, gm),
+            corner(n, gn),
+            side(l, gl, m, gm),
+            side(m, gm, n, gn),
+            side(n, gn, l, gl),
+        ],
+    }
+}
+
+/// Shape functions at the three integration points, each with its share of the area, m2.
+pub fn integration(corners: [Point2<f64>; 3]) -> [(Shape, f64); 3] {
+    let share = area(corners) / 3.0;
+    POINTS.map(|point| (shape(corners, point), share))
+}
+
+impl Element for PlaneStress {
+    /// Displacements along the two axes.
+    const FREEDOMS: usize = 2;
+
+    fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64> {
+        let plane = self.modulus * self.thickness / (1.0 - self.poisson * self.poisson);
+        let shear = plane * (1.0 - self.poisson) / 2.0;
+        let mixed = plane * self.poisson;
+        let mut matrix = vec![0.0; 144];
+        for (Shape { gradients, .. }, weight) in integration(corners) {
+            for (a, [ax, ay]) in gradients.into_iter().enumerate() {
+                for (b, [bx, by]) in gradients.into_iter().enumerate() {
+                    let at = 24 * a + 2 * b;
+                    matrix[at] += weight * (plane * ax * bx + shear * ay * by);
+                    matrix[at + 1] += weight * (mixed * ax * by + shear * ay * bx);
+                    matrix[at + 12] += weight * (mixed * ay * bx + shear * ax * by);
+                    matrix[at + 13] += weight * (plane * ay * by + shear * ax * bx);
+                }
+            }
+        }
+        matrix
+    }
+}

@@ -1,0 +1,166 @@
+//! A small dense symmetric matrix of some nodes, and the elimination of the first of them.
+
+/// Columns that are eliminated together.
+const PANEL: usize = 4;
+/// A pivot that much smaller than it was before the elimination is rounding: nothing holds it.
+const LOOSE: f64 = 1e-11;
+
+/// A part of the finger is held by nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("a part of the finger is not connected to its base")]
+pub struct Loose;
+
+/// Stiffness of a part of a mesh on some of its nodes.
+#[derive(Debug, Clone)]
+pub struct Front {
+    /// First those to eliminate.
+    pub nodes: Vec<u32>,
+    eliminated: usize,
+    freedoms: usize,
+    /// Square, row by row; only the lower triangle is used.
+    values: Vec<f64>,
+}
+
+impl Front {
+    /// A zero matrix.
+    pub fn new(nodes: Vec<u32>, eliminated: usize, freedoms: usize) -> Self {
+        let size = nodes.len() * freedoms;
+        Front { nodes, eliminated, freedoms, values: vec![0.0; size * size] }
+    }
+
+    /// Rows of the matrix.
+    pub fn size(&self) -> usize {
+        self.nodes.len() * self.freedoms
+    }
+
+    /// An entry of the lower triangle.
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        self.values[row * self.size() + column]
+    }
+
+    /// Adds the lower triangle of a square matrix, row by row: an element's or another front's.
+    /// `places` of its nodes in this front, `None` if fixed.
+    pub fn add(&mut self, places: &[Option<usize>], lower: &[f64]) {
+        let (size, f) = (self.size(), self.freedoms);
+        let width = places.len() * f;
+        for (a, to_a) in places.iter().enumerate() {
+            let Some(to_a) = to_a else { continue };
+            for (b, to_b) in places[..=a].iter().enumerate() {
+                let Some(to_b) = to_b else { continue };
+                for i in 0..f {
+                    let row = &lower[(a * f + i) * width + b * f..][..f];
+                    for (j, value) in row.iter().enumerate().take(if a == b { i + 1 } else { f }) {
+                        let (row, column) = (to_a * f + i, to_b * f + j);
+                        self.values[row.max(column) * size + row.min(column)] += value;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds another front; `places` of its nodes in this one.
+    pub fn add_front(&mut self, places: &[Option<usize>], other: &Front) {
+        self.add(places, &other.values);
+    }
+
+    /// Cholesky factorisation of the first nodes' rows; what remains is condensed onto the others.
+    pub fn eliminate(&mut self) -> Result<(), Loose> {
+        let (size, end) = (self.size(), self.eliminated * self.freedoms);
+        let held: Vec<f64> = (0..end).map(|i| LOOSE * self.at(i, i)).collect();
+        let mut panel = vec![0.0; PANEL * size];
+        for start in (0..end).step_by(PANEL) {
+            let width = PANEL.min(end - start);
+            self.factor_panel(start, width, &held, &mut panel)?;
+            self.update_rest(start + width, width, &panel);
+        }
+        Ok(())
+    }
+
+    /// Factors columns `start .. start + width`; `panel` gets them, each contiguous.
+    fn factor_panel(
+        &mut self,
+        start: usize,
+        width: usize,
+        held: &[f64],
+        panel: &mut [f64],
+    ) -> Result<(), Loose> {
+        let size = self.size();
+        for i in start..size {
+            for q in 0..width {
+                panel[q * size + i] = self.values[i * size + start + q];
+            }
+        }
+        for q in 0..width {
+            let (column, later) = panel[q * size..].split_at_mut(size);
+            let pivot = column[start + q];
+            if pivot.is_nan() || pivot <= held[start + q] {
+                return Err(Loose);
+            }
+            let scale = 1.0 / pivot.sqrt();
+            column[start + q..].iter_mut().for_each(|value| *value *= scale);
+            for (r, other) in later.chunks_exact_mut(size).take(width - q - 1).enumerate() {
+                let from = start + q + 1 + r;
+                let factor = column[from];
+                for (to, by) in other[from..].iter_mut().zip(&column[from..]) {
+                    *to -= factor * by;
+                }
+            }
+        }
+        for i in start..size {
+            for q in 0..width.min(i - start + 1) {
+                self.values[i * size + start + q] = panel[q * size + i];
+            }
+        }
+        Ok(())
+    }
+
+    /// Subtracts the panel's outer product from the lower triangle of rows from `start`.
+    fn update_rest(&mut self, start: usize, width: usize, panel: &[f64]) {
+        let size = self.size();
+        for i in start..size {
+            let row = &mut self.values[i * size + start..=i * size + i];
+            let column = |q: usize| &panel[q * size + start..=q * size + i];
+            if width == PANEL {
+                let factor: [f64; PANEL] = std::array::from_fn(|q| panel[q * size + i]);
+                let columns: [&[f64]; PANEL] = std::array::from_fn(|q| &column(q)[..row.len()]);
+                for (k, to) in row.iter_mut().enumerate() {
+                    let mut sum = 0.0;
+                    for q in 0..PANEL {
+                        sum += factor[q] * columns[q][k];
+                    }
+                    *to -= sum;
+                }
+            } else {
+                for q in 0..width {
+                    let factor = panel[q * size + i];
+                    row.iter_mut().zip(column(q)).for_each(|(to, by)| *to -= factor * by);
+                }
+            }
+        }
+    }
+
+    /// What remains after the elimination.
+    pub fn rest(&self) -> Front {
+        let mut rest = Front::new(self.nodes[self.eliminated..].to_vec(), 0, self.freedoms);
+        let (size, small) = (self.size(), rest.size());
+        let skip = size - small;
+        for i in 0..small {
+            let from = (skip + i) * size + skip;
+            rest.values[i * small..=i * small + i].copy_from_slice(&self.values[from..=from + i]);
+        }
+        rest
+    }
+
+    /// The displacements of the eliminated nodes from those of the others, in place.
+    pub fn substitute(&self, displacements: &mut [f64]) {
+        let f = self.freedoms;
+        let place = |i: usize| self.nodes[i / f] as usize * f + i % f;
+        let mut values: Vec<f64> = (0..self.size()).map(|i| displacements[place(i)]).collect();
+        // They carry no load: L^T u = 0, from the last row up.
+        for i in (0..self.eliminated * f).rev() {
+            let sum: f64 = (i + 1..self.size()).map(|k| self.at(k, i) * values[k]).sum();
+            values[i] = -sum / self.at(i, i);
+            displacements[place(i)] = values[i];
+        }
+    }
+}

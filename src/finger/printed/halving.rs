@@ -1,0 +1,118 @@
+//! In which order a mesh is taken apart: cuts that few nodes lie on.
+
+use super::mesh::Mesh;
+use nalgebra::Point2;
+
+/// An order of triangles in which the parts of a mesh lie one after the other.
+pub(super) struct Halved {
+    /// Triangles.
+    pub order: Vec<u32>,
+    /// Number of triangles before each cut, in the order in which the parts are visited:
+    /// the whole, its first part with all its parts, its second.
+    pub cuts: Vec<usize>,
+}
+
+/// Halves a mesh, and each half, down to parts of at most `leaf` triangles.
+pub(super) fn halve(mesh: &Mesh, leaf: usize) -> Halved {
+    let centre = |t| mesh.corners(t).iter().fold(Point2::origin(), |sum, p| sum + p.coords / 3.0);
+    let mut halving = Halving {
+        leaf,
+        corners: mesh.triangles.iter().map(|&[a, b, c, ..]| [a, b, c]).collect(),
+        centres: (0..mesh.triangles.len()).map(centre).collect(),
+        stamps: vec![0; mesh.nodes.len()],
+        cuts: Vec::new(),
+    };
+    let mut order: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+    halving.sort(&mut order);
+    Halved { order, cuts: halving.cuts }
+}
+
+/// Sorts triangles so that halves, quarters, ... of the order share few nodes.
+struct Halving {
+    leaf: usize,
+    corners: Vec<[u32; 3]>,
+    centres: Vec<Point2<f64>>,
+    /// Scratch of [`Halving::shared`].
+    stamps: Vec<u8>,
+    /// Number of triangles before each cut, in the order in which the parts are visited.
+    cuts: Vec<usize>,
+}
+
+/// Directions along which a set of triangles may be halved.
+const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [0.7, 0.7], [0.7, -0.7]];
+/// Shares of the triangles that may lie before a cut.
+const SHARES: [f64; 3] = [0.5, 0.4, 0.6];
+/// A smaller set of triangles is halved along x or y, whichever is longer.
+const FEW: usize = 30;
+
+/// The triangles that lie first along a direction, and the others.
+#[derive(Debug, Clone, Copy)]
+struct Cut {
+    direction: [f64; 2],
+    first: usize,
+}
+
+impl Halving {
+    fn sort(&mut self, order: &mut [u32]) {
+        if order.len() <= self.leaf {
+            order.sort_unstable();
+            return;
+        }
+        let cut = if order.len() < FEW { self.longest(order) } else { self.best(order) };
+        self.cut(order, cut);
+        self.cuts.push(cut.first);
+        let (first, second) = order.split_at_mut(cut.first);
+        self.sort(first);
+        self.sort(second);
+    }
+
+    /// Brings the triangles that lie first along a direction to the front.
+    fn cut(&self, order: &mut [u32], Cut { direction: [x, y], first }: Cut) {
+        let place = |t: u32| x * self.centres[t as usize].x + y * self.centres[t as usize].y;
+        order.select_nth_unstable_by(first, |&a, &b| place(a).total_cmp(&place(b)).then(a.cmp(&b)));
+    }
+
+    fn longest(&self, order: &[u32]) -> Cut {
+        let extent = |of: fn(&Point2<f64>) -> f64| {
+            let places = order.iter().map(|&t| of(&self.centres[t as usize]));
+            let (low, high) =
+                places.fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p), high.max(p)));
+            high - low
+        };
+        let direction = DIRECTIONS[usize::from(extent(|p| p.x) <= extent(|p| p.y))];
+        Cut { direction, first: order.len() / 2 }
+    }
+
+    /// The cut across which the fewest corners are shared.
+    fn best(&mut self, order: &mut [u32]) -> Cut {
+        let mut best = (usize::MAX, Cut { direction: DIRECTIONS[0], first: order.len() / 2 });
+        for direction in DIRECTIONS {
+            for share in SHARES {
+                let cut = Cut { direction, first: (order.len() as f64 * share) as usize };
+                self.cut(order, cut);
+                let count = self.shared(order, cut.first);
+                if count < best.0 {
+                    best = (count, cut);
+                }
+            }
+        }
+        best.1
+    }
+
+    /// Number of corners that both parts of an order touch.
+    fn shared(&mut self, order: &[u32], first: usize) -> usize {
+        let of = |t: &u32| self.corners[*t as usize];
+        let (first, second) = order.split_at(first);
+        for corner in second.iter().flat_map(of) {
+            self.stamps[corner as usize] = 0;
+        }
+        for corner in first.iter().flat_map(of) {
+            self.stamps[corner as usize] = 1;
+        }
+        let mut count = 0;
+        for corner in second.iter().flat_map(of) {
+            count += usize::from(std::mem::take(&mut self.stamps[corner as usize]));
+        }
+        count
+    }
+}

@@ -1,0 +1,153 @@
+//! Triangles with six nodes that fill a polygon with holes.
+
+use super::polygon::Ring;
+use nalgebra::Point2;
+use spade::{
+    AngleLimit, ConstrainedDelaunayTriangulation, Point2 as Site, RefinementParameters,
+    Triangulation,
+};
+
+/// Smallest angle asked for, degrees; above 30 the refinement may not end.
+const SMALLEST_ANGLE_DEG: f64 = 25.0;
+/// More nodes than this belong to a geometry that cannot be printed.
+const MOST_VERTICES: usize = 100_000;
+/// A triangle this much smaller than asked for is not divided because of its angles.
+const SMALLEST_SHARE: f64 = 1e-3;
+
+/// Straight-sided triangles with nodes at corners and mid-sides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// Places of the nodes, m.
+    pub nodes: Vec<Point2<f64>>,
+    /// Nodes of each triangle, counter-clockwise: corners, then the middles of the sides
+    /// 01, 12 and 20.
+    pub triangles: Vec<[u32; 6]>,
+}
+
+/// Why there is no mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum MeshError {
+    /// Rings that cross or touch.
+    #[error("its edges cross or touch one another")]
+    Crossing,
+    /// Details far below the size of the triangles.
+    #[error("it takes more than {MOST_VERTICES} triangles: a wall or gap is too thin")]
+    TooFine,
+}
+
+impl Mesh {
+    /// Fills an outer ring less holes with triangles of about this length of side.
+    ///
+    /// # Errors
+    /// If rings cross, or details are so small that the mesh would be huge.
+    pub fn new(outer: &Ring, holes: &[Ring], size: f64) -> Result<Mesh, MeshError> {
+        let mut sites = Vec::new();
+        let mut edges = Vec::new();
+        for ring in std::iter::once(outer).chain(holes) {
+            let first = sites.len();
+            sites.extend(ring.iter().map(|p| Site::new(p.x, p.y)));
+            edges.extend((0..ring.len()).map(|i| [first + i, first + (i + 1) % ring.len()]));
+        }
+        let count = sites.len();
+        let mut crossing = false;
+        let cdt =
+            ConstrainedDelaunayTriangulation::<Site<f64>>::try_bulk_load_cdt(sites, edges, |_| {
+                crossing = true
+            });
+        let Some(mut cdt) = cdt.ok().filter(|cdt| !crossing && cdt.num_vertices() == count) else {
+            return Err(MeshError::Crossing);
+        };
+        let area = 0.433 * size * size;
+        let refined = cdt.refine(
+            RefinementParameters::new()
+                .exclude_outer_faces(true)
+                .with_angle_limit(AngleLimit::from_deg(SMALLEST_ANGLE_DEG))
+                .with_max_allowed_area(area)
+                .with_min_required_area(area * SMALLEST_SHARE)
+                .with_max_additional_vertices(MOST_VERTICES),
+        );
+        if !refined.refinement_complete {
+            return Err(MeshError::TooFine);
+        }
+        let mut solid = vec![true; cdt.num_all_faces()];
+        for face in &refined.excluded_faces {
+            solid[face.index()] = false;
+        }
+        let faces = cdt.inner_faces().filter(|face| solid[face.fix().index()]);
+        Ok(Mesh::quadratic(faces.map(|face| {
+            face.adjacent_edges().map(|edge| {
+                let at = edge.from().position();
+                let side = cdt.num_vertices() + edge.as_undirected().fix().index();
+                (edge.from().fix().index(), side, Point2::new(at.x, at.y))
+            })
+        })))
+    }
+
+    /// From triangles whose corners give: a number of the corner, one of the side to the
+    /// next corner, and the corner's place.
+    fn quadratic(faces: impl Iterator<Item = [(usize, usize, Point2<f64>); 3]>) -> Mesh {
+        let mut mesh = Mesh { nodes: Vec::new(), triangles: Vec::new() };
+        let mut known: Vec<Option<u32>> = Vec::new();
+        for face in faces {
+            let mut node = |number: usize, place: Point2<f64>| {
+                if known.len() <= number {
+                    known.resize(number + 1, None);
+                }
+                *known[number].get_or_insert_with(|| {
+                    mesh.nodes.push(place);
+                    mesh.nodes.len() as u32 - 1
+                })
+            };
+            let corners = face.map(|(corner, _, place)| node(corner, place));
+            let sides = [0, 1, 2].map(|i| {
+                let (next, after) = (face[i], face[(i + 1) % 3]);
+                node(next.1, nalgebra::center(&next.2, &after.2))
+            });
+            let [a, b, c] = corners;
+            mesh.triangles.push([a, b, c, sides[0], sides[1], sides[2]]);
+        }
+        mesh
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [Point2<f64>; 3] {
+        let [a, b, c, ..] = self.triangles[triangle];
+        [a, b, c].map(|node| self.nodes[node as usize])
+    }
+
+    /// The nodes around the solid and around its openings, in order along each.
+    pub fn boundary(&self) -> Vec<Vec<usize>> {
+        let inside: std::collections::BTreeSet<(u32, u32)> = self
+            .triangles
+            .iter()
+            .flat_map(|t| [(t[1], t[0]), (t[2], t[1]), (t[0], t[2])])
+            .collect();
+        // From a corner on the boundary: the side's middle and the next corner.
+        let mut next: Vec<Option<(u32, u32)>> = vec![None; self.nodes.len()];
+        for &[a, b, c, ab, bc, ca] in &self.triangles {
+            for (from, middle, to) in [(a, ab, b), (b, bc, c), (c, ca, a)] {
+                if !inside.contains(&(from, to)) {
+                    next[from as usize] = Some((middle, to));
+                }
+            }
+        }
+        let mut rings = Vec::new();
+        for start in 0..next.len() {
+            let mut ring = Vec::new();
+            let mut at = start;
+            while let Some((middle, to)) = next[at].take() {
+                ring.extend([at, middle as usize]);
+                at = to as usize;
+            }
+            if !ring.is_empty() {
+                rings.push(ring);
+            }
+        }
+        rings
+    }
+
+    /// Area of all triangles, m2.
+    pub fn area(&self) -> f64 {
+        (0..self.triangles.len()).map(|t| super::polygon::area(&self.corners(t))).sum()
+    }
+}

@@ -1,0 +1,63 @@
+//! The printed finger: its profile, its stiffness from its ribs, its picture.
+//!
+//! ```text
+//! geometry (outline, fit, polygon) -> mesh -> model -> condense (halving, front)
+//!     elements: elasticity (in the plane), plate (across it) -> stiffness, mechanics, picture
+//! ```
+pub mod condense;
+pub mod elasticity;
+mod fit;
+mod front;
+pub mod geometry;
+mod halving;
+pub mod mechanics;
+pub mod mesh;
+pub mod model;
+mod outline;
+pub mod picture;
+pub mod plate;
+pub mod polygon;
+pub mod stiffness;
+#[cfg(test)]
+mod tests;
+
+/// What is wrong with a printed finger.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FingerError {
+    /// Parts that do not fit one another.
+    #[error("{file}: {key}: {problem}")]
+    Geometry {
+        /// The finger file.
+        file: String,
+        /// The key in it, or the design's parameter.
+        key: String,
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+    /// A profile that no mesh fits.
+    #[error("{file}: the profile cannot be meshed: {problem}")]
+    Mesh {
+        /// The finger file.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A stiffness that no such finger has.
+    #[error(
+        "{file}: the units look wrong: the compliance stiffness comes out as {compliance:.3e} N/mm, \
+         a finger has 0.05 to 100; check that lengths are in mm and material.modulus_gpa in GPa \
+         (PETG has 2)"
+    )]
+    Units {
+        /// The finger file.
+        file: String,
+        /// Computed compliance stiffness, N/mm.
+        compliance: f64,
+    },
+}
+
+impl FingerError {
+    fn mesh(geometry: &geometry::Geometry, problem: &dyn std::fmt::Display) -> Self {
+        FingerError::Mesh { file: geometry.finger.file.clone(), problem: problem.to_string() }
+    }
+}

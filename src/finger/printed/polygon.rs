@@ -1,0 +1,175 @@
+//! Polygons in the plane: area, crossing, and cutting along a straight line.
+
+use nalgebra::{Point2, Vector2};
+
+/// A closed ring of corners without repetition of the first; counter-clockwise rings
+/// enclose what is to their left.
+pub type Ring = Vec<Point2<f64>>;
+
+/// Twice the area that two vectors span, positive if the second lies to the left.
+fn cross(a: Vector2<f64>, b: Vector2<f64>) -> f64 {
+    a.perp(&b)
+}
+
+/// The edges of a ring, each as its two ends.
+pub fn edges(ring: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> {
+    ring.iter().copied().zip(ring.iter().copied().cycle().skip(1))
+}
+
+/// Area, negative for a clockwise ring.
+pub fn area(ring: &[Point2<f64>]) -> f64 {
+    edges(ring).map(|(a, b)| cross(a.coords, b.coords)).sum::<f64>() / 2.0
+}
+
+/// Length of the ring.
+pub fn perimeter(ring: &[Point2<f64>]) -> f64 {
+    edges(ring).map(|(a, b)| (b - a).norm()).sum()
+}
+
+/// Whether two edges of the ring that do not follow one another meet.
+pub fn crosses_itself(ring: &[Point2<f64>]) -> bool {
+    let edges: Vec<_> = edges(ring).collect();
+    let neighbours = |i: usize, j: usize| j == i + 1 || (i == 0 && j == edges.len() - 1);
+    (0..edges.len()).any(|i| {
+        (i + 1..edges.len()).any(|j| !neighbours(i, j) && segments_meet(edges[i], edges[j]))
+    })
+}
+
+fn segments_meet(a: (Point2<f64>, Point2<f64>), b: (Point2<f64>, Point2<f64>)) -> bool {
+    let apart = |(from, to): (Point2<f64>, Point2<f64>), p: Point2<f64>, q: Point2<f64>| {
+        let (p, q) = (cross(to - from, p - from), cross(to - from, q - from));
+        p * q > 0.0
+    };
+    !apart(a, b.0, b.1) && !apart(b, a.0, a.1)
+}
+
+/// The half of the plane in which `normal . p >= offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfPlane {
+    /// Unit vector into the half plane.
+    pub normal: Vector2<f64>,
+    /// Distance of its edge from the origin along the normal.
+    pub offset: f64,
+}
+
+impl HalfPlane {
+    /// How far a point lies inside.
+    pub fn depth(&self, point: Point2<f64>) -> f64 {
+        self.normal.dot(&point.coords) - self.offset
+    }
+
+    /// What of a counter-clockwise ring lies in the half plane: any number of rings, since
+    /// a bent one may be cut into several.
+    pub fn cut(&self, ring: &[Point2<f64>]) -> Vec<Ring> {
+        let inside = |p: &Point2<f64>| self.depth(*p) >= 0.0;
+        let Some(start) = ring.iter().position(|p| !inside(p)) else { return vec![ring.to_vec()] };
+        let mut turned = ring.to_vec();
+        turned.rotate_left(start);
+        let mut chains: Vec<Ring> = Vec::new();
+        for (a, b) in edges(&turned) {
+            let (before, after) = (inside(&a), inside(&b));
+            if before != after && after {
+                chains.push(vec![self.crossing(a, b)]);
+            }
+            // The walk starts outside, so a chain has begun wherever it is inside.
+            if let Some(chain) = chains.last_mut().filter(|_| before || after) {
+                chain.push(if after { b } else { self.crossing(a, b) });
+            }
+        }
+        self.close(chains)
+    }
+
+    fn crossing(&self, a: Point2<f64>, b: Point2<f64>) -> Point2<f64> {
+        let (at_a, at_b) = (self.depth(a), self.depth(b));
+        a + (b - a) * (at_a / (at_a - at_b))
+    }
+
+    /// Joins pieces that enter and leave across the edge to closed rings: in their order
+    /// along the edge, crossings bound what is inside in pairs.
+    fn close(&self, chains: Vec<Ring>) -> Vec<Ring> {
+        let along = Vector2::new(-self.normal.y, self.normal.x);
+        // (place along the edge, chain, whether it is the chain's end)
+        let mut crossings: Vec<(f64, usize, bool)> = Vec::new();
+        for (i, chain) in chains.iter().enumerate() {
+            for (point, end) in [(chain.first(), false), (chain.last(), true)] {
+                crossings.extend(point.map(|p| (along.dot(&p.coords), i, end)));
+            }
+        }
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut next = vec![None; chains.len()];
+        for pair in crossings.chunks_exact(2) {
+            match (pair[0], pair[1]) {
+                ((_, from, true), (_, to, false)) | ((_, to, false), (_, from, true)) => {
+                    next[from] = Some(to);
+                }
+                _ => {}
+            }
+        }
+        let mut rings = Vec::new();
+        for first in 0..chains.len() {
+            let mut ring = Ring::new();
+            let mut at = Some(first);
+            while let Some(i) = at {
+                at = next[i].take();
+                if at.is_some() {
+                    ring.extend_from_slice(&chains[i]);
+                }
+            }
+            if ring.len() > 2 {
+                rings.push(ring);
+            }
+        }
+        rings
+    }
+}
+
+/// The ring without corners closer to the one before than `distance`.
+pub fn without_repeats(ring: &[Point2<f64>], distance: f64) -> Ring {
+    let mut kept: Ring = Vec::with_capacity(ring.len());
+    for &p in ring {
+        if kept.last().is_none_or(|q| (p - q).norm() > distance) {
+            kept.push(p);
+        }
+    }
+    while kept.len() > 1 && (kept[0] - kept[kept.len() - 1]).norm() <= distance {
+        kept.pop();
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring(points: &[(f64, f64)]) -> Ring {
+        points.iter().map(|&(x, y)| Point2::new(x, y)).collect()
+    }
+
+    #[test]
+    fn a_bent_ring_is_cut_into_its_arms() {
+        let u =
+            ring(&[(0., 0.), (5., 0.), (5., 4.), (4., 4.), (4., 1.), (1., 1.), (1., 4.), (0., 4.)]);
+        let above = HalfPlane { normal: Vector2::new(0.0, 1.0), offset: 2.0 };
+        let below = HalfPlane { normal: Vector2::new(0.0, -1.0), offset: -2.0 };
+        let arms = above.cut(&u);
+        assert_eq!(arms.len(), 2);
+        assert!(arms.iter().all(|arm| (area(arm) - 2.0).abs() < 1e-12));
+        let foot = below.cut(&u);
+        assert_eq!(foot.len(), 1);
+        assert!((area(&foot[0]) + 4.0 - area(&u)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_cut_beside_a_ring_takes_all_or_nothing() {
+        let square = ring(&[(0., 0.), (1., 0.), (1., 1.), (0., 1.)]);
+        let right = |offset| HalfPlane { normal: Vector2::new(1.0, 0.0), offset };
+        assert_eq!(right(-1.0).cut(&square), vec![square.clone()]);
+        assert!(right(2.0).cut(&square).is_empty());
+    }
+
+    #[test]
+    fn a_bow_tie_crosses_itself() {
+        assert!(crosses_itself(&ring(&[(0., 0.), (1., 1.), (1., 0.), (0., 1.)])));
+        assert!(!crosses_itself(&ring(&[(0., 0.), (1., 0.), (1., 1.), (0., 1.)])));
+    }
+}

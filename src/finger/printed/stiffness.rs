@@ -1,0 +1,129 @@
+//! What a finger's stiffness matrix says: springs, remote centre, coupling.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Stiffness of a finger in its plane at the pad's middle: z along the pad towards the roof,
+/// y along its normal towards the part, rx about x = y x z by the right hand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarStiffness {
+    stiffness: Matrix3<f64>,
+    compliance: Matrix3<f64>,
+}
+
+impl PlanarStiffness {
+    /// From forces and moment (N, N, N m) per displacement (m, m, rad); `None` unless the
+    /// matrix is positive definite.
+    pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
+        let stiffness = (stiffness + stiffness.transpose()) / 2.0;
+        let compliance = stiffness.cholesky()?.inverse();
+        Some(PlanarStiffness { stiffness, compliance })
+    }
+
+    /// The matrix: N/m, N/rad, N m/rad; order y, z, rx.
+    pub fn matrix(&self) -> &Matrix3<f64> {
+        &self.stiffness
+    }
+
+    /// Displacement (m, m, rad) under forces and a moment at the pad's middle (N, N, N m).
+    pub fn displacement(&self, load: &Vector3<f64>) -> Vector3<f64> {
+        self.compliance * load
+    }
+
+    /// Stiffness in y with z and rx free, N/m.
+    pub fn in_compliance(&self) -> f64 {
+        1.0 / self.compliance[(0, 0)]
+    }
+
+    /// Stiffness in z with y and rx free, N/m.
+    pub fn in_assembly(&self) -> f64 {
+        1.0 / self.compliance[(1, 1)]
+    }
+
+    /// Stiffness against turning about the remote centre, y and z free, N m/rad.
+    pub fn tilting(&self) -> f64 {
+        1.0 / self.compliance[(2, 2)]
+    }
+
+    /// How far the remote centre, which a moment does not move, lies below the pad's middle
+    /// (towards the tip and beyond), m.
+    pub fn centre_below_pad(&self) -> f64 {
+        -self.compliance[(0, 2)] / self.compliance[(2, 2)]
+    }
+
+    /// How far the remote centre lies in front of the pad's face, towards the part, m.
+    pub fn centre_in_front(&self) -> f64 {
+        -self.compliance[(1, 2)] / self.compliance[(2, 2)]
+    }
+
+    /// Correlation of the compliances in y and z, -1 .. 1: above 0, a pad that is pushed up
+    /// moves towards the part.
+    pub fn coupling_yz(&self) -> f64 {
+        let c = &self.compliance;
+        c[(0, 1)] / (c[(0, 0)] * c[(1, 1)]).sqrt()
+    }
+}
+
+/// Stiffness of a finger across its plane, at the pad's middle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrossStiffness {
+    stiffness: Matrix3<f64>,
+    compliance: Matrix3<f64>,
+}
+
+impl CrossStiffness {
+    /// From a force and moments (N, N m, N m) per displacement (m, rad, rad) in x, ry and
+    /// rz; `None` unless the matrix is positive definite.
+    pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
+        let PlanarStiffness { stiffness, compliance } = PlanarStiffness::new(stiffness)?;
+        Some(CrossStiffness { stiffness, compliance })
+    }
+
+    /// The matrix: N/m, N/rad, N m/rad; order x, ry, rz.
+    pub fn matrix(&self) -> &Matrix3<f64> {
+        &self.stiffness
+    }
+
+    /// Stiffness in x, across the finger's plane, ry and rz free, N/m.
+    pub fn in_depth(&self) -> f64 {
+        1.0 / self.compliance[(0, 0)]
+    }
+
+    /// Stiffness against turning about y, N m/rad; x and rz free.
+    pub fn about_y(&self) -> f64 {
+        1.0 / self.compliance[(1, 1)]
+    }
+
+    /// Stiffness against turning about z, N m/rad; x and ry free.
+    pub fn about_z(&self) -> f64 {
+        1.0 / self.compliance[(2, 2)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Springs that sit at a centre away from the pad, seen from the pad's middle.
+    #[test]
+    fn springs_at_a_remote_centre_are_found_again() {
+        let (ky, kz, kt, below, front) = (2e3, 4e4, 5.0, 0.02, 0.004);
+        // Displacement of the centre (y = front, z = -below) by that of the pad.
+        let to_centre = Matrix3::new(1.0, 0.0, below, 0.0, 1.0, front, 0.0, 0.0, 1.0);
+        let springs = Matrix3::from_diagonal(&Vector3::new(ky, kz, kt));
+        let pad = PlanarStiffness::new(to_centre.transpose() * springs * to_centre).unwrap();
+        assert!((pad.tilting() - kt).abs() < 1e-9 * kt);
+        assert!((pad.centre_below_pad() - below).abs() < 1e-12);
+        assert!((pad.centre_in_front() - front).abs() < 1e-12);
+        let softer = 1.0 / (1.0 / ky + below * below / kt);
+        assert!((pad.in_compliance() - softer).abs() < 1e-9 * softer);
+        let softer = 1.0 / (1.0 / kz + front * front / kt);
+        assert!((pad.in_assembly() - softer).abs() < 1e-9 * softer);
+    }
+
+    #[test]
+    fn a_stiffness_that_would_push_away_is_none() {
+        let matrix = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, 1.0));
+        assert_eq!(PlanarStiffness::new(matrix), None);
+        assert_eq!(CrossStiffness::new(matrix * f64::NAN), None);
+    }
+}

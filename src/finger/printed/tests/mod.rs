@@ -1,0 +1,23 @@
+//! The mechanics against solutions that are known, and against another computation.
+
+mod analytic;
+mod beams;
+mod frame;
+mod geometry;
+mod reference;
+mod solid;
+
+use super::geometry::{Design, Geometry};
+use crate::input::printed::PrintedFinger;
+
+/// The shipped finger.
+fn finray9() -> PrintedFinger {
+    let text = include_str!("../../../../fingers/finray9.toml");
+    PrintedFinger::parse(text, "fingers/finray9.toml").unwrap()
+}
+
+/// The shipped finger with an infill.
+fn infill(density_percent: f64, direction_deg: f64) -> Geometry {
+    let design = Design { density_percent, direction_deg, phase_mm: None };
+    Geometry::new(&finray9(), &design).unwrap()
+}

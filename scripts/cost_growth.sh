@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-cargo build --release --quiet
+cargo build --release --quiet --features fake-engine
 optimize=$PWD/target/release/optimize
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

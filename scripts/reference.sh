@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-parts="stiffness check windows validation validation-ur5e trials studies objectives instructions optimizers"
+parts="stiffness finger check windows validation validation-ur5e trials studies objectives instructions optimizers"
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 reference=results/reference
@@ -24,6 +24,24 @@ record() { scripts/stale.sh --record "$@"; }
 stiffness() {
     "$optimize" stiffness --svg "$reference/stiffness.svg" > "$reference/stiffness.txt"
     record windows "$reference"/stiffness.{svg,txt}
+}
+
+# What the ribs say of the measured designs, and one of them drawn.
+finger() {
+    local folder="$reference/finger" design density direction assembly compliance
+    mkdir -p "$folder"
+    {
+        echo "Computed from the ribs at the modulus of fingers/finray9.toml, nothing fitted; measured beside it."
+        echo
+        tail -n +2 data/measured_stiffness.csv |
+            while IFS=, read -r design density direction assembly compliance; do
+                echo "design $design: $density %, $direction deg; measured $compliance and $assembly N/mm"
+                "$optimize" finger --density "$density" --direction "$direction" | sed -n '/^the part/,$p'
+                echo
+            done
+    } > "$folder/table.txt"
+    "$optimize" finger --density 20 --direction 20 --svg "$folder/finray9.svg" > "$folder/finray9.txt"
+    record windows "$folder"/*
 }
 
 check() {

@@ -2,7 +2,8 @@
 
 use super::setup::find;
 use super::{Failure, print, print_json};
-use crate::finger::printed::geometry::{Design, Geometry};
+use crate::finger::printed::geometry::Geometry;
+use crate::finger::printed::infill::Design;
 use crate::finger::printed::mechanics::{self, FingerStiffness};
 use crate::finger::printed::picture;
 use crate::finger::printed::stiffness::PlanarStiffness;

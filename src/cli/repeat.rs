@@ -3,7 +3,6 @@
 use super::Failure;
 use super::setup::Setup;
 use super::specimen::Chosen;
-use super::words::outcome_word;
 use crate::evaluation::Window;
 use crate::evaluation::robustness::repeat::{Band, Bands, Repeats};
 use crate::outcome::Outcome;
@@ -72,7 +71,7 @@ impl RepeatArguments {
 fn word(outcome: Outcome) -> String {
     match outcome {
         Outcome::Failed(class) => format!("failed: {}", class.label()),
-        outcome => outcome_word(outcome).to_owned(),
+        outcome => outcome.word().to_owned(),
     }
 }
 

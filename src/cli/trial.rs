@@ -3,7 +3,7 @@
 use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
 use super::specimen::FingerArguments;
-use super::words::{failure, merge, outcome_word};
+use super::words::merge;
 use super::{Failure, print, print_json};
 use crate::outcome::Outcome;
 use crate::study::write_file;
@@ -53,8 +53,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             &mut fields,
             json!({
                 "offset_mm": arguments.offset_mm,
-                "outcome": outcome_word(trial.outcome),
-                "failure": failure(Some(trial.outcome)),
+                "outcome": trial.outcome.word(),
+                "failure": trial.outcome.failure(),
                 "depth_mm": trial.depth_mm,
                 "tilt_deg": trial.tilt_deg,
                 "peak_force_n": trial.peak_force_n,
@@ -81,7 +81,7 @@ fn text(trial: &Trial) -> String {
     let mut text = format!(
         "outcome       {}{reason}\ndepth         {:.2} mm\ntilt          {:.2} deg\npeak force    {:.1} N\n\
          slip          {:.2} mm\n",
-        outcome_word(trial.outcome),
+        trial.outcome.word(),
         trial.depth_mm,
         trial.tilt_deg,
         trial.peak_force_n,

@@ -25,13 +25,8 @@ pub fn window(evaluation: &Evaluation) -> String {
     )
 }
 
-fn end(outcome: Option<Outcome>) -> String {
-    match outcome {
-        None => "limit of the search".to_owned(),
-        Some(Outcome::Inserted) => "inserted".to_owned(),
-        Some(Outcome::Failed(class)) => class.label().to_owned(),
-        Some(Outcome::Diverged) => "diverged".to_owned(),
-    }
+fn end(outcome: Option<Outcome>) -> &'static str {
+    outcome.map_or("limit of the search", Outcome::label)
 }
 
 /// Predicted stiffness, its uncertainty, and whether it is an extrapolation.
@@ -81,23 +76,6 @@ pub fn drawn_text(evaluation: &Evaluation) -> Vec<String> {
         ));
     }
     lines
-}
-
-/// `inserted`, `failed` or `diverged`.
-pub fn outcome_word(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Inserted => "inserted",
-        Outcome::Failed(_) => "failed",
-        Outcome::Diverged => "diverged",
-    }
-}
-
-/// The failure class, 1 to 4, if it was a failure.
-pub fn failure(outcome: Option<Outcome>) -> Option<u8> {
-    match outcome {
-        Some(Outcome::Failed(class)) => Some(class.number()),
-        _ => None,
-    }
 }
 
 /// Adds the fields of one JSON object to another.

@@ -25,7 +25,7 @@ pub const OFFSET_STEP_MM: f64 = 0.1;
 /// Invariant of a window with `nominal == Inserted`: `negative_steps <= 0 <=
 /// positive_steps`, and both were found to insert. By the step-by-step walk every grid
 /// offset between them was; by strides a gap between the offsets tried stays unseen.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Window {
     /// Outcome at the nominal start; anything but inserted makes the range 0.
     pub nominal: Outcome,

@@ -1,7 +1,7 @@
 //! Whether the parts of a finger fit one another.
 
 use super::FingerError;
-use super::geometry::{Design, NARROWEST_VOID, pitch};
+use super::infill::{Design, NARROWEST_VOID, pitch};
 use super::polygon::{self, Ring};
 use crate::input::printed::{Outline, PrintedFinger};
 use crate::units::{MM, PERCENT};

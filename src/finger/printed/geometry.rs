@@ -2,22 +2,12 @@
 
 use super::FingerError;
 use super::fit::Fit;
+use super::infill::{Design, NARROWEST_VOID, pitch};
 use super::outline::ring;
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
 use crate::input::printed::{Outline, PrintedFinger};
-use crate::units::{DEG, MM, PERCENT};
+use crate::units::{DEG, MM};
 use nalgebra::Vector2;
-
-/// The infill of a finger.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Design {
-    /// Infill density, percent.
-    pub density_percent: f64,
-    /// Infill direction, degrees.
-    pub direction_deg: f64,
-    /// Where the first rib lies, mm; the finger file's if not given.
-    pub phase_mm: Option<f64>,
-}
 
 /// A finger with its ribs: everything that its mechanics and its print need. SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +22,6 @@ pub struct Geometry {
     voids: Vec<Ring>,
 }
 
-/// Openings narrower than this, as the area over half the perimeter, close in printing, m.
-pub(super) const NARROWEST_VOID: f64 = 0.05 * MM;
 /// Corners of an opening closer than this are one, m.
 const NEAREST_CORNERS: f64 = 0.002 * MM;
 
@@ -82,11 +70,6 @@ impl Geometry {
         let Outline { length, clamped, .. } = self.finger.outline;
         ring(&self.finger.outline, 0.0, length - clamped)
     }
-}
-
-/// Distance between the centre lines of ribs, m.
-pub(super) fn pitch(finger: &PrintedFinger, design: &Design) -> f64 {
-    finger.ribs.line_spacing / (design.density_percent * PERCENT)
 }
 
 /// The openings that ribs leave of the inside, clockwise.

@@ -10,6 +10,7 @@ mod fit;
 mod front;
 pub mod geometry;
 mod halving;
+pub mod infill;
 pub mod mechanics;
 pub mod mesh;
 pub mod model;

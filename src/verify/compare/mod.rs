@@ -124,10 +124,7 @@ fn failures(window: &Window) -> [Option<FailureClass>; 2] {
 fn window_json(window: &Window) -> Value {
     let [negative, positive] = failures(window);
     json!({
-        "nominal": match window.nominal {
-            Outcome::Failed(_) => "failed",
-            other => outcome_word(other),
-        },
+        "nominal": window.nominal.word(),
         "negative_mm": window.negative_mm(),
         "positive_mm": window.positive_mm(),
         "range_mm": window.range_mm(),
@@ -143,14 +140,6 @@ fn window_words(window: &Window) -> String {
             format!("{:+.1} to {:+.1}", window.negative_mm(), window.positive_mm())
         }
         _ => "none".to_owned(),
-    }
-}
-
-fn outcome_word(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Inserted => "inserted",
-        Outcome::Failed(class) => class.label(),
-        Outcome::Diverged => "diverged",
     }
 }
 

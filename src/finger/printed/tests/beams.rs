@@ -2,7 +2,8 @@
 
 use super::frame::{Beam, Frame};
 use super::infill;
-use crate::finger::printed::geometry::{Geometry, pitch};
+use crate::finger::printed::geometry::Geometry;
+use crate::finger::printed::infill::pitch;
 use crate::finger::printed::mechanics::{FingerStiffness, compute};
 use crate::finger::printed::outline::ring;
 use crate::finger::printed::stiffness::{CrossStiffness, PlanarStiffness};

@@ -1,7 +1,8 @@
 //! The profile: where ribs lie, its area, and what cannot be built.
 
 use super::{finray9, infill};
-use crate::finger::printed::geometry::{Design, Geometry};
+use crate::finger::printed::geometry::Geometry;
+use crate::finger::printed::infill::Design;
 use crate::finger::printed::mechanics::compute;
 use crate::finger::printed::mesh::Mesh;
 use crate::finger::printed::picture;

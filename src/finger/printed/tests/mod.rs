@@ -7,7 +7,8 @@ mod geometry;
 mod reference;
 mod solid;
 
-use super::geometry::{Design, Geometry};
+use super::geometry::Geometry;
+use super::infill::Design;
 use crate::input::printed::PrintedFinger;
 
 /// The shipped finger.

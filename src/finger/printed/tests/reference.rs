@@ -2,7 +2,8 @@
 //! quadratic triangles of 0.4 mm, E = 2 GPa, Poisson 0.4, geometry of the authors' CAD.
 
 use super::{finray9, infill};
-use crate::finger::printed::geometry::{Design, Geometry};
+use crate::finger::printed::geometry::Geometry;
+use crate::finger::printed::infill::Design;
 use crate::finger::printed::mechanics::{CROSS_SIZE, SIZE, compute, cross, planar};
 use crate::units::{MM, N_PER_MM};
 use nalgebra::Matrix3;

@@ -2,7 +2,8 @@
 
 use super::{AGREEMENT, CrossCheck, END_DIFFERENCE_MM, TrialPair};
 use crate::evaluation::grid_mm;
-use crate::verify::compare::{merged, outcome_word, pairs, subject_json};
+use crate::outcome::Outcome;
+use crate::verify::compare::{merged, pairs, subject_json};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -59,7 +60,7 @@ fn disagreements(text: &mut String, check: &CrossCheck, [first, second]: [&str; 
         "task", "finger", "offset mm", "beyond end mm"
     );
     for pair in others {
-        let [a, b] = pair.outcomes.map(outcome_word);
+        let [a, b] = pair.outcomes.map(Outcome::label);
         let _ = writeln!(
             text,
             "{:<7}{:<13}{:>10.1}{:>15.1}  {a:<27}{b}",
@@ -78,7 +79,7 @@ pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
             "finger": pair.subject.infill(),
             "offset_mm": grid_mm(pair.offset),
             "beyond_end_mm": grid_mm(pair.from_end),
-            "outcomes": pair.outcomes.map(outcome_word),
+            "outcomes": pair.outcomes.map(Outcome::label),
             "agrees": pair.agrees(),
             "tip_distance_mm": pair.tip_mm,
         });

@@ -34,7 +34,7 @@ impl Chosen {
 /// Fits every model, chooses one per axis by its leave-one-out error.
 ///
 /// # Errors
-/// A measurement that cannot be used, fewer than [`super::MINIMUM`] of them, or
+/// A measurement that cannot be used, fewer than [`MINIMUM`](crate::input::stiffness::MINIMUM) of them, or
 /// designs that differ in too few respects.
 pub fn fit(measurements: &[Measurement]) -> Result<Model, SurrogateError> {
     check_all(measurements)?;

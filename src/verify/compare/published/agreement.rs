@@ -17,7 +17,7 @@ pub struct Agreement {
     pub mean_absolute_error_mm: Option<f64>,
     /// Mean of `range - reference`, mm: an offset common to all designs.
     pub mean_error_mm: Option<f64>,
-    /// Mean of [`deviation_percent`].
+    /// Mean of `|range - reference|` over the reference, percent.
     pub mean_deviation_percent: Option<f64>,
     /// Rank correlation, -1 to 1; see [`spearman`].
     pub spearman: Option<f64>,

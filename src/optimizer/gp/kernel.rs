@@ -61,7 +61,8 @@ pub fn exp_minus(s: f64) -> f64 {
     const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
     const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
     let x = -s.min(700.0);
-    let k = (x * std::f64::consts::LOG2_E + ROUND) - ROUND;
+    let shifted = x * std::f64::consts::LOG2_E + ROUND;
+    let k = shifted - ROUND;
     let r = (x - k * LN2_HIGH) - k * LN2_LOW;
     // Taylor series; the first term left out is below 4e-18 for |r| <= ln(2) / 2.
     let mut sum = 1.0 / 6_227_020_800.0;
@@ -82,7 +83,9 @@ pub fn exp_minus(s: f64) -> f64 {
     ] {
         sum = sum * r + reciprocal;
     }
-    sum * f64::from_bits(((k as i64 + 1023) << 52) as u64)
+    // The low bits of `shifted` are k; a conversion to whole numbers would keep the loop out of
+    // the vector registers.
+    sum * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
 }
 
 #[cfg(test)]

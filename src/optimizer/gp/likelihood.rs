@@ -103,8 +103,9 @@ pub fn log_posterior(
     for j in 0..n {
         let weight = |i: usize| alpha[i] * alpha[j] + w[i] * w[j] - inverse[(i, j)];
         for i in j + 1..n {
-            through_k += weight(i) * k[(i, j)];
-            let by_length = weight(i) * slope[(i, j)];
+            let weight = weight(i);
+            through_k += weight * k[(i, j)];
+            let by_length = weight * slope[(i, j)];
             for (gradient, (a, b)) in gradient.iter_mut().zip(scaled[i].iter().zip(&scaled[j])) {
                 *gradient += by_length * (a - b) * (a - b);
             }

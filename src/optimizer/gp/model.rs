@@ -49,7 +49,7 @@ impl Gp {
             (0..axes).map(|a| scaled.iter().map(|p| p[a]).collect()).collect();
         let mut covariance = DMatrix::zeros(y.len(), y.len());
         for (mut column, point) in covariance.column_iter_mut().zip(&scaled) {
-            column.copy_from(&covariances(&columns, signal, point));
+            column.copy_from(&covariances(&distances2(&columns, point), signal));
         }
         let mut noise = noise_floor + libm::exp(theta.log_noise);
         let y = DVector::from_column_slice(y);
@@ -115,12 +115,16 @@ impl Gp {
 
     /// The posterior at a point with its derivatives.
     pub(super) fn sloped(&self, x: &[f64]) -> Sloped {
-        let (k, scaled) = (self.covariances(x), self.scale(x));
+        let scaled = self.scale(x);
+        let r2 = distances2(&self.columns, &scaled);
+        let k = covariances(&r2, self.signal);
+        let half = half_solved(&self.factor, &k);
+        let variance = self.variance_of(&k, &half);
+        let mut solved = half;
+        self.factor.l_dirty().ad_solve_lower_triangular_unchecked_mut(&mut solved);
         // The variance is signal - k' K^-1 k + leaning^2 precision.
-        let by_k =
-            -2.0 * (self.factor.solve(&k) + self.constant.leaning(&k) * &self.constant.weights);
+        let by_k = -2.0 * (solved + self.constant.leaning(&k) * &self.constant.weights);
         let mut slopes = (Vec::new(), Vec::new());
-        let r2: Vec<f64> = distances2(&self.columns, &scaled, self.len());
         for ((column, x), inverse_length) in
             self.columns.iter().zip(&scaled).zip(&self.inverse_length)
         {
@@ -129,7 +133,7 @@ impl Gp {
             slopes.0.push(self.signal * inverse_length * slope.dot(&self.alpha));
             slopes.1.push(self.signal * inverse_length * slope.dot(&by_k));
         }
-        let (mean, variance) = (self.mean_at(&k), self.variance_at(&k));
+        let mean = self.mean_at(&k);
         Sloped { mean, variance, mean_slope: slopes.0, variance_slope: slopes.1 }
     }
 
@@ -147,13 +151,17 @@ impl Gp {
 
     /// Posterior variance from the covariances `k` of a candidate.
     pub(super) fn variance_at(&self, k: &DVector<f64>) -> f64 {
-        let known = half_solved(&self.factor, k).norm_squared();
-        (self.signal - known).max(0.0) + self.constant.variance(k)
+        self.variance_of(k, &half_solved(&self.factor, k))
+    }
+
+    /// The same with `L^-1 k`.
+    fn variance_of(&self, k: &DVector<f64>, half: &DVector<f64>) -> f64 {
+        (self.signal - half.norm_squared()).max(0.0) + self.constant.variance(k)
     }
 
     /// Covariances of a point of the unit cube with all observations.
     pub(super) fn covariances(&self, x: &[f64]) -> DVector<f64> {
-        covariances(&self.columns, self.signal, &self.scale(x))
+        covariances(&distances2(&self.columns, &self.scale(x)), self.signal)
     }
 
     fn scale(&self, x: &[f64]) -> Vec<f64> {
@@ -161,21 +169,18 @@ impl Gp {
     }
 }
 
-/// Squared distances of a scaled point from `n` observations.
-fn distances2(columns: &[Vec<f64>], scaled: &[f64], n: usize) -> Vec<f64> {
-    let mut r2 = vec![0.0; n];
+/// Squared distances of a scaled point from the observations.
+fn distances2(columns: &[Vec<f64>], scaled: &[f64]) -> Vec<f64> {
+    let mut r2 = vec![0.0; columns.first().map_or(0, Vec::len)];
     for (column, x) in columns.iter().zip(scaled) {
         r2.iter_mut().zip(column).for_each(|(r2, c)| *r2 += (c - x) * (c - x));
     }
     r2
 }
 
-/// Covariances of a scaled point with the observations.
-fn covariances(columns: &[Vec<f64>], signal: f64, scaled: &[f64]) -> DVector<f64> {
-    let n = columns.first().map_or(0, Vec::len);
-    let mut k = distances2(columns, scaled, n);
-    k.iter_mut().for_each(|r2| *r2 = signal * matern52(*r2));
-    DVector::from_vec(k)
+/// Covariances at these squared distances.
+fn covariances(r2: &[f64], signal: f64) -> DVector<f64> {
+    DVector::from_iterator(r2.len(), r2.iter().map(|&r2| signal * matern52(r2)))
 }
 
 #[cfg(test)]

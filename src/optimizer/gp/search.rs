@@ -15,7 +15,7 @@ const EXHAUSTIVE: u64 = 20_000;
 /// ... as long as grid size times observations stays below this (some ten milliseconds).
 const EXHAUSTIVE_WORK: u64 = 1_000_000;
 /// Starts of the local search.
-const STARTS: usize = 6;
+const STARTS: usize = 4;
 /// What an acquisition with its derivatives costs, in acquisitions.
 const COST_OF_SLOPE: usize = 3;
 /// Most of them from one start.

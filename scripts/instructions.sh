@@ -11,7 +11,7 @@ committed=results/reference/instructions.txt
 # Percent. Linking order and small changes of the compiler move the count by about 1 %.
 margin=5
 # The program that `cargo test` has built.
-cargo build --quiet
+cargo build --quiet --features fake-engine
 program=${CARGO_TARGET_DIR:-target}/debug/optimize
 out=$(mktemp)
 trap 'rm -f "$out"' EXIT

@@ -89,6 +89,7 @@ fn facts(record: &StudyRecord, best: &Recorded, found: &[f64]) -> Facts {
     let mut facts: Facts = others.map(|(key, value)| fact(key, value.to_string())).collect();
     let name = config.objective.single().map_or(String::new(), |measure| format!("{measure} = "));
     facts.push(fact("objective", name + &values(&config.objective, found)));
+    facts.extend(walked(record, best));
     let tasks = best.tasks();
     facts.extend(config.constraints.iter().map(|c| fact("constraint", c.words(&tasks))));
     for (task, evaluation) in config.tasks().zip(&tasks) {
@@ -104,6 +105,15 @@ fn facts(record: &StudyRecord, best: &Recorded, found: &[f64]) -> Facts {
         fact("evaluation", of),
     ]);
     facts
+}
+
+/// That the best designs were walked, and what the search had found of this one.
+fn walked(record: &StudyRecord, best: &Recorded) -> Option<(String, String)> {
+    let count = record.walked.len();
+    let searched = record.current().iter().find(|recorded| recorded.index == best.index)?;
+    let before = values(&record.config.objective, searched.feasible().unwrap_or_default());
+    let words = format!("step by step, as the best {count}; the search had found {before}");
+    (count > 0).then(|| fact("walked", words))
 }
 
 /// What was measured on one task.

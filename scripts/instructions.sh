@@ -2,17 +2,23 @@
 # Counts the instructions of one trial and compares them with the committed count: a number
 # that is the same on a busy machine, unlike a time.
 #
-#     scripts/instructions.sh          exit 1 if it is off by more than the margin
-#     scripts/instructions.sh --renew  writes the count of this compiler
+#     scripts/instructions.sh [PROGRAM]          exit 1 if it is off by more than the margin
+#     scripts/instructions.sh [PROGRAM] --renew  writes the count of this compiler
+#
+# PROGRAM is the one that `cargo test` has built; without it, it is built here.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 committed=results/reference/instructions.txt
 # Percent. Linking order and small changes of the compiler move the count by about 1 %.
 margin=5
-# The program that `cargo test` has built.
-cargo build --quiet --features fake-engine
 program=${CARGO_TARGET_DIR:-target}/debug/optimize
+if [ -n "${1:-}" ] && [ "$1" != --renew ]; then
+    program=$1
+    shift
+else
+    cargo build --quiet --features fake-engine
+fi
 out=$(mktemp)
 trap 'rm -f "$out"' EXIT
 

@@ -12,8 +12,12 @@
 //! millimetre and degrees appear only in names that say so (see [`units`]).
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
+// A stream that has gone makes these panic: `cli::terminal` prints.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod units;
+
+pub mod files;
 
 pub mod stream;
 

@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The rooms, from the vocabulary up to the command line; a room may use those before it.
-const FLOW: [&str; 15] = [
+const FLOW: [&str; 16] = [
     "units",
+    "files",
     "stream",
     "outcome",
     "scene",

@@ -22,15 +22,16 @@ mod stiffness;
 mod study;
 mod summary;
 mod tasks;
+mod terminal;
 mod trial;
 mod validate;
 mod words;
 
 use failure::Failure;
+use terminal::{print, print_json, say};
 
 use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
-use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// Finds the 3D-printed compliant finger that makes a connector insertion most robust.
@@ -139,18 +140,31 @@ enum Command {
 
 /// Runs `optimize` with these arguments, the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    survive_size_limit();
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
+        Err(usage) if usage.use_stderr() => {
+            say(usage.render().to_string().trim_end());
+            return ExitCode::from(2);
+        }
         // Help and version come this way, too.
-        Err(usage) => usage.exit(),
+        Err(asked) => asked.exit(),
     };
     match dispatch(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            say(&format!("error: {failure}"));
             ExitCode::from(failure.exit_code())
         }
     }
+}
+
+/// Lets a write beyond `ulimit -f` fail like one to a full disk; unasked the system ends the
+/// process without a word.
+fn survive_size_limit() {
+    // What cannot be registered leaves all as it was.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(libc::SIGXFSZ, Default::default());
 }
 
 /// A study searches a space for the design with the best objective; the other
@@ -178,20 +192,4 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Completions(arguments)) => manual::completions(&arguments),
         Some(Command::Man) => manual::page(),
     }
-}
-
-/// Prints to standard output; a reader that has gone away (`| head`) is no error.
-fn print(text: &str) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::running(format!("cannot write the output: {error}")))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Prints a value as JSON, one line.
-fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
-    print(&format!("{value}\n"))
 }

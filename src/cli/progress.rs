@@ -1,5 +1,6 @@
 //! Progress of a study on standard error: a bar on a terminal, lines elsewhere.
 
+use super::say;
 use crate::evaluation::objective::Goals;
 use crate::evaluation::pareto::Archive;
 use crate::study::{Recorded, Study};
@@ -72,7 +73,7 @@ impl Progress {
             && (done.is_multiple_of(every) || done == self.budget)
         {
             let left = self.remaining(done).as_secs();
-            eprintln!("{done}/{} evaluations, {best}, about {left} s left", self.budget);
+            say(&format!("{done}/{} evaluations, {best}, about {left} s left", self.budget));
         }
     }
 

@@ -3,7 +3,7 @@
 use super::setup::{self, STIFFNESS_DATA};
 use super::{Failure, print};
 use crate::report;
-use crate::study::{StudyRecord, write_evaluations_csv, write_file};
+use crate::study::{StudyRecord, write_evaluations_csv, write_own_file};
 use crate::surrogate::Model;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -34,10 +34,10 @@ pub const PAGE: &str = "report.html";
 pub fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(), Failure> {
     let drawn = |error: report::ReportError| Failure::running(error.to_string());
     write_evaluations_csv(dir, record)?;
-    write_file(&dir.join("convergence.svg"), &report::convergence_svg(record).map_err(drawn)?)?;
+    write_own_file(&dir.join("convergence.svg"), &report::convergence_svg(record).map_err(drawn)?)?;
     if let Some(front) = report::front_svg(record).map_err(drawn)? {
-        write_file(&dir.join("front.svg"), &front)?;
+        write_own_file(&dir.join("front.svg"), &front)?;
     }
-    write_file(&dir.join(PAGE), &report::page(record, model).map_err(drawn)?)?;
+    write_own_file(&dir.join(PAGE), &report::page(record, model).map_err(drawn)?)?;
     Ok(())
 }

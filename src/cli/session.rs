@@ -2,7 +2,7 @@
 
 use super::progress::Progress;
 use super::setup::Setup;
-use super::{Failure, report, summary};
+use super::{Failure, report, say, summary};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
 use crate::evaluation::tolerance::Search;
@@ -71,18 +71,15 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
         runner.run(&mut study, &mut *optimizer, &mut |recorded| progress.measured(recorded));
     progress.finish();
     if let Some(problem) = cache.as_ref().and_then(Cache::problem) {
-        eprintln!("warning: evaluations are not kept for other studies: {problem}");
+        say(&format!("warning: evaluations are not kept for other studies: {problem}"));
     }
-    let hint = |error: StudyError| match Failure::from(error) {
-        Failure::Run(error) => Failure::running(format!("{error}\n{}", resume_hint(&study))),
-        bad_input => bad_input,
-    };
-    let ending = ended.map_err(hint)?;
+    let ending = ended.map_err(|error| hint(error, &study))?;
     let known = cache.as_ref().map_or(0, Cache::found);
     if ending != Ending::Interrupted {
         let walker = simulated(Search::Walk, &Plan::WINDOW);
-        walk_best(&study, &walker, &pool, &stop).map_err(hint)?;
+        walk_best(&study, &walker, &pool, &stop).map_err(|error| hint(error, &study))?;
     }
+    study.check_journal()?;
     let record = study.record();
     report::write(study.dir(), &record, &setup.evaluator.surrogate)?;
     if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {
@@ -140,6 +137,17 @@ fn bad_config(error: impl std::fmt::Display) -> Failure {
     Failure::usage(format!("study.toml: {error}"))
 }
 
+/// The failure, and how to go on after it where the journal is as it was written.
+fn hint(error: StudyError, study: &Study) -> Failure {
+    let lost = matches!(error, StudyError::Interfered { .. });
+    match Failure::from(error) {
+        Failure::Run(error) if !lost => {
+            Failure::running(format!("{error}\n{}", resume_hint(study)))
+        }
+        other => other,
+    }
+}
+
 fn resume_hint(study: &Study) -> String {
     let (done, budget, dir) =
         (study.evaluations.len(), study.config.evaluations(), study.dir().display());
@@ -153,10 +161,10 @@ fn stop_on_interrupt(dir: &Path) -> Result<Arc<AtomicBool>, Failure> {
     let (flag, dir) = (Arc::clone(&stop), dir.display().to_string());
     let handler = move || {
         if flag.swap(true, Ordering::SeqCst) {
-            eprintln!("stopped; continue with: optimize resume {dir}");
+            say(&format!("stopped; continue with: optimize resume {dir}"));
             std::process::exit(1);
         }
-        eprintln!("stopping after the running trials; once more to stop at once");
+        say("stopping; once more to stop at once");
     };
     ctrlc::set_handler(handler)
         .map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;

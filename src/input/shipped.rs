@@ -1,5 +1,6 @@
 //! The files shipped within the program, so that it runs from any folder.
 
+use crate::files::{self, LARGEST_INPUT};
 use std::path::Path;
 use strsim::levenshtein;
 
@@ -108,7 +109,7 @@ pub fn resolve(
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
     }
     if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
-        return match std::fs::read_to_string(name) {
+        return match files::read_named(Path::new(name), LARGEST_INPUT) {
             Ok(text) => Ok(Source { file: name.to_owned(), text }),
             Err(source) => Err(ShippedError::Unreadable { file: name.to_owned(), kind, source }),
         };

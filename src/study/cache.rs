@@ -12,6 +12,7 @@
 use super::provenance::SOURCES;
 use super::seal::{seal, unseal};
 use crate::evaluation::Evaluation;
+use crate::files::{self, LARGEST_OWN};
 use crate::input::robot::Robot;
 use crate::trial::engine::EngineRecord;
 use serde::{Deserialize, Serialize};
@@ -63,7 +64,7 @@ impl Cache {
 
     /// The evaluation of that name, if a whole one is there.
     pub fn get(&self, key: &Key) -> Option<Evaluation> {
-        let text = fs::read_to_string(self.path(key)).ok()?;
+        let text = files::read_own(&self.path(key), LARGEST_OWN).ok()?;
         let (content, _) = unseal(text.strip_suffix('\n')?).ok()?;
         let entry: Entry = serde_json::from_str(&content).ok()?;
         if entry.key != key.0 {
@@ -105,15 +106,7 @@ impl Cache {
         let path = self.path(key);
         let folder = path.parent().unwrap_or(&self.dir);
         fs::create_dir_all(folder)?;
-        // No other thread or process writes to a name with both numbers.
-        static WRITES: AtomicU64 = AtomicU64::new(0);
-        let write = WRITES.fetch_add(1, Ordering::Relaxed);
-        let temporary = folder.join(format!("{}-{write}.new", std::process::id()));
-        let written = fs::write(&temporary, text).and_then(|()| fs::rename(&temporary, &path));
-        if written.is_err() {
-            let _ = fs::remove_file(&temporary);
-        }
-        written
+        files::write_own(&path, &text)
     }
 }
 

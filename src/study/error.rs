@@ -80,6 +80,20 @@ pub enum StudyError {
         /// What is wrong with it.
         source: LineError,
     },
+    /// Somebody else has had a hand in the journal while the study ran.
+    #[error(
+        "{}: {problem} while the study ran, so it was stopped; {}",
+        path.display(),
+        rescue(kept)
+    )]
+    Interfered {
+        /// The journal.
+        path: PathBuf,
+        /// What has happened to it.
+        problem: String,
+        /// Where everything measured was written to, or why it could not be.
+        kept: Result<PathBuf, String>,
+    },
     /// The journal is not this study's.
     #[error("{}: not the journal of this study: {problem}", path.display())]
     Foreign {
@@ -119,13 +133,24 @@ pub enum StudyError {
 impl StudyError {
     /// Whether the input is at fault (exit code 2) rather than the run (exit code 1).
     pub fn is_bad_input(&self) -> bool {
-        !matches!(self, StudyError::Io { .. } | StudyError::Locked { .. })
+        use StudyError::{Interfered, Io, Locked};
+        !matches!(self, Io { .. } | Locked { .. } | Interfered { .. })
     }
 
     /// For `map_err`: the file system's answer to `action` on `path`.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> StudyError {
         let path = path.to_owned();
         move |source| StudyError::Io { action, path, source }
+    }
+}
+
+fn rescue(kept: &Result<PathBuf, String>) -> String {
+    match kept {
+        Ok(path) => format!(
+            "all that was measured is in {}: to go on, put that in its place and resume",
+            path.display()
+        ),
+        Err(problem) => format!("what was measured could not be saved: {problem}"),
     }
 }
 

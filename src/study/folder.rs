@@ -18,10 +18,11 @@ use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord};
 use super::store::{FileStore, Store};
 use super::walked;
+use crate::files::{self, LARGEST_INPUT, LARGEST_OWN};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, Write};
+use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// Name of the configuration's file.
@@ -30,6 +31,8 @@ pub const CONFIG_FILE: &str = "study.toml";
 pub const JOURNAL_FILE: &str = "journal.jsonl";
 const INPUTS: &str = "inputs";
 const LOCK_FILE: &str = ".lock";
+/// Who has the lock, if that is not known.
+const UNKNOWN_OWNER: &str = "of unknown number";
 
 /// Texts of a study's input files by role (`task_1` and so on, `space`, `robot`, `stiffness`).
 pub type Inputs = BTreeMap<String, String>;
@@ -119,6 +122,7 @@ impl Study {
         let config = read_config(dir)?;
         let (journal, contents) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
         sync_folder(dir)?;
+        files::remove_abandoned(dir);
         let Contents { evaluations, segments, .. } = contents;
         Ok(Study { config, evaluations, segments, journal, dir: dir.to_owned(), _lock: lock })
     }
@@ -136,10 +140,31 @@ impl Study {
         }
         let number = self.segments.len() + 1;
         write_inputs(&self.dir, number, inputs)?;
-        self.journal.begin_segment(number, now.clone());
         let first = self.evaluations.len() as u64;
-        self.segments.push(Segment { first, provenance: now.clone() });
+        let segment = Segment { first, provenance: now.clone() };
+        self.journal.begin_segment(number, segment.clone());
+        self.segments.push(segment);
         Ok(())
+    }
+
+    /// Whether the journal is still what was written; if not, all that was measured is saved
+    /// beside it.
+    ///
+    /// # Errors
+    /// [`StudyError::Interfered`].
+    pub fn check_journal(&mut self) -> Result<(), StudyError> {
+        self.journal.check().map_err(|error| self.rescue(error))
+    }
+
+    /// Saves what was measured, if the error says that the journal is lost.
+    pub(super) fn rescue(&self, error: StudyError) -> StudyError {
+        match error {
+            StudyError::Interfered { path, problem, .. } => {
+                let kept = self.journal.rescue(&self.evaluations);
+                StudyError::Interfered { path, problem, kept: kept.map_err(|e| e.to_string()) }
+            }
+            other => other,
+        }
     }
 
     /// What its next evaluation is measured with.
@@ -194,15 +219,21 @@ impl StudyRecord {
 
 fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
     let path = dir.join(JOURNAL_FILE);
-    Ok(Box::new(FileStore::open(&path).map_err(StudyError::io("open", &path))?))
+    match FileStore::open(&path) {
+        Ok(store) => Ok(Box::new(store)),
+        Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+            Err(StudyError::Locked { dir: dir.to_owned(), owner: UNKNOWN_OWNER.to_owned() })
+        }
+        Err(error) => Err(StudyError::io("open", &path)(error)),
+    }
 }
 
 /// The configuration of the study in `dir`.
 pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
     let path = dir.join(CONFIG_FILE);
-    let text = match fs::read_to_string(&path) {
+    let text = match files::read_own(&path, LARGEST_OWN) {
         Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
             return Err(StudyError::NotAStudy { dir: dir.to_owned() });
         }
         Err(error) => return Err(StudyError::io("read", &path)(error)),
@@ -220,7 +251,7 @@ fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
     let mut inputs = Inputs::new();
     for role in expected.keys() {
         let path = input_path(dir, number, role);
-        let text = fs::read_to_string(&path).map_err(StudyError::io("read", &path))?;
+        let text = files::read_own(&path, LARGEST_INPUT).map_err(StudyError::io("read", &path))?;
         inputs.insert(role.clone(), text);
     }
     let found = sha256(&inputs);
@@ -238,7 +269,14 @@ fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
 /// Keeps copies of the input files of the segment with this number, counted from 1.
 fn write_inputs(dir: &Path, segment: usize, inputs: &Inputs) -> Result<(), StudyError> {
     for (role, text) in inputs {
-        write_file(&input_path(dir, segment, role), text)?;
+        let path = input_path(dir, segment, role);
+        let folder = path.parent().unwrap_or(dir);
+        match fs::create_dir(folder) {
+            // Not through a link to who knows where.
+            Err(_) if fs::symlink_metadata(folder).is_ok_and(|found| found.is_dir()) => {}
+            made => made.map_err(StudyError::io("create the folder", folder))?,
+        }
+        write_own_file(&path, text)?;
     }
     Ok(())
 }
@@ -253,24 +291,20 @@ fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
     let path = dir.join(CONFIG_FILE);
     let text = toml::to_string(config)
         .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
-    write_file(&path, &text)
+    write_own_file(&path, &text)
 }
 
-/// Writes a whole file or, if that fails or the process dies, none of it.
+/// Writes a file that the user has named, and the folders to it: see [`files::write_named`].
 pub fn write_file(path: &Path, text: &str) -> Result<(), StudyError> {
     if let Some(parent) = path.parent() {
         fs::create_dir_all(parent).map_err(StudyError::io("create the folder", parent))?;
     }
-    let mut temporary = path.as_os_str().to_owned();
-    temporary.push(".new");
-    let temporary = PathBuf::from(temporary);
-    let write = || {
-        let mut file = File::create(&temporary)?;
-        file.write_all(text.as_bytes())?;
-        file.sync_all()?;
-        fs::rename(&temporary, path)
-    };
-    write().map_err(StudyError::io("write", path))
+    files::write_named(path, text).map_err(StudyError::io("write", path))
+}
+
+/// Writes a file of a study's folder: see [`files::write_own`].
+pub fn write_own_file(path: &Path, text: &str) -> Result<(), StudyError> {
+    files::write_own(path, text).map_err(StudyError::io("write", path))
 }
 
 /// Makes the names of new files survive a power failure; not every system can.
@@ -282,24 +316,39 @@ fn sync_folder(dir: &Path) -> Result<(), StudyError> {
     Ok(())
 }
 
+/// Whether a file has one name only: a second one would be overwritten with it.
+fn only_name(found: &Metadata) -> bool {
+    #[cfg(unix)]
+    return std::os::unix::fs::MetadataExt::nlink(found) == 1;
+    #[cfg(not(unix))]
+    return found.is_file();
+}
+
 /// The folder's lock. The system drops it when its process ends, however it ends.
 fn lock(dir: &Path) -> Result<File, StudyError> {
     let path = dir.join(LOCK_FILE);
     let mut options = OpenOptions::new();
     options.read(true).write(true).create(true).truncate(false);
-    let mut file = options.open(&path).map_err(StudyError::io("open", &path))?;
+    let mut file = files::open_own(&path, &mut options).map_err(StudyError::io("open", &path))?;
     match file.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => {
             let mut owner = String::new();
             // Only for the message: some systems let nobody read a locked file.
             let _ = file.read_to_string(&mut owner);
-            let owner = if owner.is_empty() { "of unknown number".to_owned() } else { owner };
+            let owner = if owner.is_empty() { UNKNOWN_OWNER.to_owned() } else { owner };
             return Err(StudyError::Locked { dir: dir.to_owned(), owner });
         }
         Err(TryLockError::Error(error)) => return Err(StudyError::io("lock", &path)(error)),
     }
     let sign = |file: &mut File| {
+        // Who removes the file lets another process lock a new one.
+        let here = fs::symlink_metadata(&path).is_ok_and(|found| {
+            only_name(&found) && files::is_open_file(&found, file).unwrap_or(false)
+        });
+        if !here {
+            return Err(io::Error::other("it was replaced, or has another name, too; remove it"));
+        }
         file.set_len(0)?;
         file.rewind()?;
         write!(file, "number {}", std::process::id())

@@ -6,23 +6,26 @@
 
 use super::config::StudyConfig;
 use super::error::{LineError, StudyError};
-use super::provenance::{Provenance, Segment};
+use super::provenance::Segment;
 use super::record::Recorded;
 use super::store::Store;
 use super::{header, line};
-use crate::input::space::Space;
-use std::io;
+use crate::files::{self, LARGEST_JOURNAL};
+use std::fs::OpenOptions;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// An open journal.
 pub struct Journal {
     path: PathBuf,
     store: Box<dyn Store>,
-    space: Space,
+    config: StudyConfig,
+    /// What its lines were measured with.
+    segments: Vec<Segment>,
     /// Bytes of whole, synced lines.
     len: u64,
     /// A segment that begins with the next evaluation, and its number.
-    next_segment: Option<(usize, Provenance)>,
+    next_segment: Option<(usize, Segment)>,
     /// A write failed: what follows could not be trusted.
     broken: bool,
 }
@@ -55,7 +58,8 @@ impl Journal {
         let mut journal = Journal {
             path: path.to_owned(),
             store,
-            space: config.space.clone(),
+            config: config.clone(),
+            segments: parsed.segments.clone(),
             len: parsed.whole as u64,
             next_segment: None,
             broken: false,
@@ -70,20 +74,60 @@ impl Journal {
     /// Adds one evaluation; when this returns it survives a power failure.
     pub fn append(&mut self, recorded: &Recorded) -> Result<(), StudyError> {
         let encoded = || -> Result<String, serde_json::Error> {
-            let line = line::encode(recorded, &self.space)?;
-            let Some((number, provenance)) = &self.next_segment else { return Ok(line) };
-            let segment = Segment { first: recorded.index, provenance: provenance.clone() };
-            Ok(header::encode_segment(*number, &segment)? + &line)
+            let line = line::encode(recorded, &self.config.space)?;
+            let Some((number, segment)) = &self.next_segment else { return Ok(line) };
+            Ok(header::encode_segment(*number, segment)? + &line)
         };
         let lines = encoded().map_err(|error| self.failed(error.into()))?;
         self.write(&lines)?;
-        self.next_segment = None;
+        self.segments.extend(self.next_segment.take().map(|(_, segment)| segment));
         Ok(())
     }
 
+    /// Whether the journal is still what was written.
+    ///
+    /// # Errors
+    /// [`StudyError::Interfered`], with nothing saved yet.
+    pub fn check(&mut self) -> Result<(), StudyError> {
+        self.store.check(self.len).map_err(|problem| StudyError::Interfered {
+            path: self.path.clone(),
+            problem,
+            kept: Err("nothing was tried".to_owned()),
+        })
+    }
+
+    /// Writes a whole journal of these evaluations beside the lost one.
+    pub(super) fn rescue(&self, evaluations: &[Recorded]) -> io::Result<PathBuf> {
+        let mut text = header::encode(&self.config)?;
+        let next = self.next_segment.iter().map(|(_, segment)| segment);
+        let further: Vec<&Segment> = self.segments.iter().skip(1).chain(next).collect();
+        for recorded in evaluations {
+            let begins = |(_, segment): &(usize, &&Segment)| segment.first == recorded.index;
+            for (number, segment) in (2..).zip(&further).filter(begins) {
+                text.push_str(&header::encode_segment(number, segment)?);
+            }
+            text.push_str(&line::encode(recorded, &self.config.space)?);
+        }
+        let folder = self.path.parent().unwrap_or(Path::new("."));
+        std::fs::create_dir_all(folder)?;
+        for number in 1u64.. {
+            let path = folder.join(format!("journal.rescued-{number}.jsonl"));
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                file => {
+                    let mut file = file?;
+                    file.write_all(text.as_bytes())?;
+                    file.sync_all()?;
+                    return Ok(path);
+                }
+            }
+        }
+        Err(io::Error::other("no name is left"))
+    }
+
     /// Lets a segment, the `number`th, begin with the next evaluation.
-    pub(super) fn begin_segment(&mut self, number: usize, provenance: Provenance) {
-        self.next_segment = Some((number, provenance));
+    pub(super) fn begin_segment(&mut self, number: usize, segment: Segment) {
+        self.next_segment = Some((number, segment));
     }
 
     /// Where it is kept.
@@ -95,6 +139,7 @@ impl Journal {
         if self.broken {
             return Err(self.failed(io::Error::other("an earlier write failed")));
         }
+        self.check()?;
         match self.store.append(lines.as_bytes()) {
             Ok(()) => {
                 self.len += lines.len() as u64;
@@ -116,7 +161,7 @@ impl Journal {
 
 /// What a journal holds; a torn tail is passed over, and nothing is written.
 pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
-    let bytes = std::fs::read(path).map_err(StudyError::io("read", path))?;
+    let bytes = files::bytes_own(path, LARGEST_JOURNAL).map_err(StudyError::io("read", path))?;
     parse(&bytes, path, config)
 }
 

@@ -25,6 +25,7 @@ pub use config::{StudyConfig, study_name};
 pub use error::{LineError, StudyError};
 pub use folder::{
     CONFIG_FILE, IfChanged, Inputs, JOURNAL_FILE, Study, read_config, sha256, write_file,
+    write_own_file,
 };
 pub use header::SCHEMA_VERSION;
 pub use journal::Journal;

@@ -59,7 +59,20 @@ pub struct Runner<'a> {
 impl Runner<'_> {
     /// Runs the study until its budget is spent; `optimizer` is new, and
     /// `progress` sees each evaluation after it was written.
+    ///
+    /// # Errors
+    /// If a design is impossible, or the journal cannot be written; what was measured is saved
+    /// where somebody else has had a hand in that.
     pub fn run(
+        &self,
+        study: &mut Study,
+        optimizer: &mut dyn Optimizer,
+        progress: &mut dyn FnMut(&Recorded),
+    ) -> Result<Ending, StudyError> {
+        self.run_on(study, optimizer, progress).map_err(|error| study.rescue(error))
+    }
+
+    fn run_on(
         &self,
         study: &mut Study,
         optimizer: &mut dyn Optimizer,
@@ -191,10 +204,14 @@ impl InOrder<'_> {
     ) -> Result<(), StudyError> {
         self.waiting.insert(recorded.index, recorded);
         while let Some(recorded) = self.waiting.remove(&self.next) {
-            self.journal.append(&recorded)?;
-            progress(&recorded);
-            self.evaluations.push(recorded);
-            self.next += 1;
+            let written = self.journal.append(&recorded);
+            if let Err(StudyError::Interfered { .. }) | Ok(()) = written {
+                progress(&recorded);
+                // What is not in the journal is saved with the rest.
+                self.evaluations.push(recorded);
+                self.next += 1;
+            }
+            written?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 //! it under the keys that JSON and journal have.
 
 use super::error::StudyError;
-use super::folder::write_file;
+use super::folder::write_own_file;
 use super::record::{Recorded, StudyRecord};
 use crate::evaluation::objective::Score;
 use serde::Serialize;
@@ -23,7 +23,7 @@ pub fn write_evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<(), Stu
     };
     let text = table(record)
         .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
-    write_file(&path, &text)
+    write_own_file(&path, &text)
 }
 
 fn csv(record: &StudyRecord) -> Result<Vec<u8>, Box<dyn std::error::Error>> {

@@ -1,7 +1,7 @@
 //! Walks the best designs of a study; why is in `walked.rs`.
 
 use super::error::StudyError;
-use super::folder::{Study, write_file};
+use super::folder::{Study, write_own_file};
 use super::record::{Recorded, Walked};
 use super::walked::{WALK_FILE, WalkFile, WalkedRow, candidates, decides, ranked};
 use crate::evaluation::evaluator::Evaluate;
@@ -48,6 +48,6 @@ pub fn walk_best(
     let path = study.dir().join(WALK_FILE);
     let text = serde_json::to_string(&file)
         .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
-    write_file(&path, &(text + "\n"))?;
+    write_own_file(&path, &(text + "\n"))?;
     Ok(walked)
 }

@@ -9,8 +9,8 @@ use super::provenance::Provenance;
 use super::record::{Recorded, Walked};
 use crate::evaluation::Evaluation;
 use crate::evaluation::objective::{Goals, Measure};
+use crate::files::{self, LARGEST_OWN};
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::path::Path;
 
 /// Name of the file.
@@ -57,7 +57,7 @@ pub(super) fn read(
     provenance: Option<&Provenance>,
     current: &[Recorded],
 ) -> Vec<Walked> {
-    let text = fs::read_to_string(dir.join(WALK_FILE)).unwrap_or_default();
+    let text = files::read_own(&dir.join(WALK_FILE), LARGEST_OWN).unwrap_or_default();
     match serde_json::from_str::<WalkFile>(&text) {
         Ok(file) if Some(&file.provenance) == provenance => ranked(goals, current, &file.walked),
         _ => Vec::new(),

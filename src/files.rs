@@ -1,0 +1,239 @@
+//! Files: read up to a limit, written whole or not at all.
+//!
+//! What the user names may be anything that opens: a link, a pipe, a device. What the
+//! program keeps for itself, in a study's folder or in the cache, are plain files: there no
+//! link is followed and nothing that could block is opened.
+
+use std::fs::{self, File, Metadata, OpenOptions};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+/// Most bytes of an input file: a thousand times the longest shipped one.
+pub const LARGEST_INPUT: u64 = 4 << 20;
+/// Most bytes of a file that the program has written itself, but for journals.
+pub const LARGEST_OWN: u64 = 64 << 20;
+/// Most bytes of a journal: over a million evaluations.
+pub const LARGEST_JOURNAL: u64 = 2 << 30;
+
+/// What a temporary file is called, with process and number between the two.
+const TEMPORARY: [&str; 2] = [".optimize-", ".new"];
+/// A temporary file of this age was left by a process that was killed.
+const ABANDONED: Duration = Duration::from_secs(3600);
+
+/// The text of a file that the user has named.
+///
+/// # Errors
+/// If it cannot be read, is no UTF-8 or is longer than `limit` bytes.
+pub fn read_named(path: &Path, limit: u64) -> io::Result<String> {
+    text(read_up_to(File::open(path)?, limit)?)
+}
+
+/// The text of a file that the program keeps for itself.
+///
+/// # Errors
+/// The same, and if it is no plain file.
+pub fn read_own(path: &Path, limit: u64) -> io::Result<String> {
+    text(bytes_own(path, limit)?)
+}
+
+/// The bytes of a file that the program keeps for itself.
+///
+/// # Errors
+/// If it cannot be read, is no plain file or is longer than `limit` bytes.
+pub fn bytes_own(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    read_up_to(open_own(path, OpenOptions::new().read(true))?, limit)
+}
+
+/// Opens a file that the program keeps for itself: a plain one, and no link to one.
+///
+/// # Errors
+/// If it cannot be opened so.
+pub fn open_own(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+    let linked = || fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
+    let wrong = |what: &str| Err(io::Error::other(format!("it is {what}, not a plain file")));
+    match careful(options).open(path) {
+        Ok(file) if file.metadata()?.is_file() => Ok(file),
+        Ok(_) => wrong("a folder, a pipe or a device"),
+        Err(_) if linked() => wrong("a link"),
+        Err(error) => Err(error),
+    }
+}
+
+/// Neither follows a link nor waits for the other end of a pipe.
+#[cfg(unix)]
+fn careful(options: &mut OpenOptions) -> &mut OpenOptions {
+    use std::os::unix::fs::OpenOptionsExt;
+    options.custom_flags(libc::O_NOFOLLOW | libc::O_NONBLOCK)
+}
+
+#[cfg(not(unix))]
+fn careful(options: &mut OpenOptions) -> &mut OpenOptions {
+    options
+}
+
+/// The bytes of what is open already.
+///
+/// # Errors
+/// If it cannot be read, or is longer than `limit` bytes.
+pub fn read_up_to(file: impl Read, limit: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    file.take(limit + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > limit {
+        let problem = format!("it is longer than {limit} bytes, the most that is read");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, problem));
+    }
+    Ok(bytes)
+}
+
+fn text(bytes: Vec<u8>) -> io::Result<String> {
+    let problem = "stream did not contain valid UTF-8";
+    String::from_utf8(bytes).map_err(|_| io::Error::new(io::ErrorKind::InvalidData, problem))
+}
+
+/// Writes a file that the user has named: a plain file, or one that is not there yet, whole
+/// or not at all; a device, a pipe or what a link leads to in place.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_named(path: &Path, text: &str) -> io::Result<()> {
+    match fs::symlink_metadata(path) {
+        Ok(found) if !found.is_file() && !found.is_dir() => {
+            let mut file = File::create(path)?;
+            file.write_all(text.as_bytes())?;
+            file.flush()
+        }
+        _ => write_own(path, text),
+    }
+}
+
+/// Writes a whole file or, if that fails or the process dies, none of it. A link is replaced.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_own(path: &Path, text: &str) -> io::Result<()> {
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+    let (temporary, mut file) = temporary(folder.unwrap_or(Path::new(".")))?;
+    let written = (|| {
+        file.write_all(text.as_bytes())?;
+        file.sync_all()?;
+        fs::rename(&temporary, path)
+    })();
+    if written.is_err() {
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}
+
+/// A new file under a name that no other thread, process or machine writes to.
+fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
+    static WRITES: AtomicU64 = AtomicU64::new(0);
+    let [begin, end] = TEMPORARY;
+    loop {
+        let write = WRITES.fetch_add(1, Ordering::Relaxed);
+        let path = folder.join(format!("{begin}{}-{write}{end}", std::process::id()));
+        match OpenOptions::new().write(true).create_new(true).open(&path) {
+            // Another machine's process of the same number, or one that was killed.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            opened => return Ok((path, opened?)),
+        }
+    }
+}
+
+/// Removes what killed processes have left in a folder of the program's own.
+pub fn remove_abandoned(folder: &Path) {
+    let [begin, end] = TEMPORARY;
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let ours = name.to_str().is_some_and(|name| name.starts_with(begin) && name.ends_with(end));
+        let age = || entry.metadata().ok()?.modified().ok()?.elapsed().ok();
+        if ours && age().is_some_and(|age| age > ABANDONED) {
+            // What cannot be removed does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Whether `found`, not followed if it is a link, is the file that is open.
+///
+/// # Errors
+/// If the system does not say.
+pub fn is_open_file(found: &Metadata, open: &File) -> io::Result<bool> {
+    let open = open.metadata()?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        Ok((found.dev(), found.ino()) == (open.dev(), open.ino()))
+    }
+    #[cfg(not(unix))]
+    Ok(found.is_file() == open.is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_writers_of_one_file_leave_one_whole_text_and_nothing_else() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("page.html");
+        let texts = ["a", "b"].map(|letter| letter.repeat(100_000));
+        std::thread::scope(|scope| {
+            for text in texts.iter().cycle().take(8) {
+                scope.spawn(|| (0..20).for_each(|_| write_own(&path, text).unwrap()));
+            }
+        });
+        assert!(texts.contains(&read_own(&path, LARGEST_OWN).unwrap()));
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_file_is_read_up_to_its_limit() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("file");
+        fs::write(&path, "12345").unwrap();
+        assert_eq!(read_own(&path, 5).unwrap(), "12345");
+        for read in [read_own, read_named] {
+            assert!(read(&path, 4).unwrap_err().to_string().contains("longer than 4 bytes"));
+        }
+        // Sparse: nothing of it is on the disk.
+        File::options().write(true).open(&path).unwrap().set_len(1 << 40).unwrap();
+        assert!(read_named(&path, LARGEST_INPUT).is_err());
+    }
+
+    #[test]
+    fn only_old_temporary_files_are_removed() {
+        let dir = tempfile::tempdir().unwrap();
+        let [old, new, other] = [".optimize-1-0.new", ".optimize-1-1.new", "my.new"];
+        for name in [old, new, other] {
+            let file = File::create(dir.path().join(name)).unwrap();
+            if name != new {
+                file.set_modified(std::time::SystemTime::now() - 2 * ABANDONED).unwrap();
+            }
+        }
+        remove_abandoned(dir.path());
+        let left = |name: &str| dir.path().join(name).exists();
+        assert_eq!([old, new, other].map(left), [false, true, true]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_pipes_of_the_program_s_own_are_refused_and_replaced() {
+        let dir = tempfile::tempdir().unwrap();
+        let at = |name: &str| dir.path().join(name);
+        fs::write(at("victim"), "precious").unwrap();
+        std::os::unix::fs::symlink(at("victim"), at("link")).unwrap();
+        let made = std::process::Command::new("mkfifo").arg(at("pipe")).status().unwrap();
+        assert!(made.success());
+        for (name, word) in [("link", "a link"), ("pipe", "a pipe"), (".", "a folder")] {
+            let error = read_own(&at(name), 10).unwrap_err().to_string();
+            assert!(error.contains(word) && error.contains("not a plain file"), "{error}");
+        }
+        write_named(&at("link"), "through the link").unwrap();
+        assert_eq!(fs::read_to_string(at("victim")).unwrap(), "through the link");
+        write_own(&at("link"), "in place of the link").unwrap();
+        assert!(fs::symlink_metadata(at("link")).unwrap().is_file());
+        assert_eq!(fs::read_to_string(at("victim")).unwrap(), "through the link");
+    }
+}

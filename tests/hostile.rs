@@ -1,0 +1,264 @@
+//! What others do to a study while it runs, and files that are not what they should be.
+#![cfg(unix)]
+
+mod common;
+
+use common::{Studies, command, optimize, read, run};
+use std::fs;
+use std::os::unix::fs::{FileTypeExt, MetadataExt, symlink};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Microseconds per trial: a study of a thousand evaluations takes longer than any test.
+const SLOW: (&str, &str) = ("FINGER_OPT_FAKE_DELAY_US", "300");
+
+/// The binary by a line of shell, in which it is `"$0"`; gives exit code and output.
+fn shell(line: &str, arguments: &[&str]) -> common::Ran {
+    let mut shell = Command::new("bash");
+    shell.args(["-c", line, env!("CARGO_BIN_EXE_optimize")]).args(arguments);
+    run(shell.stdin(Stdio::null()).env(SLOW.0, "20"))
+}
+
+fn start(command: &mut Command) -> Child {
+    let command = command.env(SLOW.0, SLOW.1).stdout(Stdio::null()).stderr(Stdio::piped());
+    command.spawn().expect("the command starts")
+}
+
+/// Waits for something, at most half a minute.
+fn wait_until(what: &str, mut done: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !done() {
+        assert!(begun.elapsed() < Duration::from_secs(30), "{what}");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn lines(path: &Path) -> usize {
+    fs::read_to_string(path).unwrap_or_default().lines().count()
+}
+
+/// How a process ended: exit code and standard error.
+fn end(child: Child) -> (Option<i32>, String) {
+    let output = child.wait_with_output().expect("it ends");
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+fn mkfifo(path: &Path) {
+    assert!(Command::new("mkfifo").arg(path).status().expect("mkfifo").success());
+}
+
+#[test]
+fn a_standard_error_that_has_gone_or_is_full_ends_nothing() {
+    let studies = Studies::new();
+    let study = "--task usb --engine fake --budget 60 --batch 1 --no-cache --threads 1 --out";
+    let ends = [
+        ("head", "2>&1 >/dev/null | head -2 >/dev/null"),
+        ("full", "2>/dev/full >/dev/null"),
+        ("closed", "2>&- >/dev/null"),
+    ];
+    for (name, end) in ends {
+        let dir = studies.dir(name);
+        let line = format!("set -o pipefail; \"$0\" {study} \"$1\" {end}");
+        shell(&line, &[dir.to_str().unwrap()]).succeeds();
+        assert_eq!(lines(&dir.join("journal.jsonl")), 62, "{name}");
+        // A plain error says what it can and keeps its exit code.
+        let line = format!("set -o pipefail; \"$0\" --task usd --budget 3 {end}");
+        assert_eq!(shell(&line, &[]).code, Some(2), "{name}");
+        let line = format!("set -o pipefail; \"$0\" --task usb --budget x {end}");
+        assert_eq!(shell(&line, &[]).code, Some(2), "{name}");
+    }
+    shell("\"$0\" tasks > /dev/full", &[]).fails(1, &["cannot write the output"]);
+    shell("set -o pipefail; \"$0\" tasks | head -1", &[]).succeeds();
+}
+
+#[test]
+fn an_output_that_is_no_plain_file_is_written_in_place() {
+    let studies = Studies::new();
+    let node = studies.dir("null");
+    let made = Command::new("mknod").arg(&node).args(["c", "1", "3"]).status();
+    let svg = |path: &Path| optimize(&["stiffness", "--svg", path.to_str().unwrap()]);
+    // Only root may make devices.
+    if made.is_ok_and(|status| status.success()) {
+        svg(&node).succeeds();
+        assert!(fs::symlink_metadata(&node).unwrap().file_type().is_char_device());
+    }
+    let (victim, link) = (studies.dir("model.svg"), studies.dir("link"));
+    symlink(&victim, &link).unwrap();
+    svg(&link).succeeds();
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink() && read(&victim).contains("<svg"));
+    let pipe = studies.dir("pipe");
+    mkfifo(&pipe);
+    let reader = Command::new("cat").arg(&pipe).stdout(Stdio::piped()).spawn().unwrap();
+    svg(&pipe).succeeds();
+    assert_eq!(end(reader).0, Some(0));
+    assert!(fs::symlink_metadata(&pipe).unwrap().file_type().is_fifo());
+    svg(Path::new("/dev/full")).fails(1, &["/dev/full: cannot write"]);
+    // A name that others write to beside it is never touched.
+    let plain = studies.dir("plain.svg");
+    fs::write(studies.dir("plain.svg.new"), "mine").unwrap();
+    svg(&plain).succeeds();
+    assert_eq!(read(&studies.dir("plain.svg.new")), "mine");
+}
+
+#[test]
+fn twenty_reports_at_once_all_succeed() {
+    let studies = Studies::new();
+    studies.study("s", 12, &[]).succeeds();
+    let dir = studies.dir("s");
+    let before = fs::read_dir(&dir).unwrap().count();
+    let report = || start(command(&["report"]).arg(&dir));
+    let reports: Vec<Child> = (0..20).map(|_| report()).collect();
+    for report in reports {
+        assert_eq!(end(report), (Some(0), String::new()));
+    }
+    assert_eq!(fs::read_dir(&dir).unwrap().count(), before, "nothing is left beside");
+}
+
+#[test]
+fn no_link_in_a_study_folder_is_followed() {
+    let studies = Studies::new();
+    let victim = studies.dir("victim");
+    fs::create_dir(studies.dir("elsewhere")).unwrap();
+    for (name, parts) in [
+        (".lock", ["a link", "cannot open"]),
+        ("journal.jsonl", ["", "journal.jsonl"]),
+        ("inputs", ["inputs", "cannot create the folder"]),
+    ] {
+        let dir = studies.dir(&format!("study-{name}"));
+        fs::create_dir(&dir).unwrap();
+        fs::write(&victim, "precious").unwrap();
+        let target = if name == "inputs" { studies.dir("elsewhere") } else { victim.clone() };
+        symlink(target, dir.join(name)).unwrap();
+        let ran = studies.study(dir.file_name().unwrap().to_str().unwrap(), 4, &[]);
+        assert!(matches!(ran.code, Some(1 | 2)), "{name}: {}", ran.stderr);
+        assert!(parts.iter().all(|part| ran.stderr.contains(part)), "{name}: {}", ran.stderr);
+        assert_eq!(read(&victim), "precious", "{name}");
+        assert_eq!(fs::read_dir(studies.dir("elsewhere")).unwrap().count(), 0, "{name}");
+    }
+    // Neither as a second name of a file.
+    let dir = studies.dir("hard");
+    fs::create_dir(&dir).unwrap();
+    fs::hard_link(&victim, dir.join(".lock")).unwrap();
+    studies.study("hard", 4, &[]).fails(1, &[".lock", "another name"]);
+    assert_eq!(read(&victim), "precious");
+    // Links to what is written whole are replaced, and temporary names are not foreseeable.
+    studies.study("s", 4, &[]).succeeds();
+    let files = ["report.html", "evaluations.csv", "walk.json", "study.toml"];
+    for name in files {
+        let _ = fs::remove_file(studies.dir("s").join(format!("{name}.new")));
+        symlink(&victim, studies.dir("s").join(format!("{name}.new"))).unwrap();
+    }
+    fs::remove_file(studies.dir("s").join("report.html")).unwrap();
+    symlink(&victim, studies.dir("s").join("report.html")).unwrap();
+    studies.study("s", 8, &[]).succeeds();
+    assert_eq!(read(&victim), "precious");
+    assert!(read(&studies.dir("s").join("report.html")).contains("<html"));
+}
+
+#[test]
+fn a_pipe_or_a_huge_file_in_place_of_an_own_one_neither_hangs_nor_fills_the_memory() {
+    let studies = Studies::new();
+    studies.study("s", 4, &["--cache", studies.dir("cache").to_str().unwrap()]).succeeds();
+    let config = studies.dir("s").join("study.toml");
+    let text = read(&config);
+    fs::remove_file(&config).unwrap();
+    mkfifo(&config);
+    studies.resume("s").fails(1, &["study.toml", "a pipe", "not a plain file"]);
+    fs::remove_file(&config).unwrap();
+    fs::File::create(&config).unwrap().set_len(3 << 30).unwrap();
+    studies.resume("s").fails(1, &["study.toml", "is longer than"]);
+    fs::write(&config, &text).unwrap();
+    // The cache: its entries are then measured again.
+    let folders = fs::read_dir(studies.dir("cache")).unwrap().map(|entry| entry.unwrap().path());
+    let entries = folders.flat_map(|folder| fs::read_dir(folder).unwrap());
+    let entries: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    assert!(entries.len() >= 4, "evaluations and walks");
+    for (i, entry) in entries.iter().enumerate() {
+        fs::remove_file(entry).unwrap();
+        if i % 2 == 0 {
+            mkfifo(entry);
+        } else {
+            fs::File::create(entry).unwrap().set_len(3 << 30).unwrap();
+        }
+    }
+    studies.study("t", 4, &["--cache", studies.dir("cache").to_str().unwrap()]).succeeds();
+    assert_eq!(studies.journal("t"), studies.journal("s"));
+    assert!(entries.iter().all(|entry| fs::symlink_metadata(entry).unwrap().is_file()));
+}
+
+/// A running study of which `interfere` changes the journal or its folder: exit code and message.
+fn interfered(studies: &Studies, name: &str, interfere: impl Fn(&Path)) -> String {
+    let dir = studies.dir(name);
+    let child = start(&mut studies.command(name, 100_000, &["--optimizer", "random"]));
+    wait_until("evaluations", || lines(&dir.join("journal.jsonl")) > 12);
+    interfere(&dir);
+    let (code, stderr) = end(child);
+    assert_eq!(code, Some(1), "{name}: {stderr}");
+    assert!(stderr.contains("while the study ran"), "{name}: {stderr}");
+    stderr
+}
+
+#[test]
+fn a_journal_that_others_change_stops_the_study_and_is_saved() {
+    let studies = Studies::new();
+    studies.study("reference", 2000, &["--optimizer", "random"]).succeeds();
+    let expected = studies.journal("reference");
+    let journal = |dir: &Path| dir.join("journal.jsonl");
+    type Interference<'a> = (&'a str, &'a str, &'a dyn Fn(&Path));
+    let shorten = |dir: &Path| {
+        fs::OpenOptions::new().write(true).open(journal(dir)).unwrap().set_len(700).unwrap();
+    };
+    let replace = |dir: &Path| {
+        fs::copy(journal(dir), dir.join("copy")).unwrap();
+        fs::rename(dir.join("copy"), journal(dir)).unwrap();
+    };
+    let cases: [Interference; 5] = [
+        ("removed", "was removed", &|dir| fs::remove_file(journal(dir)).unwrap()),
+        ("renamed", "was removed", &|dir| fs::rename(journal(dir), dir.join("x")).unwrap()),
+        ("shortened", "was changed", &shorten),
+        ("replaced", "was replaced", &replace),
+        ("folder", "was removed", &|dir| {
+            fs::rename(dir, dir.with_extension("moved")).unwrap();
+        }),
+    ];
+    for (name, words, interfere) in cases {
+        let stderr = interfered(&studies, name, interfere);
+        assert!(stderr.contains(words), "{name}: {stderr}");
+        let rescued = studies.dir(name).join("journal.rescued-1.jsonl");
+        let saved = finger_opt::study::strip_times(&read(&rescued));
+        let body = |text: &str| text.lines().skip(2).map(str::to_owned).collect::<Vec<_>>();
+        let (saved, all) = (body(&saved), body(&expected));
+        assert!(saved.len() > 10 && all.starts_with(&saved), "{name}: {} lines", saved.len());
+        if name != "folder" {
+            // As the message says: put in its place it goes on.
+            let done = saved.len() as u32 + 5;
+            fs::rename(&rescued, journal(&studies.dir(name))).unwrap();
+            let config = studies.dir(name).join("study.toml");
+            fs::write(&config, read(&config).replace("100000", &done.to_string())).unwrap();
+            studies.resume(name).succeeds();
+            assert_eq!(body(&studies.journal(name)), all[..done as usize]);
+        }
+    }
+}
+
+#[test]
+fn a_lock_that_is_removed_lets_no_second_writer_in() {
+    let studies = Studies::new();
+    let mut first = start(&mut studies.command("s", 100_000, &["--optimizer", "random"]));
+    let path = studies.dir("s").join("journal.jsonl");
+    wait_until("evaluations", || lines(&path) > 4);
+    fs::remove_file(studies.dir("s").join(".lock")).unwrap();
+    studies.resume("s").fails(1, &["another process"]);
+    first.kill().unwrap();
+    first.wait().unwrap();
+    // Who locks a file that is no longer there has locked nothing: the second try does.
+    let inode = || fs::metadata(studies.dir("s").join(".lock")).unwrap().ino();
+    let before = inode();
+    let mut second = start(command(&["resume", "--quiet"]).arg(studies.dir("s")));
+    let known = lines(&path);
+    wait_until("evaluations", || lines(&path) > known);
+    assert_eq!(inode(), before);
+    second.kill().unwrap();
+    second.wait().unwrap();
+}

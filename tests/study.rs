@@ -395,7 +395,22 @@ fn the_best_designs_are_walked_beside_the_journal() {
     let json = studies.study("s", 8, &["--json"]).json();
     let walked = json["walked"].as_array().expect("what was walked");
     assert_eq!(walked.len(), 3);
-    assert_eq!(walked[0]["range_mm"], json["best"]["range_mm"], "the closed form has no gaps");
+    let firm = |row: &serde_json::Value| row["firm_range_mm"].as_f64().expect("a firm range");
+    assert!(walked.iter().all(|row| firm(row) <= firm(&walked[0])), "best first");
+    let recommended = &json["recommended"];
+    assert_eq!(recommended["evaluation"], walked[0]["evaluation"]);
+    assert_eq!(
+        recommended["values"]["infill_density_percent"],
+        walked[0]["infill_density_percent"]
+    );
+    for key in ["range_mm", "negative_mm", "positive_mm", "peak_force_n"] {
+        assert_eq!(recommended[key], walked[0][key], "{key}");
+    }
+    // The lower end of the closed form moves with friction.
+    assert!(firm(recommended) < recommended["range_mm"].as_f64().unwrap());
+    assert!(
+        json["equivalent_designs"].as_u64() >= Some(1) && json["spread_mm"].as_f64() > Some(0.0)
+    );
     assert!(walked[0]["trials"].as_u64() > json["best"]["trials"].as_u64(), "step by step");
     assert_eq!(studies.journal("s").lines().count(), 2 + 8, "not counted in the budget");
     let file = studies.dir("s").join("walk.json");
@@ -406,6 +421,63 @@ fn the_best_designs_are_walked_beside_the_journal() {
     assert_eq!(read(&file), kept);
     let text = studies.study("s", 8, &[]);
     assert!(text.succeeds().contains("walked        step by step"), "{}", text.stdout);
+    // What a kill left is gone on from.
+    let mut begun: serde_json::Value = serde_json::from_str(&kept).unwrap();
+    begun["complete"] = false.into();
+    begun["designs"].as_array_mut().unwrap().remove(1);
+    begun["designs"][0].as_object_mut().unwrap().remove("walked");
+    fs::write(&file, begun.to_string()).unwrap();
+    let report = studies.dir("s").to_str().unwrap().to_owned();
+    optimize(&["report", &report]).succeeds();
+    studies.resume("s").succeeds();
+    assert_eq!(read(&file), kept);
     let forced = studies.study("force", 8, &["--objective", "peak-force", "--json"]).json();
     assert!(forced.get("walked").is_none(), "windows do not decide there");
+}
+
+#[test]
+fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
+    let studies = Studies::new();
+    studies.study("s", 200, &[]).succeeds();
+    let kept: serde_json::Value =
+        serde_json::from_str(&read(&studies.dir("s").join("walk.json"))).unwrap();
+    let mut trials = 0;
+    for design in kept["designs"].as_array().expect("designs") {
+        trials += design["firm"][0]["trials"].as_u64().unwrap();
+        if let Some(walked) = design.get("walked") {
+            trials += walked["firm"][0]["trials"].as_u64().unwrap();
+            trials += walked["tasks"][0]["trials"].as_u64().unwrap();
+        }
+    }
+    let table = read(&studies.dir("s").join("evaluations.csv"));
+    let column =
+        table.lines().next().unwrap().split(',').position(|name| name == "trials").unwrap();
+    let spent = |line: &str| line.split(',').nth(column).unwrap().parse::<u64>().unwrap();
+    let spent: u64 = table.lines().skip(1).map(spent).sum();
+    assert!(trials > 0 && 4 * trials <= spent, "{trials} of {spent}");
+
+    let json = studies.study("quick", 8, &["--no-confirm", "--json"]).json();
+    assert!(!studies.dir("quick").join("walk.json").exists() && json.get("walked").is_none());
+    assert_eq!(json["recommended"]["firm_range_mm"], serde_json::Value::Null);
+    assert_eq!(json["recommended"]["range_mm"], json["best"]["range_mm"]);
+}
+
+#[test]
+fn a_task_that_no_design_does_ends_with_what_went_wrong() {
+    let studies = Studies::new();
+    let space = studies.dir("high.toml");
+    // The closed form's window closes with the remote centre so far up.
+    let infill = include_str!("../spaces/infill.toml");
+    let centre = "[[parameter]]\nkey = \"finger.rcc_mm\"\nlow = 60.0\nhigh = 62.0\nstep = 1.0\n\
+                  source = \"too high\"\n";
+    fs::write(&space, format!("{infill}\n{centre}")).unwrap();
+    let space = ["--space", space.to_str().unwrap()];
+    let failed = studies.study("s", 8, &space);
+    failed.fails(1, &["nominal start of usb", "plug missed (class 2)", "nominal.svg"]);
+    assert!(failed.stdout.contains("none is recommended"), "{}", failed.stdout);
+    let json = studies.study("s", 8, &[&space[..], &["--json"]].concat());
+    json.fails(1, &["nominal start"]);
+    let json: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
+    assert_eq!(json["recommended"], serde_json::Value::Null);
+    assert!(studies.dir("s").join("nominal.svg").exists());
 }

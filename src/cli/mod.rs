@@ -12,6 +12,7 @@ mod failure;
 mod finger;
 mod manual;
 mod progress;
+mod recommended;
 mod repeat;
 mod report;
 mod resume;
@@ -24,6 +25,7 @@ mod summary;
 mod tasks;
 mod terminal;
 mod trial;
+mod unusable;
 mod validate;
 mod words;
 

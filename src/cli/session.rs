@@ -2,7 +2,7 @@
 
 use super::progress::Progress;
 use super::setup::Setup;
-use super::{Failure, report, say, summary};
+use super::{Failure, report, say, summary, unusable};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
 use crate::evaluation::tolerance::Search;
@@ -10,7 +10,7 @@ use crate::evaluation::uncertainty::Uncertainty;
 use crate::optimizer::gp::DEFAULT_NOISE_FLOOR;
 use crate::optimizer::{self, Grid, Optimizer, OptimizerKind, Polished};
 use crate::study::{
-    Cache, Ending, IfChanged, Runner, Simulated, Study, StudyConfig, StudyError, walk_best,
+    Cache, Confirmer, Ending, IfChanged, Runner, Simulated, Study, StudyConfig, StudyError,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -32,6 +32,9 @@ pub struct SessionArguments {
     /// Measure every design anew, and keep nothing
     #[arg(long, conflicts_with = "cache")]
     no_cache: bool,
+    /// Leave out what confirms the recommendation: the best designs walked, and repeated at their ends
+    #[arg(long)]
+    no_confirm: bool,
     /// Go on with a study that was measured by another program version, engine setting or input
     /// file, in a new segment; the best design is then taken from that
     #[arg(long)]
@@ -75,9 +78,11 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     }
     let ending = ended.map_err(|error| hint(error, &study))?;
     let known = cache.as_ref().map_or(0, Cache::found);
-    if ending != Ending::Interrupted {
+    if ending != Ending::Interrupted && !arguments.no_confirm {
         let walker = simulated(Search::Walk, &Plan::WINDOW);
-        walk_best(&study, &walker, &pool, &stop).map_err(|error| hint(error, &study))?;
+        let evaluator = &setup.evaluator;
+        let confirmer = Confirmer { walker: &walker, evaluator, pool: &pool, stop: &stop };
+        confirmer.confirm(&study).map_err(|error| hint(error, &study))?;
     }
     study.check_journal()?;
     let record = study.record();
@@ -85,7 +90,8 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {
         return Err(Failure::running(format!("interrupted; {}", resume_hint(&study))));
     }
-    summary::show(study.dir(), &record, ending, known, arguments.json)
+    summary::show(study.dir(), &record, ending, known, arguments.json)?;
+    unusable::check(study.dir(), &record, setup)
 }
 
 /// The optimizer of a study.

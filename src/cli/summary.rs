@@ -1,9 +1,11 @@
 //! What is printed of a whole study.
 
-use super::words::{drawn_text, merge, stiffness, window};
-use super::{Failure, print, print_json};
+use super::words::merge;
+use super::{Failure, print, print_json, recommended};
+use crate::evaluation::objective::Measure;
+use crate::evaluation::robustness::firm::Firm;
 use crate::report::volume_unit;
-use crate::study::{Ending, Recorded, StudyRecord, nearest, volume};
+use crate::study::{Ending, Recorded, StudyRecord, Walked, nearest, volume};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -40,13 +42,14 @@ fn text(dir: &Path, record: &StudyRecord, ending: Ending, known: u64) -> String 
             segment.first
         ));
     }
-    match (record.recommended(), config.objective.single()) {
-        (None, _) => lines.push(none(record)),
-        (Some(best), Some(_)) => {
-            lines.extend(best_lines(record, best));
-            lines.extend(walked_lines(record));
-        }
-        (Some(_), None) => lines.extend(front_lines(record)),
+    if let Some((task, nearest)) = record.unusable() {
+        lines.push(unusable(record, task, nearest));
+    } else if let Some(found) = record.recommendation() {
+        lines.extend(recommended::lines(record, &found));
+    } else if config.objective.single().is_none() && record.best().is_some() {
+        lines.extend(front_lines(record));
+    } else {
+        lines.push(none(record));
     }
     if known > 0 {
         lines.push(format!("cache         {known} evaluations were known from other studies"));
@@ -54,6 +57,17 @@ fn text(dir: &Path, record: &StudyRecord, ending: Ending, known: u64) -> String 
     let page = dir.join(super::report::PAGE);
     lines.push(format!("study         {} (see {})", dir.display(), page.display()));
     lines.join("\n") + "\n"
+}
+
+/// That a task is of no use as it is.
+fn unusable(record: &StudyRecord, task: usize, nearest: &Recorded) -> String {
+    let name = record.config.tasks().nth(task).unwrap_or_default();
+    format!(
+        "no design inserts at the nominal start of {name}, so none is recommended\n\
+         nearest       {} (evaluation {})",
+        nearest.design.labelled(),
+        nearest.index
+    )
 }
 
 /// Why no design is recommended.
@@ -65,50 +79,10 @@ fn none(record: &StudyRecord) -> String {
     let words = record.config.constraints.iter().map(|constraint| constraint.words(&tasks));
     format!(
         "no design keeps all constraints, so none is recommended\nnearest       {} (evaluation {}): {}",
-        nearest.design,
+        nearest.design.labelled(),
         nearest.index,
         words.collect::<Vec<_>>().join("; ")
     )
-}
-
-fn best_lines(record: &StudyRecord, best: &Recorded) -> Vec<String> {
-    let config = &record.config;
-    let mut lines = vec![format!("best design   {} (evaluation {})", best.design, best.index)];
-    if let (Some(measure), Some(value)) = (config.objective.single(), best.value()) {
-        let of =
-            config.aggregate.as_ref().map_or(String::new(), |a| format!(" ({a} of the tasks)"));
-        lines.push(format!("{measure:<13} {}{of}", measure.show(value)));
-    }
-    let tasks = best.tasks();
-    let constraints = config.constraints.iter();
-    lines.extend(constraints.map(|c| format!("constraint    {} {}", c.measure, c.words(&tasks))));
-    for (name, evaluation) in config.tasks().zip(&tasks) {
-        if config.several_tasks() {
-            lines.push(format!("task          {name}"));
-        }
-        lines.push(window(evaluation));
-        lines.extend(drawn_text(evaluation));
-    }
-    lines.push(stiffness(&best.stiffness));
-    lines
-}
-
-/// What the walk said of the best designs of the search, if they were walked.
-fn walked_lines(record: &StudyRecord) -> Vec<String> {
-    let (Some(measure), Some(searched)) = (record.config.objective.single(), record.best()) else {
-        return Vec::new();
-    };
-    let show = |recorded: &Recorded| recorded.value().map_or("none".into(), |v| measure.show(v));
-    let [first, rest @ ..] = record.walked.as_slice() else { return Vec::new() };
-    let mut line = format!("walked        step by step: the best {} designs", rest.len() + 1);
-    let before = record.current().iter().find(|r| r.index == first.recorded.index);
-    if let Some(before) = before.filter(|before| before.value() != first.recorded.value()) {
-        line += &format!("; the search had given this one {}", show(before));
-    }
-    if searched.index != first.recorded.index {
-        line += &format!("; evaluation {} had {} in the search", searched.index, show(searched));
-    }
-    vec![line]
 }
 
 fn front_lines(record: &StudyRecord) -> Vec<String> {
@@ -116,12 +90,19 @@ fn front_lines(record: &StudyRecord) -> Vec<String> {
     let objectives = &goals.objectives;
     let line = |recorded: &&Recorded| {
         let values = objectives.show(recorded.feasible().unwrap_or_default());
-        format!("              {values}: {} (evaluation {})", recorded.design, recorded.index)
+        format!(
+            "              {values}: {} (evaluation {})",
+            recorded.design.labelled(),
+            recorded.index
+        )
     };
-    let mut lines = vec![format!(
-        "front         {} designs; none is at least as good as another in all objectives",
-        front.len()
-    )];
+    let size = match front.len() {
+        1 => "one design is the best in all objectives".to_owned(),
+        count => {
+            format!("{count} designs; none is at least as good as another in all objectives")
+        }
+    };
+    let mut lines = vec![format!("front         {size}")];
     lines.extend(front.iter().map(line));
     let found = volume(&goals, record.current());
     lines.push(format!(
@@ -158,9 +139,15 @@ fn to_json(record: &StudyRecord, ending: Ending, known: u64) -> Value {
         "ending": ending,
         "best": best.map(|best| recorded_json(record, best)),
     });
+    merge(&mut fields, recommended::to_json(record));
     if !record.walked.is_empty() {
-        let walked: Vec<Value> =
-            record.walked.iter().map(|walked| recorded_json(record, &walked.recorded)).collect();
+        let one = |walked: &Walked| {
+            let mut fields = recorded_json(record, &walked.recorded);
+            let firm: Vec<f64> = walked.firm.iter().map(Firm::range_mm).collect();
+            merge(&mut fields, json!({"firm_range_mm": record.aggregated(Measure::Range, &firm)}));
+            fields
+        };
+        let walked: Vec<Value> = record.walked.iter().map(one).collect();
         merge(&mut fields, json!({"walked": walked}));
     }
     if record.segments.len() > 1 {

@@ -1,6 +1,7 @@
 //! What is printed of an evaluation.
 
 use crate::evaluation::Evaluation;
+use crate::evaluation::objective::Measure;
 use crate::outcome::Outcome;
 use crate::surrogate::Prediction;
 use crate::units::N_PER_MM;
@@ -29,7 +30,18 @@ fn end(outcome: Option<Outcome>) -> &'static str {
     outcome.map_or("limit of the search", Outcome::label)
 }
 
-/// Predicted stiffness, its uncertainty, and whether it is an extrapolation.
+/// A difference of numbers with one decimal, without the noise of the subtraction.
+pub fn rounded(mm: f64) -> f64 {
+    (mm * 1e6).round() / 1e6
+}
+
+/// The largest force where anything inserted.
+pub fn force(evaluation: &Evaluation) -> Option<String> {
+    let force = Measure::PeakForce.value(evaluation)?;
+    Some(format!("peak force    {force:.1} N between plug and socket, over the inserted trials"))
+}
+
+/// Predicted stiffness, its uncertainty, and whether it is an extrapolation; two lines.
 pub fn stiffness(prediction: &Prediction) -> String {
     let mut text = String::from("stiffness    ");
     for (axis, estimate) in
@@ -39,11 +51,13 @@ pub fn stiffness(prediction: &Prediction) -> String {
         // Writing to a String cannot fail.
         let _ = write!(text, " {axis} {mean:.2} ± {sd:.2} N/mm,");
     }
+    text.pop();
+    text.push_str("\n              ");
     if prediction.inside_hull() {
-        text.push_str(" inside the measured designs");
+        text.push_str("inside the measured designs");
     } else {
         let distance = prediction.hull_distance;
-        let _ = write!(text, " {distance:.2} spans OUTSIDE the measured designs");
+        let _ = write!(text, "{distance:.2} spans OUTSIDE the measured designs");
     }
     text
 }

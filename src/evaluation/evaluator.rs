@@ -1,14 +1,17 @@
 //! Design in, evaluation out: the one way from a design to what is measured of it.
 
-use super::Evaluation;
+use super::robustness::firm::{self, Firm};
+use super::robustness::repeat::Repeats;
 use super::robustness::{self, Plan};
 use super::stoppable::Stoppable;
 use super::template::{Impossible, Template};
 use super::tolerance::Search;
+use super::{Evaluation, Window};
 use crate::finger::Finger;
 use crate::input::robot::Robot;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::input::task::Task;
+use crate::outcome::Outcome;
 use crate::surrogate::{Model, Prediction};
 use crate::trial::Rig;
 use crate::trial::engine::EngineKind;
@@ -102,6 +105,27 @@ impl Evaluator {
         let rig = Stoppable { rig: &*rig, stop };
         let Specimen { finger, stiffness, .. } = specimen;
         Ok(robustness::evaluate(&rig, finger, stiffness, search, plan))
+    }
+
+    /// The firm part of a specimen's window, by [`firm::REPEATS`] repeats that this seed names;
+    /// ends early, with a worthless result, once `stop` is set.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn firm(
+        &self,
+        specimen: &Specimen,
+        window: &Window,
+        seed: u64,
+        stop: &AtomicBool,
+    ) -> Result<Firm, RigError> {
+        if window.nominal != Outcome::Inserted {
+            return Ok(Firm::NONE);
+        }
+        let (whole, half) = (self.rig(specimen, 1.0)?, self.rig(specimen, 0.5)?);
+        let [whole, half] = [&whole, &half].map(|rig| Stoppable { rig: &**rig, stop });
+        let repeats = Repeats::new([&whole, &half], &specimen.finger, seed, firm::REPEATS);
+        Ok(firm::measure(&repeats, window))
     }
 
     /// Measures a design on every task by `measure`, which may know the answer already.

@@ -72,6 +72,44 @@ impl Design {
     }
 }
 
+impl Design {
+    /// `infill density 20 %, infill direction 10°`: for readers.
+    pub fn labelled(&self) -> String {
+        let value = |(key, value): (&String, &f64)| {
+            let (name, unit) = label(key);
+            format!("{name} {value}{unit}")
+        };
+        self.0.iter().map(value).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Ends of keys, and the units they stand for.
+const UNITS: [(&str, &str); 8] = [
+    ("_percent", " %"),
+    ("_deg", "°"),
+    ("_mm_per_s", " mm/s"),
+    ("_n_per_mm", " N/mm"),
+    ("_mm", " mm"),
+    ("_n", " N"),
+    ("_kg", " kg"),
+    ("_s", " s"),
+];
+/// What a path in a task file begins with and a reader does not need.
+const TABLES: [&str; 5] = ["task", "strategy", "phase", "grip", "finger"];
+
+/// The name of a key in words, and its unit: `task.strategy.tilt_deg` is `tilt`, in `°`.
+pub fn label(key: &str) -> (String, &'static str) {
+    let mut unit = "";
+    let mut words = Vec::new();
+    for part in key.split('.').filter(|part| !TABLES.contains(part)) {
+        let found = UNITS.iter().find_map(|(end, unit)| Some((part.strip_suffix(end)?, *unit)));
+        let (word, of) = found.unwrap_or((part, ""));
+        unit = if of.is_empty() { unit } else { of };
+        words.push(word.replace('_', " "));
+    }
+    (words.join(" "), unit)
+}
+
 impl std::fmt::Display for Design {
     /// `infill_density_percent = 20, infill_direction_deg = 10`
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -176,6 +214,22 @@ source = "paper"
         let space = Space::parse(GOOD, "s.toml").unwrap();
         assert_eq!(space.levels(), vec![21]);
         assert_eq!(space.design(&GridPoint(vec![20])).get(DENSITY_KEY), Some(30.0));
+    }
+
+    #[test]
+    fn keys_in_words() {
+        for (key, words, unit) in [
+            (DENSITY_KEY, "infill density", " %"),
+            ("task.strategy.tilt_deg", "tilt", "°"),
+            ("task.strategy.phase.side.move_mm.y", "side move y", " mm"),
+            ("task.strategy.phase.assembly.speed_mm_per_s", "assembly speed", " mm/s"),
+            ("task.grip.force_n", "force", " N"),
+            ("task.opening.0", "opening 0", ""),
+        ] {
+            assert_eq!(label(key), (words.to_owned(), unit));
+        }
+        let label = Design::infill(20.0, 7.5).labelled();
+        assert_eq!(label, "infill density 20 %, infill direction 7.5°");
     }
 
     #[test]

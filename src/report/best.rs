@@ -2,6 +2,7 @@
 
 use super::elements::definitions;
 use super::text::{design, infill, is_infill, outcome, stiffness, values};
+use crate::evaluation::objective::Measure;
 use crate::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
 use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Recorded, StudyRecord, nearest};
@@ -119,16 +120,13 @@ fn walked(record: &StudyRecord, best: &Recorded) -> Option<(String, String)> {
 /// What was measured on one task.
 fn of_task(found: &Evaluation) -> Facts {
     let mut facts = window(&found.window);
-    facts.extend([
-        fact(
-            "largest contact force plug to socket",
-            format!("{:.1} N (over the inserted trials)", found.peak_force_n),
-        ),
-        fact(
-            "largest slip in the grasp",
-            format!("{:.2} mm (over the inserted trials)", found.slip_mm),
-        ),
-    ]);
+    let most = |measure: Measure| {
+        let value = measure.value(found)?;
+        Some(format!("{} (over the inserted trials)", measure.show(value)))
+    };
+    let force = most(Measure::PeakForce);
+    facts.extend(force.map(|force| fact("largest contact force plug to socket", force)));
+    facts.extend(most(Measure::Slip).map(|slip| fact("largest slip in the grasp", slip)));
     facts.extend(found.success.iter().flat_map(success));
     facts.extend(found.robust.iter().map(robust));
     facts

@@ -46,7 +46,13 @@ fn config(task: &str) -> StudyConfig {
 
 fn record(task: &str, evaluations: Vec<Recorded>) -> StudyRecord {
     let segments = vec![Segment { first: 0, provenance: provenance() }];
-    StudyRecord { config: config(task), segments, evaluations, walked: Vec::new() }
+    StudyRecord {
+        config: config(task),
+        segments,
+        evaluations,
+        walked: Vec::new(),
+        firm_values: Default::default(),
+    }
 }
 
 /// A study of the closed-form rig over a coarse grid in a scattered order.

@@ -6,7 +6,7 @@
 //!                  when the originals have changed or gone; inputs-2/ and so on
 //!                  those of a further segment
 //! journal.jsonl    what was measured
-//! walk.json        what the walk found of the best designs
+//! walk.json        what the walk and the repeats found of the best designs
 //! evaluations.csv  the same as a table; convergence.svg and report.html beside it
 //! .lock            held by the process that writes
 //! ```
@@ -16,6 +16,7 @@ use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord};
+use super::rule::Rule;
 use super::store::{FileStore, Store};
 use super::walked;
 use crate::files::{self, LARGEST_INPUT, LARGEST_OWN};
@@ -204,10 +205,13 @@ impl StudyRecord {
         segments: Vec<Segment>,
         evaluations: Vec<Recorded>,
     ) -> Self {
-        let mut record = StudyRecord { config, segments, evaluations, walked: Vec::new() };
+        let (walked, firm_values) = Default::default();
+        let mut record = StudyRecord { config, segments, evaluations, walked, firm_values };
         let provenance = record.segments.last().map(|segment| &segment.provenance);
         let goals = record.config.goals();
-        record.walked = walked::read(dir, &goals, provenance, record.current());
+        let rule = Rule { goals: &goals, space: &record.config.space };
+        (record.walked, record.firm_values) =
+            walked::read(dir, &rule, provenance, record.current());
         record
     }
 

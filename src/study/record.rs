@@ -5,8 +5,10 @@ use super::provenance::Segment;
 use crate::evaluation::Evaluation;
 use crate::evaluation::objective::{Goals, Measure, Score};
 use crate::evaluation::pareto;
+use crate::evaluation::robustness::firm::Firm;
 use crate::input::space::Design;
 use crate::surrogate::Prediction;
+use std::collections::BTreeMap;
 
 /// A study read from its folder: all that a report may know of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +21,8 @@ pub struct StudyRecord {
     pub evaluations: Vec<Recorded>,
     /// What the walk found of the best designs, best first; empty if they were not walked.
     pub walked: Vec<Walked>,
+    /// The firm value of the first objective of the designs whose ends were repeated, by evaluation.
+    pub firm_values: BTreeMap<u64, f64>,
 }
 
 /// A design that was measured again.
@@ -26,6 +30,8 @@ pub struct StudyRecord {
 pub struct Walked {
     /// The evaluation with the windows that the walk found, and the score of those.
     pub recorded: Recorded,
+    /// What is left of each window when friction, start and step vary a little.
+    pub firm: Vec<Firm>,
 }
 
 /// One evaluation of a study.
@@ -93,12 +99,6 @@ impl StudyRecord {
     /// The [`front`] of the [`current`](Self::current) evaluations.
     pub fn front(&self) -> Vec<&Recorded> {
         front(&self.config.goals(), self.current())
-    }
-
-    /// What is recommended: the best by the walk, or as recorded where nothing was walked.
-    pub fn recommended(&self) -> Option<&Recorded> {
-        let walked = self.walked.first().map(|walked| &walked.recorded);
-        walked.or_else(|| self.best())
     }
 }
 

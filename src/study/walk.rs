@@ -1,53 +1,164 @@
-//! Walks the best designs of a study; why is in `walked.rs`.
+//! Measures the best designs of a study again; why and how is in `walked.rs`.
 
 use super::error::StudyError;
 use super::folder::{Study, write_own_file};
-use super::record::{Recorded, Walked};
-use super::walked::{WALK_FILE, WalkFile, WalkedRow, candidates, decides, ranked};
-use crate::evaluation::evaluator::Evaluate;
+use super::provenance::Provenance;
+use super::record::Recorded;
+use super::rule::Rule;
+use super::walked::{REPEATED, Row, WALK_FILE, WALKED, WalkFile, WalkedRow};
+use crate::evaluation::Evaluation;
+use crate::evaluation::evaluator::{Evaluate, Evaluator};
+use crate::evaluation::robustness::firm::Firm;
+use crate::evaluation::template::{Impossible, Template};
 use rayon::ThreadPool;
 use rayon::prelude::*;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
-/// Walks the best designs of a study, those that were walked before left out, and keeps what
-/// that finds. Nothing is kept once `stop` is set.
-pub fn walk_best(
-    study: &Study,
-    walker: &dyn Evaluate,
-    pool: &ThreadPool,
-    stop: &AtomicBool,
-) -> Result<Vec<Walked>, StudyError> {
-    let (record, goals) = (study.record(), study.config.goals());
-    if !decides(&goals) {
-        return Ok(Vec::new());
-    }
-    let best = candidates(&goals, record.current());
-    let known = |index: u64| record.walked.iter().find(|w| w.recorded.index == index);
-    let walk = |recorded: &&Recorded| -> Result<WalkedRow, StudyError> {
-        let tasks = match known(recorded.index) {
-            Some(walked) => walked.recorded.tasks.clone(),
-            None => {
-                walker
-                    .evaluate(&recorded.design)
-                    .map_err(|source| StudyError::Impossible {
-                        index: recorded.index,
-                        design: recorded.design.to_string(),
-                        source,
-                    })?
-                    .tasks
-            }
+/// What the best designs are measured with.
+pub struct Confirmer<'a> {
+    /// Walks a design.
+    pub walker: &'a dyn Evaluate,
+    /// Repeats its ends.
+    pub evaluator: &'a Evaluator,
+    /// Does the measuring.
+    pub pool: &'a ThreadPool,
+    /// Set when the study is to stop: trials then end at once.
+    pub stop: &'a AtomicBool,
+}
+
+impl Confirmer<'_> {
+    /// Measures the best designs of a study again, what is known of them left out, and keeps what
+    /// that finds, each design as it is done.
+    ///
+    /// # Errors
+    /// If a design cannot be simulated, or the file not be written.
+    pub fn confirm(&self, study: &Study) -> Result<(), StudyError> {
+        let (record, goals) = (study.record(), study.config.goals());
+        let rule = Rule { goals: &goals, space: &study.config.space };
+        let best = match rule.by_windows() {
+            true => rule.candidates(record.current(), REPEATED),
+            false => Vec::new(),
         };
-        Ok(WalkedRow { evaluation: recorded.index, tasks })
-    };
-    let rows = pool.install(|| best.par_iter().map(walk).collect::<Result<Vec<_>, _>>())?;
-    if stop.load(Ordering::SeqCst) || rows.is_empty() {
-        return Ok(Vec::new());
+        if best.is_empty() {
+            return Ok(());
+        }
+        let (kept, seed) = (Kept::read(study, &best, self.stop), study.config.seed);
+        self.each(&best, |recorded| match kept.row(recorded) {
+            Some(_) => Ok(()),
+            None => kept.put(Row {
+                evaluation: recorded.index,
+                firm: self.firm(recorded, &[], seed)?,
+                walked: None,
+            }),
+        })?;
+        let standing =
+            |recorded| Some((recorded, rule.firmly(recorded, &kept.row(recorded)?.firm)));
+        let mut firm: Vec<_> = best.iter().copied().filter_map(standing).collect();
+        firm.sort_by(|(_, a), (_, b)| rule.order(a, b));
+        let first: Vec<&Recorded> = firm.into_iter().take(WALKED).map(|(best, _)| best).collect();
+        self.each(&first, |recorded| match kept.row(recorded) {
+            Some(row) if row.walked.is_none() => kept.put(self.walk(recorded, row, seed)?),
+            _ => Ok(()),
+        })?;
+        kept.finish()
     }
-    let walked = ranked(&goals, record.current(), &rows);
-    let file = WalkFile { provenance: study.provenance().clone(), walked: rows };
-    let path = study.dir().join(WALK_FILE);
-    let text = serde_json::to_string(&file)
-        .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
-    write_own_file(&path, &(text + "\n"))?;
-    Ok(walked)
+
+    /// Does something with each design, several at a time.
+    fn each(
+        &self,
+        designs: &[&Recorded],
+        what: impl Fn(&Recorded) -> Result<(), StudyError> + Sync,
+    ) -> Result<(), StudyError> {
+        self.pool.install(|| designs.par_iter().try_for_each(|recorded| what(recorded)))
+    }
+
+    /// The design walked, and repeated at those ends that are others than before.
+    fn walk(&self, searched: &Recorded, row: Row, seed: u64) -> Result<Row, StudyError> {
+        let found = self.walker.evaluate(&searched.design);
+        let tasks = found.map_err(|source| impossible(searched, source))?.tasks;
+        let mut walked = searched.clone();
+        let same = |(before, now): (&Evaluation, &Evaluation)| before.window == now.window;
+        let windows = searched.tasks.iter().zip(&tasks).zip(&row.firm);
+        let as_before: Vec<Option<Firm>> =
+            windows.map(|(windows, firm)| same(windows).then_some(*firm)).collect();
+        walked.tasks.clone_from(&tasks);
+        let firm = self.firm(&walked, &as_before, seed)?;
+        Ok(Row { walked: Some(WalkedRow { tasks, firm }), ..row })
+    }
+
+    /// The firm windows of a design on all tasks, those that are known left out.
+    fn firm(
+        &self,
+        recorded: &Recorded,
+        known: &[Option<Firm>],
+        seed: u64,
+    ) -> Result<Vec<Firm>, StudyError> {
+        let measure = |(at, (template, task)): (usize, (&Template, &Evaluation))| {
+            if let Some(Some(firm)) = known.get(at) {
+                return Ok(*firm);
+            }
+            let specimen =
+                self.evaluator.specimen(template, &recorded.design, recorded.stiffness)?;
+            Ok(self.evaluator.firm(&specimen, &task.window, seed, self.stop)?)
+        };
+        let tasks = self.evaluator.templates.iter().zip(&recorded.tasks).enumerate();
+        let firm: Result<Vec<Firm>, Impossible> = tasks.map(measure).collect();
+        firm.map_err(|source| impossible(recorded, source))
+    }
+}
+
+fn impossible(recorded: &Recorded, source: Impossible) -> StudyError {
+    StudyError::Impossible { index: recorded.index, design: recorded.design.to_string(), source }
+}
+
+/// The file as it grows. Nothing is kept once `stop` is set: trials may have been skipped.
+struct Kept<'a> {
+    dir: PathBuf,
+    provenance: Provenance,
+    stop: &'a AtomicBool,
+    /// A place for each of the best designs, in their order.
+    rows: Mutex<Vec<(u64, Option<Row>)>>,
+}
+
+impl<'a> Kept<'a> {
+    /// What is known of these designs.
+    fn read(study: &'a Study, best: &[&Recorded], stop: &'a AtomicBool) -> Self {
+        let (dir, provenance) = (study.dir().to_owned(), study.provenance().clone());
+        let file = WalkFile::read(&dir, Some(&provenance));
+        let known = file.map_or(Vec::new(), |file| file.designs);
+        let row = |index| known.iter().find(|row| row.evaluation == index).cloned();
+        let rows = best.iter().map(|recorded| (recorded.index, row(recorded.index))).collect();
+        Kept { dir, provenance, stop, rows: Mutex::new(rows) }
+    }
+
+    fn row(&self, recorded: &Recorded) -> Option<Row> {
+        let rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
+        rows.iter().find(|(index, _)| *index == recorded.index)?.1.clone()
+    }
+
+    fn put(&self, row: Row) -> Result<(), StudyError> {
+        let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(place) = rows.iter_mut().find(|(index, _)| *index == row.evaluation) {
+            place.1 = Some(row);
+        }
+        self.write(&rows, false)
+    }
+
+    fn finish(&self) -> Result<(), StudyError> {
+        self.write(&self.rows.lock().unwrap_or_else(PoisonError::into_inner), true)
+    }
+
+    fn write(&self, rows: &[(u64, Option<Row>)], complete: bool) -> Result<(), StudyError> {
+        if self.stop.load(Ordering::SeqCst) {
+            return Ok(());
+        }
+        let designs = rows.iter().filter_map(|(_, row)| row.clone()).collect();
+        let file = WalkFile { provenance: self.provenance.clone(), complete, designs };
+        let path = self.dir.join(WALK_FILE);
+        let text = serde_json::to_string(&file)
+            .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
+        write_own_file(&path, &(text + "\n"))
+    }
 }

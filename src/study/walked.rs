@@ -1,87 +1,134 @@
-//! The best designs of a study, measured again step by step.
+//! The best designs of a study, measured again: step by step, and six times at their ends.
 //!
 //! A study looks for the ends of its windows in strides, which do not see a gap between two
-//! of them; an optimizer then finds just the designs whose gaps are passed over. So before one
-//! is recommended the best three are walked. What that finds is kept beside the journal, in
-//! `walk.json`, and is no part of the budget.
+//! of them; an optimizer then finds just the designs whose gaps are passed over. And an end may
+//! hang on a corner that catches or not. So before one is recommended
+//!
+//! 1. the ends of the first nine designs, by the [`Rule`] on what the search found, are
+//!    repeated with friction, start and step varied ([`firm`](crate::evaluation::robustness::firm));
+//! 2. the first three of these, by the rule on their firm windows, are walked; where that gives
+//!    another window, its ends are repeated, too.
+//!
+//! The first of the three, by the rule on the firm windows that are left, is recommended. What
+//! this finds is kept beside the journal, in `walk.json`, and is no part of the budget.
 
 use super::provenance::Provenance;
 use super::record::{Recorded, Walked};
-use crate::evaluation::Evaluation;
-use crate::evaluation::objective::{Goals, Measure};
+use super::rule::{Rule, Standing};
+use crate::evaluation::robustness::firm::Firm;
+use crate::evaluation::{Evaluation, Window};
 use crate::files::{self, LARGEST_OWN};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Name of the file.
 pub(super) const WALK_FILE: &str = "walk.json";
-/// How many designs are walked.
-const COUNT: usize = 3;
+/// How many designs are repeated at their ends.
+pub(super) const REPEATED: usize = 9;
+/// How many of them are walked.
+pub(super) const WALKED: usize = 3;
 
 #[derive(Serialize, Deserialize)]
 pub(super) struct WalkFile {
     /// What walked: of another provenance it says nothing.
     pub provenance: Provenance,
-    /// The designs that were walked.
-    pub walked: Vec<WalkedRow>,
+    /// Whether all was done; if not, it is a beginning to go on from.
+    pub complete: bool,
+    /// The designs, in the order of the rule on what the search found.
+    pub designs: Vec<Row>,
 }
 
-#[derive(Serialize, Deserialize)]
-pub(super) struct WalkedRow {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Row {
     /// Index of the evaluation.
     pub evaluation: u64,
+    /// What the repeats found on each task at the ends that the search had found.
+    pub firm: Vec<Firm>,
+    /// What the walk found, if it was walked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub walked: Option<WalkedRow>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct WalkedRow {
     /// What the walk found on each task.
     pub tasks: Vec<Evaluation>,
+    /// What the repeats found on each task at the ends of the walk.
+    pub firm: Vec<Firm>,
 }
 
-/// Whether the windows of the best designs are to be walked: where they decide.
-pub(super) fn decides(goals: &Goals) -> bool {
-    matches!(goals.objectives.single(), Some(Measure::Range | Measure::CentredRange))
-}
-
-/// The designs to be walked: the best three that insert anywhere, earlier ones first of equals.
-pub(super) fn candidates<'a>(goals: &Goals, current: &'a [Recorded]) -> Vec<&'a Recorded> {
-    let first_value = |recorded: &Recorded| recorded.value().unwrap_or(0.0);
-    let mut known: Vec<(&Recorded, &[f64])> =
-        current.iter().filter_map(|recorded| Some((recorded, recorded.feasible()?))).collect();
-    known.retain(|(recorded, _)| first_value(recorded) > 0.0);
-    known.sort_by(|(_, a), (_, b)| goals.order(b, a));
-    known.into_iter().take(COUNT).map(|(recorded, _)| recorded).collect()
-}
-
-/// What was walked in `dir` with this provenance, best first; nothing where the file is
-/// missing, damaged or of another provenance: it can be made again.
-pub(super) fn read(
-    dir: &Path,
-    goals: &Goals,
-    provenance: Option<&Provenance>,
-    current: &[Recorded],
-) -> Vec<Walked> {
-    let text = files::read_own(&dir.join(WALK_FILE), LARGEST_OWN).unwrap_or_default();
-    match serde_json::from_str::<WalkFile>(&text) {
-        Ok(file) if Some(&file.provenance) == provenance => ranked(goals, current, &file.walked),
-        _ => Vec::new(),
+impl WalkFile {
+    /// The file in `dir`; `None` where it is missing, damaged or of another provenance: it can
+    /// be made again.
+    pub fn read(dir: &Path, provenance: Option<&Provenance>) -> Option<WalkFile> {
+        let text = files::read_own(&dir.join(WALK_FILE), LARGEST_OWN).ok()?;
+        let file: WalkFile = serde_json::from_str(&text).ok()?;
+        (Some(&file.provenance) == provenance).then_some(file)
     }
 }
 
-/// The evaluations with the windows of the walk, best first; what was measured under drawn
-/// errors stays.
-pub(super) fn ranked(goals: &Goals, current: &[Recorded], rows: &[WalkedRow]) -> Vec<Walked> {
-    let apply = |row: &WalkedRow| {
-        let before = current.iter().find(|recorded| recorded.index == row.evaluation)?;
-        let mut recorded = before.clone();
-        for (task, walked) in recorded.tasks.iter_mut().zip(&row.tasks) {
-            let (success, robust) = (task.success.take(), task.robust.take());
-            *task = Evaluation { success, robust, ..walked.clone() };
-        }
-        recorded.score = goals.score(&recorded.tasks());
-        Some(Walked { recorded })
-    };
-    let mut walked: Vec<Walked> = rows.iter().filter_map(apply).collect();
-    let gain = |walked: &Walked| walked.recorded.feasible().map(<[f64]>::to_vec);
-    walked.sort_by(|a, b| match (gain(a), gain(b)) {
-        (Some(a), Some(b)) => goals.order(&b, &a),
-        (a, b) => b.is_some().cmp(&a.is_some()),
-    });
-    walked
+impl Rule<'_> {
+    /// The first designs by the rule that insert anywhere.
+    pub fn candidates<'a>(&self, current: &'a [Recorded], count: usize) -> Vec<&'a Recorded> {
+        let standing = |recorded| (recorded, self.as_recorded(recorded));
+        let mut known: Vec<(&Recorded, Standing)> = current.iter().map(standing).collect();
+        known.retain(|(_, standing)| standing.value().is_some_and(|value| value > 0.0));
+        known.sort_by(|(_, a), (_, b)| self.order(a, b));
+        known.into_iter().take(count).map(|(recorded, _)| recorded).collect()
+    }
+
+    /// How a design stands with its firm windows.
+    pub fn firmly(&self, recorded: &Recorded, firm: &[Firm]) -> Standing {
+        let windows = recorded.tasks.iter().zip(firm);
+        let windows: Vec<Window> = windows.map(|(task, firm)| firm.of(&task.window)).collect();
+        self.standing(recorded, &windows)
+    }
+}
+
+/// What was walked, best first, and the firm value of the first objective of every design whose
+/// ends were repeated, by evaluation.
+pub(super) type Confirmed = (Vec<Walked>, BTreeMap<u64, f64>);
+
+/// What is known of the best designs; nothing before all is done.
+pub(super) fn read(
+    dir: &Path,
+    rule: &Rule,
+    provenance: Option<&Provenance>,
+    current: &[Recorded],
+) -> Confirmed {
+    match WalkFile::read(dir, provenance) {
+        Some(file) if file.complete => ranked(rule, current, &file.designs),
+        _ => Confirmed::default(),
+    }
+}
+
+/// The evaluation with the windows of the walk; what was measured under drawn errors stays.
+pub(super) fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
+    let mut recorded = before.clone();
+    for (task, walked) in recorded.tasks.iter_mut().zip(found) {
+        let (success, robust) = (task.success.take(), task.robust.take());
+        *task = Evaluation { success, robust, ..walked.clone() };
+    }
+    recorded.score = rule.goals.score(&recorded.tasks());
+    recorded
+}
+
+fn ranked(rule: &Rule, current: &[Recorded], rows: &[Row]) -> Confirmed {
+    let (mut walked, mut firm_values) = (Vec::new(), BTreeMap::new());
+    for row in rows {
+        let Some(before) = current.iter().find(|r| r.index == row.evaluation) else { continue };
+        let standing = match &row.walked {
+            None => rule.firmly(before, &row.firm),
+            Some(found) => {
+                let recorded = with_windows(rule, before, &found.tasks);
+                let standing = rule.firmly(&recorded, &found.firm);
+                walked.push((standing.clone(), Walked { recorded, firm: found.firm.clone() }));
+                standing
+            }
+        };
+        firm_values.insert(row.evaluation, standing.value().unwrap_or(0.0));
+    }
+    walked.sort_by(|(a, _), (b, _)| rule.order(a, b));
+    (walked.into_iter().map(|(_, walked)| walked).collect(), firm_values)
 }

@@ -1,6 +1,7 @@
 //! What a finger keeps of its window when not everything is as the task file
 //! says: trials and windows under drawn errors.
 
+pub mod firm;
 mod range;
 pub mod repeat;
 mod success;

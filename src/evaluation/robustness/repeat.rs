@@ -49,6 +49,19 @@ impl<'a> Repeats<'a> {
         self.runs.par_iter().map(|(grasped, shift)| grasped.trial(offset + shift).outcome).collect()
     }
 
+    /// How many runs there are.
+    pub(super) fn count(&self) -> usize {
+        self.runs.len()
+    }
+
+    /// Whether one of the runs inserts at a grid step.
+    pub(super) fn inserts(&self, run: usize, step: OffsetStep) -> bool {
+        let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
+            grasped.trial(tolerance::offset(step) + shift).outcome
+        };
+        self.runs.get(run).map(trial) == Some(Outcome::Inserted)
+    }
+
     /// How many of them insert at a grid step.
     fn inserted(&self, step: OffsetStep) -> usize {
         let outcomes = self.outcomes(tolerance::offset(step));

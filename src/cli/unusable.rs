@@ -1,0 +1,40 @@
+//! What went wrong where no design of a study inserts at the nominal start.
+
+use super::Failure;
+use super::setup::Setup;
+use crate::outcome::Outcome;
+use crate::study::{StudyRecord, write_own_file};
+use crate::trial::picture;
+use std::path::Path;
+
+/// Picture of the nominal trial in the study's folder.
+const PICTURE: &str = "nominal.svg";
+
+/// Fails, with what the design that comes nearest does at the nominal start, if none inserts there.
+pub fn check(dir: &Path, record: &StudyRecord, setup: &Setup) -> Result<(), Failure> {
+    let Some((task, nearest)) = record.unusable() else { return Ok(()) };
+    let Some(template) = setup.evaluator.templates.get(task) else { return Ok(()) };
+    let evaluator = &setup.evaluator;
+    let specimen =
+        evaluator.specimen(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
+    let rig = evaluator.rig(&specimen, 1.0).map_err(Failure::input)?;
+    let trial = rig.grasp(&specimen.finger).trial(0.0);
+    let file = dir.join(PICTURE);
+    write_own_file(&file, &picture::svg(&specimen.task, &trial))?;
+    let class = match trial.outcome {
+        Outcome::Failed(class) => format!("{} (class {})", class.label(), class.number()),
+        outcome => outcome.word().to_owned(),
+    };
+    let phase =
+        trial.phases.last().map_or(String::new(), |phase| format!(" in phase {}", phase.name));
+    Err(Failure::running(format!(
+        "no design of the study inserts at the nominal start of {}: evaluation {} ends with {class}{phase}, \
+         at depth {:.2} mm and tilt {:.2} deg; {} shows it. Check the task's start, strokes and \
+         clearances, and the finger's remote centre",
+        specimen.task.name,
+        nearest.index,
+        trial.depth_mm,
+        trial.tilt_deg,
+        file.display()
+    )))
+}

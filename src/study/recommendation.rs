@@ -1,0 +1,108 @@
+//! Which design of a study is recommended, how firm that is, and how much it matters.
+
+use super::record::{Recorded, StudyRecord};
+use super::rule::Rule;
+use crate::evaluation::objective::Measure;
+use crate::evaluation::robustness::firm::Firm;
+use crate::outcome::Outcome;
+
+/// The design of a study with one objective that is recommended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recommendation<'a> {
+    /// The design, with the windows of the walk if it was walked.
+    pub recorded: &'a Recorded,
+    /// What is firm of its windows, by task; nothing if the study did not repeat them.
+    pub firm: Option<&'a [Firm]>,
+    /// The designs whose search found as much as that of the recommended one, with it, but for those
+    /// whose repeats found less; by evaluation.
+    pub equivalent: Vec<&'a Recorded>,
+}
+
+impl StudyRecord {
+    /// The recommended design: the first by the rule of `study/rule.rs` of those that were walked,
+    /// else of all. Where windows do not decide, the [`best`](Self::best). None of a front is.
+    pub fn recommendation(&self) -> Option<Recommendation<'_>> {
+        self.config.objective.single()?;
+        let (recorded, firm) = match self.walked.first() {
+            Some(walked) => (&walked.recorded, Some(&walked.firm[..])),
+            None => (self.best_searched()?, None),
+        };
+        Some(Recommendation { recorded, firm, equivalent: self.equivalent(recorded.index) })
+    }
+
+    /// The recommended design, or of a front its first.
+    pub fn recommended(&self) -> Option<&Recorded> {
+        self.recommendation().map_or_else(|| self.best(), |found| Some(found.recorded))
+    }
+
+    fn best_searched(&self) -> Option<&Recorded> {
+        let goals = self.config.goals();
+        let rule = Rule { goals: &goals, space: &self.config.space };
+        match rule.by_windows() {
+            true => rule.candidates(self.current(), 1).first().copied(),
+            false => None,
+        }
+        .or_else(|| self.best())
+    }
+
+    fn equivalent(&self, index: u64) -> Vec<&Recorded> {
+        let goals = self.config.goals();
+        let searched =
+            |recorded: &Recorded| Some(goals.gains(recorded.feasible()?).first().copied());
+        let own = self.current().iter().find(|recorded| recorded.index == index).and_then(searched);
+        let firm = |index| self.firm_values.get(&index);
+        let refuted =
+            |other: u64| firm(other).zip(firm(index)).is_some_and(|(other, own)| other < own);
+        let as_good = |other: &&Recorded| {
+            searched(other).zip(own).is_some_and(|(other, own)| other >= own)
+                && !refuted(other.index)
+        };
+        self.current().iter().filter(as_good).collect()
+    }
+
+    /// The smallest and the largest range of the evaluations, mm, aggregated over the tasks: how much
+    /// the finger matters. `None` if none has a range.
+    pub fn spread_mm(&self) -> Option<[f64; 2]> {
+        let ranges =
+            self.current().iter().filter_map(|recorded| self.measure(recorded, Measure::Range));
+        ranges.fold(None, |span, range| {
+            let [low, high] = span.unwrap_or([range; 2]);
+            Some([range.min(low), range.max(high)])
+        })
+    }
+
+    /// A measure of a design, aggregated over the tasks.
+    pub fn measure(&self, recorded: &Recorded, measure: Measure) -> Option<f64> {
+        let values: Option<Vec<f64>> =
+            recorded.tasks.iter().map(|task| measure.value(task)).collect();
+        values.map(|values| self.aggregated(measure, &values))
+    }
+
+    /// Values of a measure on each task, made one.
+    pub fn aggregated(&self, measure: Measure, values: &[f64]) -> f64 {
+        self.config.goals().aggregate.of(measure.sense(), values)
+    }
+
+    /// The task, by its place, on which no design inserts at the nominal start, and the design
+    /// that comes nearest to it.
+    pub fn unusable(&self) -> Option<(usize, &Recorded)> {
+        let inserts = |recorded: &Recorded, task: usize| {
+            recorded.on(task).is_some_and(|found| found.window.nominal == Outcome::Inserted)
+        };
+        let tasks = 0..self.config.tasks.len();
+        let task =
+            tasks.into_iter().find(|&task| !self.current().iter().any(|r| inserts(r, task)))?;
+        let margin =
+            |recorded: &Recorded| recorded.on(task).map_or(-1.0, |found| found.end_shares[0]);
+        // Of equals the first.
+        let nearest = self.current().iter().rev().max_by(|a, b| margin(a).total_cmp(&margin(b)));
+        nearest.map(|nearest| (task, nearest))
+    }
+}
+
+impl Recommendation<'_> {
+    /// The firm range, mm, on each task; `None` if it was not measured.
+    pub fn firm_ranges_mm(&self) -> Option<Vec<f64>> {
+        self.firm.map(|firm| firm.iter().map(Firm::range_mm).collect())
+    }
+}

@@ -85,7 +85,7 @@ studies() {
             "$optimize" --task "$task" --budget 200 --no-cache --out "$work/$task" --quiet \
             > "$reference/$task/summary.txt"
         sed -i '/^study /d' "$reference/$task/summary.txt"
-        for file in report.html convergence.svg evaluations.csv study.toml; do
+        for file in report.html finger.stl finger-sheet.html convergence.svg evaluations.csv study.toml; do
             cp "$work/$task/$file" "$reference/$task/"
         done
         record studies "$reference/$task"/*

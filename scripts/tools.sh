@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs optional tools on Debian by their package names; those already there are left alone.
 #
-#     scripts/tools.sh                     what .ci/run uses: valgrind python3-venv python3-pip
+#     scripts/tools.sh                     what .ci/run uses: valgrind, Python, prusa-slicer
 #     scripts/tools.sh chromium slurm-wlm  these
 #
 # Needs root or sudo. Says what it could not install, and exits with 1 then; whatever needs a
@@ -10,7 +10,7 @@ set -euo pipefail
 
 packages=("$@")
 if [ $# -eq 0 ]; then
-    packages=(valgrind python3-venv python3-pip)
+    packages=(valgrind python3-venv python3-pip prusa-slicer)
 fi
 missing=()
 for package in "${packages[@]}"; do

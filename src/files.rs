@@ -97,14 +97,14 @@ fn text(bytes: Vec<u8>) -> io::Result<String> {
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write_named(path: &Path, text: &str) -> io::Result<()> {
+pub fn write_named(path: &Path, content: &[u8]) -> io::Result<()> {
     match fs::symlink_metadata(path) {
         Ok(found) if !found.is_file() && !found.is_dir() => {
             let mut file = File::create(path)?;
-            file.write_all(text.as_bytes())?;
+            file.write_all(content)?;
             file.flush()
         }
-        _ => write_own(path, text),
+        _ => write_own(path, content),
     }
 }
 
@@ -112,11 +112,11 @@ pub fn write_named(path: &Path, text: &str) -> io::Result<()> {
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write_own(path: &Path, text: &str) -> io::Result<()> {
+pub fn write_own(path: &Path, content: &[u8]) -> io::Result<()> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     let (temporary, mut file) = temporary(folder.unwrap_or(Path::new(".")))?;
     let written = (|| {
-        file.write_all(text.as_bytes())?;
+        file.write_all(content)?;
         file.sync_all()?;
         fs::rename(&temporary, path)
     })();
@@ -181,7 +181,7 @@ mod tests {
         let texts = ["a", "b"].map(|letter| letter.repeat(100_000));
         std::thread::scope(|scope| {
             for text in texts.iter().cycle().take(8) {
-                scope.spawn(|| (0..20).for_each(|_| write_own(&path, text).unwrap()));
+                scope.spawn(|| (0..20).for_each(|_| write_own(&path, text.as_bytes()).unwrap()));
             }
         });
         assert!(texts.contains(&read_own(&path, LARGEST_OWN).unwrap()));
@@ -230,9 +230,9 @@ mod tests {
             let error = read_own(&at(name), 10).unwrap_err().to_string();
             assert!(error.contains(word) && error.contains("not a plain file"), "{error}");
         }
-        write_named(&at("link"), "through the link").unwrap();
+        write_named(&at("link"), b"through the link").unwrap();
         assert_eq!(fs::read_to_string(at("victim")).unwrap(), "through the link");
-        write_own(&at("link"), "in place of the link").unwrap();
+        write_own(&at("link"), b"in place of the link").unwrap();
         assert!(fs::symlink_metadata(at("link")).unwrap().is_file());
         assert_eq!(fs::read_to_string(at("victim")).unwrap(), "through the link");
     }

@@ -38,6 +38,9 @@ pub fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(), Fail
     if let Some(front) = report::front_svg(record).map_err(drawn)? {
         write_own_file(&dir.join("front.svg"), &front)?;
     }
+    for (name, content) in report::printer::files(record) {
+        write_own_file(&dir.join(name), &content)?;
+    }
     write_own_file(&dir.join(PAGE), &report::page(record, model).map_err(drawn)?)?;
     Ok(())
 }

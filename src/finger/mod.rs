@@ -1,6 +1,7 @@
 //! One printed finger as the paper models it: six springs about a remote
 //! centre of compliance (RCC), Sec. "Stiffness model" and Table "Simulation Inputs".
 
+pub mod export;
 pub mod printed;
 
 use crate::input::finger::{Coupling, FingerModel};

@@ -13,6 +13,7 @@ mod map;
 mod marks;
 mod others;
 mod page;
+pub mod printer;
 mod provenance;
 mod published;
 pub mod quartiles;

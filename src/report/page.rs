@@ -2,7 +2,8 @@
 
 use super::theme::variables;
 use super::{
-    ReportError, best, convergence, front, limits, map, others, provenance, published, windows,
+    ReportError, best, convergence, front, limits, map, others, printer, provenance, published,
+    windows,
 };
 use crate::study::StudyRecord;
 use crate::surrogate::Model;
@@ -63,6 +64,7 @@ fn sections(record: &StudyRecord, model: &Model) -> Result<Vec<Section>, ReportE
     let section = |id, title: &str, body| Some((id, title.to_owned(), body));
     let sections = [
         section("best", "Best design", best::section(record)),
+        printer::section(record).and_then(|printer| section("printer", "To the printer", printer)),
         section("convergence", "Convergence", convergence::section(record, PLOT)?),
         front::section(record, PLOT)?
             .and_then(|front| section("front", "Between the objectives", front)),

@@ -106,7 +106,7 @@ impl Cache {
         let path = self.path(key);
         let folder = path.parent().unwrap_or(&self.dir);
         fs::create_dir_all(folder)?;
-        files::write_own(&path, &text)
+        files::write_own(&path, text.as_bytes())
     }
 }
 

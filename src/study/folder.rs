@@ -299,16 +299,19 @@ fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
 }
 
 /// Writes a file that the user has named, and the folders to it: see [`files::write_named`].
-pub fn write_file(path: &Path, text: &str) -> Result<(), StudyError> {
+pub fn write_file(path: &Path, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), StudyError> {
     if let Some(parent) = path.parent() {
         fs::create_dir_all(parent).map_err(StudyError::io("create the folder", parent))?;
     }
-    files::write_named(path, text).map_err(StudyError::io("write", path))
+    files::write_named(path, content.as_ref()).map_err(StudyError::io("write", path))
 }
 
 /// Writes a file of a study's folder: see [`files::write_own`].
-pub fn write_own_file(path: &Path, text: &str) -> Result<(), StudyError> {
-    files::write_own(path, text).map_err(StudyError::io("write", path))
+pub fn write_own_file(
+    path: &Path,
+    content: &(impl AsRef<[u8]> + ?Sized),
+) -> Result<(), StudyError> {
+    files::write_own(path, content.as_ref()).map_err(StudyError::io("write", path))
 }
 
 /// Makes the names of new files survive a power failure; not every system can.

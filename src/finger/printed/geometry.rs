@@ -2,12 +2,11 @@
 
 use super::FingerError;
 use super::fit::Fit;
-use super::infill::{Design, NARROWEST_VOID, pitch};
+use super::infill::{Design, NARROWEST_VOID, RibLines, pitch};
 use super::outline::ring;
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
 use crate::input::printed::{Outline, PrintedFinger};
-use crate::units::{DEG, MM};
-use nalgebra::Vector2;
+use crate::units::MM;
 
 /// A finger with its ribs: everything that its mechanics and its print need. SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +19,8 @@ pub struct Geometry {
     outer: Ring,
     /// Clockwise, one for each opening between ribs.
     voids: Vec<Ring>,
+    /// Ribs with an opening on either side.
+    ribs: usize,
 }
 
 /// Corners of an opening closer than this are one, m.
@@ -39,8 +40,15 @@ impl Geometry {
         let ribbed = finger.outline.length - finger.outline.solid;
         let inside = ring(&finger.outline, finger.skin, ribbed);
         check.rings(&outer, &inside)?;
-        let voids = voids(&inside, finger, design);
-        Ok(Geometry { finger: finger.clone(), design: *design, outer, voids })
+        let gaps = gaps(&inside, finger, &RibLines::new(finger, design));
+        let neighbours = gaps.windows(2).filter(|pair| pair[1].0 == pair[0].0 + 1);
+        Ok(Geometry {
+            finger: finger.clone(),
+            design: *design,
+            outer,
+            ribs: neighbours.count(),
+            voids: gaps.into_iter().flat_map(|(_, voids)| voids).collect(),
+        })
     }
 
     /// The outer ring, counter-clockwise from the tip, and the openings, clockwise, m.
@@ -53,6 +61,21 @@ impl Geometry {
     pub fn rings_mm(&self) -> Vec<Vec<[f64; 2]>> {
         let mm = |ring: &Ring| ring.iter().map(|p| [p.x / MM, p.y / MM]).collect();
         std::iter::once(&self.outer).chain(&self.voids).map(mm).collect()
+    }
+
+    /// How many ribs it has: those with an opening on either side.
+    pub fn ribs(&self) -> usize {
+        self.ribs
+    }
+
+    /// Distance between the centre lines of its ribs, m.
+    pub fn pitch(&self) -> f64 {
+        pitch(&self.finger, &self.design)
+    }
+
+    /// Distance of the first rib from the point that the finger file counts from, m.
+    pub fn phase(&self) -> f64 {
+        self.design.phase_mm.map_or(self.finger.ribs.phase, |mm| mm * MM)
     }
 
     /// Area of the solid profile, m2.
@@ -72,27 +95,18 @@ impl Geometry {
     }
 }
 
-/// The openings that ribs leave of the inside, clockwise.
-fn voids(inside: &Ring, finger: &PrintedFinger, design: &Design) -> Vec<Ring> {
-    let (sin, cos) = (design.direction_deg * DEG).sin_cos();
-    let across = Vector2::new(cos, -sin);
-    let pitch = pitch(finger, design);
-    let phase = design.phase_mm.map_or(finger.ribs.phase, |mm| mm * MM);
-    let first = across.dot(&finger.ribs.origin.coords) + phase;
-    let places = inside.iter().map(|p| (across.dot(&p.coords) - first) / pitch);
-    let (low, high) = places.fold((f64::MAX, f64::MIN), |(low, high), n| (low.min(n), high.max(n)));
+/// The openings that ribs leave of the inside, clockwise, by the rib before them.
+fn gaps(inside: &Ring, finger: &PrintedFinger, lines: &RibLines) -> Vec<(i64, Vec<Ring>)> {
     let half = finger.ribs.thickness / 2.0;
-    let mut voids = Vec::new();
-    for n in low.floor() as i64..=high.ceil() as i64 {
-        let rib = first + n as f64 * pitch;
-        let after = HalfPlane { normal: across, offset: rib + half };
-        let before = HalfPlane { normal: -across, offset: -(rib + pitch - half) };
-        for piece in after.cut(inside) {
-            voids.extend(before.cut(&piece));
-        }
-    }
-    voids.iter_mut().for_each(|void| *void = without_repeats(void, NEAREST_CORNERS));
-    voids.retain(|void| polygon::area(void) > NARROWEST_VOID * polygon::perimeter(void) / 2.0);
-    voids.iter_mut().for_each(|void| void.reverse());
-    voids
+    let gap = |n: i64| {
+        let after = HalfPlane { normal: lines.across, offset: lines.offset(n) + half };
+        let before = HalfPlane { normal: -lines.across, offset: half - lines.offset(n + 1) };
+        let pieces = after.cut(inside).into_iter().flat_map(|piece| before.cut(&piece));
+        let mut voids: Vec<Ring> =
+            pieces.map(|piece| without_repeats(&piece, NEAREST_CORNERS)).collect();
+        voids.retain(|void| polygon::area(void) > NARROWEST_VOID * polygon::perimeter(void) / 2.0);
+        voids.iter_mut().for_each(|void| void.reverse());
+        (n, voids)
+    };
+    lines.range(inside).map(gap).filter(|(_, voids)| !voids.is_empty()).collect()
 }

@@ -41,6 +41,31 @@ impl Mesh {
     /// # Errors
     /// If rings cross, or details are so small that the mesh would be huge.
     pub fn new(outer: &Ring, holes: &[Ring], size: f64) -> Result<Mesh, MeshError> {
+        let area = 0.433 * size * size;
+        let parameters = RefinementParameters::new()
+            .with_angle_limit(AngleLimit::from_deg(SMALLEST_ANGLE_DEG))
+            .with_max_allowed_area(area)
+            .with_min_required_area(area * SMALLEST_SHARE)
+            .with_max_additional_vertices(MOST_VERTICES);
+        Mesh::fill(outer, holes, parameters)
+    }
+
+    /// Fills an outer ring less holes with triangles that have no corners but the rings'.
+    ///
+    /// # Errors
+    /// If rings cross.
+    pub fn coarsest(outer: &Ring, holes: &[Ring]) -> Result<Mesh, MeshError> {
+        let parameters = RefinementParameters::new()
+            .keep_constraint_edges()
+            .with_angle_limit(AngleLimit::from_deg(0.0));
+        Mesh::fill(outer, holes, parameters)
+    }
+
+    fn fill(
+        outer: &Ring,
+        holes: &[Ring],
+        parameters: RefinementParameters<f64>,
+    ) -> Result<Mesh, MeshError> {
         let mut sites = Vec::new();
         let mut edges = Vec::new();
         for ring in std::iter::once(outer).chain(holes) {
@@ -57,15 +82,7 @@ impl Mesh {
         let Some(mut cdt) = cdt.ok().filter(|cdt| !crossing && cdt.num_vertices() == count) else {
             return Err(MeshError::Crossing);
         };
-        let area = 0.433 * size * size;
-        let refined = cdt.refine(
-            RefinementParameters::new()
-                .exclude_outer_faces(true)
-                .with_angle_limit(AngleLimit::from_deg(SMALLEST_ANGLE_DEG))
-                .with_max_allowed_area(area)
-                .with_min_required_area(area * SMALLEST_SHARE)
-                .with_max_additional_vertices(MOST_VERTICES),
-        );
+        let refined = cdt.refine(parameters.exclude_outer_faces(true));
         if !refined.refinement_complete {
             return Err(MeshError::TooFine);
         }

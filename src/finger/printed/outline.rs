@@ -40,6 +40,11 @@ impl Outline {
         -self.corner().y / self.out_of_pad().y
     }
 
+    /// Where along the finger the arc of the back ends and the straight back begins, m.
+    pub fn arc_end(&self) -> f64 {
+        self.arc_centre().unwrap_or_default().x
+    }
+
     /// Centre of the arc, if the radius reaches from the tip to the back.
     pub(super) fn arc_centre(&self) -> Option<Point2<f64>> {
         let rise = self.width - self.tip;

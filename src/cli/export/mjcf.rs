@@ -1,34 +1,22 @@
-//! `optimize export`: the scene of a trial for other programs.
+//! `optimize export mjcf`: the scene of a trial.
 
-use super::Failure;
-use super::setup::{Setup, SetupArguments};
-use super::specimen::FingerArguments;
+use crate::cli::Failure;
+use crate::cli::setup::{Setup, SetupArguments};
+use crate::cli::specimen::FingerArguments;
 use crate::evaluation::evaluator::Specimen;
 use crate::physics::mjcf::{self, MjcfSettings};
 use crate::study::write_file;
 use crate::trial::cell;
-use clap::{Args, Subcommand};
+use clap::Args;
 use std::path::PathBuf;
 
-/// Write the scene of a trial for other programs
-#[derive(Debug, Args)]
-pub struct Arguments {
-    #[command(subcommand)]
-    format: Format,
-}
-
-#[derive(Debug, Subcommand)]
-enum Format {
-    Mjcf(MjcfArguments),
-}
-
-/// As MJCF, the model format of MuJoCo and its viewer
+/// The scene of a trial as MJCF, the model format of MuJoCo and its viewer
 ///
 /// The part stands at its pick-up place and the jaws are open. In the viewer the
 /// sliders move the robot's command and close the jaws. Needs no MuJoCo.
 #[derive(Debug, Args)]
 #[command(mut_arg("engine", |engine| engine.hide(true)))]
-struct MjcfArguments {
+pub struct Arguments {
     #[command(flatten)]
     setup: SetupArguments,
     #[command(flatten)]
@@ -40,7 +28,6 @@ struct MjcfArguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Format::Mjcf(arguments) = &arguments.format;
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
     let Specimen { task, finger, .. } = &chosen.specimen;

@@ -1,0 +1,159 @@
+//! `optimize export finger`: a finger for the printer.
+
+use crate::cli::setup::find;
+use crate::cli::{Failure, print};
+use crate::finger::export::{self, drawing, dxf, prism::Prism, sheet, slicer, stl, three_mf};
+use crate::finger::printed::geometry::Geometry;
+use crate::finger::printed::infill::Design;
+use crate::finger::printed::mechanics;
+use crate::input::printed::PrintedFinger;
+use crate::input::shipped::FINGERS;
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY};
+use crate::study::{StudyRecord, write_file};
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
+
+/// A finger for the printer: the best of a study, or of an infill
+///
+/// Both fingers of a gripper are this part. STL, 3MF, DXF and SVG have every rib of it; the
+/// settings for slicers are for its outline, which is written beside them and which the slicer
+/// fills with its own ribs.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Folder of a study: its best design
+    #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"],
+          required_unless_present = "density")]
+    dir: Option<PathBuf>,
+    /// Infill density, percent
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, requires = "direction")]
+    density: Option<f64>,
+    /// Infill direction, degrees
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "density")]
+    direction: Option<f64>,
+    /// Finger: finray9, or the path of a finger file
+    #[arg(long, value_name = "NAME", default_value = "finray9")]
+    finger: String,
+    /// Where the first rib lies, mm [default: the finger file's]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    phase_mm: Option<f64>,
+    /// What to write
+    #[arg(long, value_enum)]
+    format: Format,
+    /// File to write
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Closed surface, binary, mm
+    Stl,
+    /// Closed surface with its unit
+    #[value(name = "3mf")]
+    ThreeMf,
+    /// Profile, true to size
+    Svg,
+    /// Profile as closed polylines, mm
+    Dxf,
+    /// One page to print by: drawing, dimensions, material; FILE ends in .svg or .html
+    Sheet,
+    /// Profile of settings to import in Cura (.curaprofile), with the outline beside it
+    Cura,
+    /// Configuration of PrusaSlicer (.ini), with the outline beside it
+    Prusaslicer,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let geometry = geometry(arguments)?;
+    let (out, title) = (&arguments.out, export::title(&geometry));
+    match arguments.format {
+        Format::Stl => write_file(out, &stl::write(&finger(&geometry)?, &title))?,
+        Format::ThreeMf => {
+            let bytes = three_mf::write(&finger(&geometry)?, &title)
+                .map_err(|error| Failure::running(format!("{}: {error}", out.display())))?;
+            write_file(out, &bytes)?;
+        }
+        Format::Svg => write_file(out, &drawing::svg(&geometry, &title))?,
+        Format::Dxf => write_file(out, &dxf::write(&geometry, &title))?,
+        Format::Sheet => write_file(out, &page(&geometry, out)?)?,
+        Format::Cura => return settings(out, &geometry, &slicer::cura(&geometry)),
+        Format::Prusaslicer => return settings(out, &geometry, &slicer::prusaslicer(&geometry)),
+    }
+    print(&format!("wrote {title}: {}\n", out.display()))
+}
+
+/// The finger that is asked for.
+fn geometry(arguments: &Arguments) -> Result<Geometry, Failure> {
+    let design = match &arguments.dir {
+        Some(dir) => best(dir)?,
+        None => [arguments.density, arguments.direction],
+    };
+    let [Some(density_percent), Some(direction_deg)] = design else {
+        return Err(Failure::usage("give the folder of a study, or --density and --direction"));
+    };
+    let source = find("finger", FINGERS, &arguments.finger)?;
+    let file = PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let design = Design { density_percent, direction_deg, phase_mm: arguments.phase_mm };
+    Geometry::new(&file, &design).map_err(Failure::input)
+}
+
+/// Density and direction of the design that a study recommends.
+fn best(dir: &Path) -> Result<[Option<f64>; 2], Failure> {
+    let record = StudyRecord::load(dir)?;
+    let Some(best) = record.recommended() else {
+        return Err(Failure::usage(format!(
+            "{}: the study recommends no design; give --density and --direction",
+            dir.display()
+        )));
+    };
+    Ok([DENSITY_KEY, DIRECTION_KEY].map(|key| best.design.get(key)))
+}
+
+fn finger(geometry: &Geometry) -> Result<Prism, Failure> {
+    closed(Prism::finger(geometry), geometry)
+}
+
+fn closed(
+    prism: Result<Prism, export::prism::PrismError>,
+    geometry: &Geometry,
+) -> Result<Prism, Failure> {
+    prism.map_err(|error| Failure::usage(format!("{}: {error}", geometry.finger.file)))
+}
+
+fn page(geometry: &Geometry, out: &Path) -> Result<String, Failure> {
+    let ending = out.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
+    let write = match ending.as_deref() {
+        Some("svg") => sheet::svg,
+        Some("html" | "htm") => sheet::html,
+        _ => {
+            let problem = format!("--out {}: a sheet's file ends in .svg or .html", out.display());
+            return Err(Failure::usage(problem));
+        }
+    };
+    let stiffness = mechanics::compute(geometry).map_err(Failure::input)?;
+    Ok(write(geometry, &stiffness))
+}
+
+/// Writes settings for a slicer, and beside them what they are for.
+fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<(), Failure> {
+    let title = export::title(geometry);
+    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    let beside = |part: &str| out.with_file_name(format!("{stem}-{part}.stl"));
+    let [outline, base] = ["outline", "base"].map(beside);
+    let [outline_part, base_part] = [Prism::outline(geometry), Prism::base(geometry)];
+    write_file(out, text)?;
+    write_file(
+        &outline,
+        &stl::write(&closed(outline_part, geometry)?, &format!("{title}, outline")),
+    )?;
+    write_file(&base, &stl::write(&closed(base_part, geometry)?, &format!("{title}, solid base")))?;
+    print(&format!(
+        "wrote settings for {title}: {}\n\
+         to be sliced with them: {}\n\
+         to be loaded as a modifier with 100 % infill: {}\n",
+        out.display(),
+        outline.display(),
+        base.display()
+    ))
+}

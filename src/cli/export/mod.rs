@@ -1,0 +1,32 @@
+//! `optimize export`: what other programs and printers read.
+
+mod finger;
+mod mjcf;
+
+use super::Failure;
+use clap::{Args, Subcommand};
+
+/// Write a scene for MuJoCo, or a finger for the printer
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    #[command(after_help = "Example: optimize export mjcf --task usb --density 20 \
+                            --direction 10 --out scene.xml")]
+    Mjcf(mjcf::Arguments),
+    #[command(after_help = "Example: optimize export finger results/rj45-gp-seed0 --format stl \
+                            --out finger.stl")]
+    Finger(finger::Arguments),
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.what {
+        What::Mjcf(arguments) => mjcf::run(arguments),
+        What::Finger(arguments) => finger::run(arguments),
+    }
+}

@@ -1,0 +1,53 @@
+//! The recommended finger for the printer: two files beside the page, and their links in it.
+
+use crate::finger::export::prism::Prism;
+use crate::finger::export::{sheet, stl, title};
+use crate::finger::printed::geometry::Geometry;
+use crate::finger::printed::infill::Design;
+use crate::finger::printed::mechanics;
+use crate::input::printed::PrintedFinger;
+use crate::input::shipped::FINGERS;
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY};
+use crate::study::StudyRecord;
+use maud::{Markup, html};
+
+const SURFACE: &str = "finger.stl";
+const SHEET: &str = "finger-sheet.html";
+
+/// The files, by their names; none if nothing is recommended or the shipped finger cannot have
+/// that infill.
+pub fn files(record: &StudyRecord) -> Vec<(&'static str, Vec<u8>)> {
+    let Some(geometry) = recommended(record) else { return Vec::new() };
+    let surface = Prism::finger(&geometry).ok().map(|prism| stl::write(&prism, &title(&geometry)));
+    let stiffness = mechanics::compute(&geometry).ok();
+    let sheet = stiffness.map(|stiffness| sheet::html(&geometry, &stiffness).into_bytes());
+    [(SURFACE, surface), (SHEET, sheet)]
+        .into_iter()
+        .filter_map(|(name, content)| Some((name, content?)))
+        .collect()
+}
+
+/// The section; `None` if there are no files.
+pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
+    let geometry = recommended(record)?;
+    Some(html! {
+        p {
+            a href=(SURFACE) { (SURFACE) } " is " (title(&geometry)) ", with each of its "
+            (geometry.ribs()) " ribs; both fingers of a gripper are this part. "
+            a href=(SHEET) { (SHEET) } " says how to print it and how to check the print. "
+            "For other programs and slicers: " code { "optimize export finger" } "."
+        }
+    })
+}
+
+fn recommended(record: &StudyRecord) -> Option<Geometry> {
+    let best = record.recommended()?;
+    let (file, value) = (FINGERS.first()?, |key| best.design.get(key));
+    let design = Design {
+        density_percent: value(DENSITY_KEY)?,
+        direction_deg: value(DIRECTION_KEY)?,
+        phase_mm: None,
+    };
+    let finger = PrintedFinger::parse(file.text, file.file).ok()?;
+    Geometry::new(&finger, &design).ok()
+}

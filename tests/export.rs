@@ -1,0 +1,197 @@
+//! A finger for the printer: closed solids of the right volume, files that other programs read,
+//! and as many ribs in PrusaSlicer's layers as the design has.
+
+mod common;
+
+use common::{Studies, optimize, read};
+use finger_opt::finger::export::prism::Prism;
+use finger_opt::finger::export::{slicer, stl, three_mf};
+use finger_opt::finger::printed::geometry::Geometry;
+use finger_opt::finger::printed::infill::Design;
+use finger_opt::input::printed::PrintedFinger;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
+
+/// The shipped finger with an infill.
+fn finray9(density_percent: f64, direction_deg: f64) -> Geometry {
+    let text = include_str!("../fingers/finray9.toml");
+    let finger = PrintedFinger::parse(text, "finray9.toml").expect("the shipped finger");
+    let design = Design { density_percent, direction_deg, phase_mm: None };
+    Geometry::new(&finger, &design).expect("a finger that can be printed")
+}
+
+/// Corners of the triangles of a binary STL file.
+fn triangles(bytes: &[u8]) -> Vec<[[f32; 3]; 3]> {
+    let count = u32::from_le_bytes(bytes[80..84].try_into().expect("4 bytes")) as usize;
+    assert_eq!(bytes.len(), 84 + 50 * count);
+    let number = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().expect("4 bytes"));
+    let corner = |at: usize| [0, 4, 8].map(|axis| number(at + axis));
+    (0..count).map(|i| [12, 24, 36].map(|at| corner(84 + 50 * i + at))).collect()
+}
+
+/// Read back from the file by code that shares nothing with what wrote it.
+#[test]
+fn a_solid_is_closed_and_has_area_times_depth() {
+    for (density, direction) in [(10.0, 0.0), (18.0, 20.0), (30.0, 40.0), (25.0, -30.0)] {
+        let geometry = finray9(density, direction);
+        let triangles = triangles(&stl::write(&Prism::finger(&geometry).unwrap(), "test"));
+        let mut edges: BTreeMap<[[u32; 3]; 2], u32> = BTreeMap::new();
+        let mut volume = 0.0;
+        for [a, b, c] in triangles.iter().map(|t| t.map(|p| p.map(f64::from))) {
+            volume += a[0] * (b[1] * c[2] - b[2] * c[1]) / 6.0
+                + a[1] * (b[2] * c[0] - b[0] * c[2]) / 6.0
+                + a[2] * (b[0] * c[1] - b[1] * c[0]) / 6.0;
+        }
+        for [a, b, c] in triangles.iter().map(|t| t.map(|p| p.map(f32::to_bits))) {
+            for edge in [[a, b], [b, c], [c, a]] {
+                *edges.entry(edge).or_default() += 1;
+            }
+        }
+        for ([a, b], count) in &edges {
+            assert_eq!((*count, edges.get(&[*b, *a])), (1, Some(&1)), "{density}, {direction}");
+        }
+        let expected = geometry.area() * 0.012 * 1e9;
+        assert!((volume / expected - 1.0).abs() < 1e-3, "{volume} for {expected} mm3");
+    }
+}
+
+#[test]
+fn a_3mf_is_a_zip_of_a_model_in_millimetres() {
+    let prism = Prism::finger(&finray9(18.0, 20.0)).unwrap();
+    let bytes = three_mf::write(&prism, "a < b").unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.starts_with("PK") && text.contains("[Content_Types].xml"));
+    let model = &text[text.find("<model").unwrap()..text.find("</model>").unwrap() + 8];
+    let model = roxmltree::Document::parse(model).unwrap();
+    let count = |name| model.descendants().filter(|node| node.has_tag_name(name)).count();
+    let core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+    assert_eq!(model.root_element().attribute("unit"), Some("millimeter"));
+    assert_eq!(count((core, "vertex")), prism.corners.len());
+    assert_eq!(count((core, "triangle")), prism.triangles.len());
+}
+
+#[test]
+fn every_format_of_a_studys_best_finger_is_written() {
+    let studies = Studies::new();
+    studies.study("usb", 4, &["--task", "usb"]).succeeds();
+    let (study, folder) = (studies.dir("usb"), studies.dir("prints"));
+    let export = |format: &str, file: &str| {
+        let (study, file) = (study.to_str().unwrap(), folder.join(file));
+        let out = file.to_str().unwrap().to_owned();
+        optimize(&["export", "finger", study, "--format", format, "--out", &out])
+    };
+    for (format, file, words) in [
+        ("svg", "f.svg", "width=\"52.8mm\""),
+        ("dxf", "f.dxf", "POLYLINE"),
+        ("sheet", "sheet.svg", "0°"),
+        ("sheet", "sheet.html", "PETG"),
+        ("cura", "f.curaprofile", "infill_pattern = lines"),
+        ("prusaslicer", "f.ini", "fill_pattern = alignedrectilinear"),
+    ] {
+        export(format, file).succeeds();
+        assert!(read(&folder.join(file)).contains(words), "{file}");
+    }
+    for (format, file) in [("stl", "f.stl"), ("3mf", "f.3mf")] {
+        export(format, file).succeeds();
+        assert!(folder.join(file).is_file());
+    }
+    assert!(folder.join("f-outline.stl").is_file() && folder.join("f-base.stl").is_file());
+    for sheet in ["sheet.svg", "sheet.html"] {
+        let text = read(&folder.join(sheet));
+        let svg = &text[text.find("<svg").unwrap()..text.find("</svg>").unwrap() + 6];
+        roxmltree::Document::parse(svg).unwrap();
+    }
+    export("sheet", "sheet.pdf").fails(2, &["sheet.pdf", ".svg or .html"]);
+}
+
+#[test]
+fn what_cannot_be_exported_is_told() {
+    let export = ["export", "finger", "--format", "stl", "--out", "none.stl"];
+    optimize(&export).fails(2, &["DIR"]);
+    optimize(&[&export[..], &["--density", "20"]].concat()).fails(2, &["--direction"]);
+    let dense = [&export[..], &["--density", "95", "--direction", "0"]].concat();
+    optimize(&dense).fails(2, &["finray9.toml", "ribs.thickness_mm", "at most"]);
+    optimize(&[&export[..], &["nowhere"]].concat()).fails(2, &["nowhere"]);
+    assert!(!Path::new("none.stl").exists());
+}
+
+/// A straight extrusion: from x, y to x, y, mm.
+type Line = [f64; 4];
+
+/// What PrusaSlicer extrudes in the middle layer of a file.
+fn middle_layer(folder: &Path, file: &str, more: &[&str]) -> Vec<Line> {
+    let gcode = folder.join("sliced.gcode");
+    let mut slicer = Command::new("prusa-slicer");
+    slicer.arg("--export-gcode").arg(folder.join(file)).arg("--output").arg(&gcode);
+    let ran = slicer.args(["--layer-height", "0.2", "--skirts", "0"]).args(more).output().unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let text = read(&gcode);
+    let layers: Vec<&str> = text.split(";LAYER_CHANGE").skip(1).collect();
+    let (mut at, mut lines) = ([0.0, 0.0], Vec::new());
+    for words in layers[layers.len() / 2].lines().filter(|line| line.starts_with("G1 ")) {
+        let value = |axis: char| {
+            let word = words.split_whitespace().find(|word| word.starts_with(axis))?;
+            word[1..].parse::<f64>().ok()
+        };
+        let to = [value('X').unwrap_or(at[0]), value('Y').unwrap_or(at[1])];
+        if to != at && value('E').is_some() {
+            lines.push([at[0], at[1], to[0], to[1]]);
+        }
+        at = to;
+    }
+    lines
+}
+
+/// Where lines of a direction lie, across them, mm: one number for all within 0.6 mm. Only lines
+/// in the ribbed part count.
+fn ribs(lines: &[Line], direction_deg: f64) -> Vec<f64> {
+    let (sin, cos) = direction_deg.to_radians().sin_cos();
+    let start = lines.iter().map(|line| line[0].min(line[2])).fold(f64::MAX, f64::min);
+    let across = lines.iter().filter_map(|&[x, y, to_x, to_y]| {
+        let length = (to_x - x).hypot(to_y - y);
+        let turned = ((to_x - x) * cos - (to_y - y) * sin).abs() / length;
+        let ribbed = (x + to_x) / 2.0 - start < 52.8 - 10.75 - 0.5;
+        (length > 0.3 && turned < 0.03 && ribbed).then_some(x * cos - y * sin)
+    });
+    let mut across: Vec<f64> = across.collect();
+    across.sort_by(f64::total_cmp);
+    across.dedup_by(|next, before| *next - *before < 0.6);
+    across
+}
+
+fn pitches(ribs: &[f64]) -> Vec<f64> {
+    ribs.windows(2).map(|pair| pair[1] - pair[0]).collect()
+}
+
+#[test]
+fn prusaslicer_prints_the_ribs_of_the_design() {
+    if Command::new("prusa-slicer").arg("--help").output().is_err() {
+        eprintln!("left out: slicing, for want of prusa-slicer (scripts/tools.sh prusa-slicer)");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+    // The best designs of rj45, usb and the keys, and the densest.
+    for (density, direction) in [(18.0, 20.0), (10.0, 7.0), (10.0, 0.0), (30.0, 40.0)] {
+        let geometry = finray9(density, direction);
+        write("finger.stl", &stl::write(&Prism::finger(&geometry).unwrap(), ""));
+        let found = ribs(&middle_layer(folder.path(), "finger.stl", &[]), direction);
+        assert_eq!(found.len(), geometry.ribs(), "{density} %, {direction}°: {found:?}");
+        for pitch in pitches(&found) {
+            assert!((pitch - geometry.pitch() * 1e3).abs() < 0.02, "{pitch} at {density} %");
+        }
+    }
+    // The outline with the slicer's own ribs: the design's pitch and direction.
+    let geometry = finray9(18.0, 20.0);
+    write("outline.stl", &stl::write(&Prism::outline(&geometry).unwrap(), ""));
+    write("settings.ini", slicer::prusaslicer(&geometry).as_bytes());
+    let settings = folder.path().join("settings.ini");
+    let lines = middle_layer(folder.path(), "outline.stl", &["--load", settings.to_str().unwrap()]);
+    let found = ribs(&lines, 20.0);
+    // Lines that end in the base are left out, and the first lies where the slicer likes.
+    assert!(found.len() + 4 >= geometry.ribs(), "{found:?}");
+    for pitch in pitches(&found) {
+        assert!((pitch - geometry.pitch() * 1e3).abs() < 0.02, "{pitch}");
+    }
+}

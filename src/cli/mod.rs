@@ -11,6 +11,7 @@ mod export;
 mod failure;
 mod finger;
 mod manual;
+mod measure;
 mod progress;
 mod recommended;
 mod repeat;
@@ -119,6 +120,8 @@ enum Command {
     CrossCheck(cross_check::Arguments),
     #[command(after_help = "Example: optimize validate --task ket8 --strides")]
     Validate(validate::Arguments),
+    #[command(after_help = "Example: optimize measure check published")]
+    Measure(measure::Arguments),
     #[command(after_help = "Example: optimize bench --repeats 8")]
     Bench(bench::Arguments),
     #[command(after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 \
@@ -187,6 +190,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::CrossCheck(arguments)) => cross_check::run(&arguments),
         Some(Command::Validate(arguments)) => validate::run(&arguments),
+        Some(Command::Measure(arguments)) => measure::run(&arguments),
         Some(Command::Bench(arguments)) => bench::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::AskTell(arguments)) => ask_tell::run(&arguments),

@@ -1,6 +1,7 @@
 //! Input files: how they are read, and what may be wrong with them.
 
 pub mod arm;
+pub mod experiments;
 pub mod finger;
 pub mod printed;
 pub mod published;

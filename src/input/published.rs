@@ -1,11 +1,13 @@
 //! The published ranges: simulation and bench, 11 designs, four tasks.
 
+use crate::input::experiments::{self, Experiment};
+use crate::input::shipped::MEASUREMENTS;
+use crate::input::space::Design;
 use crate::input::stiffness::{Measurement, SHIPPED_CSV, SHIPPED_FILE, parse};
 use crate::outcome::FailureClass;
 use serde::Deserialize;
 
 const SIMULATION: &str = include_str!("../../data/published_simulation.csv");
-const BENCH: &str = include_str!("../../data/published_bench.csv");
 
 /// Where a published range comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,12 +46,34 @@ impl Published {
 
 /// The published results of a task; empty for a task that is not among them.
 pub fn of_task(task: &str, origin: Origin) -> Vec<Published> {
-    let text = match origin {
-        Origin::Simulation => SIMULATION,
-        Origin::Bench => BENCH,
+    match origin {
+        Origin::Simulation => {
+            let rows = csv::Reader::from_reader(SIMULATION.as_bytes()).into_deserialize();
+            rows.flatten().filter(|row: &Published| row.task == task).collect()
+        }
+        Origin::Bench => bench().iter().filter(|row| row.task == task).filter_map(row).collect(),
+    }
+}
+
+/// The published experiments.
+pub fn bench() -> Vec<Experiment> {
+    let read = |file: &crate::input::shipped::Shipped| experiments::parse(file.text, file.file);
+    MEASUREMENTS.iter().flat_map(read).flatten().collect()
+}
+
+/// An experiment with the number of its design.
+fn row(experiment: &Experiment) -> Option<Published> {
+    let infill = |design: &Measurement| {
+        Design::infill(design.density_percent, design.direction_deg) == experiment.design
     };
-    let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize::<Published>();
-    rows.flatten().filter(|row| row.task == task).collect()
+    let [negative, positive] = experiment.failures;
+    Some(Published {
+        task: experiment.task.clone(),
+        design: designs().into_iter().find(infill)?.design,
+        failure_negative_offset: negative,
+        failure_positive_offset: positive,
+        tolerable_range_mm: experiment.range_mm(),
+    })
 }
 
 /// The designs the publication measured.

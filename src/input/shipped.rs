@@ -55,6 +55,9 @@ pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typic
 /// Measured stiffness of printed fingers.
 pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffness.csv" };
 
+/// Measurements on a bench.
+pub const MEASUREMENTS: &[Shipped] = shipped! { "published": "data/published_bench.csv" };
+
 /// A text and what to call it in messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Source {
@@ -124,7 +127,7 @@ pub fn resolve(
 }
 
 /// The name that differs least from `name`, if less than half of it differs.
-pub fn nearest(name: &str, names: &[&'static str]) -> Option<&'static str> {
+pub fn nearest<'a>(name: &str, names: &[&'a str]) -> Option<&'a str> {
     let distance = |other: &&&str| levenshtein(name, other);
     let best = names.iter().min_by_key(distance)?;
     (2 * levenshtein(name, best) <= name.chars().count()).then_some(*best)

@@ -1,0 +1,147 @@
+//! `optimize measure add`.
+
+use super::task_name;
+use crate::cli::{Failure, print};
+use crate::input::experiments::{COLUMNS, Column, NOT_MEASURABLE, appended, parse};
+use crate::input::shipped::MEASUREMENTS;
+use crate::study::write_file;
+use clap::Args;
+use std::io::{self, BufRead, Write};
+use std::path::Path;
+
+/// Add a line to a measurement file, which need not exist; without flags it asks for each value
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// The file
+    #[arg(value_name = "FILE", default_value = "measurements.csv")]
+    file: String,
+    /// Task: ket8, ket12, rj45, usb, or the path of a task file
+    #[arg(long, value_name = "NAME")]
+    task: Option<String>,
+    /// Infill density, percent
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
+    density: Option<String>,
+    /// Infill direction, degrees
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    direction: Option<String>,
+    /// Most negative start that inserted, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    negative_mm: Option<String>,
+    /// Most positive start that inserted, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    positive_mm: Option<String>,
+    /// Width of the window, mm
+    #[arg(
+        long,
+        value_name = "MM",
+        allow_negative_numbers = true,
+        conflicts_with = "not_measurable"
+    )]
+    range_mm: Option<String>,
+    /// The finger was tried, but no range could be measured
+    #[arg(long)]
+    not_measurable: bool,
+    /// Failure class below the window, 1 to 4
+    #[arg(long, value_name = "CLASS")]
+    failure_negative: Option<String>,
+    /// Failure class above the window, 1 to 4
+    #[arg(long, value_name = "CLASS")]
+    failure_positive: Option<String>,
+    /// Measurements that the values are the mean of
+    #[arg(long, value_name = "N")]
+    repeats: Option<String>,
+    /// Largest contact force, N
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    peak_force_n: Option<String>,
+    /// Day, YYYY-MM-DD
+    #[arg(long, value_name = "DAY")]
+    date: Option<String>,
+    /// Anything
+    #[arg(long, value_name = "TEXT")]
+    note: Option<String>,
+    /// A further design parameter, as in spaces/codesign.toml; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    set: Vec<(String, String)>,
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if key.starts_with("task.") || key.starts_with("finger.") => {
+            Ok((key.to_owned(), value.to_owned()))
+        }
+        _ => Err("a setting is KEY=NUMBER, as in task.strategy.tilt_deg=8".to_owned()),
+    }
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let file = &arguments.file;
+    if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
+        return Err(Failure::usage(format!("`{file}` is shipped; give a file of your own")));
+    }
+    let path = Path::new(file);
+    let text = match std::fs::read_to_string(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
+        read => read.map_err(|error| Failure::usage(format!("{file}: cannot read it: {error}")))?,
+    };
+    parse(&text, file).map_err(Failure::input)?;
+    let mut cells = arguments.cells();
+    if cells.is_empty() {
+        cells = asked(&mut io::stdin().lock())?;
+    }
+    if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == Column::Task) {
+        *name = task_name(name)?;
+    }
+    let new = appended(&text, &cells).map_err(Failure::input)?;
+    let found = parse(&new, file).map_err(Failure::input)?;
+    write_file(path, &new)?;
+    print(&format!("{file}: {} lines\n", found.len()))
+}
+
+impl Arguments {
+    /// The columns that were given.
+    fn cells(&self) -> Vec<(Column, String)> {
+        let range = self.not_measurable.then(|| NOT_MEASURABLE.to_owned());
+        let range = range.or_else(|| self.range_mm.clone());
+        let given = [
+            (Column::Task, &self.task),
+            (Column::Density, &self.density),
+            (Column::Direction, &self.direction),
+            (Column::Negative, &self.negative_mm),
+            (Column::Positive, &self.positive_mm),
+            (Column::Range, &range),
+            (Column::FailureNegative, &self.failure_negative),
+            (Column::FailurePositive, &self.failure_positive),
+            (Column::Repeats, &self.repeats),
+            (Column::PeakForce, &self.peak_force_n),
+            (Column::Date, &self.date),
+            (Column::Note, &self.note),
+        ];
+        let given = given.into_iter().filter_map(|(column, value)| Some((column, value.clone()?)));
+        let set = self.set.iter().map(|(key, value)| (Column::Set(key.clone()), value.clone()));
+        given.chain(set).collect()
+    }
+}
+
+/// Asks for each column; an empty answer is not known, and the end of the input ends it.
+fn asked(answers: &mut impl BufRead) -> Result<Vec<(Column, String)>, Failure> {
+    let failed = |error: io::Error| Failure::running(format!("cannot ask: {error}"));
+    let mut cells = Vec::new();
+    eprintln!("an empty answer is: not known; `{NOT_MEASURABLE}` may stand as range_mm");
+    for (name, column) in COLUMNS {
+        eprint!("{name}: ");
+        io::stderr().flush().map_err(failed)?;
+        let mut answer = String::new();
+        if answers.read_line(&mut answer).map_err(failed)? == 0 {
+            break;
+        }
+        let answer = answer.trim();
+        if !answer.is_empty() {
+            cells.push((column, answer.to_owned()));
+        }
+    }
+    if cells.is_empty() {
+        return Err(Failure::usage("nothing was given; see `optimize measure add --help`"));
+    }
+    Ok(cells)
+}

@@ -1,0 +1,75 @@
+//! `optimize measure check`.
+
+use super::{read, task_name};
+use crate::cli::{Failure, print, print_json};
+use crate::input::experiments::{Experiment, Extent};
+use clap::Args;
+use serde_json::json;
+use std::collections::BTreeMap;
+
+/// Check a measurement file: units that look wrong, windows without the start, lines given
+/// twice, unknown tasks
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// The file; `published` is the one shipped
+    #[arg(value_name = "FILE")]
+    file: String,
+    /// A task of your own that its lines name; may be given several times
+    #[arg(long, value_name = "FILE.toml")]
+    task: Vec<String>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// How much is known of one task.
+#[derive(Debug, Default)]
+struct Known {
+    lines: usize,
+    ranges: usize,
+    bounds: usize,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let own = arguments.task.iter().map(|name| task_name(name)).collect::<Result<Vec<_>, _>>()?;
+    let own: Vec<&str> = own.iter().map(String::as_str).collect();
+    let found = read(&arguments.file, &own)?;
+    let mut tasks: BTreeMap<&str, Known> = BTreeMap::new();
+    for line in &found {
+        let known = tasks.entry(&line.task).or_default();
+        known.lines += 1;
+        match line.extent() {
+            Extent::Range(_) => known.ranges += 1,
+            Extent::AtLeast(_) => known.bounds += 1,
+            Extent::Unknown => (),
+        }
+    }
+    if arguments.json {
+        return print_json(&json!({
+            "file": arguments.file,
+            "lines": found.len(),
+            "tasks": tasks.iter().map(|(task, known)| json!({
+                "task": task,
+                "lines": known.lines,
+                "ranges": known.ranges,
+                "bounds": known.bounds,
+                "repeats": repeats(&found, task),
+            })).collect::<Vec<_>>(),
+        }));
+    }
+    let line = |(task, known): (&&str, &Known)| {
+        let rest = known.lines - known.ranges - known.bounds;
+        format!(
+            "{task:<8} {:>3} ranges, {:>3} ranges known from below, {rest:>3} not measurable\n",
+            known.ranges, known.bounds
+        )
+    };
+    let lines: String = tasks.iter().map(line).collect();
+    print(&format!("{lines}{}: {} lines, nothing looks wrong\n", arguments.file, found.len()))
+}
+
+/// Insertion windows measured, over all lines of a task.
+fn repeats(found: &[Experiment], task: &str) -> u32 {
+    found.iter().filter(|line| line.task == task).map(|line| line.repeats).sum()
+}

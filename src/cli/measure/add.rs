@@ -1,12 +1,12 @@
 //! `optimize measure add`.
 
 use super::task_name;
-use crate::cli::{Failure, print};
+use crate::cli::{Failure, print, say};
 use crate::input::experiments::{COLUMNS, Column, NOT_MEASURABLE, appended, parse};
 use crate::input::shipped::MEASUREMENTS;
 use crate::study::write_file;
 use clap::Args;
-use std::io::{self, BufRead, Write};
+use std::io::{self, BufRead};
 use std::path::Path;
 
 /// Add a line to a measurement file, which need not exist; without flags it asks for each value
@@ -127,10 +127,9 @@ impl Arguments {
 fn asked(answers: &mut impl BufRead) -> Result<Vec<(Column, String)>, Failure> {
     let failed = |error: io::Error| Failure::running(format!("cannot ask: {error}"));
     let mut cells = Vec::new();
-    eprintln!("an empty answer is: not known; `{NOT_MEASURABLE}` may stand as range_mm");
+    say(&format!("an empty answer is: not known; `{NOT_MEASURABLE}` may stand as range_mm"));
     for (name, column) in COLUMNS {
-        eprint!("{name}: ");
-        io::stderr().flush().map_err(failed)?;
+        say(name);
         let mut answer = String::new();
         if answers.read_line(&mut answer).map_err(failed)? == 0 {
             break;

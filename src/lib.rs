@@ -4,8 +4,8 @@
 //! it, and `tests/architecture.rs` holds every import to this order:
 //!
 //! ```text
-//! input -> finger -> surrogate -> physics -> trial -> evaluation -> optimizer
-//!       -> study -> verify -> report -> cli
+//! input -> finger -> surrogate -> physics -> trial -> connector
+//!       -> evaluation -> optimizer -> study -> verify -> report -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -34,6 +34,8 @@ pub mod surrogate;
 pub mod physics;
 
 pub mod trial;
+
+pub mod connector;
 
 pub mod evaluation;
 

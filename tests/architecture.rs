@@ -16,6 +16,7 @@ const FLOW: [&str; 16] = [
     "surrogate",
     "physics",
     "trial",
+    "connector",
     "evaluation",
     "optimizer",
     "study",

@@ -23,6 +23,7 @@ mod specimen;
 mod stiffness;
 mod study;
 mod summary;
+mod task;
 mod tasks;
 mod terminal;
 mod trial;
@@ -133,8 +134,13 @@ enum Command {
     )]
     AskTell(ask_tell::Arguments),
     /// List tasks, spaces, robots and uncertainties
-    #[command(visible_alias = "task", after_help = "Example: optimize tasks --json")]
+    #[command(after_help = "Example: optimize tasks --json")]
     Tasks(tasks::Arguments),
+    #[command(
+        after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 \
+                            --body 12x6.5x20"
+    )]
+    Task(task::Arguments),
     /// Print a completion script for a shell
     #[command(after_help = "Example: optimize completions bash > optimize.bash")]
     Completions(manual::CompletionArguments),
@@ -195,6 +201,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::AskTell(arguments)) => ask_tell::run(&arguments),
         Some(Command::Tasks(arguments)) => tasks::run(&arguments),
+        Some(Command::Task(arguments)) => task::run(&arguments),
         Some(Command::Completions(arguments)) => manual::completions(&arguments),
         Some(Command::Man) => manual::page(),
     }

@@ -20,6 +20,11 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    list(arguments.json)
+}
+
+/// Prints what is shipped.
+pub fn list(json: bool) -> Result<(), Failure> {
     let mut text = String::new();
     let mut lists = serde_json::Map::new();
     for (kind, entries) in lists_of_shipped()? {
@@ -31,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         lists.insert(kind.to_owned(), list.into());
     }
-    if arguments.json { print_json(&lists.into()) } else { print(&text) }
+    if json { print_json(&lists.into()) } else { print(&text) }
 }
 
 type Entries = Vec<(&'static str, String)>;

@@ -8,7 +8,7 @@ pub mod mjcf;
 #[cfg(feature = "mujoco")]
 pub mod mujoco;
 pub mod rapier;
-mod shapes;
+pub(crate) mod shapes;
 
 /// Builds worlds from scenes.
 pub trait Engine: Send + Sync {

@@ -8,7 +8,7 @@ use parry::shape::SharedShape;
 use rapier3d_f64::parry;
 
 /// The shape, and the turn from parry's frame of it to ours.
-pub(super) fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
+pub(crate) fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
     match shape {
         Shape::Box { half } => {
             let half = half * scale;
@@ -48,17 +48,17 @@ pub(super) fn bounds(shape: &Shape) -> (Vector3<f64>, Vector3<f64>) {
 }
 
 /// To parry's vector, no change of unit.
-pub(super) fn vector(v: &Vector3<f64>) -> pm::Vector {
+pub(crate) fn vector(v: &Vector3<f64>) -> pm::Vector {
     pm::Vector::new(v.x, v.y, v.z)
 }
 
 /// From parry's vector, no change of unit.
-pub(super) fn from_vector(v: pm::Vector) -> Vector3<f64> {
+pub(crate) fn from_vector(v: pm::Vector) -> Vector3<f64> {
     Vector3::new(v.x, v.y, v.z)
 }
 
 /// A pose in metres to parry's.
-pub(super) fn pose(pose: &Pose, scale: f64) -> pm::Pose {
+pub(crate) fn pose(pose: &Pose, scale: f64) -> pm::Pose {
     let q = pose.rotation.coords;
     let rotation = pm::Rotation::from_xyzw(q.x, q.y, q.z, q.w);
     pm::Pose::from_parts(vector(&(pose.translation.vector * scale)), rotation)

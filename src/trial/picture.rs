@@ -97,7 +97,7 @@ fn polygon(out: &mut String, geom: &Geom, body: &Pose, axis: usize, fill: &str) 
 }
 
 /// Convex hull of points in the plane (Andrew's monotone chain).
-fn convex_outline(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
+pub(crate) fn convex_outline(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let turn = |a: &Point2<f64>, b: &Point2<f64>, c: &Point2<f64>| (b - a).perp(&(c - b));
     let half = |points: &mut dyn Iterator<Item = Point2<f64>>| {
@@ -118,7 +118,7 @@ fn convex_outline(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
     lower
 }
 
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

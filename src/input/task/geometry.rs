@@ -126,6 +126,11 @@ fn other_axes(axis: usize) -> (usize, usize) {
     }
 }
 
+/// Volume of a solid, m3.
+pub fn volume(solid: &Solid) -> f64 {
+    solid.moments().0
+}
+
 fn prism_moments(
     axis: usize,
     outline: &[[f64; 2]],

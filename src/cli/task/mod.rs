@@ -1,0 +1,62 @@
+//! `optimize task`: one's own connector.
+
+mod check;
+mod new;
+mod show;
+
+use super::{Failure, tasks};
+use crate::finger::Finger;
+use crate::input::shipped::STIFFNESS;
+use crate::input::stiffness;
+use crate::verify::compare::three;
+use clap::{Args, Subcommand};
+
+/// Make, show and check a task; alone it lists what is shipped
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Print the list as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Write a commented task file from a few dimensions, or like another task
+    #[command(
+        after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 \
+                            --body 12x6.5x20"
+    )]
+    New(new::Arguments),
+    /// Print a shipped task file
+    #[command(after_help = "Example: optimize task show usb > mine.toml")]
+    Show(show::Arguments),
+    /// Look for what cannot work in a task file, draw it and try its nominal start
+    ///
+    /// Exit code 0 if nothing is wrong and the plug goes in, 2 otherwise.
+    #[command(after_help = "Example: optimize task check usb-c.toml --svg usb-c.svg")]
+    Check(check::Arguments),
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.command {
+        None => tasks::list(arguments.json),
+        Some(Command::New(arguments)) => new::run(arguments),
+        Some(Command::Show(arguments)) => show::run(arguments),
+        Some(Command::Check(arguments)) => check::run(arguments),
+    }
+}
+
+/// The shipped measured finger of middling compliance stiffness.
+fn middling() -> Result<Finger, Failure> {
+    let [file] = STIFFNESS else { return Err(Failure::running("no measured fingers are shipped")) };
+    let designs = stiffness::parse(file.text, file.file).map_err(Failure::input)?;
+    let three = three(designs);
+    let middle = three.get(1).or(three.first());
+    middle
+        .map(|design| Finger::new(design.compliance, design.assembly))
+        .ok_or_else(|| Failure::running("no measured fingers are shipped"))
+}

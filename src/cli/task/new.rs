@@ -1,0 +1,135 @@
+//! `optimize task new`: a task file to begin with.
+
+use super::super::setup::{DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, find};
+use super::super::{Failure, print};
+use super::check;
+use crate::connector::draft::{DENSITY, Dimensions, Size, draft};
+use crate::connector::write::{self, Notes};
+use crate::input::shipped::{Source, TASKS};
+use crate::input::task::Task;
+use crate::study::write_file;
+use crate::units::MM;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Dimensions of the example that is written if none are given: a USB-C plug.
+const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
+
+/// Write a commented task file from a few dimensions, or like another task
+///
+/// With --plug, start, tilt, strokes and success depth are derived from the geometry. With --like
+/// alone the file is a copy of that task; with both, friction and grasp force are that task's.
+/// With neither it is a USB-C plug.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Name of the task: letters, digits, - and _
+    #[arg(value_name = "NAME")]
+    name: String,
+    /// What goes in: width (y, between the jaws) x height (x) x length, mm
+    #[arg(long, value_name = "WxHxL", requires = "clearance")]
+    plug: Option<Size>,
+    /// Opening less plug in x and y, mm: both sides together
+    #[arg(long, value_name = "C", requires = "plug", value_parser = clearance)]
+    clearance: Option<f64>,
+    /// What the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
+    #[arg(long, value_name = "WxHxL", requires = "plug")]
+    body: Option<Size>,
+    /// Another task: ket8, ket12, rj45, usb, or the path of a task file
+    #[arg(long, value_name = "T")]
+    like: Option<String>,
+    /// File to write [default: NAME.toml]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Contact engine that tries the nominal start
+    #[arg(long, value_enum, default_value = DEFAULT_ENGINE, hide = true)]
+    engine: EngineKind,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let like = arguments.like.as_deref().map(|name| find("task", TASKS, name)).transpose()?;
+    let text = match (&like, arguments.plug) {
+        (Some(like), None) => copy(&arguments.name, like)?,
+        (like, _) => drafted(arguments, like.as_ref())?,
+    };
+    let out = arguments.out.clone().unwrap_or_else(|| format!("{}.toml", arguments.name).into());
+    let file = out.display().to_string();
+    // The name is checked here: what is written can be read.
+    Task::parse(&text, &file).map_err(Failure::input)?;
+    if out.exists() {
+        return Err(Failure::usage(format!("{file} exists; name another file with --out")));
+    }
+    write_file(&out, &text)?;
+    let source = Source { file: file.clone(), text };
+    let checked = check::check(&source, DEFAULT_ROBOT, arguments.engine, None)?;
+    print(&format!(
+        "written       {file}\n{}next          optimize task check {file} --svg {}.svg\n",
+        checked.text(),
+        arguments.name
+    ))
+}
+
+fn drafted(arguments: &Arguments, like: Option<&Source>) -> Result<String, Failure> {
+    let (size, example) = dimensions(arguments)?;
+    let like = like.map(|like| Task::parse(&like.text, &like.file)).transpose();
+    let like = like.map_err(Failure::input)?;
+    let task = draft(&arguments.name, &size, like.as_ref()).map_err(Failure::input)?;
+    let command = format!(
+        "optimize task new {} --plug {} --clearance {}{}",
+        arguments.name,
+        text(&size.plug),
+        size.clearance / MM,
+        size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)))
+    );
+    let mut head = vec![format!("Made by: {command}")];
+    if example {
+        head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
+    }
+    let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
+    Ok(write::task(&task, &Notes { head, mass }))
+}
+
+/// As given, or those of the example.
+fn dimensions(arguments: &Arguments) -> Result<(Dimensions, bool), Failure> {
+    if let (Some(plug), Some(clearance)) = (arguments.plug, arguments.clearance) {
+        return Ok((Dimensions { plug, clearance: clearance * MM, body: arguments.body }, false));
+    }
+    let [plug, clearance, body] = EXAMPLE;
+    let parse = |text: &str| text.parse::<Size>().map_err(Failure::usage);
+    let clearance = self::clearance(clearance).map_err(Failure::usage)?;
+    let size =
+        Dimensions { plug: parse(plug)?, clearance: clearance * MM, body: Some(parse(body)?) };
+    Ok((size, true))
+}
+
+fn text(size: &Size) -> String {
+    [size.width, size.height, size.length]
+        .map(|length| (length / MM * 1e4).round() / 1e4)
+        .map(|mm| mm.to_string())
+        .join("x")
+}
+
+/// The other task's file with this name.
+fn copy(name: &str, like: &Source) -> Result<String, Failure> {
+    let task = Task::parse(&like.text, &like.file).map_err(Failure::input)?;
+    let line =
+        |key: &str, value: &str| format!("{key} = {}", toml::Value::String(value.to_owned()));
+    let described = format!("like {}: {}", task.name, task.description);
+    let mut head = true;
+    let lines = like.text.lines().map(|text| {
+        head &= !text.starts_with('[');
+        match text.split_once('=').map(|(key, _)| key.trim()) {
+            Some("name") if head => line("name", name),
+            Some("description") if head => line("description", &described),
+            _ => text.to_owned(),
+        }
+    });
+    Ok(lines.collect::<Vec<_>>().join("\n") + "\n")
+}
+
+fn clearance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(mm) if mm > 0.0 && mm <= 20.0 => Ok(mm),
+        _ => Err("a clearance is a number of mm above 0 and at most 20".to_owned()),
+    }
+}

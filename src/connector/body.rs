@@ -1,0 +1,181 @@
+//! A plug or a socket as a set of convex parts, and what can be asked of it.
+
+use crate::input::task::Part;
+use crate::physics::shapes;
+use crate::scene::Pose;
+use crate::units::MM;
+use nalgebra::{Point3, Vector3};
+use parry::query;
+use parry::shape::SharedShape;
+use rapier3d_f64::parry;
+
+/// parry's tolerances are made for things of size 1, so it gets millimetres.
+const MILLIMETRES: f64 = 1.0 / MM;
+
+/// A body of convex parts in its own frame.
+pub struct ConvexBody<'a> {
+    /// The parts as the task has them.
+    pub parts: &'a [Part],
+    shapes: Vec<Placed>,
+}
+
+struct Placed {
+    shape: SharedShape,
+    pose: Pose,
+    /// Ball about the part, body frame, m.
+    centre: Point3<f64>,
+    radius: f64,
+}
+
+/// Two parts that lie in one another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overlap {
+    /// How deep, m.
+    pub depth: f64,
+    /// Indices of the two parts, each in its own body.
+    pub parts: [usize; 2],
+}
+
+impl<'a> ConvexBody<'a> {
+    /// Of these parts.
+    pub fn new(parts: &'a [Part]) -> Self {
+        let place = |part: &Part| {
+            let geom = part.geom();
+            let (shape, turn) = shapes::shared(&geom.shape, MILLIMETRES);
+            let corners = part.solid.corners();
+            let sum = corners.iter().map(|p| p.coords).sum::<Vector3<f64>>();
+            let centre = Point3::from(sum / corners.len() as f64);
+            let far = corners.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
+            // A cylinder bulges beyond its 16 corners by 2 %.
+            Placed { shape, pose: geom.pose * turn, centre, radius: 1.02 * far }
+        };
+        ConvexBody { parts, shapes: parts.iter().map(place).collect() }
+    }
+
+    /// The deepest overlap with another body, if there is one.
+    pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<Overlap> {
+        let pairs =
+            (0..self.shapes.len()).flat_map(|i| (0..other.shapes.len()).map(move |j| [i, j]));
+        let depth = |[i, j]: [usize; 2]| {
+            let depth = self.shapes[i].overlap(own, &other.shapes[j], at)?;
+            Some(Overlap { depth, parts: [i, j] })
+        };
+        pairs.filter_map(depth).max_by(|a, b| a.depth.total_cmp(&b.depth))
+    }
+
+    /// Overlaps of two of its own parts.
+    pub fn own_overlaps(&self) -> Vec<Overlap> {
+        let here = Pose::identity();
+        let mut found = Vec::new();
+        for (i, first) in self.shapes.iter().enumerate() {
+            for (j, second) in self.shapes.iter().enumerate().skip(i + 1) {
+                let depth = first.overlap(&here, second, &here);
+                found.extend(depth.map(|depth| Overlap { depth, parts: [i, j] }));
+            }
+        }
+        found
+    }
+
+    /// Gap between two of its parts, m; 0 if they touch.
+    pub fn own_gap(&self, i: usize, j: usize) -> f64 {
+        let [a, b] = [&self.shapes[i], &self.shapes[j]];
+        let [at, to] = [a, b].map(|part| shapes::pose(&part.pose, MILLIMETRES));
+        // All shapes of a task are ones that parry can measure between.
+        query::distance(&at, &*a.shape, &to, &*b.shape).map_or(0.0, |found| found.distance * MM)
+    }
+
+    /// The first part that a point lies in.
+    pub fn part_at(&self, point: &Point3<f64>) -> Option<usize> {
+        let point = shapes::vector(&(point.coords * MILLIMETRES));
+        let holds = |part: &Placed| {
+            part.shape.contains_point(&shapes::pose(&part.pose, MILLIMETRES), point)
+        };
+        self.shapes.iter().position(holds)
+    }
+
+    /// All corners of all parts.
+    pub fn corners(&self) -> impl Iterator<Item = Point3<f64>> + '_ {
+        self.parts.iter().flat_map(|part| part.solid.corners())
+    }
+
+    /// From, to along an axis (0 x, 1 y, 2 z), m.
+    pub fn extent(&self, axis: usize) -> [f64; 2] {
+        span(self.corners().map(|p| p[axis]))
+    }
+}
+
+impl Placed {
+    /// How deep this part, its body at `own`, lies in another, if it does, m.
+    fn overlap(&self, own: &Pose, other: &Placed, at: &Pose) -> Option<f64> {
+        let apart = (own * self.centre - at * other.centre).norm() > self.radius + other.radius;
+        if apart {
+            return None;
+        }
+        let here = shapes::pose(&(own * self.pose), MILLIMETRES);
+        let there = shapes::pose(&(at * other.pose), MILLIMETRES);
+        let contact = query::contact(&here, &*self.shape, &there, &*other.shape, 0.0);
+        contact.ok().flatten().map(|contact| -contact.dist * MM).filter(|&depth| depth > 0.0)
+    }
+}
+
+/// From, to of some numbers; the other way round if there are none.
+pub fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+/// The corners of what is left of a convex part between two planes across an axis: those
+/// within, and where a line between one within and one beyond crosses a plane.
+pub fn clipped(points: &[Point3<f64>], axis: usize, [from, to]: [f64; 2]) -> Vec<Point3<f64>> {
+    let side = |points: &[Point3<f64>], plane: f64, sign: f64| {
+        let beyond = |p: &Point3<f64>| sign * (p[axis] - plane) > 0.0;
+        let mut kept: Vec<_> = points.iter().copied().filter(|p| !beyond(p)).collect();
+        let (inside, count) = (kept.clone(), kept.len());
+        for p in &inside[..count] {
+            for q in points.iter().filter(|q| beyond(q)) {
+                kept.push(p + (q - p) * ((plane - p[axis]) / (q[axis] - p[axis])));
+            }
+        }
+        kept
+    };
+    side(&side(points, to, 1.0), from, -1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::task::Solid;
+
+    fn cube(name: &str, low: [f64; 3], high: [f64; 3]) -> Part {
+        let solid = Solid::Box { min: Vector3::from(low) * MM, max: Vector3::from(high) * MM };
+        Part { name: name.to_owned(), solid, friction: None }
+    }
+
+    #[test]
+    fn boxes_overlap_by_what_they_share_and_stand_apart_by_the_gap() {
+        let parts = [
+            cube("a", [0.0; 3], [10.0, 10.0, 5.0]),
+            cube("b", [0.0, 0.0, 4.5], [10.0, 10.0, 9.0]),
+            cube("c", [0.0, 0.0, 9.3], [10.0, 10.0, 12.0]),
+        ];
+        let body = ConvexBody::new(&parts);
+        let found = body.own_overlaps();
+        assert_eq!(found.len(), 1);
+        assert!((found[0].depth - 0.5 * MM).abs() < 1e-9, "{found:?}");
+        assert!((body.own_gap(1, 2) - 0.3 * MM).abs() < 1e-9);
+        assert_eq!(body.part_at(&Point3::new(5.0 * MM, 5.0 * MM, 4.7 * MM)), Some(0));
+        assert_eq!(body.part_at(&Point3::new(5.0 * MM, 5.0 * MM, 9.1 * MM)), None);
+    }
+
+    #[test]
+    fn a_wedge_is_clipped_where_its_slope_is_cut() {
+        // Width in x grows from 0 to 10 over a height of 10.
+        let wedge = Solid::Prism {
+            axis: 1,
+            outline: vec![[0.0, 0.0], [0.01, 0.01], [0.0, 0.01]],
+            span: [0.0, 0.01],
+        };
+        let cut = clipped(&wedge.corners(), 2, [0.0, 0.004]);
+        let [low, high] = span(cut.iter().map(|p| p.x));
+        assert!(low.abs() < 1e-12 && (high - 0.004).abs() < 1e-12, "{low} {high}");
+    }
+}

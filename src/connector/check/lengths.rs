@@ -1,0 +1,116 @@
+//! Lengths that cannot be millimetres.
+
+use super::{Case, Problem, mm, part_key};
+use crate::connector::body::span;
+use crate::input::task::Ending;
+use crate::units::MM;
+use nalgebra::Vector3;
+
+/// Units that are mistaken for millimetres, and how many millimetres they are.
+const UNITS: [(&str, f64); 4] =
+    [("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)];
+
+/// A plug that is so many times smaller or larger than its opening is in another unit.
+const OTHER_UNIT: f64 = 8.0;
+
+/// A length that should lie in a range, mm.
+struct Length {
+    key: String,
+    value: f64,
+    range_mm: [f64; 2],
+}
+
+pub(super) fn problems(case: &Case) -> Vec<Problem> {
+    let mut found: Vec<_> = lengths(case).iter().filter_map(Length::problem).collect();
+    if found.is_empty() {
+        found.extend(against_opening(case));
+    }
+    found
+}
+
+fn lengths(case: &Case) -> Vec<Length> {
+    let (task, grip) = (case.task, &case.task.grip);
+    let length = |key: &str, value, range_mm| Length { key: key.to_owned(), value, range_mm };
+    let width = |[low, high]: [f64; 2]| high - low;
+    let mut all = vec![
+        length("plug.part", width(case.plug.extent(2)), [8.0, 300.0]),
+        length("socket.opening_x_mm", width(task.opening[0]), [0.5, 100.0]),
+        length("socket.opening_y_mm", width(task.opening[1]), [0.5, 100.0]),
+        length("grip.tcp_z_mm", grip.tcp_z, [3.0, 300.0]),
+        length("grip.shoulder_z_mm", grip.shoulder_z, [3.0, 300.0]),
+        length("grip.faces_y_mm", width(grip.faces_y), [1.0, 100.0]),
+        length("grip.slip_limit_mm", grip.slip_limit, [0.2, 30.0]),
+        length("strategy.start_mm", Vector3::from(task.strategy.start).norm(), [3.0, 500.0]),
+        length("success.depth_mm", task.success.depth, [0.5, 150.0]),
+    ];
+    for (body, parts) in [("plug", &task.plug.parts), ("socket", &task.socket)] {
+        all.extend(parts.iter().map(|part| {
+            let corners = part.solid.corners();
+            let along = |axis: usize| width(span(corners.iter().map(|p| p[axis])));
+            let largest = (0..3).map(along).fold(0.0, f64::max);
+            let key = part_key(body, &part.name, "");
+            Length { key: key.trim_end().to_owned(), value: largest, range_mm: [0.3, 1000.0] }
+        }));
+    }
+    for phase in &task.strategy.phases {
+        let key = |field: &str| format!("strategy.phase \"{}\" {field}", phase.name);
+        let by = Vector3::from(phase.displacement).norm();
+        all.push(length(&key("move_mm"), by, [0.05, 200.0]));
+        all.push(length(&key("speed_mm_per_s"), phase.speed, [0.5, 2000.0]));
+        match phase.ending {
+            Ending::Tolerance(value) => {
+                all.push(length(&key("tolerance_mm"), value, [0.005, 10.0]));
+            }
+            Ending::Touch { preload } => {
+                all.push(length(&key("preload_mm"), preload, [0.01, 10.0]));
+            }
+            Ending::Duration(_) => {}
+        }
+    }
+    all
+}
+
+impl Length {
+    fn problem(&self) -> Option<Problem> {
+        let value_mm = self.value / MM;
+        let [low, high] = self.range_mm;
+        if (low..=high).contains(&value_mm) {
+            return None;
+        }
+        let key = &self.key;
+        let size = if value_mm < low { "less" } else { "more" };
+        let [limit, _] = if value_mm < low { [low, high] } else { [high, low] };
+        let problem = format!("{value_mm:.4} mm are {size} than such a length can be ({limit} mm)");
+        let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value_mm * factor));
+        let remedy = match UNITS.iter().find(within) {
+            Some((unit, factor)) => format!(
+                "lengths are in mm; if these were {unit}, multiply by {factor}: {:.2} mm",
+                value_mm * factor
+            ),
+            None => format!("between {low} and {high} mm"),
+        };
+        Some(Problem::new(key, problem, remedy))
+    }
+}
+
+/// Plug and opening in two units.
+fn against_opening(case: &Case) -> Option<Problem> {
+    let depth = case.task.success.depth;
+    let section = crate::connector::seat::section(&case.plug, depth);
+    let ratio = |axis: usize| {
+        let [[from, to], [low, high]] = [section[axis], case.task.opening[axis]];
+        (to - from) / (high - low)
+    };
+    let (x, y) = (ratio(0), ratio(1));
+    let (much, what) = match (x.min(y) > OTHER_UNIT, x.max(y) < 1.0 / OTHER_UNIT) {
+        (true, _) => (x.min(y), "larger"),
+        (_, true) => (1.0 / x.max(y), "smaller"),
+        _ => return None,
+    };
+    let widths = section.map(|[from, to]| mm(to - from)).join(" x ");
+    Some(Problem::new(
+        "socket.opening_x_mm, socket.opening_y_mm",
+        format!("the plug, {widths} mm, is {much:.0} times {what} than the opening"),
+        "one of the two is not in mm: multiply inches by 25.4, metres by 1000",
+    ))
+}

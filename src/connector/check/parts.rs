@@ -1,0 +1,114 @@
+//! Parts by themselves and against the others of their body.
+
+use super::{Case, Problem, field, mm, part_key};
+use crate::connector::body::{ConvexBody, span};
+use crate::connector::hold::SEAM;
+use crate::input::task::{Part, geometry};
+use crate::units::{GRAM, MM};
+
+/// Parts that lie in one another by more than this, m, are not only joined.
+const OVERLAP: f64 = 0.5 * MM;
+/// A part that is thinner weighs nothing and stops nothing, m.
+const THIN: f64 = 0.01 * MM;
+/// Lightest and heaviest material, kg/m3: foam, tungsten.
+const DENSITIES: [f64; 2] = [100.0, 20e3];
+/// Plastic and steel, for the remedy, kg/m3.
+const USUAL: [f64; 2] = [1000.0, 7850.0];
+
+pub(super) fn problems(case: &Case) -> Vec<Problem> {
+    let mut found = Vec::new();
+    for (name, body) in [("plug", &case.plug), ("socket", &case.socket)] {
+        found.extend(body.parts.iter().filter_map(|part| thin(name, part)));
+        found.extend(overlaps(name, body));
+    }
+    found.extend(gaps(&case.plug));
+    found.extend(mass(case));
+    found
+}
+
+fn thin(body: &str, part: &Part) -> Option<Problem> {
+    let corners = part.solid.corners();
+    let size = |axis: usize| {
+        let [low, high] = span(corners.iter().map(|p| p[axis]));
+        high - low
+    };
+    let axis = (0..3).find(|&axis| size(axis) < THIN)?;
+    Some(Problem::new(
+        part_key(body, &part.name, field(&part.solid, axis)),
+        format!("the part is {:.4} mm thick: it has no mass", size(axis) / MM),
+        "give it a thickness, or leave it out",
+    ))
+}
+
+fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
+    let deep = body.own_overlaps().into_iter().filter(|overlap| overlap.depth > OVERLAP);
+    deep.map(|overlap| {
+        let [i, j] = overlap.parts.map(|i| &body.parts[i]);
+        let counted = if name == "plug" { ": its mass is counted twice there" } else { "" };
+        Problem::new(
+            part_key(name, &i.name, ""),
+            format!("lies {} mm deep in `{}`{counted}", mm(overlap.depth), j.name),
+            "let the two end where they meet; a common face is enough",
+        )
+    })
+    .map(|problem| Problem { key: problem.key.trim_end().to_owned(), ..problem })
+    .collect()
+}
+
+/// A plug is one piece: every part touches one that touches the first.
+fn gaps(plug: &ConvexBody) -> Vec<Problem> {
+    let count = plug.parts.len();
+    let mut joined = vec![0];
+    loop {
+        let touches = |j: usize| joined.iter().any(|&i| plug.own_gap(i, j) <= SEAM);
+        let Some(next) = (0..count).find(|j| !joined.contains(j) && touches(*j)) else { break };
+        joined.push(next);
+    }
+    let loose = (0..count).find(|j| !joined.contains(j));
+    let problem = |j: usize| {
+        let gaps = joined.iter().map(|&i| (plug.own_gap(i, j), i));
+        let (gap, i) = gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (part, near) = (&plug.parts[j], &plug.parts[i]);
+        let range = |part: &Part, axis: usize| span(part.solid.corners().iter().map(|p| p[axis]));
+        // The axis along which the two stand apart.
+        let apart = |axis: &usize| {
+            let ([a, b], [c, d]) = (range(part, *axis), range(near, *axis));
+            (c - b).max(a - d) > SEAM / 2.0
+        };
+        let axis = [2, 1, 0].into_iter().find(apart).unwrap_or(2);
+        let [low, high] = range(near, axis);
+        Some(Problem::new(
+            part_key("plug", &part.name, field(&part.solid, axis)),
+            format!("a gap of {} mm to `{}`: the plug is not one piece", mm(gap), near.name),
+            format!(
+                "let the parts meet; `{}` reaches from {} to {} mm in {}",
+                near.name,
+                mm(low),
+                mm(high),
+                ["x", "y", "z"][axis]
+            ),
+        ))
+    };
+    loose.and_then(problem).into_iter().collect()
+}
+
+fn mass(case: &Case) -> Option<Problem> {
+    let mass = case.task.plug.mass;
+    let volume: f64 = case.plug.parts.iter().map(|part| geometry::volume(&part.solid)).sum();
+    let density = mass / volume;
+    let [low, high] = DENSITIES;
+    if (low..=high).contains(&density) {
+        return None;
+    }
+    let [plastic, steel] = USUAL.map(|usual| usual * volume / GRAM);
+    Some(Problem::new(
+        "plug.mass_g",
+        format!(
+            "{} g for {:.2} cm3 are {density:.2} kg/m3, {}",
+            mass / GRAM,
+            volume * 1e6,
+            if density < low { "less than foam" } else { "more than tungsten" }
+        ),
+        format!("{plastic:.1} g if it were plastic, {steel:.1} g if it were steel"),
+    ))
+}

@@ -1,0 +1,12 @@
+//! One's own connector: a task from dimensions or meshes, and whether it can work.
+
+pub mod body;
+pub mod check;
+pub mod draft;
+pub mod hold;
+pub mod nominal;
+pub mod path;
+pub mod picture;
+pub mod plan;
+pub mod seat;
+pub mod write;

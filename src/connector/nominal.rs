@@ -1,0 +1,115 @@
+//! The trial at the nominal start, and what to say of it.
+
+use super::body::ConvexBody;
+use super::path;
+use crate::input::task::{Stage, Task};
+use crate::outcome::{FailureClass, Outcome};
+use crate::trial::Trial;
+use crate::units::{DEG, MM};
+
+/// What happened, in plain words, with what to try.
+pub fn explain(task: &Task, trial: &Trial) -> String {
+    match trial.outcome {
+        Outcome::Inserted => format!(
+            "inserted {:.1} mm deep, {:.1} degrees off; {:.1} mm and {:.1} degrees were asked for",
+            trial.depth_mm,
+            trial.tilt_deg,
+            task.success.depth / MM,
+            task.success.tilt / DEG
+        ),
+        Outcome::Diverged => {
+            "the simulation left the numbers, at half the step, too: look for parts \
+                              that lie in one another at the start, or for extreme masses"
+                .to_owned()
+        }
+        Outcome::Failed(FailureClass::ContactLossBeforeSearch) => lost_early(task, trial),
+        Outcome::Failed(FailureClass::PlugMissed) => missed(task, trial),
+        Outcome::Failed(FailureClass::Jammed) => jammed(task, trial),
+        Outcome::Failed(FailureClass::ContactLossInInsertion) => lost_late(task, trial),
+    }
+}
+
+fn lost_early(task: &Task, trial: &Trial) -> String {
+    format!(
+        "the fingers lost the plug before it came to the socket (slip {:.1} mm, allowed {:.1}): \
+         raise grip.force_n ({} N) or friction.finger_plug, and look at grip.faces_y_mm and plug.mass_g",
+        trial.slip_mm,
+        task.grip.slip_limit / MM,
+        task.grip.force
+    )
+}
+
+fn missed(task: &Task, trial: &Trial) -> String {
+    let edges = searched(task, trial);
+    let [low, high] = task.opening[1].map(|y| y / MM);
+    let Some((name, edge)) = edges.last() else {
+        return "the plug never entered the opening".to_owned();
+    };
+    let below = edges.iter().map(|(_, edge)| -edge[2]).fold(f64::NEG_INFINITY, f64::max);
+    let [_, y, _] = edge;
+    if (low..=high).contains(y) {
+        return format!(
+            "the tip's lower edge was over the opening (y = {y:.1} mm at the end of `{name}`) but came \
+             only {below:.2} mm below the top: raise preload_mm of the touch, or let the moves along x \
+             reach both sides of the opening"
+        );
+    }
+    format!(
+        "the tip's lower edge never entered the opening: at the end of `{name}` it is at y = {y:.1} mm, \
+         the opening reaches from {low:.1} to {high:.1} mm; move y of strategy.start_mm or the move along y"
+    )
+}
+
+fn jammed(task: &Task, trial: &Trial) -> String {
+    let (depth, tilt) = (task.success.depth / MM, task.success.tilt / DEG);
+    let deep = trial.depth_mm >= depth;
+    let upright = trial.tilt_deg <= tilt;
+    let at = format!("it stops {:.1} mm deep, {:.1} degrees off", trial.depth_mm, trial.tilt_deg);
+    match (deep, upright) {
+        (true, false) => format!(
+            "{at}: deep enough, but more than success.tilt_deg = {tilt:.1} degrees; push further \
+             (move_mm of the last phase) or allow what the clearance allows"
+        ),
+        (true, true) => format!(
+            "{at}: deep and upright, but its tip is not in the opening: it went in beside it; look at \
+             socket.opening_x_mm and socket.opening_y_mm"
+        ),
+        (false, true) => format!(
+            "{at}: upright, but {depth:.1} mm are asked for; the push ends early or something stops it: \
+             look at move_mm of the last phase and at what lies in the way (--svg)"
+        ),
+        (false, false) if trial.tilt_deg > tilt + 5.0 => format!(
+            "{at} of {depth:.1} mm: it tipped over and jammed; less overshoot in the moves along y, a \
+             smaller strategy.tilt_deg, or a softer finger may do, or more clearance"
+        ),
+        (false, false) => format!(
+            "{at} of {depth:.1} mm: it jammed between the walls; try a smaller strategy.tilt_deg, less \
+             friction.plug_socket, or a slower push"
+        ),
+    }
+}
+
+fn lost_late(task: &Task, trial: &Trial) -> String {
+    let phase = trial.phases.last().map_or("the search", |phase| &*phase.name);
+    format!(
+        "the plug left the grasp during `{phase}` (slip {:.1} mm, allowed {:.1}): shorter moves or less \
+         preload_mm, more grip.force_n, or hold it at a larger face",
+        trial.slip_mm,
+        task.grip.slip_limit / MM
+    )
+}
+
+/// The tip's lowest point at the end of each search phase, mm.
+fn searched(task: &Task, trial: &Trial) -> Vec<(String, [f64; 3])> {
+    let plug = ConvexBody::new(&task.plug.parts);
+    let commanded = path::waypoints(task, &plug);
+    let in_search = |name: &str| {
+        commanded.iter().any(|point| point.name == name && point.stage == Stage::Search)
+    };
+    let lowest = |phase: &crate::trial::PhaseEnd| {
+        let corners = plug.corners().map(|p| phase.poses.plug * p);
+        let edge = corners.min_by(|a, b| a.z.total_cmp(&b.z))?;
+        Some((phase.name.clone(), (edge.coords / MM).into()))
+    };
+    trial.phases.iter().filter(|phase| in_search(&phase.name)).filter_map(lowest).collect()
+}

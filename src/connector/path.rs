@@ -1,0 +1,91 @@
+//! The search path as it is commanded: where the plug would be if nothing gave way.
+
+use super::body::ConvexBody;
+use crate::input::task::{Ending, Stage, Task};
+use crate::scene::Pose;
+use nalgebra::{Point3, UnitQuaternion, Vector3};
+
+/// The end of one commanded move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Waypoint {
+    /// The phase that ends here; "start" for the first.
+    pub name: String,
+    /// Its stage.
+    pub stage: Stage,
+    /// TCP, task frame, m.
+    pub tcp: Vector3<f64>,
+    /// The tip's lowest point, task frame, m.
+    pub edge: Point3<f64>,
+    /// For a touch: how high above the socket's top the edge is where the stroke ends, if it
+    /// does not reach it, m.
+    pub short_by: Option<f64>,
+}
+
+/// Pose of the plug with the TCP at `tcp`, tilted as the task says.
+pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), task.strategy.tilt);
+    Pose::from_parts(tcp.into(), turn) * Pose::translation(0.0, 0.0, -task.grip.tcp_z)
+}
+
+/// The start and the end of every phase.
+pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
+    let start = Vector3::from(task.strategy.start);
+    let pose = plug_pose(task, start);
+    let lowest = plug.corners().map(|p| pose * p).min_by(|a, b| a.z.total_cmp(&b.z));
+    let edge = lowest.unwrap_or_else(Point3::origin) - start;
+    let mut at = Waypoint {
+        name: "start".to_owned(),
+        stage: Stage::Approach,
+        tcp: start,
+        edge: Point3::from(start + edge.coords),
+        short_by: None,
+    };
+    let mut found = vec![at.clone()];
+    for phase in &task.strategy.phases {
+        let mut by = Vector3::from(phase.displacement);
+        let mut short_by = None;
+        if let Ending::Touch { preload } = phase.ending {
+            let end = at.edge.z + by.z;
+            if end > 0.0 || by.z >= 0.0 {
+                short_by = Some(end);
+            } else {
+                // Straight down to the surface, and on by the preload.
+                by *= (at.edge.z.max(0.0) + preload) / -by.z;
+            }
+        }
+        at = Waypoint {
+            name: phase.name.clone(),
+            stage: phase.stage,
+            tcp: at.tcp + by,
+            edge: at.edge + by,
+            short_by,
+        };
+        found.push(at.clone());
+    }
+    found
+}
+
+/// How deep the tip would be at the end, upright, m.
+pub fn commanded_depth(task: &Task, waypoints: &[Waypoint]) -> f64 {
+    waypoints.last().map_or(0.0, |last| task.grip.tcp_z - last.tcp.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::shipped::TASKS;
+    use crate::units::MM;
+
+    /// usb: the lower edge over the opening's middle, touch to 0.3 mm below the top.
+    #[test]
+    fn the_commanded_edge_starts_over_the_opening_and_ends_below() {
+        let file = TASKS.iter().find(|file| file.name == "usb").unwrap();
+        let task = Task::parse(file.text, file.file).unwrap();
+        let plug = ConvexBody::new(&task.plug.parts);
+        let way = waypoints(&task, &plug);
+        assert!(way[0].edge.y.abs() < 0.1 * MM, "{way:?}");
+        let touch = way.iter().find(|point| point.name == "touch").unwrap();
+        assert!((touch.edge.z + 0.3 * MM).abs() < 1e-12 && touch.short_by.is_none());
+        assert!(commanded_depth(&task, &way) > task.success.depth);
+    }
+}

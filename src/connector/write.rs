@@ -1,0 +1,203 @@
+//! A task as a commented TOML file.
+
+use super::hold;
+use crate::input::task::{Ending, Hold, Part, Phase, Solid, Stage, Task};
+use crate::units::{DEG, GRAM, MM};
+use std::fmt::Write;
+
+/// What is said beside the keys.
+#[derive(Debug, Clone, Default)]
+pub struct Notes {
+    /// Lines at the top of the file.
+    pub head: Vec<String>,
+    /// Where the plug's mass comes from.
+    pub mass: String,
+}
+
+/// The file.
+pub fn task(task: &Task, notes: &Notes) -> String {
+    let mut out = String::new();
+    for line in &notes.head {
+        let _ = writeln!(out, "# {line}");
+    }
+    let _ = write!(
+        out,
+        "# Every key, with its unit and how to choose it: docs/tasks.md.\n\
+         # Frame: origin in the middle of the opening, on the socket's top; z out of the socket; y the\n\
+         # direction in which the jaws close and the start is shifted. Lengths in mm.\n\n\
+         name = {}\ndescription = {}\n{}\n\
+         [plug]\n# {}\nmass_g = {}\n\n",
+        text(&task.name),
+        text(&task.description),
+        turn(task),
+        notes.mass,
+        round(task.plug.mass / GRAM, 100.0),
+    );
+    out.push_str("# Convex parts, z counted from the tip upwards.\n");
+    parts(&mut out, "plug", &task.plug.parts);
+    let _ = write!(
+        out,
+        "[socket]\n# From, to of the opening on the top, between the walls below.\n\
+         opening_x_mm = {}\nopening_y_mm = {}\n\n",
+        pair(task.opening[0]),
+        pair(task.opening[1])
+    );
+    parts(&mut out, "socket", &task.socket);
+    grip(&mut out, task);
+    strategy(&mut out, task);
+    let _ = write!(
+        out,
+        "[success]\n# Judged at rest after the push: tip this deep below the top, axis this upright.\n\
+         depth_mm = {}\ntilt_deg = {}\n",
+        mm(task.success.depth),
+        round(task.success.tilt / DEG, 100.0)
+    );
+    out
+}
+
+fn turn(task: &Task) -> String {
+    match task.turn {
+        0.0 => String::new(),
+        turn => format!("turn_in_base_deg = {}\n", round(turn / DEG, 100.0)),
+    }
+}
+
+fn parts(out: &mut String, body: &str, parts: &[Part]) {
+    for part in parts {
+        let _ = write!(out, "[[{body}.part]]\nname = {}\n{}", text(&part.name), solid(&part.solid));
+        if let Some(friction) = part.friction {
+            let _ = writeln!(out, "friction = {friction:?}");
+        }
+        out.push('\n');
+    }
+}
+
+fn solid(solid: &Solid) -> String {
+    match solid {
+        Solid::Box { min, max } => {
+            let along = |i: usize| pair([min[i], max[i]]);
+            let [x, y, z] = [along(0), along(1), along(2)];
+            format!("shape = \"box\"\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\n")
+        }
+        Solid::Cylinder { centre, radius, z } => format!(
+            "shape = \"cylinder\"\ncentre_mm = {}\ndiameter_mm = {}\nz_mm = {}\n",
+            pair(*centre),
+            mm(2.0 * radius),
+            pair(*z)
+        ),
+        Solid::Prism { axis, outline, span } => format!(
+            "shape = \"prism\"\naxis = \"{}\"\noutline_mm = {}\nspan_mm = {}\n",
+            ["x", "y", "z"][*axis],
+            list(outline.iter().map(|&corner| pair(corner))),
+            pair(*span)
+        ),
+    }
+}
+
+fn grip(out: &mut String, task: &Task) {
+    let (grip, friction) = (&task.grip, &task.friction);
+    let [low, high] = hold::pad_z(grip.shoulder_z);
+    let _ = write!(
+        out,
+        "[grip]\n# The roofs of the fingertips rest on shoulder_z; their pads then reach from {} to {} mm\n\
+         # and press the faces. tcp_z is the height of the grasp point. All counted from the tip.\n\
+         tcp_z_mm = {}\nshoulder_z_mm = {}\nfaces_y_mm = {}\nforce_n = {:?}\nhold = \"{}\"\n\
+         # Beyond this slip the plug counts as lost.\nslip_limit_mm = {}\n\n\
+         [friction]\nfinger_plug = {:?}\nfinger_plug_torsion_mm = {}\nplug_socket = {:?}\n\n",
+        mm(low),
+        mm(high),
+        mm(grip.tcp_z),
+        mm(grip.shoulder_z),
+        pair(grip.faces_y),
+        grip.force,
+        match grip.hold {
+            Hold::Always => "always",
+            Hold::Assembly => "assembly",
+        },
+        mm(grip.slip_limit),
+        friction.finger_plug,
+        mm(friction.finger_torsion),
+        friction.plug_socket,
+    );
+}
+
+fn strategy(out: &mut String, task: &Task) {
+    let strategy = &task.strategy;
+    let _ = write!(
+        out,
+        "[strategy]\n# Tilted about x: the tip's edge at -y is the lowest.\ntilt_deg = {}\n\
+         # The grasp point (TCP): the tip's lower edge over the middle of the opening in y.\n\
+         start_mm = {}\n\n",
+        round(strategy.tilt / DEG, 100.0),
+        list(strategy.start.iter().map(|&v| mm(v)))
+    );
+    for item in &strategy.phases {
+        phase(out, item);
+    }
+}
+
+fn phase(out: &mut String, phase: &Phase) {
+    let stage = match phase.stage {
+        Stage::Approach => "approach",
+        Stage::Search => "search",
+        Stage::Assembly => "assembly",
+    };
+    let (motion, key, value) = match phase.ending {
+        Ending::Tolerance(within) => ("tolerance", "tolerance_mm", mm(within)),
+        Ending::Duration(rest) => ("duration", "settle_s", round(rest, 1e4)),
+        Ending::Touch { preload } => ("touch", "preload_mm", mm(preload)),
+    };
+    let _ = write!(
+        out,
+        "[[strategy.phase]]\nname = {}\nstage = \"{stage}\"\nmove_mm = {}\nspeed_mm_per_s = {}\n\
+         motion = \"{motion}\"\n{key} = {value}\n\n",
+        text(&phase.name),
+        list(phase.displacement.iter().map(|&v| mm(v))),
+        mm(phase.speed),
+    );
+}
+
+/// A length in mm, to a tenth of a micrometre.
+pub fn mm(length: f64) -> String {
+    round(length / MM, 1e4)
+}
+
+/// A number to so many parts of one, as TOML has floats.
+fn round(value: f64, parts: f64) -> String {
+    let rounded = (value * parts).round() / parts;
+    // No "-0.0".
+    format!("{:?}", rounded + 0.0)
+}
+
+fn pair([from, to]: [f64; 2]) -> String {
+    format!("[{}, {}]", mm(from), mm(to))
+}
+
+fn list(items: impl Iterator<Item = String>) -> String {
+    format!("[{}]", items.collect::<Vec<_>>().join(", "))
+}
+
+/// A TOML string.
+fn text(value: &str) -> String {
+    toml::Value::String(value.to_owned()).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::shipped::TASKS;
+
+    /// What is written reads back as the same task, to a tenth of a micrometre.
+    #[test]
+    fn a_written_task_reads_back_alike() {
+        for file in TASKS {
+            let before = Task::parse(file.text, file.file).unwrap();
+            let written = task(&before, &Notes::default());
+            let after = Task::parse(&written, "written").unwrap();
+            assert_eq!(task(&after, &Notes::default()), written, "{}", file.name);
+            assert_eq!(after.strategy.phases.len(), before.strategy.phases.len());
+            assert!((after.success.depth - before.success.depth).abs() < 1e-7);
+            assert_eq!(after.plug.parts.len(), before.plug.parts.len());
+        }
+    }
+}

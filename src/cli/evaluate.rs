@@ -6,18 +6,19 @@ use super::specimen::{Chosen, FingerArguments};
 use super::words::{self, merge};
 use super::{Failure, print, print_json};
 use crate::evaluation::Evaluation;
+use crate::evaluation::robustness::repeat::Bands;
 use crate::evaluation::tolerance::Search;
 use crate::input::shipped::UNCERTAINTIES;
 use clap::Args;
-use serde_json::json;
-use std::sync::atomic::AtomicBool;
+use serde_json::{Value, json};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Measure one finger.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
+    pub setup: SetupArguments,
     #[command(flatten)]
     finger: FingerArguments,
     /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
@@ -36,8 +37,28 @@ pub struct Arguments {
     json: bool,
 }
 
+/// What the command found.
+pub struct Found {
+    setup: Setup,
+    chosen: Chosen,
+    evaluation: Evaluation,
+    bands: Option<Bands>,
+    wall_s: f64,
+}
+
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let found = find(arguments, &AtomicBool::new(false))?;
+    if arguments.json {
+        return print_json(&found.json(arguments));
+    }
+    let bands = found.bands.as_ref().map(repeat::bands_text).unwrap_or_default();
+    let text = text(&found.chosen, &found.evaluation);
+    print(&format!("{text}{bands}time          {:.1} s\n", found.wall_s))
+}
+
+/// Measures; ends early, with a failure, once `stop` is set.
+pub fn find(arguments: &Arguments, stop: &AtomicBool) -> Result<Found, Failure> {
     let mut setup = Setup::from_arguments(&arguments.setup)?;
     if let Some(name) = &arguments.uncertainty {
         setup = setup.under(setup::find("uncertainty", UNCERTAINTIES, name)?)?;
@@ -46,22 +67,27 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let clock = Instant::now();
     let search = if arguments.walk { Search::Walk } else { Search::Strides };
     let plan = setup.plan(arguments.seed, |_| setup.uncertainty.is_some())?;
-    let never = AtomicBool::new(false);
     let evaluation =
-        setup.evaluator.measure(&chosen.specimen, search, &plan, &never).map_err(Failure::input)?;
+        setup.evaluator.measure(&chosen.specimen, search, &plan, stop).map_err(Failure::input)?;
+    if stop.load(Ordering::SeqCst) {
+        return Err(Failure::running("interrupted"));
+    }
     let wall_s = clock.elapsed().as_secs_f64();
     let bands = arguments.repeat.bands(&setup, &chosen, &evaluation.window)?;
-    if arguments.json {
-        let mut fields = chosen.json(&setup, &arguments.finger);
-        merge(&mut fields, json!(evaluation));
-        merge(&mut fields, json!({"wall_s": wall_s}));
-        if let Some(bands) = bands {
-            merge(&mut fields, json!({"bands": repeat::bands_json(&bands)}));
+    Ok(Found { setup, chosen, evaluation, bands, wall_s })
+}
+
+impl Found {
+    /// What `--json` prints.
+    pub fn json(&self, arguments: &Arguments) -> Value {
+        let mut fields = self.chosen.json(&self.setup, &arguments.finger);
+        merge(&mut fields, json!(self.evaluation));
+        merge(&mut fields, json!({"wall_s": self.wall_s}));
+        if let Some(bands) = &self.bands {
+            merge(&mut fields, json!({"bands": repeat::bands_json(bands)}));
         }
-        return print_json(&fields);
+        fields
     }
-    let bands = bands.as_ref().map(repeat::bands_text).unwrap_or_default();
-    print(&format!("{}{bands}time          {wall_s:.1} s\n", text(&chosen, &evaluation)))
 }
 
 fn text(chosen: &Chosen, evaluation: &Evaluation) -> String {

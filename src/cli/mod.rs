@@ -3,6 +3,7 @@
 mod ask_tell;
 mod bench;
 mod bench_optimizers;
+pub mod call;
 mod check;
 mod compare;
 mod cross_check;
@@ -31,7 +32,7 @@ mod unusable;
 mod validate;
 mod words;
 
-use failure::Failure;
+pub use failure::Failure;
 use terminal::{print, print_json, say};
 
 use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand};

@@ -43,6 +43,9 @@ pub struct SetupArguments {
     /// Contact engine
     #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
     pub engine: EngineKind,
+    /// Task files in place of those that `--task` names; only a caller can give them.
+    #[arg(skip)]
+    pub given: Vec<Source>,
 }
 
 /// Everything that is needed to measure a design.
@@ -71,7 +74,10 @@ impl Setup {
     /// Reads and checks the files the arguments name.
     pub fn from_arguments(arguments: &SetupArguments) -> Result<Self, Failure> {
         let names = arguments.task.split(',').map(str::trim);
-        let tasks = names.map(|name| find("task", TASKS, name)).collect::<Result<Vec<_>, _>>()?;
+        let tasks = match arguments.given.as_slice() {
+            [] => names.map(|name| find("task", TASKS, name)).collect::<Result<Vec<_>, _>>()?,
+            given => given.to_vec(),
+        };
         let space = find("space", SPACES, &arguments.space)?;
         let robot = find("robot", ROBOTS, &arguments.robot)?;
         let stiffness = stiffness_data(arguments.stiffness_data.as_deref())?;

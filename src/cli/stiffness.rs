@@ -4,6 +4,7 @@ use super::setup::{stiffness_data, surrogate};
 use super::{Failure, print, print_json};
 use crate::report::stiffness;
 use crate::study::write_file;
+use crate::surrogate::Model;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -23,8 +24,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let data = stiffness_data(arguments.stiffness_data.as_deref())?;
-    let model = surrogate(&data)?;
+    let model = arguments.model()?;
     if let Some(path) = &arguments.svg {
         let svg = stiffness::svg(&model).map_err(|error| Failure::running(error.to_string()))?;
         write_file(path, &svg)?;
@@ -33,5 +33,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         print_json(&stiffness::json(&model))
     } else {
         print(&stiffness::table(&model))
+    }
+}
+
+impl Arguments {
+    /// The model of the data that the arguments name.
+    pub fn model(&self) -> Result<Model, Failure> {
+        surrogate(&stiffness_data(self.stiffness_data.as_deref())?)
     }
 }

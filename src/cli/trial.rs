@@ -2,15 +2,16 @@
 
 use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
-use super::specimen::FingerArguments;
+use super::specimen::{Chosen, FingerArguments};
 use super::words::merge;
 use super::{Failure, print, print_json};
 use crate::outcome::Outcome;
 use crate::study::write_file;
-use crate::trial::{Trial, picture};
+use crate::trial::{Sample, Trial, picture};
 use crate::units::MM;
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Largest offset accepted, mm: far outside any socket.
 const LARGEST_OFFSET_MM: f64 = 1000.0;
@@ -19,7 +20,7 @@ const LARGEST_OFFSET_MM: f64 = 1000.0;
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
+    pub setup: SetupArguments,
     #[command(flatten)]
     finger: FingerArguments,
     /// Shift of the start along y, mm
@@ -36,19 +37,52 @@ pub struct Arguments {
     json: bool,
 }
 
+/// What the command found.
+pub struct Found {
+    setup: Setup,
+    chosen: Chosen,
+    trial: Trial,
+    /// The course of the trial, if it was asked for.
+    pub samples: Vec<Sample>,
+    repeats: Option<BTreeMap<String, usize>>,
+}
+
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let found = find(arguments, None)?;
+    if arguments.json {
+        return print_json(&found.json(arguments));
+    }
+    let repeats = found.repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
+    print(&format!("{}\n{}{repeats}", found.chosen.text(), text(&found.trial)))
+}
+
+/// Simulates, with a sample each `every_s` seconds if that is given.
+pub fn find(arguments: &Arguments, every_s: Option<f64>) -> Result<Found, Failure> {
     let setup = Setup::from_arguments(&arguments.setup)?;
     let chosen = arguments.finger.choose(&setup)?;
     let specimen = &chosen.specimen;
+    let offset = arguments.offset_mm * MM;
     let rig = setup.evaluator.rig(specimen, 1.0).map_err(Failure::input)?;
-    let trial = rig.grasp(&specimen.finger).trial(arguments.offset_mm * MM);
+    let grasped = rig.grasp(&specimen.finger);
+    let (trial, samples) = match every_s {
+        Some(every_s) => grasped.traced(offset, every_s),
+        None => (grasped.trial(offset), Vec::new()),
+    };
+    drop(grasped);
+    drop(rig);
     if let Some(file) = &arguments.svg {
         write_file(file, &picture::svg(&specimen.task, &trial))?;
     }
-    let repeats = arguments.repeat.outcomes(&setup, &chosen, arguments.offset_mm * MM)?;
-    if arguments.json {
-        let mut fields = chosen.json(&setup, &arguments.finger);
+    let repeats = arguments.repeat.outcomes(&setup, &chosen, offset)?;
+    Ok(Found { setup, chosen, trial, samples, repeats })
+}
+
+impl Found {
+    /// What `--json` prints.
+    pub fn json(&self, arguments: &Arguments) -> Value {
+        let mut fields = self.chosen.json(&self.setup, &arguments.finger);
+        let trial = &self.trial;
         merge(
             &mut fields,
             json!({
@@ -64,13 +98,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "phases": trial.phases,
             }),
         );
-        if let Some(counts) = repeats {
+        if let Some(counts) = &self.repeats {
             merge(&mut fields, json!({ "repeats": counts }));
         }
-        return print_json(&fields);
+        fields
     }
-    let repeats = repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
-    print(&format!("{}\n{}{repeats}", chosen.text(), text(&trial)))
 }
 
 fn text(trial: &Trial) -> String {

@@ -3,6 +3,7 @@
 use super::cell::{self, Hand, WorkCell};
 use super::classify::{Facts, Placement, classify, within};
 use super::motion::{Move, Tcp};
+use super::trace::{Sample, Trace};
 use super::watch::Watch;
 use super::{PhaseEnd, Poses, Trial};
 use crate::input::robot::Mounted;
@@ -61,6 +62,8 @@ pub(super) struct Attempt<'a> {
     watch: Watch,
     corners: Vec<Point3<f64>>,
     phases: Vec<PhaseEnd>,
+    /// Samples, if they are wanted.
+    pub trace: Option<Trace>,
 }
 
 impl<'a> Attempt<'a> {
@@ -81,6 +84,7 @@ impl<'a> Attempt<'a> {
             watch: Watch::default(),
             corners,
             phases: Vec::new(),
+            trace: None,
         }
     }
 
@@ -93,6 +97,7 @@ impl<'a> Attempt<'a> {
             world: self.world.snapshot(),
             corners: self.corners.clone(),
             phases: self.phases.clone(),
+            trace: self.trace.clone(),
             ..*self
         }
     }
@@ -219,7 +224,25 @@ impl<'a> Attempt<'a> {
         if self.stage == Stage::Search {
             self.watch.entered = self.watch.entered || self.leading_edge_inside();
         }
+        if self.trace.as_ref().is_some_and(|trace| trace.due(self.time, dt)) {
+            let sample = self.sample(&contact.net);
+            self.trace.iter_mut().for_each(|trace| trace.take(sample));
+        }
         if self.robot.stops(&self.watch.force) { Err(Stop::ForceLimit) } else { Ok(()) }
+    }
+
+    /// How things stand now, with the net force of the socket on the plug, world axes, N.
+    fn sample(&self, force: &Vector3<f64>) -> Sample {
+        let placement = self.placement();
+        Sample {
+            time_s: self.time,
+            phase: self.phases.len() as u32,
+            tcp_mm: (self.pose(self.cell.flange).translation.vector / MM).into(),
+            tip_mm: (placement.tip / MM).into(),
+            tilt_deg: placement.tilt / DEG,
+            force_n: (self.socket.rotation * force).into(),
+            slip_mm: self.slip() / MM,
+        }
     }
 
     /// Shortest rest after a move, s.

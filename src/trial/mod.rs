@@ -15,9 +15,11 @@ pub mod fake;
 pub mod motion;
 pub mod picture;
 pub mod run;
+mod trace;
 mod watch;
 
 pub use conditions::Conditions;
+pub use trace::Sample;
 
 /// State at the end of one phase of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -88,4 +90,10 @@ pub trait Rig: Send + Sync {
 pub trait Grasped: Send + Sync {
     /// One trial with the start shifted by `offset` metres along y.
     fn trial(&self, offset: f64) -> Trial;
+
+    /// The same trial with a sample each `every_s` seconds from the start of the search on;
+    /// none where nothing is simulated.
+    fn traced(&self, offset: f64, _every_s: f64) -> (Trial, Vec<Sample>) {
+        (self.trial(offset), Vec::new())
+    }
 }

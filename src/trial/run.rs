@@ -1,6 +1,7 @@
 //! A trial in a contact engine: where it is run, and what happens if it diverges.
 
 use super::attempt::{Attempt, Stop, turned};
+use super::trace::{Sample, Trace};
 use super::{Conditions, Grasped, Rig, Trial, cell};
 use crate::finger::Finger;
 use crate::input::arm::ArmError;
@@ -92,15 +93,26 @@ struct Ready<'a> {
 
 impl Grasped for Ready<'_> {
     fn trial(&self, offset: f64) -> Trial {
-        let trial = self.prepared.trial(offset);
+        self.run(offset, None).0
+    }
+
+    fn traced(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
+        self.run(offset, Some(every_s))
+    }
+}
+
+impl Ready<'_> {
+    fn run(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+        let (trial, samples) = self.prepared.run(offset, every_s);
         if trial.outcome != Outcome::Diverged {
-            return trial;
+            return (trial, samples);
         }
         let again = || {
             let engine = self.rig.engine.halved();
             self.rig.prepare(&*engine, &self.finger, &self.conditions)
         };
-        Trial { retried: true, ..self.halved.get_or_init(again).trial(offset) }
+        let (trial, samples) = self.halved.get_or_init(again).run(offset, every_s);
+        (Trial { retried: true, ..trial }, samples)
     }
 }
 
@@ -112,15 +124,17 @@ struct Prepared<'a> {
 }
 
 impl Prepared<'_> {
-    fn trial(&self, offset: f64) -> Trial {
+    fn run(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
         let mut attempt = self.attempt.copy();
+        attempt.trace = every_s.map(Trace::new);
         // Shifting the start by y is shifting the socket by -y: the part has
         // touched nothing of it yet. So all offsets share grasp and approach.
         let socket = Pose::translation(0.0, -offset, 0.0) * turned(attempt.yaw);
         attempt.socket = turned(-attempt.yaw) * Pose::translation(0.0, offset, 0.0);
         attempt.world.place(attempt.cell.socket, socket);
         let end = self.end.and_then(|()| attempt.search_and_assemble());
-        attempt.result(end)
+        let samples = attempt.trace.take().map_or_else(Vec::new, |trace| trace.samples);
+        (attempt.result(end), samples)
     }
 }
 
@@ -174,5 +188,20 @@ mod tests {
         assert_eq!(mended, Trial { retried: true, ..fine });
         let lost = trial(fragile(2));
         assert_eq!((lost.outcome, lost.retried), (Outcome::Diverged, true));
+    }
+
+    #[test]
+    fn samples_change_nothing_and_end_where_the_trial_ends() {
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+        let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
+        let grasped = rig.grasp(&finger);
+        let (trial, samples) = grasped.traced(0.0, 1e-3);
+        assert_eq!(trial, grasped.trial(0.0));
+        let last = samples.last().unwrap();
+        assert!(samples.windows(2).all(|pair| (pair[1].time_s - pair[0].time_s - 1e-3).abs() < 1e-9));
+        assert!((last.tip_mm[2] + trial.depth_mm).abs() < 1e-2, "{last:?}");
+        assert!((trial.simulated_s - last.time_s) < 2e-3);
     }
 }

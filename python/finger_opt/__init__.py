@@ -1,0 +1,31 @@
+"""Finds the 3D-printed compliant finger that makes a connector insertion most robust.
+
+>>> import finger_opt as fo
+>>> fo.evaluate("usb", density=20, direction=10).range_mm      # doctest: +SKIP
+7.2
+
+Every call takes the words of the command line ``optimize`` as keywords, with underscores for
+hyphens (``stiffness_data="mine.csv"``, ``walk=True``), and gives the numbers that ``--json``
+prints, under the same keys; each key carries its unit (``range_mm``). Wrong arguments and files
+raise :class:`InputError` (a ``ValueError``), what fails while it runs :class:`RunError` (a
+``RuntimeError``), both with the text of the command line.
+"""
+
+from ._measure import Evaluation, Trial, evaluate, stiffness, trial
+from ._native import InputError, RunError, __version__
+from ._optimizer import Optimizer, Point
+from ._task import Task
+
+__all__ = [
+    "Evaluation",
+    "InputError",
+    "Optimizer",
+    "Point",
+    "RunError",
+    "Task",
+    "Trial",
+    "__version__",
+    "evaluate",
+    "stiffness",
+    "trial",
+]

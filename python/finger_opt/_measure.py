@@ -1,0 +1,140 @@
+"""Evaluations, trials and stiffness."""
+
+from __future__ import annotations
+
+import html
+import json
+from typing import Any
+
+import numpy as np
+
+from . import _native, _words
+from ._task import Task
+
+
+class Record(dict[str, Any]):
+    """Measured values by key, as ``--json`` prints them; keys are attributes, too."""
+
+    def __getattr__(self, key: str) -> Any:
+        try:
+            return self[key]
+        except KeyError:
+            raise AttributeError(f"no value is called `{key}`; there are {', '.join(self)}") from None
+
+    def __dir__(self) -> list[str]:
+        return [*self, *super().__dir__()]
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><th style='text-align:left'>{html.escape(key)}</th>"
+            f"<td style='text-align:left'>{html.escape(_cell(value))}</td></tr>"
+            for key, value in self.items()
+        )
+        return f"<table>{rows}</table>"
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_cell(one)}" for key, one in value.items())
+    if isinstance(value, list):
+        return ", ".join(_cell(one) if not isinstance(one, dict) else one.get("name", "") for one in value)
+    return "none" if value is None else str(value)
+
+
+class Evaluation(Record):
+    """The tolerance window of one finger on one task: ``range_mm``, ``negative_mm``,
+    ``positive_mm`` (the shifts of the start that insert), ``failure_negative`` and
+    ``failure_positive`` (class 1 to 4 of what ends it), ``peak_force_n``, ``slip_mm``."""
+
+
+class Trial(Record):
+    """One simulated insertion: ``outcome``, ``failure``, ``depth_mm``, ``tilt_deg``,
+    ``peak_force_n``, ``slip_mm``, ``phases``, and its course from the start of the search on.
+
+    ``series`` holds ``n`` samples as NumPy arrays of float64, in the task frame (origin at the
+    middle of the socket's opening, z out of it): ``time_s`` (n), ``phase`` (n, place among
+    ``phases``), ``tcp_mm`` (n, 3), ``tip_mm`` (n, 3), ``tilt_deg`` (n), ``force_n`` (n, 3: of
+    the socket on the plug) and ``slip_mm`` (n).
+    """
+
+    series: dict[str, np.ndarray]
+
+    def __init__(self, fields: dict[str, Any], series: dict[str, np.ndarray]) -> None:
+        super().__init__(fields)
+        self.__dict__["series"] = series
+
+
+def evaluate(
+    task: str | Task,
+    density: float | None = None,
+    direction: float | None = None,
+    **settings: Any,
+) -> Evaluation:
+    """Measures the tolerance window of one finger, as ``optimize evaluate`` does.
+
+    ``task`` is a shipped name, the path of a task file or a :class:`Task`; ``density`` is the
+    infill density in percent, ``direction`` its direction in degrees. ``settings`` are the
+    words of ``optimize evaluate`` (``walk=True``, ``robot="ur5e"``, ``uncertainty="typical"``,
+    ``stiffness_compliance=2.2, stiffness_assembly=55`` in N/mm in place of the infill), and
+    numbers of task and finger by their keys: ``**{"task.strategy.tilt_deg": 8}``.
+
+    Takes about a second, without the interpreter's lock; Ctrl-C ends it.
+    """
+    word, files = _words.tasks(task)
+    settings = {"task": word, "density": density, "direction": direction, **settings}
+    return Evaluation(json.loads(_native.evaluate(_words.words(settings), files)))
+
+
+def trial(
+    task: str | Task,
+    density: float | None = None,
+    direction: float | None = None,
+    offset_mm: float = 0.0,
+    *,
+    every_s: float = 0.001,
+    **settings: Any,
+) -> Trial:
+    """Simulates one insertion, as ``optimize trial`` does, and samples its course.
+
+    ``offset_mm`` shifts the start along y; ``every_s`` is the simulated time between two
+    samples, s. The rest is as for :func:`evaluate`.
+    """
+    word, files = _words.tasks(task)
+    settings = {
+        "task": word,
+        "density": density,
+        "direction": direction,
+        "offset_mm": offset_mm,
+        **settings,
+    }
+    fields, columns = _native.trial(_words.words(settings), files, every_s)
+    series = {name: np.frombuffer(column, dtype="<f8") for name, column in columns.items()}
+    for name in ("tcp_mm", "tip_mm", "force_n"):
+        series[name] = series[name].reshape(-1, 3)
+    series["phase"] = series["phase"].astype(np.int64)
+    return Trial(json.loads(fields), series)
+
+
+def stiffness(
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    stiffness_data: str | None = None,
+) -> Record:
+    """The stiffness predicted for an infill, or, without one, how well the model fits.
+
+    ``density`` in percent, ``direction`` in degrees; the result has ``compliance_n_per_mm``
+    and ``assembly_n_per_mm`` with their standard deviations ``.._sd_n_per_mm``,
+    ``inside_hull`` and ``hull_distance``. Without an infill: the leave-one-out errors that
+    ``optimize stiffness --json`` prints. ``stiffness_data`` is the path of a CSV file with your
+    own measurements in place of the shipped ones.
+    """
+    if density is None and direction is None:
+        found = _native.stiffness(_words.words({"stiffness_data": stiffness_data}))
+    elif density is None or direction is None:
+        raise _native.InputError("give density and direction, or neither")
+    else:
+        found = _native.predict(density, direction, stiffness_data)
+    return Record(json.loads(found))

@@ -1,0 +1,91 @@
+"""The optimizers, for anything that can be measured."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from . import _native
+
+
+class Point(dict[str, float]):
+    """A point that an optimizer asks for: values by name; ``id`` counts from 0."""
+
+    id: int
+
+    def __init__(self, id: int, values: Mapping[str, float]) -> None:
+        super().__init__(values)
+        self.id = id
+
+
+class Optimizer:
+    """Asks for points and is told their values, as ``optimize ask-tell`` does.
+
+    ``space`` gives each parameter its bounds, and its step if it has one:
+    ``{"x": (-5, 5), "n": (1, 9, 2)}``; a list of dicts with ``name``, ``low``, ``high`` and
+    ``step`` does, too, and the name or path of a space file (``"infill"``). ``optimizer`` is ``gp``, ``cma-es``, ``sobol``, ``grid`` or ``random``.
+    The same seed and values give the same points.
+
+    >>> optimizer = Optimizer({"x": (-5, 5)}, "gp", seed=1, direction="minimize")
+    >>> for _ in range(3):
+    ...     points = optimizer.ask(2)
+    ...     told = optimizer.tell(points, [point["x"] ** 2 for point in points])
+    >>> sorted(optimizer.best)
+    ['id', 'value', 'values']
+    """
+
+    def __init__(
+        self,
+        space: str | Mapping[str, Sequence[float]] | Iterable[Mapping[str, Any]],
+        optimizer: str = "gp",
+        seed: int = 0,
+        *,
+        direction: str = "maximize",
+        batch: int | None = None,
+    ) -> None:
+        if isinstance(space, str):
+            parameters = json.loads(_native.space(space))
+        elif isinstance(space, Mapping):
+            keys = ("low", "high", "step")
+            parameters = [{"name": name, **dict(zip(keys, bounds))} for name, bounds in space.items()]
+        else:
+            parameters = [dict(parameter) for parameter in space]
+        header = {
+            "parameters": parameters,
+            "optimizer": optimizer,
+            "seed": seed,
+            "direction": direction,
+            "batch": batch,
+        }
+        #: Best point told so far: ``id``, ``values``, ``value``; ``None`` while there is none.
+        self.best: dict[str, Any] | None = None
+        #: Why nothing more can be asked, if so.
+        self.stop: str | None = None
+        self._session = _native.Session()
+        self._say(header)
+
+    def ask(self, n: int = 1) -> list[Point]:
+        """Up to ``n`` new points, no point twice; none once the space is exhausted."""
+        asked = self._say({"ask": n})["asked"]
+        return [Point(one["id"], one["values"]) for one in asked]
+
+    def tell(
+        self, points: Point | int | Iterable[Point | int], values: float | None | Iterable[float | None]
+    ) -> None:
+        """The values of points (or of their ids), in any order; ``None`` for a failed one."""
+        if isinstance(points, (Point, int)):
+            points, values = [points], [values]  # type: ignore[list-item]
+        ids = [point.id if isinstance(point, Point) else int(point) for point in points]
+        told = [None if value is None else float(value) for value in values]  # type: ignore[union-attr]
+        if len(ids) != len(told):
+            raise _native.InputError(f"tell: {len(told)} values for {len(ids)} points")
+        answer = self._say({"tell": [{"id": i, "value": v} for i, v in zip(ids, told)]})
+        self.best, self.stop = answer["best"], answer["stop"]
+
+    def _say(self, line: Mapping[str, Any]) -> dict[str, Any]:
+        answer = self._session.answer(json.dumps(line))
+        found: dict[str, Any] = json.loads(answer) if answer is not None else {}
+        if "error" in found:
+            raise _native.InputError(found["error"])
+        return found

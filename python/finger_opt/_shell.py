@@ -1,0 +1,15 @@
+"""The command ``optimize`` of the wheel: the same command line, in this interpreter."""
+
+from __future__ import annotations
+
+import signal
+import sys
+
+from . import _native
+
+
+def main() -> int:
+    """Runs ``optimize`` with the arguments of this process; gives its exit code."""
+    # The command line has its own way to stop: Python's would wait until it has ended.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return _native.main(["optimize", *sys.argv[1:]])

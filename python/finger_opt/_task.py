@@ -1,0 +1,112 @@
+"""Task files as Python objects."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from . import _native
+
+
+class Fields:
+    """One table of a task file: its keys are attributes, and its tables fields again.
+
+    One of several tables is found by its name or its place: ``strategy.phase["side"]``.
+    """
+
+    __slots__ = ("_changed", "_table")
+
+    def __init__(self, table: Any, changed: Any) -> None:
+        object.__setattr__(self, "_table", table)
+        object.__setattr__(self, "_changed", changed)
+
+    def _wrap(self, value: Any) -> Any:
+        tables = isinstance(value, list) and any(isinstance(one, dict) for one in value)
+        return Fields(value, self._changed) if isinstance(value, dict) or tables else value
+
+    def _place(self, key: str | int) -> Any:
+        if isinstance(self._table, list) and isinstance(key, str):
+            for place, one in enumerate(self._table):
+                if one.get("name") == key:
+                    return place
+            names = ", ".join(str(one.get("name")) for one in self._table)
+            raise KeyError(f"{key}: there are {names}")
+        return key
+
+    def __getitem__(self, key: str | int) -> Any:
+        return self._wrap(self._table[self._place(key)])
+
+    def __setitem__(self, key: str | int, value: Any) -> None:
+        if isinstance(value, Fields):
+            value = value._table
+        table, place = self._table, self._place(key)
+        known = not isinstance(table, dict) or place in table
+        before = table[place] if known else None
+        table[place] = value
+        try:
+            self._changed()
+        except _native.InputError:
+            if known:
+                table[place] = before
+            else:
+                del table[place]
+            raise
+
+    def __getattr__(self, key: str) -> Any:
+        if isinstance(self._table, dict) and key in self._table:
+            return self[key]
+        raise AttributeError(f"no field is called `{key}`; there are {', '.join(self)}")
+
+    def __setattr__(self, key: str, value: Any) -> None:
+        self[key] = value
+
+    def __iter__(self) -> Iterator[Any]:
+        if isinstance(self._table, dict):
+            return iter(self._table)
+        return (self._wrap(one) for one in self._table)
+
+    def __len__(self) -> int:
+        return len(self._table)
+
+    def __dir__(self) -> list[str]:
+        keys = list(self._table) if isinstance(self._table, dict) else []
+        return [*keys, *super().__dir__()]
+
+    def __repr__(self) -> str:
+        return repr(self._table)
+
+
+class Task(Fields):
+    """A connector task: plug, socket, grip, friction, search strategy and success.
+
+    Fields are those of the task file (``docs/simulation.md``), each with the unit that its
+    key carries. Setting one checks the whole task; what cannot be simulated raises
+    :class:`InputError` and changes nothing.
+
+    >>> task = Task.from_toml("usb")
+    >>> task.strategy.tilt_deg = 8
+    >>> task.strategy.phase["side"].speed_mm_per_s = 40
+    """
+
+    __slots__ = ("file",)
+
+    def __init__(self, file: str, text: str) -> None:
+        """Of the text of a task file; ``file`` is what errors call it."""
+        fields = json.loads(_native.task_fields(file, text))
+        super().__init__(fields, self.to_toml)
+        object.__setattr__(self, "file", file)
+
+    @classmethod
+    def from_toml(cls, source: str) -> Task:
+        """The task of a shipped name (``"usb"``), of the file at a path, or of a TOML text."""
+        if "\n" in source:
+            return cls("task", source)
+        return cls(*_native.task(str(source)))
+
+    def to_toml(self) -> str:
+        """The text of the task file, without the comments of the original."""
+        return str(_native.task_text(getattr(self, "file", "task"), json.dumps(self._table)))
+
+    def __repr__(self) -> str:
+        return f"<Task {self.name}: {self.description}>"

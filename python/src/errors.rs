@@ -1,0 +1,26 @@
+//! Failures as exceptions, with the texts of the command line.
+
+use finger_opt::cli::Failure;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+pyo3::create_exception!(
+    finger_opt,
+    InputError,
+    PyValueError,
+    "A wrong argument or input file; the text says what would be right."
+);
+pyo3::create_exception!(
+    finger_opt,
+    RunError,
+    PyRuntimeError,
+    "Something failed while running; what was measured before is safe."
+);
+
+/// The exception of a failure.
+pub fn raise(failure: Failure) -> PyErr {
+    match failure {
+        Failure::Input(error) => InputError::new_err(error.to_string()),
+        Failure::Run(error) => RunError::new_err(error.to_string()),
+    }
+}

@@ -1,0 +1,38 @@
+//! `finger_opt._native`: what the Python package calls. Words of the command line in, JSON
+//! out; the package in `finger_opt/` gives both their Python shape.
+#![forbid(unsafe_code)]
+
+mod errors;
+mod measure;
+mod optimizer;
+
+use finger_opt::cli;
+use pyo3::prelude::*;
+use std::process::ExitCode;
+
+/// Runs `optimize` with these arguments, the program's name first; gives the exit code.
+#[pyfunction]
+fn main(py: Python<'_>, arguments: Vec<String>) -> u8 {
+    let code = py.allow_threads(|| cli::main(arguments.into_iter().map(Into::into)));
+    u8::from(code != ExitCode::SUCCESS) * if code == ExitCode::from(2) { 2 } else { 1 }
+}
+
+/// The extension module.
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("InputError", py.get_type::<errors::InputError>())?;
+    module.add("RunError", py.get_type::<errors::RunError>())?;
+    module.add_function(wrap_pyfunction!(main, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::evaluate, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::trial, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::stiffness, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::predict, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::space, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::task, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::task_fields, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::task_text, module)?)?;
+    module.add_class::<optimizer::Session>()?;
+    Ok(())
+}

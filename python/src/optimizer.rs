@@ -1,0 +1,22 @@
+//! An optimizer behind the lines of `optimize ask-tell`.
+
+use finger_opt::optimizer::ask_tell;
+use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+/// A conversation; `docs/ask-tell.md` describes its lines.
+#[pyclass]
+pub struct Session(Mutex<ask_tell::Session>);
+
+#[pymethods]
+impl Session {
+    #[new]
+    fn new() -> Self {
+        Session(Mutex::new(ask_tell::Session::new()))
+    }
+
+    /// The answer to a line; the first line, if it is good, has none.
+    fn answer(&self, py: Python<'_>, line: &str) -> Option<String> {
+        py.allow_threads(|| self.0.lock().unwrap_or_else(PoisonError::into_inner).answer(line))
+    }
+}

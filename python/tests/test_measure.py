@@ -1,0 +1,121 @@
+"""Evaluations, trials and stiffness give what the command line gives."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import finger_opt as fo
+
+
+def without_time(fields):
+    return {key: value for key, value in fields.items() if key != "wall_s"}
+
+
+def test_an_evaluation_has_the_bits_of_the_command_line(command_json):
+    words = ("evaluate", "--task", "usb", "--density", "20", "--direction", "10")
+    there = command_json(*words, "--set", "task.grip.force_n=25")
+    here = fo.evaluate("usb", density=20, direction=10, **{"task.grip.force_n": 25})
+    # JSON numbers read back as the same bits.
+    assert without_time(here) == without_time(there)
+    assert here.range_mm == here["range_mm"] > 0
+    assert "range_mm" in here._repr_html_()
+
+
+def test_a_trial_and_its_course(command_json):
+    there = command_json("trial", "--task", "usb", "--density", "20", "--direction", "10",
+                         "--offset-mm", "-1")
+    here = fo.trial("usb", 20, 10, offset_mm=-1)
+    assert dict(here) == there
+    series = here.series
+    n = len(series["time_s"])
+    assert series["tip_mm"].shape == series["force_n"].shape == series["tcp_mm"].shape == (n, 3)
+    assert np.allclose(np.diff(series["time_s"]), 0.001)
+    assert series["time_s"][-1] == pytest.approx(here.simulated_s, abs=0.002)
+    # The tip goes in: the last sample is as deep as the trial says.
+    assert -series["tip_mm"][-1, 2] == pytest.approx(here.depth_mm, abs=0.01)
+    assert series["tip_mm"][0, 2] > 0
+    # Unfiltered steps peak above the filtered force; nothing touches in the air.
+    assert np.linalg.norm(series["force_n"], axis=1).max() > 0.9 * here.peak_force_n
+    assert not series["force_n"][0].any()
+    assert series["phase"][-1] < len(here.phases)
+    assert (np.diff(series["phase"]) >= 0).all()
+    coarse = fo.trial("usb", 20, 10, offset_mm=-1, every_s=0.01).series
+    assert len(coarse["time_s"]) == pytest.approx(n / 10, abs=2)
+
+
+def test_a_changed_task_counts(fake):
+    task = fo.Task.from_toml("usb")
+    task["finger"] = {"rcc_mm": 11.0}
+    assert fo.evaluate(task, 20, 10, **fake).positive_mm == pytest.approx(
+        fo.evaluate("usb", 20, 10, **fake).positive_mm + 1.0
+    )
+
+
+def test_stiffness():
+    predicted = fo.stiffness(20, 10)
+    assert predicted == fo.evaluate("usb", 20, 10).stiffness
+    fit = fo.stiffness()
+    assert {"designs", "models", "used"} <= set(fit)
+    with pytest.raises(fo.InputError, match="density and direction"):
+        fo.stiffness(20)
+
+
+@pytest.mark.parametrize(
+    "words, settings",
+    [
+        (["--density", "5", "--direction", "10"], {"density": 5, "direction": 10}),
+        (["--density", "20"], {"density": 20}),
+        (["--density", "20", "--direction", "10", "--set", "task.gripp=1"],
+         {"density": 20, "direction": 10, "task.gripp": 1}),
+    ],
+)
+def test_errors_have_the_texts_of_the_command_line(command, words, settings):
+    code, _, errors = command("evaluate", "--task", "usb", *words)
+    assert code == 2
+    with pytest.raises(fo.InputError) as raised:
+        fo.evaluate("usb", **settings)
+    said = str(raised.value).splitlines()
+    assert said[0] == errors.removeprefix("error: ").splitlines()[0]
+    assert isinstance(raised.value, ValueError)
+
+
+def test_an_unknown_task_and_an_unknown_word():
+    with pytest.raises(fo.InputError, match="did you mean `rj45`"):
+        fo.evaluate("rj54", 20, 10)
+    with pytest.raises(fo.InputError, match="unexpected argument '--densty'"):
+        fo.evaluate("usb", densty=20)
+
+
+def test_the_command_prints_and_fails_as_it_should(command):
+    assert "usb" in command("tasks")[1]
+    assert command("evaluate", "--task", "nothing", "--density", "20", "--direction", "10")[0] == 2
+
+
+def test_ctrl_c_ends_a_long_call():
+    # Success rates take many trials: minutes, if nothing ended it.
+    code = (
+        "import finger_opt as fo, signal, threading, os\n"
+        "threading.Timer(2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
+        "fo.evaluate('usb', 20, 10, uncertainty='typical')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=100)
+    assert "KeyboardInterrupt" in done.stderr
+
+
+def test_other_threads_go_on_during_a_long_call():
+    code = (
+        "import finger_opt as fo, json, threading, time\n"
+        "beats = []\n"
+        "def beat():\n"
+        "    while True: beats.append(1); time.sleep(0.01)\n"
+        "threading.Thread(target=beat, daemon=True).start()\n"
+        "fo.evaluate('usb', 20, 10)\n"
+        "print(json.dumps(len(beats)))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout) > 10

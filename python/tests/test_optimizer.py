@@ -1,0 +1,69 @@
+"""The optimizers from Python: the lines of ask-tell."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import finger_opt as fo
+
+SPACE = {"x": (-5.0, 5.0), "n": (1.0, 9.0, 2.0)}
+
+
+def value(point):
+    return -((point["x"] - 1.0) ** 2) - (point["n"] - 5.0) ** 2
+
+
+def run(optimizer, rounds=6):
+    asked = []
+    for _ in range(rounds):
+        points = optimizer.ask(4)
+        asked += [dict(point) for point in points]
+        # In any order.
+        optimizer.tell(points[::-1], [value(point) for point in points[::-1]])
+    return asked
+
+
+@pytest.mark.parametrize("name", ["gp", "cma-es", "sobol", "grid", "random"])
+def test_every_optimizer_repeats_itself_with_its_seed(name):
+    first, second = (fo.Optimizer(SPACE, name, 3) for _ in range(2))
+    assert run(first) == run(second)
+    assert first.best == second.best
+
+
+def test_gp_finds_the_maximum_and_minimises_too():
+    optimizer = fo.Optimizer(SPACE, "gp", 1)
+    run(optimizer, 8)
+    assert optimizer.best["value"] > -0.05
+    down = fo.Optimizer([{"name": "x", "low": 0, "high": 4, "step": 1}], "grid", direction="minimize")
+    points = down.ask(5)
+    down.tell(points, [point["x"] for point in points])
+    assert (down.best["value"], down.stop) == (0.0, "space_exhausted")
+    assert down.ask(1) == []
+
+
+def test_the_lines_are_those_of_the_command(command):
+    header = {"parameters": [{"name": "x", "low": -5, "high": 5}], "optimizer": "gp", "seed": 7,
+              "direction": "maximize", "batch": None}
+    code, out, _ = command("ask-tell", input=json.dumps(header) + '\n{"ask":3}\n')
+    there = json.loads(out)["asked"]
+    here = fo.Optimizer({"x": (-5, 5)}, "gp", 7).ask(3)
+    assert code == 0
+    assert [{"id": point.id, "values": dict(point)} for point in here] == there
+
+
+def test_shipped_spaces_and_errors():
+    point = fo.Optimizer("infill", "sobol").ask(1)[0]
+    assert set(point) == {"infill_density_percent", "infill_direction_deg"}
+    with pytest.raises(fo.InputError, match="unknown optimizer 'bayes'"):
+        fo.Optimizer(SPACE, "bayes")
+    with pytest.raises(fo.InputError, match="low must not be above high"):
+        fo.Optimizer({"x": (1, 0)})
+    optimizer = fo.Optimizer(SPACE)
+    optimizer.ask(1)
+    with pytest.raises(fo.InputError, match="was not asked"):
+        optimizer.tell(5, 1.0)
+    with pytest.raises(fo.InputError, match="2 values for 1 points"):
+        optimizer.tell([0], [1.0, 2.0])
+    optimizer.tell(0, None)

@@ -1,0 +1,43 @@
+"""Task files as objects."""
+
+from __future__ import annotations
+
+import pytest
+
+import finger_opt as fo
+
+
+def test_what_is_written_reads_back(tmp_path, fake):
+    task = fo.Task.from_toml("usb")
+    again = fo.Task.from_toml(task.to_toml())
+    assert again.to_toml() == task.to_toml()
+    file = tmp_path / "mine.toml"
+    file.write_text(task.to_toml())
+    assert fo.Task.from_toml(str(file)).to_toml() == task.to_toml()
+    same = {key: fo.evaluate(one, 20, 10, **fake) for key, one in [("a", task), ("b", "usb")]}
+    assert {**same["a"], "wall_s": 0} == {**same["b"], "wall_s": 0}
+
+
+def test_fields_can_be_set_by_name_and_keep_their_units():
+    task = fo.Task.from_toml("usb")
+    task.strategy.tilt_deg = 8
+    task.strategy.phase["side"].move_mm = [0, -9, 0]
+    again = fo.Task.from_toml(task.to_toml())
+    assert (again.strategy.tilt_deg, again.strategy.phase["side"].move_mm) == (8, [0, -9, 0])
+    assert "tilt_deg" in dir(task.strategy)
+
+
+def test_what_cannot_be_is_refused_and_changes_nothing():
+    task = fo.Task.from_toml("usb")
+    before = task.to_toml()
+    with pytest.raises(fo.InputError, match="mass_g"):
+        task.plug.mass_g = -1
+    with pytest.raises(fo.InputError, match="tilt"):
+        task.strategy.tiltt = 3
+    with pytest.raises(AttributeError, match="no field is called `stratgy`"):
+        task.stratgy
+    with pytest.raises(KeyError, match="side"):
+        task.strategy.phase["sdie"]
+    assert task.to_toml() == before
+    with pytest.raises(fo.InputError, match="did you mean"):
+        fo.Task.from_toml("usbb")

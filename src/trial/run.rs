@@ -200,7 +200,9 @@ mod tests {
         let (trial, samples) = grasped.traced(0.0, 1e-3);
         assert_eq!(trial, grasped.trial(0.0));
         let last = samples.last().unwrap();
-        assert!(samples.windows(2).all(|pair| (pair[1].time_s - pair[0].time_s - 1e-3).abs() < 1e-9));
+        assert!(
+            samples.windows(2).all(|pair| (pair[1].time_s - pair[0].time_s - 1e-3).abs() < 1e-9)
+        );
         assert!((last.tip_mm[2] + trial.depth_mm).abs() < 1e-2, "{last:?}");
         assert!((trial.simulated_s - last.time_s) < 2e-3);
     }

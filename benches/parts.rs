@@ -7,6 +7,7 @@ use finger_opt::evaluation::robustness::Plan;
 use finger_opt::evaluation::template::Template;
 use finger_opt::evaluation::tolerance::{self, Search};
 use finger_opt::finger::Finger;
+use finger_opt::finger::model::{FingerModelKind, FingerSource};
 use finger_opt::input::robot::Robot;
 use finger_opt::input::shipped::{ROBOTS, SPACES, STIFFNESS, TASKS};
 use finger_opt::input::space::Space;
@@ -88,6 +89,7 @@ fn config(budget: u64) -> StudyConfig {
         seed: 0,
         budget,
         polish: 0,
+        finger_model: FingerModelKind::Paper,
         batch: 4,
         provenance: Provenance::new(EngineKind::Fake, BTreeMap::new()),
         space: space(),
@@ -98,6 +100,7 @@ fn evaluator() -> Evaluator {
     let usb = TASKS.iter().find(|task| task.name == "usb").expect("shipped");
     Evaluator {
         surrogate: model(),
+        fingers: FingerSource::Paper,
         templates: vec![Template::parse(usb.text, usb.file).expect("valid")],
         robot: robot(),
         engine: EngineKind::Fake,

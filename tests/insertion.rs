@@ -280,8 +280,9 @@ fn a_robust_range_is_smaller_than_the_range() {
 #[test]
 fn a_picture_shows_each_phase_twice() {
     let rig = direct("rj45");
-    let trial = trial(&rig, &finger(2.0, 50.0), 0.0);
-    let svg = picture::svg(&rig.task, &trial);
+    let finger = finger(2.0, 50.0);
+    let trial = trial(&rig, &finger, 0.0);
+    let svg = picture::svg(&rig.task, &finger.pad, &trial);
     assert_eq!(svg.matches("(y, z)").count(), trial.phases.len());
     assert_eq!(svg.matches("(x, z)").count(), trial.phases.len());
 }

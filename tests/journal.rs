@@ -9,6 +9,8 @@ use finger_opt::evaluation::template::{Impossible, Template};
 use finger_opt::evaluation::tolerance::{Search, evaluate};
 use finger_opt::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
 use finger_opt::finger::Finger;
+use finger_opt::finger::computed::AtPad;
+use finger_opt::finger::model::{FingerSource, Made};
 use finger_opt::input::space::{Design, GridPoint, Space};
 use finger_opt::optimizer::{Grid, Observation, Optimizer, StopReason};
 use finger_opt::outcome::{FailureClass, Outcome};
@@ -299,8 +301,9 @@ impl Evaluate for NotAll {
         let template = Template::parse(usb, "usb.toml").unwrap();
         let tilt = (design.get("infill_density_percent") == Some(13.0)).then_some(90.0);
         let set = tilt.map(|tilt| ("task.strategy.tilt_deg".to_owned(), tilt));
-        let finger = Finger::new(3e3, 2e4);
-        let (_, finger) = template.apply(&Design(set.into_iter().collect()), finger)?;
+        let at_pad = AtPad { compliance: 3e3, assembly: 2e4 };
+        let design = Design(set.into_iter().collect());
+        let (_, Made { finger, .. }) = template.apply(&design, &FingerSource::Paper, at_pad)?;
         let one = Estimate { mean: 1e3, sd: 1.0 };
         Ok(Measured {
             stiffness: Prediction { compliance: one, assembly: one, hull_distance: 0.0 },

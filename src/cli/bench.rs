@@ -82,9 +82,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<TaskSpeed, Failure> {
-    let rig = setup::rig(arguments.engine, task, robot).map_err(Failure::input)?;
     let finger = Finger::new(COMPLIANCE * N_PER_MM, ASSEMBLY * N_PER_MM);
     let finger = finger.shaped(&task.finger, 0.0);
+    let rig = setup::rig(arguments.engine, task, robot, &finger).map_err(Failure::input)?;
     let trials = std::sync::atomic::AtomicU32::new(0);
     let clock = Instant::now();
     rayon::scope(|scope| {

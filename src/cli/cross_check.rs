@@ -4,6 +4,7 @@ use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
 use super::validate::{Fingers, tasks};
 use super::{Failure, print, print_json};
 use crate::evaluation::tolerance::Search;
+use crate::finger::model::FingerSource;
 use crate::input::task::Task;
 use crate::verify::compare::engines::{self, TrialSet};
 use crate::verify::compare::{TaskWays, Way};
@@ -47,7 +48,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let robot = setup::robot(&arguments.robot)?;
     let ways = |task: Task| {
         let way = |engine: EngineKind| {
-            let rig = setup::rig(engine, &task, &robot).map_err(Failure::input)?.into();
+            let rig = setup::rig(engine, &task, &robot, &FingerSource::Paper.any(&task))
+                .map_err(Failure::input)?
+                .into();
             Ok(Way { name: engine.name().to_owned(), rig, search: Search::Strides })
         };
         let ways = kinds.into_iter().map(way).collect::<Result<_, Failure>>()?;

@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return print_json(&found.json(arguments));
     }
     let bands = found.bands.as_ref().map(repeat::bands_text).unwrap_or_default();
-    let text = text(&found.chosen, &found.evaluation);
+    let text = text(&found.chosen, &found.setup, &found.evaluation);
     print(&format!("{text}{bands}time          {:.1} s\n", found.wall_s))
 }
 
@@ -90,11 +90,11 @@ impl Found {
     }
 }
 
-fn text(chosen: &Chosen, evaluation: &Evaluation) -> String {
+fn text(chosen: &Chosen, setup: &Setup, evaluation: &Evaluation) -> String {
     let [c1, c2, c3, c4] = evaluation.failure_counts;
     let mut lines = vec![
         format!("task          {}", chosen.specimen.task.name),
-        chosen.text(),
+        chosen.text(setup),
         format!("range         {:.1} mm", evaluation.window.range_mm()),
         words::window(evaluation),
         format!(

@@ -6,8 +6,12 @@ use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
 use crate::evaluation::template::Template;
 use crate::evaluation::uncertainty::Uncertainty;
+use crate::finger::Finger;
+use crate::finger::computed::Touching;
+use crate::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
+use crate::input::printed::PrintedFinger;
 use crate::input::robot::Robot;
-use crate::input::shipped::{self, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
+use crate::input::shipped::{self, FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
 use crate::input::space::Space;
 use crate::input::stiffness;
 use crate::input::task::Task;
@@ -22,6 +26,10 @@ pub use crate::trial::engine::EngineKind;
 pub const DEFAULT_ROBOT: &str = "servo";
 /// Contact engine used unless another is named.
 pub const DEFAULT_ENGINE: &str = "direct";
+/// Finger file used unless another is named.
+pub const DEFAULT_FINGER: &str = "finray9";
+/// What presses the pad of a computed finger; why is in `docs/finger.md`.
+pub const TOUCHING: Touching = Touching::Pad;
 /// Search space used unless another is named.
 pub const DEFAULT_SPACE: &str = "infill";
 
@@ -43,9 +51,42 @@ pub struct SetupArguments {
     /// Contact engine
     #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
     pub engine: EngineKind,
+    #[command(flatten)]
+    pub finger_model: FingerModelArguments,
     /// Task files in place of those that `--task` names; only a caller can give them.
     #[arg(skip)]
     pub given: Vec<Source>,
+}
+
+/// Where the springs of a finger come from that were not measured.
+#[derive(Debug, Clone, clap::Args)]
+pub struct FingerModelArguments {
+    /// Where a finger's remote centre and unmeasured springs come from
+    #[arg(long = "finger-model", value_enum, default_value = "paper")]
+    pub kind: FingerModelKind,
+    /// Finger file of --finger-model computed: finray9, or the path of one
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
+    pub finger: String,
+}
+
+impl FingerModelArguments {
+    /// The finger file, if fingers are computed.
+    pub fn source(&self) -> Result<Option<Source>, Failure> {
+        match self.kind {
+            FingerModelKind::Paper if self.finger != DEFAULT_FINGER => {
+                Err(Failure::usage("--finger goes with --finger-model computed"))
+            }
+            FingerModelKind::Paper => Ok(None),
+            FingerModelKind::Computed => find("finger", FINGERS, &self.finger).map(Some),
+        }
+    }
+}
+
+/// The fingers that a finger file makes; without one, the paper's.
+pub fn fingers(source: Option<&Source>) -> Result<FingerSource, Failure> {
+    let Some(Source { file, text }) = source else { return Ok(FingerSource::Paper) };
+    let printed = PrintedFinger::parse(text, file).map_err(Failure::input)?;
+    Ok(FingerSource::Computed(Box::new(ComputedFingers::new(printed, TOUCHING))))
 }
 
 /// Everything that is needed to measure a design.
@@ -62,6 +103,7 @@ pub struct Setup {
 /// Roles of the input files beside the tasks and the errors.
 const SPACE: &str = "space";
 const ROBOT: &str = "robot";
+const FINGER: &str = "finger";
 pub const STIFFNESS_DATA: &str = "stiffness";
 const UNCERTAINTY: &str = "uncertainty";
 
@@ -81,7 +123,8 @@ impl Setup {
         let space = find("space", SPACES, &arguments.space)?;
         let robot = find("robot", ROBOTS, &arguments.robot)?;
         let stiffness = stiffness_data(arguments.stiffness_data.as_deref())?;
-        Setup::parse(&tasks, [&space, &robot, &stiffness], arguments.engine)
+        let finger = arguments.finger_model.source()?;
+        Setup::parse(&tasks, [&space, &robot, &stiffness], finger.as_ref(), arguments.engine)
     }
 
     /// The same from the copies kept in a study's folder.
@@ -92,19 +135,27 @@ impl Setup {
         let tasks = roles.map(|role| input(inputs, &role)).collect::<Result<Vec<_>, _>>()?;
         let [space, robot, stiffness] =
             [SPACE, ROBOT, STIFFNESS_DATA].map(|role| input(inputs, role));
-        let setup = Setup::parse(&tasks, [&space?, &robot?, &stiffness?], engine)?;
+        let finger = inputs.contains_key(FINGER).then(|| input(inputs, FINGER)).transpose()?;
+        let others = [&space?, &robot?, &stiffness?];
+        let setup = Setup::parse(&tasks, others, finger.as_ref(), engine)?;
         match inputs.contains_key(UNCERTAINTY) {
             true => setup.under(input(inputs, UNCERTAINTY)?),
             false => Ok(setup),
         }
     }
 
-    fn parse(tasks: &[Source], others: [&Source; 3], engine: EngineKind) -> Result<Self, Failure> {
+    fn parse(
+        tasks: &[Source],
+        others: [&Source; 3],
+        finger: Option<&Source>,
+        engine: EngineKind,
+    ) -> Result<Self, Failure> {
+        let fingers = fingers(finger)?;
         let [space_source, robot_source, stiffness_source] = others;
         let file = &space_source.file;
         let space = Space::parse(&space_source.text, file).map_err(Failure::input)?;
         let robot = Robot::parse(&robot_source.text, &robot_source.file).map_err(Failure::input)?;
-        let fits = |task: &Task| engine.rig(task, &robot, 1.0).map(|_| ());
+        let fits = |task: &Task| engine.rig(task, &robot, &fingers.any(task), 1.0).map(|_| ());
         let template = |task: &Source| {
             let template = Template::parse(&task.text, &task.file).map_err(Failure::input)?;
             fits(template.task()).map_err(Failure::input)?;
@@ -115,11 +166,14 @@ impl Setup {
         different(&templates)?;
         let roles = (1..).map(task_role).zip(tasks);
         let others = [SPACE, ROBOT, STIFFNESS_DATA].map(str::to_owned).into_iter().zip(others);
-        let inputs = roles.chain(others).map(|(role, source)| (role, source.text.clone()));
+        let finger = finger.map(|source| (FINGER.to_owned(), source));
+        let sources = roles.chain(others).chain(finger);
+        let inputs = sources.map(|(role, source)| (role, source.text.clone()));
         Ok(Setup {
             inputs: inputs.collect(),
             evaluator: Evaluator {
                 surrogate: surrogate(stiffness_source)?,
+                fingers,
                 templates,
                 robot,
                 engine,
@@ -200,9 +254,14 @@ pub fn robot(name: &str) -> Result<Robot, Failure> {
     Robot::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// Where trials of one task with one robot are run, if the three go together.
-pub fn rig(engine: EngineKind, task: &Task, robot: &Robot) -> Result<Box<dyn Rig>, RigError> {
-    engine.rig(task, robot, 1.0)
+/// Where trials of one task with one robot and such fingers are run, if they go together.
+pub fn rig(
+    engine: EngineKind,
+    task: &Task,
+    robot: &Robot,
+    finger: &Finger,
+) -> Result<Box<dyn Rig>, RigError> {
+    engine.rig(task, robot, finger, 1.0)
 }
 
 /// Fits the stiffness model to a CSV of measurements.

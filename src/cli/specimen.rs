@@ -4,6 +4,7 @@ use super::Failure;
 use super::setup::Setup;
 use super::words;
 use crate::evaluation::evaluator::Specimen;
+use crate::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::surrogate::Prediction;
 use crate::units::{MM, N_PER_MM};
@@ -68,6 +69,12 @@ impl FingerArguments {
         design.0.extend(self.density.map(|density| (DENSITY_KEY.to_owned(), density)));
         design.0.extend(self.direction.map(|direction| (DIRECTION_KEY.to_owned(), direction)));
         let (stiffness, given) = match (self.stiffness_compliance, self.stiffness_assembly) {
+            (Some(_), Some(_)) if setup.evaluator.fingers.kind() == FingerModelKind::Computed => {
+                return Err(Failure::usage(
+                    "--stiffness-compliance and --stiffness-assembly are springs of the finger \
+                     model `paper`; --finger-model computed needs --density and --direction alone",
+                ));
+            }
             (Some(compliance), Some(assembly)) => {
                 (Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM), true)
             }
@@ -110,13 +117,16 @@ impl Chosen {
             "infill_density_percent": arguments.density,
             "infill_direction_deg": arguments.direction,
             "set": self.set,
+            "finger_model": setup.evaluator.fingers.kind().name(),
             "rcc_mm": self.specimen.finger.rcc / MM,
+            "rcc_from": from_word(self.specimen.centre),
+            "tilting_nm_per_rad": self.specimen.finger.rotation[0],
             "stiffness": self.specimen.stiffness,
         })
     }
 
     /// What was set, and the stiffness, a line each.
-    pub fn text(&self) -> String {
+    pub fn text(&self, setup: &Setup) -> String {
         let stiffness = &self.specimen.stiffness;
         let stiffness = match self.given {
             false => words::stiffness(stiffness),
@@ -126,10 +136,39 @@ impl Chosen {
                 stiffness.assembly.mean / N_PER_MM
             ),
         };
-        if self.set.0.is_empty() {
-            return stiffness;
+        let finger = self.finger_text(setup.evaluator.fingers.kind());
+        let set = match self.set.0.is_empty() {
+            true => String::new(),
+            false => format!("set           {}\n", self.set),
+        };
+        format!("{set}{stiffness}{finger}")
+    }
+
+    /// What the finger model made of it, if it is not the paper's; a line that begins anew.
+    fn finger_text(&self, kind: FingerModelKind) -> String {
+        let Specimen { finger, centre, .. } = &self.specimen;
+        if kind == FingerModelKind::Paper {
+            return String::new();
         }
-        format!("set           {}\n{stiffness}", self.set)
+        let (below, ahead) = (finger.rcc / MM, finger.ahead / MM);
+        let given = match centre {
+            CentreFrom::Model => String::new(),
+            CentreFrom::TaskFile => ", as the task file says, not computed".to_owned(),
+            CentreFrom::Design => format!(", as {RCC_KEY} says, not computed"),
+        };
+        format!(
+            "\nfinger        computed: tilting {:.2} N m/rad, remote centre {ahead:.1} mm in front of \
+             the pad\n              and {below:.1} mm below the grasp point{given}",
+            finger.rotation[0]
+        )
+    }
+}
+
+fn from_word(centre: CentreFrom) -> &'static str {
+    match centre {
+        CentreFrom::Model => "finger-model",
+        CentreFrom::TaskFile => "task",
+        CentreFrom::Design => "design",
     }
 }
 

@@ -136,6 +136,7 @@ impl Arguments {
             aggregate: self.aggregate(tasks.len())?,
             tasks,
             robot: evaluator.robot.name.clone(),
+            finger_model: evaluator.fingers.kind(),
             optimizer: self.optimizer.to_string(),
             objective: self.objective.clone(),
             constraints: self.constraint.clone(),

@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return print_json(&found.json(arguments));
     }
     let repeats = found.repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
-    print(&format!("{}\n{}{repeats}", found.chosen.text(), text(&found.trial)))
+    print(&format!("{}\n{}{repeats}", found.chosen.text(&found.setup), text(&found.trial)))
 }
 
 /// Simulates, with a sample each `every_s` seconds if that is given.
@@ -72,7 +72,7 @@ pub fn find(arguments: &Arguments, every_s: Option<f64>) -> Result<Found, Failur
     drop(grasped);
     drop(rig);
     if let Some(file) = &arguments.svg {
-        write_file(file, &picture::svg(&specimen.task, &trial))?;
+        write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial))?;
     }
     let repeats = arguments.repeat.outcomes(&setup, &chosen, offset)?;
     Ok(Found { setup, chosen, trial, samples, repeats })

@@ -20,7 +20,7 @@ pub fn check(dir: &Path, record: &StudyRecord, setup: &Setup) -> Result<(), Fail
     let rig = evaluator.rig(&specimen, 1.0).map_err(Failure::input)?;
     let trial = rig.grasp(&specimen.finger).trial(0.0);
     let file = dir.join(PICTURE);
-    write_own_file(&file, &picture::svg(&specimen.task, &trial))?;
+    write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial))?;
     let class = match trial.outcome {
         Outcome::Failed(class) => format!("{} (class {})", class.label(), class.number()),
         outcome => outcome.word().to_owned(),

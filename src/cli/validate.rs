@@ -3,6 +3,7 @@
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
 use super::{Failure, print, print_json};
 use crate::evaluation::tolerance::Search;
+use crate::finger::model::FingerSource;
 use crate::input::published::{self, Origin};
 use crate::input::robot::Robot;
 use crate::input::shipped::TASKS;
@@ -125,7 +126,8 @@ impl Arguments {
     ) -> Result<Vec<TaskTable>, Failure> {
         let designs = self.fingers.designs();
         let ways = |task: Task| {
-            let rig = setup::rig(self.engine, &task, robot).map_err(Failure::input)?;
+            let rig = setup::rig(self.engine, &task, robot, &FingerSource::Paper.any(&task))
+                .map_err(Failure::input)?;
             let way = Way { name: search_name(search).to_owned(), rig: rig.into(), search };
             Ok(TaskWays { task, ways: vec![way] })
         };

@@ -1,7 +1,7 @@
 //! A task from a few dimensions: plug, clearance and the body that the fingers hold.
 
 use super::plan::{self, PlanError};
-use crate::finger::notch::PAD_HEIGHT;
+use crate::finger::Pad;
 use crate::input::finger::FingerModel;
 use crate::input::task::{
     Friction, Grip, Hold, Part, Plug, Solid, Strategy, Success, Task, geometry,
@@ -100,7 +100,7 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
         faces_y: [0.0; 2],
         force: 5.0,
         hold: Hold::Always,
-        slip_limit: PAD_HEIGHT / 2.0,
+        slip_limit: Pad::PAPER.height / 2.0,
     };
     Task {
         name: name.to_owned(),
@@ -151,7 +151,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
 
 /// The pads must stay outside of the socket.
 fn long_enough(size: &Dimensions, top: f64) -> Result<(), DraftError> {
-    let pads = PAD_HEIGHT + BELOW_PADS;
+    let pads = Pad::PAPER.height + BELOW_PADS;
     let (option, length, least) = match size.body {
         Some(body) => ("--body", body.length, pads),
         None => ("--plug", top, pads / (1.0 - SHARE)),
@@ -162,7 +162,7 @@ fn long_enough(size: &Dimensions, top: f64) -> Result<(), DraftError> {
     Err(DraftError::TooShort {
         option,
         length_mm: length / MM,
-        pad_mm: PAD_HEIGHT / MM,
+        pad_mm: Pad::PAPER.height / MM,
         least_mm: least / MM,
     })
 }

@@ -1,7 +1,7 @@
 //! What a pair of fingertips finds of a plug between them.
 
 use super::body::{ConvexBody, clipped, span};
-use crate::finger::notch::{PAD_HEIGHT, ROOF_DEPTH, ROOF_GAP, WIDTH};
+use crate::finger::{Pad, ROOF_GAP};
 use crate::input::task::Part;
 use crate::units::MM;
 use nalgebra::Point3;
@@ -24,7 +24,7 @@ pub struct Held {
 
 /// From, to in z of pads whose roofs rest on a shoulder.
 pub fn pad_z(shoulder: f64) -> [f64; 2] {
-    [shoulder + ROOF_GAP - PAD_HEIGHT, shoulder + ROOF_GAP]
+    [shoulder + ROOF_GAP - Pad::PAPER.height, shoulder + ROOF_GAP]
 }
 
 /// Looks at a plug as the pads do whose roofs rest at `shoulder`; the faces they press are
@@ -46,7 +46,11 @@ fn before_pad(part: &Part, pad_z: [f64; 2]) -> Vec<Point3<f64>> {
     let within = clipped(&part.solid.corners(), 2, pad_z);
     let [low, high] = span(within.iter().map(|p| p.z));
     // What only touches the pads' edge from above or below is not between them.
-    if high - low < SEAM { Vec::new() } else { clipped(&within, 0, [-WIDTH / 2.0, WIDTH / 2.0]) }
+    if high - low < SEAM {
+        Vec::new()
+    } else {
+        clipped(&within, 0, [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0])
+    }
 }
 
 fn widest(pieces: &[Vec<Point3<f64>>]) -> Option<[(f64, usize); 2]> {
@@ -77,13 +81,13 @@ fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
 fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Option<f64> {
     // A seam inside, so that what the roof only touches from the side does not count.
     let column = match side {
-        0 => [face, face + ROOF_DEPTH - SEAM],
-        _ => [face - ROOF_DEPTH + SEAM, face],
+        0 => [face, face + Pad::PAPER.roof - SEAM],
+        _ => [face - Pad::PAPER.roof + SEAM, face],
     };
-    let from = shoulder - PAD_HEIGHT / 2.0;
+    let from = shoulder - Pad::PAPER.height / 2.0;
     let top = |part: &Part| {
         let piece = clipped(&part.solid.corners(), 1, column);
-        let piece = clipped(&piece, 0, [-WIDTH / 2.0, WIDTH / 2.0]);
+        let piece = clipped(&piece, 0, [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0]);
         let [low, high] = span(piece.iter().map(|p| p.y));
         let [_, top] = span(piece.iter().map(|p| p.z));
         (high - low > SEAM && top > from).then_some(top)

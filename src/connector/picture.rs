@@ -3,7 +3,7 @@
 use super::body::{ConvexBody, span};
 use super::path::{self, Waypoint};
 use super::seat::{Seat, Seating, section};
-use crate::finger;
+use crate::finger::Pad;
 use crate::input::task::{Part, Task};
 use crate::scene::{Geom, Pose};
 use crate::trial::picture::{convex_outline, escape};
@@ -174,7 +174,7 @@ impl Drawing<'_> {
         let grip = &self.task.grip;
         for (side, face) in [-1.0, 1.0].into_iter().zip(grip.faces_y) {
             let pose = self.start * Pose::translation(0.0, face, grip.tcp_z);
-            for geom in finger::tip(grip.shoulder_z - grip.tcp_z, side) {
+            for geom in Pad::PAPER.geoms(grip.shoulder(), side) {
                 polygon(
                     out,
                     frame,

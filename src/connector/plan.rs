@@ -8,7 +8,7 @@
 use super::body::ConvexBody;
 use super::path;
 use super::seat::{Seat, Seating, section};
-use crate::finger::notch::PAD_HEIGHT;
+use crate::finger::Pad;
 use crate::input::task::{Ending, Phase, Stage, Task};
 use crate::units::{DEG, MM};
 
@@ -94,7 +94,7 @@ fn grasp(task: &mut Task, plug: &ConvexBody) {
     let held = super::hold::held(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
     let cover = held.cover[0].min(held.cover[1]);
     task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
-    task.grip.slip_limit = round_mm((PAD_HEIGHT / 2.0).min(0.9 * cover));
+    task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
 }
 
 fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat) {

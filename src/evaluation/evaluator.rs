@@ -8,6 +8,8 @@ use super::template::{Impossible, Template};
 use super::tolerance::Search;
 use super::{Evaluation, Window};
 use crate::finger::Finger;
+use crate::finger::computed::AtPad;
+use crate::finger::model::{CentreFrom, FingerSource, Made};
 use crate::input::robot::Robot;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::input::task::Task;
@@ -22,6 +24,8 @@ use std::sync::atomic::AtomicBool;
 pub struct Evaluator {
     /// Predicts a finger's stiffness from its infill.
     pub surrogate: Model,
+    /// Makes a finger of a stiffness and a design.
+    pub fingers: FingerSource,
     /// The tasks, whose numbers a design may set; at least one.
     pub templates: Vec<Template>,
     /// The robot.
@@ -37,6 +41,8 @@ pub struct Specimen {
     pub task: Task,
     /// The finger.
     pub finger: Finger,
+    /// What places its remote centre.
+    pub centre: CentreFrom,
     /// The stiffness that the finger was given, with its error.
     pub stiffness: Prediction,
 }
@@ -76,9 +82,10 @@ impl Evaluator {
         design: &Design,
         stiffness: Prediction,
     ) -> Result<Specimen, Impossible> {
-        let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-        let (task, finger) = template.apply(design, finger)?;
-        Ok(Specimen { task, finger, stiffness })
+        let (compliance, assembly) = (stiffness.compliance.mean, stiffness.assembly.mean);
+        let at_pad = AtPad { compliance, assembly };
+        let (task, Made { finger, centre }) = template.apply(design, &self.fingers, at_pad)?;
+        Ok(Specimen { task, finger, centre, stiffness })
     }
 
     /// Where trials of a specimen are run, with the engine's step times `step_factor`.
@@ -86,7 +93,7 @@ impl Evaluator {
     /// # Errors
     /// If robot or engine cannot do the task.
     pub fn rig(&self, specimen: &Specimen, step_factor: f64) -> Result<Box<dyn Rig>, RigError> {
-        self.engine.rig(&specimen.task, &self.robot, step_factor)
+        self.engine.rig(&specimen.task, &self.robot, &specimen.finger, step_factor)
     }
 
     /// Measures the window of a specimen, looked for by `search`, and what the plan adds; ends

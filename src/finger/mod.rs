@@ -1,10 +1,13 @@
-//! One printed finger as the paper models it: six springs about a remote
-//! centre of compliance (RCC), Sec. "Stiffness model" and Table "Simulation Inputs".
+//! One printed finger: six springs about a remote centre of compliance (RCC), a pad and a
+//! roof. As the paper models it (Sec. "Stiffness model" and Table "Simulation Inputs"), or
+//! computed from its ribs.
 
+pub mod computed;
 pub mod export;
+pub mod model;
 pub mod printed;
 
-use crate::input::finger::{Coupling, FingerModel};
+use crate::input::finger::{Coupling, FingerModel, Rcc};
 use crate::scene::{Coupled, Geom, Inertia, JointAxis, Pose, Shape, Spring, Springs};
 use crate::units::{GRAM, MM, N_PER_MM};
 use nalgebra::{Matrix6, Point3, Vector3};
@@ -12,16 +15,20 @@ use nalgebra::{Matrix6, Point3, Vector3};
 /// One finger, in SI units; both fingers of a gripper are alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
-    /// Spring in y, the direction in which the jaws close, N/m.
+    /// Spring in y at the RCC, the direction in which the jaws close, N/m.
     pub compliance: f64,
-    /// Spring in z, the direction of assembly, N/m.
+    /// Spring in z at the RCC, the direction of assembly, N/m.
     pub assembly: f64,
     /// Spring in x, across the finger's width, N/m.
     pub depth: f64,
     /// Rotational springs about x, y and z through the RCC, N m/rad.
     pub rotation: [f64; 3],
-    /// Distance of the RCC from the contact plane towards the plug's tip, m.
+    /// Distance of the RCC below the TCP, towards the plug's tip, m.
     pub rcc: f64,
+    /// Distance of the RCC in front of the pad's face, into the part, m.
+    pub ahead: f64,
+    /// Its pad and roof.
+    pub pad: Pad,
     /// Mass, kg.
     pub mass: f64,
     /// Translational damping of the springs, N s/m.
@@ -46,7 +53,9 @@ impl Finger {
             assembly,
             depth: 100.0 * N_PER_MM,
             rotation: [TILTING, 10.0, 10.0],
-            rcc: 21.0 * MM,
+            rcc: Rcc::PAPER.at_zero,
+            ahead: 0.0,
+            pad: Pad::PAPER,
             mass: 2.0 * GRAM,
             damping: 10.0,
             rotational_damping: 0.02,
@@ -56,28 +65,57 @@ impl Finger {
 
     /// The same with what a task file says of its fingers, the infill in this direction, degrees.
     pub fn shaped(self, model: &FingerModel, direction_deg: f64) -> Self {
-        Finger { rcc: model.rcc.at(direction_deg), coupling: model.coupling, ..self }
+        let rcc = model.rcc.unwrap_or(Rcc::PAPER).at(direction_deg);
+        Finger { rcc, coupling: model.coupling, ..self }
     }
 }
 
 /// The notch: a vertical pad that presses the part, and a roof above it that
 /// rests on the part's shoulder and carries the assembly force. Dimensions in m.
-pub mod notch {
-    use crate::units::MM;
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pad {
     /// Width of pad and roof in x.
-    pub const WIDTH: f64 = 12.0 * MM;
+    pub width: f64,
     /// Height of the pad, downward from the roof.
-    pub const PAD_HEIGHT: f64 = 8.4 * MM;
-    /// Thickness of the pad behind its face (not decisive).
-    pub const PAD_THICKNESS: f64 = 4.0 * MM;
+    pub height: f64,
     /// How far the roof reaches over the part in y.
-    pub const ROOF_DEPTH: f64 = 2.5 * MM;
-    /// Thickness of the roof (not decisive).
-    pub const ROOF_THICKNESS: f64 = 3.0 * MM;
-    /// Gap between roof and shoulder at the grasp: the roof comes to rest on
-    /// the shoulder when the part is first pushed up.
-    pub const ROOF_GAP: f64 = 0.05 * MM;
+    pub roof: f64,
 }
+
+impl Pad {
+    /// That of the published simulation.
+    pub const PAPER: Pad = Pad { width: 12.0 * MM, height: 8.4 * MM, roof: 2.5 * MM };
+
+    /// Height of its middle above the TCP, m; `shoulder` as of [`Pad::geoms`].
+    pub fn middle(&self, shoulder: f64) -> f64 {
+        shoulder + ROOF_GAP - self.height / 2.0
+    }
+
+    /// Pad and roof in the finger frame: origin on the pad's face at the height of
+    /// the TCP, `side` -1 for the finger at -y, +1 for the one at +y; `shoulder` is
+    /// the height of the part's shoulder above the TCP, m.
+    pub fn geoms(&self, shoulder: f64, side: f64) -> Vec<Geom> {
+        let roof_z = shoulder + ROOF_GAP;
+        let cuboid = |name: &str, y: [f64; 2], z: [f64; 2]| Geom {
+            name: name.into(),
+            shape: Shape::Box { half: Vector3::new(self.width, y[1] - y[0], z[1] - z[0]) / 2.0 },
+            pose: Pose::translation(0.0, side * (y[0] + y[1]) / 2.0, (z[0] + z[1]) / 2.0),
+            friction: None,
+        };
+        vec![
+            cuboid("pad", [0.0, PAD_THICKNESS], [roof_z - self.height, roof_z]),
+            cuboid("roof", [-self.roof, PAD_THICKNESS], [roof_z, roof_z + ROOF_THICKNESS]),
+        ]
+    }
+}
+
+/// Thickness of the pad behind its face (not decisive), m.
+const PAD_THICKNESS: f64 = 4.0 * MM;
+/// Thickness of the roof (not decisive), m.
+const ROOF_THICKNESS: f64 = 3.0 * MM;
+/// Gap between roof and shoulder at the grasp, m: the roof comes to rest on the shoulder
+/// when the part is first pushed up.
+pub const ROOF_GAP: f64 = 0.05 * MM;
 
 impl Finger {
     /// The six springs about the RCC: translations x, y, z, rotations x, y, z.
@@ -97,7 +135,12 @@ impl Finger {
 }
 
 impl Finger {
-    /// What ties the finger to its jaw at the RCC; `side` as of [`tip`].
+    /// Where the RCC is in the finger frame, m; `side` as of [`Pad::geoms`].
+    pub fn centre(&self, side: f64) -> Point3<f64> {
+        Point3::new(0.0, -side * self.ahead, -self.rcc)
+    }
+
+    /// What ties the finger to its jaw at the RCC; `side` as of [`Pad::geoms`].
     pub fn mounted(&self, side: f64) -> Springs {
         let springs = self.springs();
         match &self.coupling {
@@ -110,24 +153,6 @@ impl Finger {
     }
 }
 
-/// Pad and roof in the finger frame: origin on the pad's face at the height of
-/// the TCP, `side` -1 for the finger at -y, +1 for the one at +y; `shoulder` is
-/// the height of the part's shoulder above the TCP, m.
-pub fn tip(shoulder: f64, side: f64) -> Vec<Geom> {
-    use notch::*;
-    let roof_z = shoulder + ROOF_GAP;
-    let cuboid = |name: &str, y: [f64; 2], z: [f64; 2]| Geom {
-        name: name.into(),
-        shape: Shape::Box { half: Vector3::new(WIDTH, y[1] - y[0], z[1] - z[0]) / 2.0 },
-        pose: Pose::translation(0.0, side * (y[0] + y[1]) / 2.0, (z[0] + z[1]) / 2.0),
-        friction: None,
-    };
-    vec![
-        cuboid("pad", [0.0, PAD_THICKNESS], [roof_z - PAD_HEIGHT, roof_z]),
-        cuboid("roof", [-ROOF_DEPTH, PAD_THICKNESS], [roof_z, roof_z + ROOF_THICKNESS]),
-    ]
-}
-
 /// Radius of gyration of a finger about its centre of mass, m: that of a rod of
 /// the length of a printed finger (70 mm).
 const GYRATION: f64 = 20.0 * MM;
@@ -135,11 +160,11 @@ const GYRATION: f64 = 20.0 * MM;
 /// Mass properties of a finger, in the finger frame. Its centre of mass is put
 /// on its axis at the RCC, about the middle of a real finger; at the speed of
 /// an insertion 2 g do not matter, but a centre far from the joint would couple
-/// the six springs in the engine and slow its convergence.
-pub fn inertia(finger: &Finger) -> Inertia {
+/// the six springs in the engine and slow its convergence. `side` as of [`Pad::geoms`].
+pub fn inertia(finger: &Finger, side: f64) -> Inertia {
     Inertia {
         mass: finger.mass,
-        centre: Point3::new(0.0, 0.0, -finger.rcc),
+        centre: finger.centre(side),
         moments: Vector3::repeat(finger.mass * GYRATION * GYRATION),
     }
 }
@@ -147,7 +172,6 @@ pub fn inertia(finger: &Finger) -> Inertia {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::finger::Rcc;
     use crate::scene::{Spring, Springs};
 
     #[test]
@@ -160,7 +184,7 @@ mod tests {
     #[test]
     fn the_remote_centre_moves_with_the_infill_direction() {
         let rcc = Rcc { at_zero: 21.0 * MM, per_degree: -0.1 * MM };
-        let model = FingerModel { rcc, ..FingerModel::default() };
+        let model = FingerModel { rcc: Some(rcc), ..FingerModel::default() };
         assert!((Finger::new(2e3, 4e4).shaped(&model, 30.0).rcc - 18.0 * MM).abs() < 1e-15);
     }
 

@@ -3,11 +3,11 @@
 use crate::units::MM;
 use nalgebra::Matrix6;
 
-/// The part of a finger that the task file decides; the default is the paper's finger.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The part of a finger that the task file decides; the default leaves it as it is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FingerModel {
-    /// Where its remote centre of compliance is.
-    pub rcc: Rcc,
+    /// Where its remote centre of compliance is, if the file says so.
+    pub rcc: Option<Rcc>,
     /// How its springs pull at one another, if they do.
     pub coupling: Option<Coupling>,
 }
@@ -29,13 +29,10 @@ pub struct Rcc {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coupling(Matrix6<f64>);
 
-impl Default for FingerModel {
-    fn default() -> Self {
-        FingerModel { rcc: Rcc { at_zero: 21.0 * MM, per_degree: 0.0 }, coupling: None }
-    }
-}
-
 impl Rcc {
+    /// The paper's, for all directions.
+    pub const PAPER: Rcc = Rcc { at_zero: 21.0 * MM, per_degree: 0.0 };
+
     /// The distance for an infill direction in degrees, m.
     pub fn at(&self, direction_deg: f64) -> f64 {
         // 0 times an unknown direction is not unknown.
@@ -60,6 +57,16 @@ impl Coupling {
             matrix[(j, i)] = coefficient;
         }
         matrix.cholesky().map(|_| Coupling(matrix))
+    }
+
+    /// The coefficients of a stiffness matrix; `None` unless it is positive definite.
+    pub fn of(stiffness: &Matrix6<f64>) -> Option<Self> {
+        stiffness.cholesky()?;
+        let scale = |i: usize, j: usize| (stiffness[(i, i)] * stiffness[(j, j)]).sqrt();
+        Some(Coupling(Matrix6::from_fn(|i, j| match i == j {
+            true => 1.0,
+            false => stiffness[(i, j)] / scale(i, j),
+        })))
     }
 
     /// The stiffness matrix of springs that are coupled so. The finger at +y (`side` +1) is

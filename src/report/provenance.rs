@@ -49,6 +49,7 @@ pub(super) fn provenance(record: &StudyRecord) -> Markup {
     add("study", config.name());
     add("task", config.task_name());
     add("robot", config.robot.clone());
+    add("finger model", config.finger_model.name().to_owned());
     add("optimizer", config.method());
     add("objective", config.objective.to_string());
     add("seed", config.seed.to_string());

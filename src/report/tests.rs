@@ -38,6 +38,7 @@ fn config(task: &str) -> StudyConfig {
         seed: 7,
         budget: 200,
         polish: 0,
+        finger_model: Default::default(),
         batch: 4,
         provenance: provenance(),
         space: Space::parse(include_str!("../../spaces/infill.toml"), "infill.toml").unwrap(),

@@ -3,6 +3,7 @@
 use super::differences::differences;
 use super::provenance::Provenance;
 use crate::evaluation::objective::{Aggregate, Constraint, Goals, Objectives};
+use crate::finger::model::FingerModelKind;
 use crate::input::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,9 @@ pub struct StudyConfig {
     pub tasks: Vec<String>,
     /// Name of the robot.
     pub robot: String,
+    /// Where the springs of a finger come from that were not measured.
+    #[serde(default, skip_serializing_if = "is_paper")]
+    pub finger_model: FingerModelKind,
     /// Name of the optimizer.
     pub optimizer: String,
     /// What is optimized.
@@ -97,6 +101,10 @@ impl StudyConfig {
         let raised = StudyConfig { budget, provenance, ..self.clone() };
         differences(&raised, asked, ["the study", "now"])
     }
+}
+
+fn is_paper(kind: &FingerModelKind) -> bool {
+    *kind == FingerModelKind::Paper
 }
 
 fn is_zero(number: &u64) -> bool {

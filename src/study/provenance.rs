@@ -18,7 +18,7 @@ pub struct Provenance {
     /// SHA-256 of the program's sources, in hexadecimal.
     pub source_sha256: String,
     /// SHA-256 of each input file by its role (`task_1` and so on, `space`, `robot`,
-    /// `stiffness`; `uncertainty` where there is one), in hexadecimal.
+    /// `stiffness`; `uncertainty` and the `finger` of computed ones where there is one), in hexadecimal.
     pub input_sha256: BTreeMap<String, String>,
     /// The contact engine.
     pub engine: EngineRecord,

@@ -237,11 +237,11 @@ fn hand(
     });
     let body = scene.body(Body {
         name: format!("finger {label}"),
-        motion: Motion::Free(finger::inertia(finger)),
+        motion: Motion::Free(finger::inertia(finger, side)),
         pose: tcp * in_flange,
-        geoms: finger::tip(task.grip.shoulder_z - task.grip.tcp_z, side),
+        geoms: finger.pad.geoms(task.grip.shoulder(), side),
     });
-    let rcc = Pose::from_parts(Translation3::new(0.0, 0.0, -finger.rcc), nalgebra::one());
+    let rcc = Pose::from_parts(Translation3::from(finger.centre(side).coords), nalgebra::one());
     scene.joint(Joint {
         name: format!("springs {label}"),
         parent: jaw,

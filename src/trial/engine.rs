@@ -2,6 +2,7 @@
 
 use super::Rig;
 use super::run::{EngineRig, RigError};
+use crate::finger::Finger;
 use crate::input::robot::Robot;
 use crate::input::task::Task;
 use crate::physics::Engine;
@@ -106,16 +107,19 @@ impl EngineKind {
         self.build(1.0).engine().is_some()
     }
 
-    /// Where trials of one task with one robot are run, with the engine's step times
-    /// `step_factor`, if the three go together.
+    /// Where trials of one task with one robot and such fingers are run, with the engine's step
+    /// times `step_factor`, if they go together.
     pub fn rig(
         self,
         task: &Task,
         robot: &Robot,
+        finger: &Finger,
         step_factor: f64,
     ) -> Result<Box<dyn Rig>, RigError> {
         match self.build(step_factor) {
-            Built::Engine(engine) => Ok(Box::new(EngineRig::new(task.clone(), robot, engine)?)),
+            Built::Engine(engine) => {
+                Ok(Box::new(EngineRig::with(task.clone(), robot, finger, engine)?))
+            }
             #[cfg(feature = "fake-engine")]
             Built::ClosedForm => Ok(Box::new(super::fake::FakeRig::from_environment())),
         }

@@ -2,7 +2,7 @@
 //! seen along x (compliance-assembly plane) and along y (depth-assembly plane).
 
 use super::{Poses, Trial};
-use crate::finger;
+use crate::finger::Pad;
 use crate::input::task::Task;
 use crate::scene::{Geom, Pose};
 use crate::units::MM;
@@ -15,7 +15,7 @@ const SCALE: f64 = 3.2;
 const VIEW_MM: (f64, f64, f64) = (22.0, -34.0, 66.0);
 
 /// One row of panels per view, one column per phase, as a stand-alone SVG.
-pub fn svg(task: &Task, trial: &Trial) -> String {
+pub fn svg(task: &Task, pad: &Pad, trial: &Trial) -> String {
     let (half, low, high) = VIEW_MM;
     let (width, height) = (2.0 * half * SCALE, (high - low) * SCALE);
     let columns = trial.phases.len().max(1) as f64;
@@ -45,7 +45,7 @@ pub fn svg(task: &Task, trial: &Trial) -> String {
                 2.0 * half,
                 high - low
             );
-            panel(&mut out, task, &phase.poses, axis);
+            panel(&mut out, task, pad, &phase.poses, axis);
             let _ = write!(
                 out,
                 "<text x=\"{:.1}\" y=\"{:.1}\" font-size=\"3.6\">{} ({label}, z)</text>\n</svg>\n",
@@ -59,16 +59,15 @@ pub fn svg(task: &Task, trial: &Trial) -> String {
     out
 }
 
-fn panel(out: &mut String, task: &Task, poses: &Poses, axis: usize) {
+fn panel(out: &mut String, task: &Task, pad: &Pad, poses: &Poses, axis: usize) {
     for part in &task.socket {
         polygon(out, &part.geom(), &Pose::identity(), axis, "#b8c4d6");
     }
     for part in &task.plug.parts {
         polygon(out, &part.geom(), &poses.plug, axis, "#e8a33d");
     }
-    let shoulder = task.grip.shoulder_z - task.grip.tcp_z;
     for (pose, side) in poses.fingers.iter().zip([-1.0, 1.0]) {
-        for geom in finger::tip(shoulder, side) {
+        for geom in pad.geoms(task.grip.shoulder(), side) {
             polygon(out, &geom, pose, axis, "#5b8c5a");
         }
     }

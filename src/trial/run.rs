@@ -40,14 +40,25 @@ pub enum RigError {
 }
 
 impl EngineRig {
-    /// Puts the robot in place.
+    /// Puts the robot in place; for fingers as in the paper, whose springs are not coupled
+    /// unless the task says so.
     pub fn new(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<Self, RigError> {
+        // What a scene needs does not depend on how stiff its fingers are.
+        let any = Finger::new(N_PER_MM, N_PER_MM).shaped(&task.finger, 0.0);
+        Self::with(task, robot, &any, engine)
+    }
+
+    /// The same for such fingers.
+    pub fn with(
+        task: Task,
+        robot: &Robot,
+        finger: &Finger,
+        engine: Box<dyn Engine>,
+    ) -> Result<Self, RigError> {
         let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(|error| {
             RigError::Robot { robot: robot.name.clone(), task: task.name.clone(), error }
         })?;
-        // What a scene needs does not depend on how stiff its fingers are.
-        let any = Finger::new(N_PER_MM, N_PER_MM).shaped(&task.finger, 0.0);
-        engine.supports(&cell::build(&task, &mounted, &any).scene)?;
+        engine.supports(&cell::build(&task, &mounted, finger).scene)?;
         Ok(EngineRig { task, robot: mounted, engine })
     }
 

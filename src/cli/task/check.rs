@@ -80,7 +80,7 @@ pub fn check(
     }
     let finger = middling()?;
     let shaped = finger.shaped(&task.finger, 0.0);
-    let rig = rig(engine, &task, &robot(robot_name)?).map_err(Failure::input)?;
+    let rig = rig(engine, &task, &robot(robot_name)?, &shaped).map_err(Failure::input)?;
     let trial = rig.grasp(&shaped).trial(0.0);
     let explanation = nominal::explain(&task, &trial);
     Ok(Checked { problems, nominal: Some(Nominal { finger, trial, explanation }) })

@@ -16,6 +16,9 @@ mod numbers;
 mod space;
 
 use crate::finger::Finger;
+use crate::finger::computed::AtPad;
+use crate::finger::model::{FingerSource, Made, RCC_KEY, TILTING_KEY};
+use crate::finger::printed::FingerError;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::input::task::Task;
 use crate::input::{Check, InputError, read};
@@ -41,6 +44,9 @@ pub enum Impossible {
     /// It sets what does not exist, or to what cannot be.
     #[error(transparent)]
     Value(#[from] InputError),
+    /// Its finger cannot be printed, or cannot be so stiff.
+    #[error(transparent)]
+    Finger(#[from] FingerError),
     /// The robot or the engine cannot do the task that it makes.
     #[error(transparent)]
     Rig(#[from] RigError),
@@ -51,9 +57,9 @@ type FingerNumber = (&'static str, fn(&mut Finger) -> &mut f64, f64);
 
 /// Compliance and assembly stiffness are not among them: the infill decides those.
 const FINGER: [FingerNumber; 8] = [
-    ("finger.rcc_mm", |finger| &mut finger.rcc, MM),
+    (RCC_KEY, |finger| &mut finger.rcc, MM),
     ("finger.depth_n_per_mm", |finger| &mut finger.depth, N_PER_MM),
-    ("finger.rotation_x_nm_per_rad", |finger| &mut finger.rotation[0], 1.0),
+    (TILTING_KEY, |finger| &mut finger.rotation[0], 1.0),
     ("finger.rotation_y_nm_per_rad", |finger| &mut finger.rotation[1], 1.0),
     ("finger.rotation_z_nm_per_rad", |finger| &mut finger.rotation[2], 1.0),
     ("finger.mass_g", |finger| &mut finger.mass, GRAM),
@@ -92,10 +98,14 @@ impl Template {
         keys
     }
 
-    /// The task and the finger with the values that the design gives; what it does
-    /// not name stays as in the task file and in `finger`. The stiffness by the infill is
-    /// left to the surrogate; by its direction the task file places the remote centre.
-    pub fn apply(&self, design: &Design, finger: Finger) -> Result<(Task, Finger), InputError> {
+    /// The task, and the finger of this stiffness at its pad, with the values that the design
+    /// gives; what it does not name stays as in the task file and as `fingers` makes it.
+    pub fn apply(
+        &self,
+        design: &Design,
+        fingers: &FingerSource,
+        at_pad: AtPad,
+    ) -> Result<(Task, Made), Impossible> {
         let (of_finger, of_task): (Vec<_>, Vec<_>) = design
             .0
             .iter()
@@ -104,17 +114,20 @@ impl Template {
             .partition(|(key, _)| finger_keys().contains(key));
         let task = self.changed(&of_task)?;
         let direction = design.get(DIRECTION_KEY);
-        if task.finger.rcc.varies() && direction.is_none() {
+        if task.finger.rcc.is_some_and(|rcc| rcc.varies()) && direction.is_none() {
             let problem = "is missing: the task's finger.rcc_mm depends on it";
-            return Check { file: DESIGN }.fail(DIRECTION_KEY, problem);
+            return Ok(Check { file: DESIGN }.fail(DIRECTION_KEY, problem)?);
         }
-        let mut finger = finger.shaped(&task.finger, direction.unwrap_or_default());
+        for (key, value) in &of_finger {
+            checked(key, *value)?;
+        }
+        let mut made = fingers.make(at_pad, design, &task)?;
         for (key, number, unit) in FINGER {
             if let Some((_, value)) = of_finger.iter().find(|(name, _)| *name == key) {
-                *number(&mut finger) = checked(key, *value)? * unit;
+                *number(&mut made.finger) = value * unit;
             }
         }
-        Ok((task, finger))
+        Ok((task, made))
     }
 
     /// The task with these numbers in place of its own.
@@ -150,7 +163,7 @@ impl Template {
 /// A number of a finger that can be simulated: the remote centre may lie on either side.
 fn checked(key: &str, value: f64) -> Result<f64, InputError> {
     let check = Check { file: DESIGN };
-    if key == "finger.rcc_mm" { check.finite(key, value) } else { check.positive(key, value) }
+    if key == RCC_KEY { check.finite(key, value) } else { check.positive(key, value) }
 }
 
 #[cfg(test)]
@@ -166,13 +179,16 @@ mod tests {
         Template::parse(file.text, file.file).unwrap()
     }
 
+    const AT_PAD: AtPad = AtPad { compliance: 2e3, assembly: 4e4 };
+
     fn finger() -> Finger {
-        Finger::new(2e3, 4e4)
+        Finger::new(AT_PAD.compliance, AT_PAD.assembly)
     }
 
-    fn apply(values: &[(&str, f64)]) -> Result<(Task, Finger), InputError> {
+    fn apply(values: &[(&str, f64)]) -> Result<(Task, Finger), Impossible> {
         let values = values.iter().map(|&(key, value)| (key.to_owned(), value));
-        usb().apply(&Design(BTreeMap::from_iter(values)), finger())
+        let design = Design(BTreeMap::from_iter(values));
+        usb().apply(&design, &FingerSource::Paper, AT_PAD).map(|(task, made)| (task, made.finger))
     }
 
     #[test]
@@ -211,8 +227,9 @@ mod tests {
                 .map(|(key, value)| (key, value.as_float().unwrap()))
                 .collect();
             assert!(values.len() > 50, "{}", file.name);
-            let (task, _) =
-                template.apply(&Design(values.into_iter().collect()), finger()).unwrap();
+            let (task, _) = template
+                .apply(&Design(values.into_iter().collect()), &FingerSource::Paper, AT_PAD)
+                .unwrap();
             assert_eq!(&task, template.task());
         }
     }
@@ -246,7 +263,8 @@ mod tests {
         let text = file.text.replace("name = \"front\"", "name = \"back\"");
         let template = Template::parse(&text, "my.toml").unwrap();
         let key = "task.strategy.phase.back.settle_s".to_owned();
-        let error = template.apply(&Design([(key, 0.1)].into()), finger()).unwrap_err();
+        let error =
+            template.apply(&Design([(key, 0.1)].into()), &FingerSource::Paper, AT_PAD).unwrap_err();
         assert!(error.to_string().contains("same name"), "{error}");
     }
 }

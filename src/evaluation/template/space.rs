@@ -1,7 +1,8 @@
 //! Whether every design of a space can be simulated, asked before the first one is.
 
 use super::{Impossible, Template, is_infill};
-use crate::finger::Finger;
+use crate::finger::computed::AtPad;
+use crate::finger::model::FingerSource;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Parameter, Space};
 use crate::input::task::Task;
 use crate::input::{Check, InputError};
@@ -67,7 +68,8 @@ impl Template {
         // Any stiffness: it takes no part in the checks.
         let mut design = design.clone();
         design.0.entry(DIRECTION_KEY.to_owned()).or_insert(0.0);
-        let (task, _) = self.apply(&design, Finger::new(1.0, 1.0))?;
+        let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };
+        let (task, _) = self.apply(&design, &FingerSource::Paper, at_pad)?;
         Ok(fits(&task)?)
     }
 }

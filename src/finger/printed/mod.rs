@@ -11,6 +11,7 @@ mod front;
 pub mod geometry;
 mod halving;
 pub mod infill;
+pub mod known;
 pub mod mechanics;
 pub mod mesh;
 pub mod model;
@@ -54,6 +55,35 @@ pub enum FingerError {
         file: String,
         /// Computed compliance stiffness, N/mm.
         compliance: f64,
+    },
+    /// Springs that cannot be about this remote centre.
+    #[error(
+        "{file}: a finger of {at_pad:.2} N/mm in {axis} at its pad cannot turn about a centre \
+         {lever:.1} mm beside it at {tilting:.2} N m/rad: that alone gives way at {turning:.2} N/mm; \
+         bring finger.rcc_mm nearer to the pad, or use --finger-model paper"
+    )]
+    Springs {
+        /// The finger file.
+        file: String,
+        /// `compliance` or `assembly`.
+        axis: &'static str,
+        /// Stiffness at the pad, N/mm.
+        at_pad: f64,
+        /// Distance of the remote centre across that direction, mm.
+        lever: f64,
+        /// Tilting stiffness, N m/rad.
+        tilting: f64,
+        /// Stiffness at the pad of the tilting spring alone, N/mm.
+        turning: f64,
+    },
+    /// A task whose file couples springs that are computed.
+    #[error(
+        "the task `{task}`: finger.coupling goes with --finger-model paper; the springs of a \
+         computed finger are coupled as its ribs say"
+    )]
+    Coupled {
+        /// The task.
+        task: String,
     },
 }
 

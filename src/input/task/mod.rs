@@ -64,6 +64,13 @@ pub struct Grip {
     pub slip_limit: f64,
 }
 
+impl Grip {
+    /// Height of the shoulder above the TCP, m.
+    pub fn shoulder(&self) -> f64 {
+        self.shoulder_z - self.tcp_z
+    }
+}
+
 /// When the jaws are held where the grasp left them, as by a non-backdrivable
 /// gear; otherwise they go on pressing with the grasp force and give way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]

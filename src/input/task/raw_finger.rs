@@ -51,8 +51,7 @@ enum RawAxis {
 impl Check<'_> {
     /// The fingers of a task file.
     pub(super) fn finger(&self, raw: &RawFinger) -> Result<FingerModel, InputError> {
-        let default = FingerModel::default();
-        let rcc = raw.rcc_mm.map(|rcc| self.rcc(rcc)).transpose()?.unwrap_or(default.rcc);
+        let rcc = raw.rcc_mm.map(|rcc| self.rcc(rcc)).transpose()?;
         Ok(FingerModel { rcc, coupling: self.coupling(&raw.coupling)? })
     }
 
@@ -119,8 +118,9 @@ mod tests {
 
     #[test]
     fn the_remote_centre_is_a_number_or_a_line() {
-        assert_eq!(parse("[finger]\nrcc_mm = 25").unwrap().rcc.at(40.0), 25.0 * MM);
-        let line = parse("[finger]\nrcc_mm = { at_0_deg = 21.0, per_deg = 0.25 }").unwrap().rcc;
+        assert_eq!(parse("[finger]\nrcc_mm = 25").unwrap().rcc.unwrap().at(40.0), 25.0 * MM);
+        let line =
+            parse("[finger]\nrcc_mm = { at_0_deg = 21.0, per_deg = 0.25 }").unwrap().rcc.unwrap();
         assert!((line.at(40.0) - 31.0 * MM).abs() < 1e-15);
     }
 

@@ -82,7 +82,7 @@ fn mounted(finger: &Finger) -> (Scene, BodyId) {
     let jaw = scene.body(build::fixed("jaw", Pose::identity(), Vec::new()));
     let body = scene.body(Body {
         name: "finger".into(),
-        motion: Motion::Free(finger::inertia(finger)),
+        motion: Motion::Free(finger::inertia(finger, -1.0)),
         pose: Pose::identity(),
         geoms: Vec::new(),
     });

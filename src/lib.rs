@@ -41,6 +41,8 @@ pub mod evaluation;
 
 pub mod optimizer;
 
+pub mod sensitivity;
+
 pub mod study;
 
 pub mod verify;

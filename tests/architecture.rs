@@ -19,6 +19,7 @@ const FLOW: [&str; 17] = [
     "connector",
     "evaluation",
     "optimizer",
+    "sensitivity",
     "study",
     "verify",
     "report",

@@ -18,6 +18,7 @@ mod recommended;
 mod repeat;
 mod report;
 mod resume;
+mod sensitivity;
 mod session;
 mod setup;
 mod specimen;
@@ -120,6 +121,10 @@ enum Command {
     Check(check::Arguments),
     #[command(after_help = "Example: optimize cross-check --against mujoco --reduced")]
     CrossCheck(cross_check::Arguments),
+    #[command(
+        after_help = "Example: optimize sensitivity --task usb --space codesign --svg usb.svg"
+    )]
+    Sensitivity(sensitivity::Arguments),
     #[command(after_help = "Example: optimize validate --task ket8 --strides")]
     Validate(validate::Arguments),
     #[command(after_help = "Example: optimize measure check published")]
@@ -196,6 +201,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::CrossCheck(arguments)) => cross_check::run(&arguments),
+        Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
         Some(Command::Validate(arguments)) => validate::run(&arguments),
         Some(Command::Measure(arguments)) => measure::run(&arguments),
         Some(Command::Bench(arguments)) => bench::run(&arguments),

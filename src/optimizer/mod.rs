@@ -19,7 +19,7 @@ pub use lattice::GridSearch;
 pub use polish::Polished;
 pub use proposed::Proposed;
 pub use random::RandomSearch;
-pub use sobol::SobolSearch;
+pub use sobol::{SobolSearch, SobolSequence};
 
 use crate::input::space::GridPoint;
 

@@ -56,6 +56,12 @@ fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
 }
 
 impl Draw {
+    /// An insertion under these conditions, whose finger's compliance and assembly stiffness lie so
+    /// many standard deviations of the stiffness model above their medians.
+    pub fn under(conditions: Conditions, stiffness: [f64; 2]) -> Self {
+        Draw { offset: 0.0, conditions, stiffness, stiffness_sd_factor: 1.0 }
+    }
+
     /// A finger that was to have the predicted stiffness, as it came out.
     pub fn finger(&self, nominal: &Finger, predicted: &Prediction) -> Finger {
         let [compliance, assembly] = self.stiffness;

@@ -1,0 +1,145 @@
+//! What may differ between two insertions: the keys of a space, and the errors of a cell.
+
+use crate::evaluation::Evaluation;
+use crate::evaluation::evaluator::Evaluator;
+use crate::evaluation::template::{Impossible, Template};
+use crate::evaluation::tolerance::{self, Search};
+use crate::evaluation::uncertainty::{Draw, Errors};
+use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use crate::trial::Conditions;
+use crate::units::{DEG, MM};
+
+/// Half the width over which a normal error is varied, in standard deviations: 95 % of it.
+const NORMAL_WIDTH_SD: f64 = 2.0;
+
+/// One input, varied evenly from `low` to `high` in the unit that its key carries.
+#[derive(Debug, Clone)]
+pub struct Factor {
+    /// A key of the space, or of a cell's error (`cell.clearance_mm`).
+    pub key: String,
+    /// Smallest value.
+    pub low: f64,
+    /// Largest value.
+    pub high: f64,
+    sets: Sets,
+}
+
+/// What a factor sets.
+#[derive(Debug, Clone, Copy)]
+enum Sets {
+    Design,
+    Compliance,
+    Assembly,
+    Condition(fn(&mut Conditions, f64)),
+}
+
+/// The inputs that are varied together, in order.
+#[derive(Debug, Clone)]
+pub struct Factors(Vec<Factor>);
+
+/// An error of a cell is measured from nominal: key, low, high, what it sets.
+type CellError = (&'static str, f64, f64, Sets);
+
+impl Factors {
+    /// Every key of the space with its bounds, then every error that is not 0. The infill must be in the space.
+    pub fn new(space: &Space, errors: Option<&Errors>) -> Result<Self, String> {
+        for key in [DENSITY_KEY, DIRECTION_KEY] {
+            if !space.parameters().iter().any(|parameter| parameter.key == key) {
+                return Err(format!("the space `{}` has no {key}", space.name()));
+            }
+        }
+        let of_space = space.parameters().iter().map(|parameter| Factor {
+            key: parameter.key.clone(),
+            low: parameter.low,
+            high: parameter.high,
+            sets: Sets::Design,
+        });
+        let of_cell = errors.map(cell).unwrap_or_default().into_iter();
+        let of_cell =
+            of_cell.map(|(key, low, high, sets)| Factor { key: key.to_owned(), low, high, sets });
+        Ok(Factors(of_space.chain(of_cell).filter(|factor| factor.low < factor.high).collect()))
+    }
+
+    /// The inputs, in the order of the cube's axes.
+    pub fn all(&self) -> &[Factor] {
+        &self.0
+    }
+
+    /// The window of the insertion at a point of the unit cube, by the quick search.
+    ///
+    /// # Errors
+    /// If the point cannot be simulated.
+    pub fn evaluate(
+        &self,
+        evaluator: &Evaluator,
+        template: &Template,
+        unit: &[f64],
+    ) -> Result<Evaluation, Impossible> {
+        let mut design = Design::default();
+        let (mut conditions, mut stiffness) = (Conditions::NOMINAL, [0.0; 2]);
+        for (factor, unit) in self.0.iter().zip(unit) {
+            let value = factor.low + unit.clamp(0.0, 1.0) * (factor.high - factor.low);
+            match factor.sets {
+                Sets::Design => drop(design.0.insert(factor.key.clone(), value)),
+                Sets::Compliance => stiffness[0] = value,
+                Sets::Assembly => stiffness[1] = value,
+                Sets::Condition(set) => set(&mut conditions, value),
+            }
+        }
+        let predicted = evaluator.predict(&design);
+        let specimen = evaluator.specimen(template, &design, predicted)?;
+        let rig = evaluator.rig(&specimen, 1.0)?;
+        let finger = Draw::under(conditions, stiffness).finger(&specimen.finger, &predicted);
+        Ok(tolerance::evaluate_in(&*rig, &finger, &conditions, Search::Strides))
+    }
+}
+
+fn cell(errors: &Errors) -> Vec<CellError> {
+    let both = |key, half_width: f64, sets| (key, -half_width, half_width, sets);
+    let percent = 100.0 * errors.friction_half_width;
+    let sd = NORMAL_WIDTH_SD * errors.stiffness_sd_factor;
+    vec![
+        both("cell.socket_yaw_deg", NORMAL_WIDTH_SD * errors.yaw_sd / DEG, {
+            Sets::Condition(|conditions, value| conditions.yaw = value * DEG)
+        }),
+        both("cell.friction_finger_percent", percent, {
+            Sets::Condition(|conditions, value| conditions.friction_finger = 1.0 + value / 100.0)
+        }),
+        both("cell.friction_socket_percent", percent, {
+            Sets::Condition(|conditions, value| conditions.friction_socket = 1.0 + value / 100.0)
+        }),
+        both("cell.clearance_mm", errors.clearance_half_width / MM, {
+            Sets::Condition(|conditions, value| conditions.clearance = value * MM)
+        }),
+        both("cell.grasp_across_mm", NORMAL_WIDTH_SD * errors.grasp_across_sd / MM, {
+            Sets::Condition(|conditions, value| conditions.grasp_across = value * MM)
+        }),
+        ("cell.grasp_low_mm", 0.0, errors.grasp_low_max / MM, {
+            Sets::Condition(|conditions, value| conditions.grasp_low = value * MM)
+        }),
+        both("cell.compliance_error_sd", sd, Sets::Compliance),
+        both("cell.assembly_error_sd", sd, Sets::Assembly),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::uncertainty::Uncertainty;
+    use crate::input::shipped::{SPACES, UNCERTAINTIES};
+
+    #[test]
+    fn a_space_and_a_cell_are_varied_together_and_what_is_certain_is_not() {
+        let space = SPACES.iter().find(|space| space.name == "infill").unwrap();
+        let space = Space::parse(space.text, space.file).unwrap();
+        let mut errors = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap().errors;
+        errors.yaw_sd = 0.0;
+        let factors = Factors::new(&space, Some(&errors)).unwrap();
+        let keys: Vec<&str> = factors.all().iter().map(|factor| &*factor.key).collect();
+        assert_eq!(&keys[..2], [DENSITY_KEY, DIRECTION_KEY]);
+        assert!(!keys.contains(&"cell.socket_yaw_deg") && keys.contains(&"cell.clearance_mm"));
+        let clearance =
+            factors.all().iter().find(|factor| factor.key == "cell.clearance_mm").unwrap();
+        assert!((clearance.low + 0.03).abs() < 1e-12 && (clearance.high - 0.03).abs() < 1e-12);
+    }
+}

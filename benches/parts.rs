@@ -8,8 +8,9 @@ use finger_opt::evaluation::template::Template;
 use finger_opt::evaluation::tolerance::{self, Search};
 use finger_opt::finger::Finger;
 use finger_opt::finger::model::{FingerModelKind, FingerSource};
+use finger_opt::input::printed::PrintedFinger;
 use finger_opt::input::robot::Robot;
-use finger_opt::input::shipped::{ROBOTS, SPACES, STIFFNESS, TASKS};
+use finger_opt::input::shipped::{FINGERS, ROBOTS, SPACES, STIFFNESS, TASKS};
 use finger_opt::input::space::Space;
 use finger_opt::input::stiffness;
 use finger_opt::input::task::Task;
@@ -45,7 +46,8 @@ fn space() -> Space {
 
 fn model() -> Model {
     let data = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file).expect("valid");
-    surrogate::fit(&data).expect("fits")
+    let finger = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).expect("valid");
+    surrogate::fit(&data, &finger).expect("fits")
 }
 
 fn simulation(c: &mut Criterion) {

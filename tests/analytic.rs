@@ -104,3 +104,23 @@ fn t13_a_soft_flange_trails_a_command_that_sets_off() {
 fn t14_a_contact_reports_the_whole_force_it_bears() {
     on_both(analytic::push::t14);
 }
+
+#[test]
+fn f1_beams_and_a_frame_bend_as_known() {
+    assert_passed(analytic::finger::f1());
+}
+
+#[test]
+fn f2_the_patch_test_is_passed() {
+    assert_passed(analytic::finger::f2());
+}
+
+#[test]
+fn f3_half_the_mesh_changes_little() {
+    assert_passed(analytic::finger::f3());
+}
+
+#[test]
+fn f4_another_program_finds_the_same_stiffness() {
+    assert_passed(analytic::finger::f4());
+}

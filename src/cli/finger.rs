@@ -1,6 +1,6 @@
 //! `optimize finger`: what a finger's ribs say of its stiffness.
 
-use super::setup::find;
+use super::setup::{DEFAULT_FINGER, printed_finger};
 use super::{Failure, print, print_json};
 use crate::finger::printed::geometry::Geometry;
 use crate::finger::printed::infill::Design;
@@ -8,7 +8,6 @@ use crate::finger::printed::mechanics::{self, FingerStiffness};
 use crate::finger::printed::picture;
 use crate::finger::printed::stiffness::PlanarStiffness;
 use crate::input::printed::PrintedFinger;
-use crate::input::shipped::FINGERS;
 use crate::study::write_file;
 use crate::units::{GRAM, MM, N_PER_MM};
 use clap::Args;
@@ -33,7 +32,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     direction: f64,
     /// Finger: finray9, or the path of a finger file
-    #[arg(long, value_name = "NAME", default_value = "finray9")]
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
     finger: String,
     /// Where the first rib lies, mm [default: the finger file's]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
@@ -81,8 +80,7 @@ struct AcrossRow {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = find("finger", FINGERS, &arguments.finger)?;
-    let finger = PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let finger = printed_finger(&arguments.finger)?;
     let design = Design {
         density_percent: arguments.density,
         direction_deg: arguments.direction,

@@ -20,7 +20,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dir = &arguments.dir;
     let record = StudyRecord::load(dir)?;
     let inputs = record.inputs(dir)?;
-    let surrogate = setup::surrogate(&setup::input(&inputs, STIFFNESS_DATA)?)?;
+    let surrogate = setup::surrogate(
+        &setup::input(&inputs, STIFFNESS_DATA)?,
+        &setup::printed_or_shipped(setup::finger_input(&inputs)?.as_ref())?,
+    )?;
     write(dir, &record, &surrogate)?;
     let count = record.evaluations.len();
     let page = dir.join(PAGE);

@@ -16,7 +16,7 @@ use crate::input::space::Space;
 use crate::input::stiffness;
 use crate::input::task::Task;
 use crate::study::{Inputs, Provenance, sha256};
-use crate::surrogate::{self, Model};
+use crate::surrogate::{self, FitError, Model};
 use crate::trial::Rig;
 use crate::trial::run::RigError;
 
@@ -135,7 +135,7 @@ impl Setup {
         let tasks = roles.map(|role| input(inputs, &role)).collect::<Result<Vec<_>, _>>()?;
         let [space, robot, stiffness] =
             [SPACE, ROBOT, STIFFNESS_DATA].map(|role| input(inputs, role));
-        let finger = inputs.contains_key(FINGER).then(|| input(inputs, FINGER)).transpose()?;
+        let finger = finger_input(inputs)?;
         let others = [&space?, &robot?, &stiffness?];
         let setup = Setup::parse(&tasks, others, finger.as_ref(), engine)?;
         match inputs.contains_key(UNCERTAINTY) {
@@ -151,6 +151,7 @@ impl Setup {
         engine: EngineKind,
     ) -> Result<Self, Failure> {
         let fingers = fingers(finger)?;
+        let printed = printed_or_shipped(finger)?;
         let [space_source, robot_source, stiffness_source] = others;
         let file = &space_source.file;
         let space = Space::parse(&space_source.text, file).map_err(Failure::input)?;
@@ -172,7 +173,7 @@ impl Setup {
         Ok(Setup {
             inputs: inputs.collect(),
             evaluator: Evaluator {
-                surrogate: surrogate(stiffness_source)?,
+                surrogate: surrogate(stiffness_source, &printed)?,
                 fingers,
                 templates,
                 robot,
@@ -238,6 +239,11 @@ pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
     }
 }
 
+/// The finger file kept in a study's folder, if its fingers are computed.
+pub fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
+    inputs.contains_key(FINGER).then(|| input(inputs, FINGER)).transpose()
+}
+
 /// The measurements the surrogate is fitted to.
 pub fn stiffness_data(path: Option<&str>) -> Result<Source, Failure> {
     find("stiffness data", STIFFNESS, path.unwrap_or("measured"))
@@ -264,8 +270,25 @@ pub fn rig(
     engine.rig(task, robot, finger, 1.0)
 }
 
-/// Fits the stiffness model to a CSV of measurements.
-pub fn surrogate(data: &Source) -> Result<Model, Failure> {
+/// The finger of that name, or of the file at that path.
+pub fn printed_finger(name: &str) -> Result<PrintedFinger, Failure> {
+    let source = find("finger", FINGERS, name)?;
+    PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)
+}
+
+/// The finger of a file; without one, the shipped finger.
+pub fn printed_or_shipped(source: Option<&Source>) -> Result<PrintedFinger, Failure> {
+    match source {
+        Some(Source { file, text }) => PrintedFinger::parse(text, file).map_err(Failure::input),
+        None => printed_finger(DEFAULT_FINGER),
+    }
+}
+
+/// Fits the stiffness model to a CSV of measurements of such fingers.
+pub fn surrogate(data: &Source, finger: &PrintedFinger) -> Result<Model, Failure> {
     let measurements = stiffness::parse(&data.text, &data.file).map_err(Failure::input)?;
-    surrogate::fit(&measurements).map_err(|error| Failure::usage(format!("{}: {error}", data.file)))
+    surrogate::fit(&measurements, finger).map_err(|error| match error {
+        FitError::Measurements(error) => Failure::usage(format!("{}: {error}", data.file)),
+        FitError::Finger(error) => Failure::input(error),
+    })
 }

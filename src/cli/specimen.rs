@@ -79,7 +79,7 @@ impl FingerArguments {
                 (Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM), true)
             }
             _ if self.density.is_some() && self.direction.is_some() => {
-                (setup.evaluator.predict(&design), false)
+                (setup.evaluator.predict(&design).map_err(Failure::input)?, false)
             }
             _ => return Err(Failure::usage("give --density and --direction")),
         };

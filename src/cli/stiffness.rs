@@ -1,6 +1,6 @@
 //! `optimize stiffness`: the stiffness model and how well it fits.
 
-use super::setup::{stiffness_data, surrogate};
+use super::setup::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
 use super::{Failure, print, print_json};
 use crate::report::stiffness;
 use crate::study::write_file;
@@ -14,6 +14,9 @@ pub struct Arguments {
     /// Your own stiffness measurements in place of the shipped ones
     #[arg(long, value_name = "FILE.csv")]
     stiffness_data: Option<String>,
+    /// Finger that was measured: finray9, or the path of a finger file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
+    finger: String,
     /// Also write a plot of the data, the model and its uncertainty
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
@@ -39,6 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     /// The model of the data that the arguments name.
     pub fn model(&self) -> Result<Model, Failure> {
-        surrogate(&stiffness_data(self.stiffness_data.as_deref())?)
+        let data = stiffness_data(self.stiffness_data.as_deref())?;
+        surrogate(&data, &printed_finger(&self.finger)?)
     }
 }

@@ -67,9 +67,12 @@ pub trait Evaluate: Sync {
 
 impl Evaluator {
     /// The stiffness predicted for a design, which must name the infill.
-    pub fn predict(&self, design: &Design) -> Prediction {
+    ///
+    /// # Errors
+    /// If it rests on the computed stiffness and the finger cannot be computed.
+    pub fn predict(&self, design: &Design) -> Result<Prediction, Impossible> {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
-        self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))
+        Ok(self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?)
     }
 
     /// A design of this stiffness on one of the tasks.
@@ -144,7 +147,7 @@ impl Evaluator {
         design: &Design,
         measure: impl Fn(&Specimen) -> Result<Evaluation, RigError>,
     ) -> Result<Measured, Impossible> {
-        let stiffness = self.predict(design);
+        let stiffness = self.predict(design)?;
         let on = |template| Ok(measure(&self.specimen(template, design, stiffness)?)?);
         let tasks = self.templates.iter().map(on).collect::<Result<_, Impossible>>()?;
         Ok(Measured { stiffness, tasks })

@@ -68,10 +68,21 @@ fn published_order(record: &StudyRecord) -> String {
 
 fn stiffness(model: &Model, robust: bool) -> String {
     let error = |axis| {
-        let used = model.chosen(axis)?;
-        Some(format!("{:.1} % in {}", used.mean_absolute_percent, axis.label()))
+        let percent = model.chosen(axis)?.mean_absolute_percent;
+        percent.is_finite().then(|| format!("{percent:.1} % in {}", axis.label()))
     };
     let errors: Vec<String> = Axis::ALL.into_iter().filter_map(error).collect();
+    let missed = match errors.is_empty() {
+        true => "How far it misses others is not known.".to_owned(),
+        false => format!(
+            "Each left out of the fit in turn, they are missed by {} on average.",
+            errors.join(" and by ")
+        ),
+    };
+    let ribs = match model.computes() {
+        true => ", and from the ribs of the finger",
+        false => "",
+    };
     let carried = if robust {
         "The windows shown are those of fingers of exactly the predicted stiffness; the robust \
          range alone carries its error."
@@ -79,12 +90,7 @@ fn stiffness(model: &Model, robust: bool) -> String {
         "The range is that of a finger of exactly the predicted stiffness; its error is not \
          carried into the range."
     };
-    format!(
-        "Stiffness is predicted from {} measured designs. Each left out of the fit in turn, they \
-         are missed by {} on average. {carried}",
-        model.measurements().len(),
-        errors.join(" and by ")
-    )
+    format!("Stiffness is predicted from {}{ribs}. {missed} {carried}", model.counted(),)
 }
 
 fn remote_centre(record: &StudyRecord) -> &'static str {

@@ -10,10 +10,11 @@ pub use super::stiffness_plot::svg;
 /// Leave-one-out errors of every model on both axes, and what was chosen.
 pub fn table(model: &Model) -> String {
     let mut text = format!(
-        "Stiffness of one finger, fitted to {} measured designs.\n\
+        "Stiffness of one finger, fitted to {}{}.\n\
          Errors are leave-one-out: each design is predicted by a model that never saw it.\n\n\
          {:<16}{:<34}{:>12}{:>12}{:>14}\n",
-        model.measurements().len(),
+        model.counted(),
+        if model.computes() { " and computed from its ribs" } else { "" },
         "axis",
         "model",
         "RMSE N/mm",
@@ -25,12 +26,12 @@ pub fn table(model: &Model) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{:<16}{:<34}{:>12.3}{:>12.2}{:>14.2}{chosen}",
+            "{:<16}{:<34}{:>12}{:>12}{:>14}{chosen}",
             row.axis.label(),
             row.model.label(),
-            row.rmse_n_per_mm,
-            row.mean_absolute_percent,
-            row.standardised_rms,
+            decimals(row.rmse_n_per_mm, 3),
+            decimals(row.mean_absolute_percent, 2),
+            decimals(row.standardised_rms, 2),
         );
     }
     text.push('\n');
@@ -39,15 +40,24 @@ pub fn table(model: &Model) -> String {
         let widening = model.widening(axis);
         let note = if widening > 1.0 {
             format!("standard deviations are widened by {widening:.2} to fit the errors above")
+        } else if model.measurements().len() == 1 {
+            "one finger leaves no error; scatter as of the shipped designs is assumed".to_owned()
         } else {
             "standard deviations fit the errors above, or are larger".to_owned()
         };
         let _ = writeln!(text, "  {note}");
     }
-    text.push_str(
-        "The choice rests on these same errors, so they flatter the chosen model a little.\n",
-    );
+    if model.measurements().len() > 1 {
+        text.push_str(
+            "The choice rests on these same errors, so they flatter the chosen model a little.\n",
+        );
+    }
     text
+}
+
+/// A number, or a dash where there is none.
+pub(super) fn decimals(value: f64, places: usize) -> String {
+    if value.is_finite() { format!("{value:.places$}") } else { "-".to_owned() }
 }
 
 /// The same as JSON: `designs`, `models` (a list, one of each axis and model), `used` (per axis).

@@ -46,6 +46,10 @@ const PANELS: [(Axis, By); 4] = [
     (Axis::Assembly, By::Density),
 ];
 
+/// Steps along a curve, and where each takes the mechanics of a finger.
+const SAMPLES: u32 = 80;
+const COMPUTED_SAMPLES: u32 = 8;
+
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
 impl By {
@@ -57,13 +61,13 @@ impl By {
         }
     }
 
-    fn predict(self, model: &Model, axis: Axis, x: f64, curve: f64) -> Estimate {
+    fn predict(self, model: &Model, axis: Axis, x: f64, curve: f64) -> Result<Estimate, String> {
         let found = match self {
             By::Direction => model.predict(curve, x),
             By::Density => model.predict(x, curve),
         };
-        let Estimate { mean, sd } = found.axis(axis);
-        Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }
+        let Estimate { mean, sd } = found.map_err(message)?.axis(axis);
+        Ok(Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM })
     }
 
     /// Label of the x axis, and what a curve is called.
@@ -81,12 +85,13 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by: By) -> Drawn {
     let span = limits.end - limits.start;
     let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
     let curves = levels(measured.iter().map(|m| by.of(m).1));
-    let samples: Vec<f64> =
-        (0..=80).map(|i| x.start + (x.end - x.start) * f64::from(i) / 80.0).collect();
-    let bands: Vec<Vec<(f64, Estimate)>> = curves
-        .iter()
-        .map(|&curve| samples.iter().map(|&x| (x, by.predict(model, axis, x, curve))).collect())
-        .collect();
+    let count = if model.computes() { COMPUTED_SAMPLES } else { SAMPLES };
+    let at = |i| x.start + (x.end - x.start) * f64::from(i) / f64::from(count);
+    let band = |&curve: &f64| {
+        (0..=count).map(at).map(|x| Ok((x, by.predict(model, axis, x, curve)?))).collect()
+    };
+    let bands: Vec<Vec<(f64, Estimate)>> =
+        curves.iter().map(band).collect::<Result<_, String>>()?;
     let tops = bands.iter().flatten().map(|(_, e)| e.mean + e.sd);
     let readings = measured.iter().map(|m| m.stiffness(axis) / N_PER_MM);
     let mut y = around(tops.chain(readings).chain([0.0]), 0.05);

@@ -3,6 +3,8 @@ use crate::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
 use crate::evaluation::tolerance::{Search, evaluate};
 use crate::evaluation::{Evaluation, Window};
 use crate::finger::Finger;
+use crate::input::printed::PrintedFinger;
+use crate::input::shipped::FINGERS;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use crate::input::stiffness::{Axis, SHIPPED_CSV, SHIPPED_FILE, parse};
 use crate::outcome::{FailureClass, Outcome};
@@ -15,10 +17,14 @@ use crate::units::{MM, N_PER_MM};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
+fn finray9() -> PrintedFinger {
+    PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
+}
+
 /// The shipped model, fitted once.
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
-    MODEL.get_or_init(|| fit(&parse(SHIPPED_CSV, SHIPPED_FILE).unwrap()).unwrap())
+    MODEL.get_or_init(|| fit(&parse(SHIPPED_CSV, SHIPPED_FILE).unwrap(), &finray9()).unwrap())
 }
 
 fn provenance() -> Provenance {
@@ -62,7 +68,7 @@ fn study() -> StudyRecord {
     let evaluations = (0..60u64).map(|index| {
         let density = 10.0 + (index * 13 % 21) as f64;
         let direction = (index * 29 % 41) as f64;
-        let stiffness = model.predict(density, direction);
+        let stiffness = model.predict(density, direction).unwrap();
         let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
         let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
         recorded(index, [density, direction], stiffness, evaluation)
@@ -107,7 +113,7 @@ fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
         success: None,
         robust: None,
     };
-    recorded(index, infill, model().predict(infill[0], infill[1]), evaluation)
+    recorded(index, infill, model().predict(infill[0], infill[1]).unwrap(), evaluation)
 }
 
 const SECTIONS: [&str; 8] =
@@ -157,7 +163,7 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
 #[test]
 fn a_measured_design_shows_our_value_beside_the_published_ones() {
     let model = model();
-    let stiffness = model.predict(20.0, 20.0);
+    let stiffness = model.predict(20.0, 20.0).unwrap();
     let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
     let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
     let ours = format!("<td>{:.1} mm (3 | 2)</td>", evaluation.window.range_mm());
@@ -171,7 +177,7 @@ fn a_measured_design_shows_our_value_beside_the_published_ones() {
 #[test]
 fn a_best_design_outside_the_hull_is_warned_of() {
     let model = model();
-    let stiffness = model.predict(10.0, 40.0);
+    let stiffness = model.predict(10.0, 40.0).unwrap();
     let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
     let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
     let one = record("usb", vec![recorded(0, [10.0, 40.0], stiffness, evaluation)]);

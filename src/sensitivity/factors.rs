@@ -86,7 +86,7 @@ impl Factors {
                 Sets::Condition(set) => set(&mut conditions, value),
             }
         }
-        let predicted = evaluator.predict(&design);
+        let predicted = evaluator.predict(&design)?;
         let specimen = evaluator.specimen(template, &design, predicted)?;
         let rig = evaluator.rig(&specimen, 1.0)?;
         let finger = Draw::under(conditions, stiffness).finger(&specimen.finger, &predicted);

@@ -40,9 +40,17 @@ pub(super) const READING_SD: f64 = 0.01;
 /// Densities below this are taken as this, percent: the law diverges at 0.
 const LEAST_DENSITY: f64 = 1.0;
 
-/// The mean `a + b feature`; the feature is the first input.
+/// The mean `a + b feature`, where the feature is the first input; or `a` alone.
 #[derive(Debug, Clone, Copy, Default)]
-struct PhysicalMean;
+struct PhysicalMean {
+    lamina: bool,
+}
+
+impl PhysicalMean {
+    fn terms(self) -> usize {
+        1 + usize::from(self.lamina)
+    }
+}
 
 impl std::fmt::Display for PhysicalMean {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -52,14 +60,18 @@ impl std::fmt::Display for PhysicalMean {
 
 impl RegressionModel<f64> for PhysicalMean {
     fn coefs(&self, x: &ArrayBase<impl Data<Elem = f64>, Ix2>) -> Array2<f64> {
-        let mut terms = Array2::ones((x.nrows(), 2));
-        terms.column_mut(1).assign(&x.column(0));
+        let mut terms = Array2::ones((x.nrows(), self.terms()));
+        if self.lamina {
+            terms.column_mut(1).assign(&x.column(0));
+        }
         terms
     }
 
     fn jac(&self, x: &ArrayBase<impl Data<Elem = f64>, Ix1>) -> Array2<f64> {
-        let mut jacobian = Array2::zeros((2, x.len()));
-        jacobian[[1, 0]] = 1.0;
+        let mut jacobian = Array2::zeros((self.terms(), x.len()));
+        if self.lamina {
+            jacobian[[1, 0]] = 1.0;
+        }
         jacobian
     }
 }
@@ -68,10 +80,11 @@ impl RegressionModel<f64> for PhysicalMean {
 #[derive(Debug)]
 pub(super) struct PhysicalProcess {
     link: Link,
+    mean: PhysicalMean,
     exponent: f64,
     nugget: f64,
     process: GaussianProcess<f64, PhysicalMean, Matern52Corr>,
-    /// `n / (n - 2)`: the likelihood's variance ignores the two terms of the mean.
+    /// `n / (n - terms)`: the likelihood's variance ignores the terms of the mean.
     unbias: f64,
 }
 
@@ -90,11 +103,29 @@ fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
     [(density / 20.0).powf(exponent) * lamina, density.ln(), infill[1]]
 }
 
-/// Fits by maximum likelihood over the grid; `None` if nothing can be fitted.
+/// Fits stiffness about the lamina's mean; `None` if nothing can be fitted.
 pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess> {
     let (sum, exponents) = physics(axis);
     let link = Link::new(sum, measured.targets());
+    fit_about(PhysicalMean { lamina: true }, link, exponents, measured)
+}
+
+/// Fits the ratio of measured and computed stiffness: the same for all designs, or with the
+/// lamina's term beside it.
+pub(super) fn fit_ratio(axis: Axis, lamina: bool, ratios: &Measured) -> Option<PhysicalProcess> {
+    let exponents = if lamina { physics(axis).1 } else { &[1.0] };
+    fit_about(PhysicalMean { lamina }, Link::logarithm(), exponents, ratios)
+}
+
+/// Maximum likelihood over the grid.
+fn fit_about(
+    mean: PhysicalMean,
+    link: Link,
+    exponents: &[f64],
+    measured: &Measured,
+) -> Option<PhysicalProcess> {
     let y = measured.targets().mapv(|k| link.forward(k));
+    let spare = y.len().checked_sub(mean.terms()).filter(|&spare| spare > 0)?;
     let mut best: Option<PhysicalProcess> = None;
     for &exponent in exponents {
         let rows: Vec<[f64; 3]> =
@@ -102,21 +133,15 @@ pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess> {
         let data = Dataset::new(Array2::from(rows), y.clone());
         for (theta, nugget) in THETAS.iter().flat_map(|&t| NUGGETS.map(|n| (t, n))) {
             // The kernel does not see the feature: its inverse length is 0.
-            let fitted = GpParams::new(PhysicalMean, Matern52Corr())
+            let fitted = GpParams::new(mean, Matern52Corr())
                 .theta_tuning(ThetaTuning::Fixed(array![0.0, theta, theta]))
                 .nugget(nugget)
                 .fit(&data);
             let Ok(process) = fitted else { continue };
             let better = |old: &PhysicalProcess| process.likelihood() > old.process.likelihood();
             if process.likelihood().is_finite() && best.as_ref().is_none_or(better) {
-                let n = y.len() as f64;
-                best = Some(PhysicalProcess {
-                    link,
-                    exponent,
-                    nugget,
-                    process,
-                    unbias: n / (n - 2.0),
-                });
+                let unbias = y.len() as f64 / spare as f64;
+                best = Some(PhysicalProcess { link, mean, exponent, nugget, process, unbias });
             }
         }
     }
@@ -137,13 +162,18 @@ impl Fitted for PhysicalProcess {
     }
 
     fn describe(&self) -> String {
-        let mean = match self.link.sum() {
-            Sum::Parallel => "k = a + b density^n cos^4(direction)",
-            Sum::Series => "1/k = a + b density^n cos^4(direction)",
+        let mean = match (self.link.sum(), self.mean.lamina) {
+            (Sum::Parallel, _) => "k = a + b density^n cos^4(direction)",
+            (Sum::Series, _) => "1/k = a + b density^n cos^4(direction)",
+            (Sum::Product, true) => "ln(k / computed) = a + b density^n cos^4(direction)",
+            (Sum::Product, false) => "ln(k / computed) = a",
+        };
+        let exponent = match self.mean.lamina {
+            true => format!(", n = {}", self.exponent),
+            false => String::new(),
         };
         format!(
-            "mean {mean}, n = {}; Matern 5/2 of inverse length {} about it; noise / process variance {}",
-            self.exponent,
+            "mean {mean}{exponent}; Matern 5/2 of inverse length {} about it; noise / process variance {}",
             self.process.theta()[1],
             self.nugget,
         )

@@ -1,7 +1,7 @@
 //! The candidates for the model of one axis.
 
 use super::link::{Link, Sum};
-use super::{Fitted, Measured, gp, ridge};
+use super::{Fitted, Measured, gp, ridge, scale};
 use crate::input::stiffness::Axis;
 
 /// A model of one axis.
@@ -16,16 +16,31 @@ pub enum ModelKind {
     RidgeQuadratic,
     /// A Gaussian process about a physical mean.
     GaussianProcess,
+    /// The computed stiffness times one number.
+    ComputedScale,
+    /// A Gaussian process of the logarithm of measured / computed about one number.
+    ComputedProcess,
+    /// The same with the term of the physical mean beside the number.
+    ComputedLamina,
 }
 
 impl ModelKind {
-    /// All models, simplest first.
-    pub const ALL: [ModelKind; 4] = [
+    /// The models that know nothing of ribs, simplest first.
+    pub const MEASURED: [ModelKind; 4] = [
         ModelKind::Linear,
         ModelKind::RidgeLinear,
         ModelKind::RidgeQuadratic,
         ModelKind::GaussianProcess,
     ];
+
+    /// The models of measured / computed stiffness, simplest first.
+    pub const COMPUTED: [ModelKind; 3] =
+        [ModelKind::ComputedScale, ModelKind::ComputedProcess, ModelKind::ComputedLamina];
+
+    /// Whether it is fitted to measured / computed, not to the measured stiffness itself.
+    pub fn is_computed(self) -> bool {
+        ModelKind::COMPUTED.contains(&self)
+    }
 
     /// A short name for tables.
     pub fn label(self) -> &'static str {
@@ -34,28 +49,31 @@ impl ModelKind {
             ModelKind::RidgeLinear => "ridge, degree 1",
             ModelKind::RidgeQuadratic => "ridge, degree 2",
             ModelKind::GaussianProcess => "Gaussian process, physical mean",
+            ModelKind::ComputedScale => "computed, scaled",
+            ModelKind::ComputedProcess => "Gaussian process, computed mean",
+            ModelKind::ComputedLamina => "Gaussian process, both means",
         }
     }
 }
 
-/// Fits one model on one axis, everything it has to choose included.
+/// Fits one model on one axis, everything it has to choose included; of a computed kind to
+/// ratios of measured and computed stiffness.
 pub(super) fn fit_axis(
     axis: Axis,
     kind: ModelKind,
     measured: &Measured,
 ) -> Option<Box<dyn Fitted>> {
-    let polynomial = |degree: u8, link: Link, penalties: &[f64]| {
-        let fitted = ridge::fit(measured, degree, link, penalties)?;
-        Some(Box::new(fitted) as Box<dyn Fitted>)
-    };
+    fn boxed<F: Fitted + 'static>(fitted: Option<F>) -> Option<Box<dyn Fitted>> {
+        fitted.map(|fitted| Box::new(fitted) as Box<dyn Fitted>)
+    }
     let positive = Link::new(Sum::Parallel, measured.targets());
     match kind {
-        ModelKind::Linear => polynomial(1, Link::identity(), &[0.0]),
-        ModelKind::RidgeLinear => polynomial(1, positive, &ridge::PENALTIES),
-        ModelKind::RidgeQuadratic => polynomial(2, positive, &ridge::PENALTIES),
-        ModelKind::GaussianProcess => {
-            let fitted = gp::fit(axis, measured)?;
-            Some(Box::new(fitted) as Box<dyn Fitted>)
-        }
+        ModelKind::Linear => boxed(ridge::fit(measured, 1, Link::identity(), &[0.0])),
+        ModelKind::RidgeLinear => boxed(ridge::fit(measured, 1, positive, &ridge::PENALTIES)),
+        ModelKind::RidgeQuadratic => boxed(ridge::fit(measured, 2, positive, &ridge::PENALTIES)),
+        ModelKind::GaussianProcess => boxed(gp::fit(axis, measured)),
+        ModelKind::ComputedScale => boxed(scale::fit(axis, measured)),
+        ModelKind::ComputedProcess => boxed(gp::fit_ratio(axis, false, measured)),
+        ModelKind::ComputedLamina => boxed(gp::fit_ratio(axis, true, measured)),
     }
 }

@@ -7,6 +7,8 @@ pub(super) enum Sum {
     Parallel,
     /// Its inverse: springs one after the other.
     Series,
+    /// Its logarithm: shares of what is computed.
+    Product,
 }
 
 /// Maps stiffness to the scale on which a model is linear, and back.
@@ -36,6 +38,11 @@ impl Link {
         Link { sum: Sum::Parallel, scale: None }
     }
 
+    /// The logarithm, positive without a bend.
+    pub fn logarithm() -> Self {
+        Link { sum: Sum::Product, scale: None }
+    }
+
     /// How it adds up.
     pub fn sum(self) -> Sum {
         self.sum
@@ -46,6 +53,7 @@ impl Link {
         let q = match self.sum {
             Sum::Parallel => stiffness,
             Sum::Series => 1.0 / stiffness,
+            Sum::Product => stiffness.ln(),
         };
         // q + s ln(1 - exp(-q / s)): the inverse of soft plus, without overflow.
         self.scale.map_or(q, |s| q + s * (-(-q / s).exp()).ln_1p())
@@ -65,6 +73,7 @@ impl Link {
         match self.sum {
             Sum::Parallel => (q, slope),
             Sum::Series => (1.0 / q, slope / (q * q)),
+            Sum::Product => (q.exp(), slope * q.exp()),
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Leave-one-out errors: how well a model predicts a finger it has not seen.
 
 use super::kind::fit_axis;
-use super::{Estimate, Fitted, Measured, ModelKind, infills};
-use crate::input::stiffness::Axis;
+use super::{Computed, Estimate, Fitted, Measured, ModelKind, infills, measured};
+use crate::finger::printed::FingerError;
+use crate::input::stiffness::{Axis, Measurement};
 use crate::units::N_PER_MM;
+use ndarray::Axis as Along;
 use rayon::prelude::*;
 
 /// Leave-one-out error of one model on one axis.
@@ -26,29 +28,89 @@ pub struct Loo {
     pub chosen: bool,
 }
 
-/// Fits `kind` without each design in turn and predicts that design.
-pub(super) fn leave_one_out(axis: Axis, kind: ModelKind, measured: &Measured) -> Loo {
-    // Collected by index: the thread count changes nothing.
-    let predicted: Vec<Estimate> = measured
-        .fold(measured.targets().len())
-        .into_par_iter()
-        .map(|(others, one)| {
-            let fitted = fit_axis(axis, kind, &others);
-            let predict = |fitted: Box<dyn Fitted>| infills(&one).next().map(|x| fitted.predict(x));
-            fitted.and_then(predict).unwrap_or(Estimate { mean: f64::NAN, sd: f64::NAN })
-        })
-        .collect();
-    let mean = |term: &dyn Fn(f64, f64, f64) -> f64| {
-        let terms = predicted.iter().zip(measured.targets()).map(|(e, &k)| term(e.mean, e.sd, k));
-        terms.sum::<f64>() / predicted.len() as f64
-    };
-    Loo {
-        axis,
-        model: kind,
-        rmse_n_per_mm: mean(&|m, _, k| (m - k).powi(2)).sqrt() / N_PER_MM,
-        mean_absolute_percent: 100.0 * mean(&|m, _, k| (m / k - 1.0).abs()),
-        standardised_rms: mean(&|m, sd, k| ((m - k) / sd).powi(2)).sqrt(),
-        left_out: predicted.iter().map(|estimate| estimate.mean).collect(),
-        chosen: false,
+/// What the models of one axis are fitted to.
+pub(super) struct Data {
+    axis: Axis,
+    /// Stiffness, N/m; of computed kinds measured / computed.
+    measured: Measured,
+    /// Unit of each design's value, N/m.
+    units: Vec<f64>,
+}
+
+impl Data {
+    /// The measured stiffness itself.
+    pub fn measured(axis: Axis, measurements: &[Measurement]) -> Self {
+        Data::by(axis, measurements, vec![1.0; measurements.len()])
+    }
+
+    /// Ratios of measured and computed stiffness.
+    pub fn ratios(
+        axis: Axis,
+        measurements: &[Measurement],
+        computed: &Computed,
+    ) -> Result<Self, FingerError> {
+        let unit = |m: &Measurement| computed.stiffness(axis, m.infill());
+        Ok(Data::by(axis, measurements, measurements.iter().map(unit).collect::<Result<_, _>>()?))
+    }
+
+    fn by(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
+        let infills: Vec<_> = measurements.iter().map(Measurement::infill).collect();
+        let values = measurements.iter().zip(&units).map(|(m, unit)| m.stiffness(axis) / unit);
+        Data { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }
+    }
+
+    /// A model of all designs.
+    pub fn fit(&self, kind: ModelKind) -> Option<Box<dyn Fitted>> {
+        fit_axis(self.axis, kind, &self.measured)
+    }
+
+    /// Fits `kind` without each design in turn and predicts that design.
+    pub fn leave_one_out(&self, kind: ModelKind) -> Loo {
+        let count = self.measured.targets().len();
+        // Without one of one there is nothing to fit to.
+        let folds = if count > 1 { self.measured.fold(count) } else { Vec::new() };
+        // Collected by index: the thread count changes nothing.
+        let mut predicted: Vec<Estimate> = folds
+            .into_par_iter()
+            .flat_map_iter(|(others, one)| self.predict(kind, &others, &one))
+            .collect();
+        predicted.resize(count, NOTHING);
+        let mean = |term: &dyn Fn(f64, f64, f64) -> f64| {
+            let terms = predicted.iter().zip(self.measured.targets()).zip(&self.units);
+            let terms = terms.map(|((e, &k), unit)| term(e.mean * unit, e.sd * unit, k * unit));
+            terms.sum::<f64>() / count as f64
+        };
+        Loo {
+            axis: self.axis,
+            model: kind,
+            rmse_n_per_mm: mean(&|m, _, k| (m - k).powi(2)).sqrt() / N_PER_MM,
+            mean_absolute_percent: 100.0 * mean(&|m, _, k| (m / k - 1.0).abs()),
+            standardised_rms: mean(&|m, sd, k| ((m - k) / sd).powi(2)).sqrt(),
+            left_out: predicted.iter().zip(&self.units).map(|(e, unit)| e.mean * unit).collect(),
+            chosen: false,
+        }
+    }
+
+    /// Fits `kind` without some designs, by index, and predicts those: absolute errors, percent.
+    pub fn leave_out(&self, kind: ModelKind, out: &[usize]) -> Vec<f64> {
+        let of = |keep: &dyn Fn(&usize) -> bool| {
+            let rows: Vec<usize> = (0..self.units.len()).filter(keep).collect();
+            Measured::new(
+                self.measured.records().select(Along(0), &rows),
+                self.measured.targets().select(Along(0), &rows),
+            )
+        };
+        let (others, these) = (of(&|i| !out.contains(i)), of(&|i| out.contains(i)));
+        let predicted = self.predict(kind, &others, &these);
+        let error = |(e, k): (Estimate, &f64)| 100.0 * (e.mean / k - 1.0).abs();
+        predicted.into_iter().zip(these.targets()).map(error).collect()
+    }
+
+    fn predict(&self, kind: ModelKind, others: &Measured, these: &Measured) -> Vec<Estimate> {
+        let fitted = fit_axis(self.axis, kind, others);
+        let predict = |infill| fitted.as_ref().map_or(NOTHING, |fitted| fitted.predict(infill));
+        infills(these).map(predict).collect()
     }
 }
+
+const NOTHING: Estimate = Estimate { mean: f64::NAN, sd: f64::NAN };

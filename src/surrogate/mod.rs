@@ -1,15 +1,21 @@
 //! From infill to stiffness: models fitted to measured fingers at start-up.
 //!
 //! The measurements are per finger. Three steps, once per axis (assembly z,
-//! compliance y):
+//! compliance y), of at least seven fingers:
 //!
 //! 1. fit each candidate of [`ModelKind`] to all measured designs;
 //! 2. leave each design out in turn, refit everything (link, exponent,
 //!    hyperparameters, penalty) without it, and predict it ([`Loo`]);
 //! 3. keep the candidate with the smallest mean absolute percentage error.
 //!
+//! Fewer than seven fingers do not carry such a model. Then the models are of measured /
+//! computed stiffness: the ribs give the shape ([`Computed`]), the fingers its scale.
+//! [`compare`] asks how far each carries.
+//!
 //! Nothing here is random, so equal measurements give bit-identical models.
 
+mod compare;
+mod computed;
 mod gp;
 mod hull;
 mod kind;
@@ -18,6 +24,7 @@ mod loo;
 mod model;
 mod ridge;
 mod row;
+mod scale;
 #[cfg(test)]
 mod tests;
 
@@ -25,9 +32,11 @@ use crate::input::stiffness::{Axis, Infill};
 use linfa::prelude::Dataset;
 use ndarray::{Array1, Array2, Ix1};
 
+pub use compare::{Comparison, LeftOut, Verdict, compare};
+pub use computed::Computed;
 pub use kind::ModelKind;
 pub use loo::Loo;
-pub use model::{Model, fit};
+pub use model::{ENOUGH, FitError, Model, fit};
 
 /// A value with its standard deviation, both in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,11 +1,18 @@
 //! The chosen model of each axis, and the choice.
 
 use super::hull::Hull;
-use super::kind::fit_axis;
-use super::loo::{Loo, leave_one_out};
-use super::{Estimate, Fitted, ModelKind, Prediction, measured};
+use super::loo::{Data, Loo};
+use super::{Computed, Estimate, Fitted, ModelKind, Prediction};
+use crate::finger::printed::FingerError;
+use crate::input::printed::PrintedFinger;
 use crate::input::stiffness::check_all;
 use crate::input::stiffness::{Axis, Infill, Measurement, SurrogateError};
+
+/// Fewest designs that a model is fitted to without computing any: the quadratic has six
+/// terms, and a leave-one-out error needs one design more than that.
+pub const ENOUGH: usize = 7;
+/// Fewest designs for which leave-one-out may choose a process about the computed stiffness.
+const SEVERAL: usize = 4;
 
 /// Stiffness of a finger as a function of its infill, fitted to measurements.
 #[derive(Debug)]
@@ -15,6 +22,8 @@ pub struct Model {
     assembly: Chosen,
     compliance: Chosen,
     loo: Vec<Loo>,
+    /// What the models multiply, where they are of ratios.
+    computed: Option<Computed>,
 }
 
 /// The model of one axis and the factor on its standard deviation.
@@ -31,45 +40,70 @@ impl Chosen {
     }
 }
 
-/// Fits every model, chooses one per axis by its leave-one-out error.
+/// Why there is no model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// Measurements that cannot be used.
+    #[error(transparent)]
+    Measurements(#[from] SurrogateError),
+    /// A measured finger that cannot be computed.
+    #[error(transparent)]
+    Finger(#[from] FingerError),
+}
+
+/// Fits every model, chooses one per axis by its leave-one-out error. Of [`ENOUGH`] designs
+/// without the finger, which costs nothing; of fewer about its computed stiffness.
 ///
 /// # Errors
-/// A measurement that cannot be used, fewer than [`MINIMUM`](crate::input::stiffness::MINIMUM) of them, or
-/// designs that differ in too few respects.
-pub fn fit(measurements: &[Measurement]) -> Result<Model, SurrogateError> {
+/// A measurement that cannot be used, none at all, designs that differ in too few respects,
+/// or of few measurements one of a finger that cannot be computed.
+pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, FitError> {
     check_all(measurements)?;
     let infills: Vec<Infill> = measurements.iter().map(Measurement::infill).collect();
-    let (assembly, mut loo) = choose(Axis::Assembly, measurements, &infills)?;
-    let (compliance, rest) = choose(Axis::Compliance, measurements, &infills)?;
+    let (computed, kinds) = match measurements.len() {
+        ENOUGH.. => (None, &ModelKind::MEASURED[..]),
+        SEVERAL.. => (
+            Some(Computed::new(finger)),
+            &[ModelKind::ComputedScale, ModelKind::ComputedProcess][..],
+        ),
+        _ => (Some(Computed::new(finger)), &[ModelKind::ComputedScale][..]),
+    };
+    let choose = |axis| {
+        let data = match &computed {
+            None => Data::measured(axis, measurements),
+            Some(computed) => Data::ratios(axis, measurements, computed)?,
+        };
+        Ok::<_, FitError>(choose(axis, &data, kinds)?)
+    };
+    let (assembly, mut loo) = choose(Axis::Assembly)?;
+    let (compliance, rest) = choose(Axis::Compliance)?;
     loo.extend(rest);
-    Ok(Model {
-        measurements: measurements.to_vec(),
-        hull: Hull::new(&infills),
-        assembly,
-        compliance,
-        loo,
-    })
+    let hull = Hull::new(&infills);
+    Ok(Model { measurements: measurements.to_vec(), hull, assembly, compliance, loo, computed })
 }
 
 fn choose(
     axis: Axis,
-    measurements: &[Measurement],
-    infills: &[Infill],
+    data: &Data,
+    kinds: &[ModelKind],
 ) -> Result<(Chosen, Vec<Loo>), SurrogateError> {
-    let stiffness: Vec<f64> = measurements.iter().map(|m| m.stiffness(axis)).collect();
-    let data = measured(infills, &stiffness);
-    let mut loo: Vec<Loo> =
-        ModelKind::ALL.into_iter().map(|kind| leave_one_out(axis, kind, &data)).collect();
+    let mut loo: Vec<Loo> = kinds.iter().map(|&kind| data.leave_one_out(kind)).collect();
     let unfittable = SurrogateError::Unfittable { axis: axis.label() };
+    // A single finger leaves no error, and no choice.
+    let eligible = |row: &&mut Loo| match row.model {
+        ModelKind::Linear => false,
+        ModelKind::ComputedScale => true,
+        _ => row.standardised_rms.is_finite(),
+    };
     let best = loo
         .iter_mut()
-        .filter(|row| row.model != ModelKind::Linear && row.standardised_rms.is_finite())
+        .filter(eligible)
         .min_by(|a, b| a.mean_absolute_percent.total_cmp(&b.mean_absolute_percent))
         .ok_or(unfittable.clone())?;
     best.chosen = true;
     // Too sure of itself: widen until the left-out errors fit. Never narrow.
     let widen = best.standardised_rms.max(1.0);
-    let fitted = fit_axis(axis, best.model, &data).ok_or(unfittable)?;
+    let fitted = data.fit(best.model).ok_or(unfittable)?;
     Ok((Chosen { fitted, widen }, loo))
 }
 
@@ -77,13 +111,37 @@ impl Model {
     /// Stiffness of one finger, N/m, for any density (percent; below 1 counts
     /// as 1) and direction (degrees). The standard deviation is that of a
     /// finger yet to be printed: model error and scatter together.
-    pub fn predict(&self, density_percent: f64, direction_deg: f64) -> Prediction {
+    ///
+    /// # Errors
+    /// If the model rests on the computed stiffness and the finger cannot be computed.
+    pub fn predict(
+        &self,
+        density_percent: f64,
+        direction_deg: f64,
+    ) -> Result<Prediction, FingerError> {
         let infill = [density_percent, direction_deg];
-        Prediction {
-            compliance: self.compliance.predict(infill),
-            assembly: self.assembly.predict(infill),
+        let axis = |axis, chosen: &Chosen| {
+            let unit = self.computed.as_ref().map(|computed| computed.stiffness(axis, infill));
+            Ok::<_, FingerError>(chosen.predict(infill).times(unit.transpose()?.unwrap_or(1.0)))
+        };
+        Ok(Prediction {
+            compliance: axis(Axis::Compliance, &self.compliance)?,
+            assembly: axis(Axis::Assembly, &self.assembly)?,
             hull_distance: self.hull.distance(infill),
+        })
+    }
+
+    /// How many fingers it rests on, in words.
+    pub fn counted(&self) -> String {
+        match self.measurements.len() {
+            1 => "1 measured design".to_owned(),
+            count => format!("{count} measured designs"),
         }
+    }
+
+    /// Whether a prediction takes the mechanics of a finger, some 0.2 s.
+    pub fn computes(&self) -> bool {
+        self.computed.is_some()
     }
 
     /// Leave-one-out errors: one row per axis and model, assembly first.

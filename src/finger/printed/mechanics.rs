@@ -44,7 +44,6 @@ pub struct FingerStiffness {
 /// finger, as when a length or the modulus is in other units than its key says.
 pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
     let [pad, pad_and_roof] = planar(geometry, SIZE)?;
-    plausible(&geometry.finger, &pad)?;
     Ok(FingerStiffness {
         pad,
         pad_and_roof,
@@ -64,7 +63,9 @@ pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], Fi
         let held = model.hold(&condensed, &element, body).map_err(|error| fails(&error))?;
         PlanarStiffness::new(held.stiffness).ok_or_else(|| fails(&"it is not stiff"))
     };
-    Ok([held(Body::Pad)?, held(Body::PadAndRoof)?])
+    let pad = held(Body::Pad)?;
+    plausible(&geometry.finger, &pad)?;
+    Ok([pad, held(Body::PadAndRoof)?])
 }
 
 /// Across the plane, with triangles of a size, m.

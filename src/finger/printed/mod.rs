@@ -16,6 +16,7 @@ pub mod mechanics;
 pub mod mesh;
 pub mod model;
 mod outline;
+pub mod phases;
 pub mod picture;
 pub mod plate;
 pub mod polygon;

@@ -16,17 +16,19 @@
 //! | T12 | friction of a face that slides and turns, as in the grasp |
 //! | T13 | a soft flange whose command sets off |
 //! | T14 | net force of a contact that sticks and that slides |
+//! | F1 .. F4 | the computed stiffness of a printed finger ([`finger`]) |
 //!
 //! (T9 compares two engines on trials.) Every expected value is computed from
 //! its formula, which the check's file gives with its source. What no formula
 //! answers, whether the windows depend on the step, [`compare`](super::compare) asks.
 
-use crate::physics::{Diverged, Engine};
+use crate::physics::Engine;
 
 pub mod arm;
 mod build;
 pub mod chamfer;
 pub mod edge;
+pub mod finger;
 pub mod flange;
 pub mod grasp;
 pub mod incline;
@@ -62,7 +64,7 @@ pub struct CheckRow {
     pub quantity: String,
     /// From the formula.
     pub expected: f64,
-    /// From the engine; not a number where the simulation diverged.
+    /// From the engine or the finite elements; not a number where they failed.
     pub measured: f64,
     /// Unit of the two.
     pub unit: &'static str,
@@ -73,11 +75,12 @@ pub struct CheckRow {
 }
 
 impl CheckRow {
-    /// Compares a measured value with the expected one; a diverged simulation fails.
-    fn new(
+    /// Compares a measured value with the expected one; without one, as from a simulation that
+    /// diverged, the row fails.
+    fn new<E>(
         (check, quantity): (&'static str, String),
         expected: f64,
-        measured: Result<f64, Diverged>,
+        measured: Result<f64, E>,
         unit: &'static str,
         tolerance: Tolerance,
     ) -> Self {
@@ -118,5 +121,6 @@ pub fn run(make: Make<'_>) -> Vec<CheckRow> {
     rows.extend(grasp::t12(engine));
     rows.extend(flange::t13(engine));
     rows.extend(push::t14(engine));
+    rows.extend(finger::run());
     rows
 }

@@ -1,11 +1,10 @@
-//! The mechanics against solutions that are known, and against another computation.
+//! The mechanics against beams and solids; `verify::analytic::finger` has what is known exactly.
 
-mod analytic;
 mod beams;
 mod frame;
 mod geometry;
-mod reference;
 mod solid;
+mod stiffness;
 
 use super::geometry::Geometry;
 use super::infill::Design;

@@ -79,8 +79,8 @@ mod tests {
         let name = |text: &str| ("T1", text.to_owned());
         let tolerance = Tolerance::Relative(0.01);
         vec![
-            CheckRow::new(name("good"), 2.0, Ok(2.01), "mm", tolerance),
-            CheckRow::new(name("bad"), 2.0, Ok(2.03), "mm", tolerance),
+            CheckRow::new(name("good"), 2.0, Ok::<_, Diverged>(2.01), "mm", tolerance),
+            CheckRow::new(name("bad"), 2.0, Ok::<_, Diverged>(2.03), "mm", tolerance),
             CheckRow::new(name("diverged"), 2.0, Err(Diverged), "mm", tolerance),
         ]
     }

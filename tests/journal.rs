@@ -91,6 +91,7 @@ fn evaluation() -> impl Strategy<Value = Evaluation> {
             slip_mm,
             simulated_s,
             end_shares,
+            taught: None,
             success,
             robust,
         }

@@ -103,6 +103,7 @@ fn text(chosen: &Chosen, setup: &Setup, evaluation: &Evaluation) -> String {
         ),
         format!("peak force    {:.1} N", evaluation.peak_force_n),
     ];
+    lines.extend(words::taught(evaluation.taught));
     lines.extend(words::drawn_text(evaluation));
     lines.join("\n") + "\n"
 }

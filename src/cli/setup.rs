@@ -14,7 +14,7 @@ use crate::input::robot::Robot;
 use crate::input::shipped::{self, FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
 use crate::input::space::Space;
 use crate::input::stiffness;
-use crate::input::task::Task;
+use crate::input::task::{StartRule, Task};
 use crate::study::{Inputs, Provenance, sha256};
 use crate::surrogate::{self, FitError, Model};
 use crate::trial::Rig;
@@ -53,6 +53,9 @@ pub struct SetupArguments {
     pub engine: EngineKind,
     #[command(flatten)]
     pub finger_model: FingerModelArguments,
+    /// What becomes of the nominal start, in place of what the task file says
+    #[arg(long, value_enum)]
+    pub start: Option<StartRule>,
     /// Task files in place of those that `--task` names; only a caller can give them.
     #[arg(skip)]
     pub given: Vec<Source>,
@@ -119,6 +122,10 @@ impl Setup {
         let tasks = match arguments.given.as_slice() {
             [] => names.map(|name| find("task", TASKS, name)).collect::<Result<Vec<_>, _>>()?,
             given => given.to_vec(),
+        };
+        let tasks: Vec<Source> = match arguments.start {
+            None => tasks,
+            Some(rule) => tasks.into_iter().map(|task| started(task, rule)).collect(),
         };
         let space = find("space", SPACES, &arguments.space)?;
         let robot = find("robot", ROBOTS, &arguments.robot)?;
@@ -214,6 +221,18 @@ impl Setup {
             None => Ok(Plan::WINDOW),
         }
     }
+}
+
+/// A task file with this rule of its start. What is no task stays as it is, to be refused.
+pub fn started(task: Source, rule: StartRule) -> Source {
+    let Ok(mut table) = task.text.parse::<toml::Table>() else { return task };
+    let Some(toml::Value::Table(strategy)) = table.get_mut("strategy") else { return task };
+    let word = match rule {
+        StartRule::Given => "given",
+        StartRule::Taught => "taught",
+    };
+    strategy.insert("start".to_owned(), word.into());
+    Source { text: table.to_string(), ..task }
 }
 
 /// A task that is given twice would count twice.

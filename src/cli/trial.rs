@@ -3,8 +3,9 @@
 use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
 use super::specimen::{Chosen, FingerArguments};
-use super::words::merge;
+use super::words::{self, merge};
 use super::{Failure, print, print_json};
+use crate::evaluation::{OffsetStep, grid_mm};
 use crate::outcome::Outcome;
 use crate::study::write_file;
 use crate::trial::{Sample, Trial, picture};
@@ -41,6 +42,7 @@ pub struct Arguments {
 pub struct Found {
     setup: Setup,
     chosen: Chosen,
+    taught: Option<OffsetStep>,
     trial: Trial,
     /// The course of the trial, if it was asked for.
     pub samples: Vec<Sample>,
@@ -54,7 +56,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return print_json(&found.json(arguments));
     }
     let repeats = found.repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
-    print(&format!("{}\n{}{repeats}", found.chosen.text(&found.setup), text(&found.trial)))
+    let start = words::taught(found.taught).map_or(String::new(), |line| line + "\n");
+    let chosen = found.chosen.text(&found.setup);
+    print(&format!("{chosen}\n{start}{}{repeats}", text(&found.trial)))
 }
 
 /// Simulates, with a sample each `every_s` seconds if that is given.
@@ -63,7 +67,8 @@ pub fn find(arguments: &Arguments, every_s: Option<f64>) -> Result<Found, Failur
     let chosen = arguments.finger.choose(&setup)?;
     let specimen = &chosen.specimen;
     let offset = arguments.offset_mm * MM;
-    let rig = setup.evaluator.rig(specimen, 1.0).map_err(Failure::input)?;
+    let taught = setup.evaluator.taught(specimen).map_err(Failure::input)?;
+    let rig = setup.evaluator.rig_from(specimen, taught, 1.0).map_err(Failure::input)?;
     let grasped = rig.grasp(&specimen.finger);
     let (trial, samples) = match every_s {
         Some(every_s) => grasped.traced(offset, every_s),
@@ -75,7 +80,7 @@ pub fn find(arguments: &Arguments, every_s: Option<f64>) -> Result<Found, Failur
         write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial))?;
     }
     let repeats = arguments.repeat.outcomes(&setup, &chosen, offset)?;
-    Ok(Found { setup, chosen, trial, samples, repeats })
+    Ok(Found { setup, chosen, taught, trial, samples, repeats })
 }
 
 impl Found {
@@ -98,6 +103,9 @@ impl Found {
                 "phases": trial.phases,
             }),
         );
+        if let Some(taught) = self.taught {
+            merge(&mut fields, json!({ "taught_start_mm": grid_mm(taught) }));
+        }
         if let Some(counts) = &self.repeats {
             merge(&mut fields, json!({ "repeats": counts }));
         }

@@ -1,7 +1,7 @@
 //! What is printed of an evaluation.
 
-use crate::evaluation::Evaluation;
 use crate::evaluation::objective::Measure;
+use crate::evaluation::{Evaluation, OffsetStep, grid_mm};
 use crate::outcome::Outcome;
 use crate::surrogate::Prediction;
 use crate::units::N_PER_MM;
@@ -97,4 +97,10 @@ pub fn merge(fields: &mut Value, more: Value) {
     if let (Value::Object(fields), Value::Object(more)) = (fields, more) {
         fields.extend(more);
     }
+}
+
+/// Where a taught start came to lie; `None` if it was not taught.
+pub fn taught(steps: Option<OffsetStep>) -> Option<String> {
+    let mm = grid_mm(steps?);
+    Some(format!("start         taught: {mm:+.1} mm from that of the task file"))
 }

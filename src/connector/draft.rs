@@ -4,7 +4,7 @@ use super::plan::{self, PlanError};
 use crate::finger::Pad;
 use crate::input::finger::FingerModel;
 use crate::input::task::{
-    Friction, Grip, Hold, Part, Plug, Solid, Strategy, Success, Task, geometry,
+    Friction, Grip, Hold, Part, Plug, Solid, StartRule, Strategy, Success, Task, geometry,
 };
 use crate::units::MM;
 use nalgebra::Vector3;
@@ -116,7 +116,12 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
         }),
         friction: like.map_or(friction, |task| task.friction),
         finger: like.map_or(FingerModel::default(), |task| task.finger),
-        strategy: Strategy { tilt: 0.0, start: [0.0; 3], phases: Vec::new() },
+        strategy: Strategy {
+            tilt: 0.0,
+            start: [0.0; 3],
+            rule: StartRule::Given,
+            phases: Vec::new(),
+        },
         success: Success { depth: 0.0, tilt: 0.0 },
     }
 }

@@ -4,15 +4,16 @@ use super::robustness::firm::{self, Firm};
 use super::robustness::repeat::Repeats;
 use super::robustness::{self, Plan};
 use super::stoppable::Stoppable;
+use super::taught::{Moved, teach};
 use super::template::{Impossible, Template};
 use super::tolerance::Search;
-use super::{Evaluation, Window};
+use super::{Evaluation, OffsetStep, Window};
 use crate::finger::Finger;
 use crate::finger::computed::AtPad;
 use crate::finger::model::{CentreFrom, FingerSource, Made};
 use crate::input::robot::Robot;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use crate::input::task::Task;
+use crate::input::task::{StartRule, Task};
 use crate::outcome::Outcome;
 use crate::surrogate::{Model, Prediction};
 use crate::trial::Rig;
@@ -91,12 +92,45 @@ impl Evaluator {
         Ok(Specimen { task, finger, centre, stiffness })
     }
 
-    /// Where trials of a specimen are run, with the engine's step times `step_factor`.
+    /// Where trials of a specimen are run, with the engine's step times `step_factor`; from
+    /// the taught start, if the task has such.
     ///
     /// # Errors
     /// If robot or engine cannot do the task.
     pub fn rig(&self, specimen: &Specimen, step_factor: f64) -> Result<Box<dyn Rig>, RigError> {
-        self.engine.rig(&specimen.task, &self.robot, &specimen.finger, step_factor)
+        let taught = self.taught(specimen)?;
+        self.rig_from(specimen, taught, step_factor)
+    }
+
+    /// By how much the start of a specimen is moved, in grid steps; `None` if its task has no
+    /// taught start, 0 if no start inserts.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn taught(&self, specimen: &Specimen) -> Result<Option<OffsetStep>, RigError> {
+        if specimen.task.strategy.rule == StartRule::Given {
+            return Ok(None);
+        }
+        let rig = self.rig_from(specimen, None, 1.0)?;
+        Ok(Some(teach(&*rig, &specimen.finger).unwrap_or(0)))
+    }
+
+    /// The same as [`rig`](Self::rig) from a start that was taught before, if it was.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn rig_from(
+        &self,
+        specimen: &Specimen,
+        taught: Option<OffsetStep>,
+        step_factor: f64,
+    ) -> Result<Box<dyn Rig>, RigError> {
+        let Specimen { task, finger, .. } = specimen;
+        let rig = self.engine.rig(task, &self.robot, finger, step_factor)?;
+        Ok(match taught {
+            None | Some(0) => rig,
+            Some(by) => Box::new(Moved { rig, by }),
+        })
     }
 
     /// Measures the window of a specimen, looked for by `search`, and what the plan adds; ends
@@ -111,10 +145,12 @@ impl Evaluator {
         plan: &Plan,
         stop: &AtomicBool,
     ) -> Result<Evaluation, RigError> {
-        let rig = self.rig(specimen, 1.0)?;
+        let taught = self.taught(specimen)?;
+        let rig = self.rig_from(specimen, taught, 1.0)?;
         let rig = Stoppable { rig: &*rig, stop };
         let Specimen { finger, stiffness, .. } = specimen;
-        Ok(robustness::evaluate(&rig, finger, stiffness, search, plan))
+        let evaluation = robustness::evaluate(&rig, finger, stiffness, search, plan);
+        Ok(Evaluation { taught, ..evaluation })
     }
 
     /// The firm part of a specimen's window, by [`firm::REPEATS`] repeats that this seed names;

@@ -6,6 +6,7 @@ pub mod pareto;
 pub mod robustness;
 mod schema;
 mod stoppable;
+pub mod taught;
 pub mod template;
 pub mod tolerance;
 pub mod uncertainty;
@@ -88,6 +89,8 @@ pub struct Evaluation {
     /// a share of it, 0 to 1: interpolated over [`Trial::margin`](crate::trial::Trial::margin).
     /// If the nominal start fails, its margin, -1 to 0.
     pub end_shares: [f64; 2],
+    /// By how much the start was moved from that of the task file, in grid steps, if it was taught.
+    pub taught: Option<OffsetStep>,
     /// How often the design inserts under errors, if that was measured.
     pub success: Option<SuccessRate>,
     /// How its range holds under errors, if that was measured.

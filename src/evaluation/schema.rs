@@ -24,6 +24,8 @@ pub(super) struct EvaluationRow {
     #[serde(deserialize_with = "null_is_nan")]
     simulated_s: f64,
     end_shares: [f64; 2],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    taught_start_mm: Option<f64>,
     #[serde(flatten)]
     success: Option<SuccessRow>,
     #[serde(flatten)]
@@ -122,6 +124,7 @@ impl From<Evaluation> for EvaluationRow {
             trials: evaluation.trials,
             simulated_s: evaluation.simulated_s,
             end_shares: evaluation.end_shares,
+            taught_start_mm: evaluation.taught.map(grid_mm),
             success: evaluation.success.as_ref().map(SuccessRow::from),
             robust: evaluation.robust.map(RobustRow::from),
         }
@@ -156,6 +159,7 @@ impl TryFrom<EvaluationRow> for Evaluation {
             slip_mm: row.slip_mm,
             simulated_s: row.simulated_s,
             end_shares: row.end_shares,
+            taught: row.taught_start_mm.map(steps),
             success: row.success.map(SuccessRate::from),
             robust: row.robust.map(RobustRange::from),
         })
@@ -234,6 +238,7 @@ mod tests {
             slip_mm: 0.3,
             simulated_s: 12.5,
             end_shares: [0.25, 1.0 / 3.0],
+            taught: None,
             success: None,
             robust: None,
         }
@@ -260,6 +265,8 @@ mod tests {
         });
         full.robust =
             Some(RobustRange { ranges_mm: vec![1.1], diverged: 2, value_mm: None, trials: 7 });
+        assert_eq!(again(&full), full);
+        full.taught = Some(-13);
         assert_eq!(again(&full), full);
         let mut limit = evaluation();
         (limit.window.end_negative, limit.window.end_positive) = (None, None);

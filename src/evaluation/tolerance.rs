@@ -179,6 +179,7 @@ impl Log {
             slip_mm: self.slip_mm,
             simulated_s: self.simulated_s,
             end_shares,
+            taught: None,
             success: None,
             robust: None,
         }

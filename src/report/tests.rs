@@ -110,6 +110,7 @@ fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
         slip_mm: 0.0,
         simulated_s: 3.0,
         end_shares: [0.0; 2],
+        taught: None,
         success: None,
         robust: None,
     };

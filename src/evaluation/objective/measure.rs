@@ -164,6 +164,7 @@ pub(super) mod tests {
             slip_mm: 0.1,
             simulated_s: 49.0,
             end_shares: [0.0; 2],
+            taught: None,
             success: None,
             robust: None,
         }

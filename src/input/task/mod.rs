@@ -101,8 +101,21 @@ pub struct Strategy {
     pub tilt: f64,
     /// TCP at the nominal start, m.
     pub start: [f64; 3],
+    /// What becomes of it.
+    pub rule: StartRule,
     /// Moves, each from where the one before was to end.
     pub phases: Vec<Phase>,
+}
+
+/// What becomes of the nominal start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum StartRule {
+    /// It is where the task file says
+    #[default]
+    Given,
+    /// It is moved to the middle of the nearest window of the finger
+    Taught,
 }
 
 /// What part of the trial a phase belongs to; decides the failure class.

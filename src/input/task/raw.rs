@@ -2,7 +2,7 @@
 
 use super::geometry::{Part, Solid};
 use super::raw_finger::RawFinger;
-use super::{Ending, Friction, Grip, Hold, Phase, Plug, Stage, Strategy, Success, Task};
+use super::{Ending, Friction, Grip, Hold, Phase, Plug, Stage, StartRule, Strategy, Success, Task};
 use crate::input::{Check, InputError, read};
 use crate::units::{DEG, GRAM, MM};
 use nalgebra::Vector3;
@@ -98,6 +98,8 @@ struct RawFriction {
 struct RawStrategy {
     tilt_deg: f64,
     start_mm: [f64; 3],
+    #[serde(default)]
+    start: StartRule,
     phase: Vec<RawPhase>,
 }
 
@@ -309,7 +311,12 @@ impl Check<'_> {
         if late > first_search {
             return self.fail("strategy.phase", "phases with stage = \"approach\" come first");
         }
-        Ok(Strategy { tilt: tilt * DEG, start: raw.start_mm.map(|v| v * MM), phases })
+        Ok(Strategy {
+            tilt: tilt * DEG,
+            start: raw.start_mm.map(|v| v * MM),
+            rule: raw.start,
+            phases,
+        })
     }
 
     fn phase(&self, raw: &RawPhase) -> Result<Phase, InputError> {

@@ -2,6 +2,7 @@
 //! engine, and as published.
 
 pub mod engines;
+pub mod fingers;
 pub mod pairs;
 pub mod published;
 pub mod statistics;

@@ -1,18 +1,19 @@
 //! `optimize validate`: our windows beside the published ones.
 
-use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
+mod against;
+
+use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, FingerModelArguments};
 use super::{Failure, print, print_json};
 use crate::evaluation::tolerance::Search;
-use crate::finger::model::FingerSource;
 use crate::input::published::{self, Origin};
 use crate::input::robot::Robot;
 use crate::input::shipped::TASKS;
 use crate::input::stiffness::Measurement;
-use crate::input::task::Task;
+use crate::input::task::{StartRule, Task};
 use crate::report::validation;
 use crate::study::write_file;
 use crate::verify::compare::published::{self as beside, TaskTable};
-use crate::verify::compare::{self, TaskWays, Way};
+use crate::verify::compare::{self, fingers::Windows};
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -34,6 +35,13 @@ impl Fingers {
             Fingers::Three => compare::three(published::designs()),
         }
     }
+}
+
+/// What else our ranges are compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Against {
+    /// The published experiments on the robot
+    Bench,
 }
 
 /// Compare our tolerance windows with the published ones.
@@ -61,6 +69,20 @@ pub struct Arguments {
     /// The default: step by step to the first failure
     #[arg(long, hide = true, conflicts_with = "strides")]
     walk: bool,
+    /// Compare our ranges with several finger models, and the published simulation's, with the
+    /// published experiments instead
+    #[arg(long, value_enum)]
+    against: Option<Against>,
+    /// Computed fingers at so many rib phases, evenly over a pitch: median and range of each
+    /// agreement
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "against",
+          value_parser = clap::value_parser!(u32).range(1..=64))]
+    phases: u32,
+    #[command(flatten)]
+    finger_model: FingerModelArguments,
+    /// What becomes of the nominal start, in place of what the task file says
+    #[arg(long, value_enum)]
+    start: Option<StartRule>,
     /// Folder that tables and figures are written to
     #[arg(long, value_name = "DIR", default_value = "results/validation")]
     out: PathBuf,
@@ -71,10 +93,16 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let tasks = tasks(&arguments.task)?;
+    let mut tasks = tasks(&arguments.task)?;
+    for task in &mut tasks {
+        task.strategy.rule = arguments.start.unwrap_or(task.strategy.rule);
+    }
     let robot = setup::robot(&arguments.robot)?;
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
-    let tables = arguments.measure(tasks, &robot, search)?;
+    if arguments.against == Some(Against::Bench) {
+        return against::run(arguments, &tasks, &robot, search);
+    }
+    let tables = arguments.measure(&tasks, &robot, search)?;
     write(&arguments.out, &tables)?;
     let engine = arguments.engine.name();
     if arguments.json {
@@ -118,28 +146,18 @@ pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
 }
 
 impl Arguments {
+    /// The tables without `--against`.
     fn measure(
         &self,
-        tasks: Vec<Task>,
+        tasks: &[Task],
         robot: &Robot,
         search: Search,
     ) -> Result<Vec<TaskTable>, Failure> {
-        let designs = self.fingers.designs();
-        let ways = |task: Task| {
-            let rig = setup::rig(self.engine, &task, robot, &FingerSource::Paper.any(&task))
-                .map_err(Failure::input)?;
-            let way = Way { name: search_name(search).to_owned(), rig: rig.into(), search };
-            Ok(TaskWays { task, ways: vec![way] })
-        };
-        let tasks = tasks.into_iter().map(ways).collect::<Result<Vec<_>, Failure>>()?;
-        let windows = compare::each(&tasks, &designs, |subject, ways| {
-            (subject.design, ways[0].evaluate(&subject.finger).window)
-        });
-        let of_tasks = windows.chunks(designs.len().max(1));
-        let table = |(on, windows): (&TaskWays, &[_])| {
-            TaskTable::new(&on.task.name, windows.iter().cloned())
-        };
-        Ok(tasks.iter().zip(of_tasks).map(table).collect())
+        let fingers = setup::fingers(self.finger_model.source()?.as_ref())?;
+        let engine = self.engine;
+        let windows = Windows { fingers: &fingers, robot, engine, search, teach: false };
+        let found = windows.measure(tasks, &self.fingers.designs()).map_err(Failure::input)?;
+        Ok(found.into_iter().map(|(table, _)| table).collect())
     }
 }
 

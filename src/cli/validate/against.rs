@@ -1,0 +1,92 @@
+//! `optimize validate --against bench`: our ranges with several finger models, and the
+//! published simulation's, beside the experiments.
+
+use super::{Arguments, search_name};
+use crate::cli::setup;
+use crate::cli::{Failure, print, print_json};
+use crate::evaluation::tolerance::Search;
+use crate::finger::computed::Touching;
+use crate::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
+use crate::input::printed::PrintedFinger;
+use crate::input::robot::Robot;
+use crate::input::shipped::FINGERS;
+use crate::input::task::Task;
+use crate::study::write_file;
+use crate::verify::compare::fingers::Windows;
+use crate::verify::compare::published::{Model, ModelTables, TaskTable, models_json, models_text};
+use serde_json::json;
+
+/// Models of ours, in the order of the output.
+const OURS: [Model; 3] = [Model::Paper, Model::ComputedPad, Model::ComputedPadAndRoof];
+
+/// Runs the command.
+pub fn run(
+    arguments: &Arguments,
+    tasks: &[Task],
+    robot: &Robot,
+    search: Search,
+) -> Result<(), Failure> {
+    if arguments.finger_model.kind == FingerModelKind::Computed {
+        let problem = "--against bench compares all finger models; leave out --finger-model";
+        return Err(Failure::usage(problem));
+    }
+    let measured = OURS.into_iter().map(|model| {
+        let phases = if model == Model::Paper { 1 } else { arguments.phases };
+        let tables = (0..phases).map(|phase| {
+            let share = f64::from(phase) / f64::from(phases);
+            let fingers = fingers(model, &arguments.finger_model.finger, share)?;
+            let teach = model != Model::Paper;
+            let engine = arguments.engine;
+            let windows = Windows { fingers: &fingers, robot, engine, search, teach };
+            windows.measure(tasks, &arguments.fingers.designs()).map_err(Failure::input)
+        });
+        Ok((model, tables.collect::<Result<Vec<_>, Failure>>()?))
+    });
+    let measured = measured.collect::<Result<Vec<_>, Failure>>()?;
+    let models: Vec<ModelTables> = (0..tasks.len()).flat_map(|at| of_task(&measured, at)).collect();
+    let table = models_text(&models);
+    let (robot, engine) = (&robot.name, arguments.engine.name());
+    let phases = match arguments.phases {
+        1 => String::new(),
+        phases => format!("; median (smallest .. largest) of {phases} rib phases"),
+    };
+    let text = format!(
+        "our ranges and the published simulation's beside the published experiments; robot {robot}, \
+         engine\n{engine}, {}{phases}. taught: starts moved to where the finger inserts, since the \
+         task's own does not;\nnothing is fitted to the experiments\n\n{table}",
+        search_name(search),
+    );
+    write_file(&arguments.out.join("against_bench.txt"), &text)?;
+    let json = json!({ "robot": robot, "engine": engine, "agreement": models_json(&models) });
+    if arguments.json { print_json(&json) } else { print(&text) }
+}
+
+/// One entry for each rib phase: the tables of the tasks, and the starts taught for them.
+type Phases = Vec<Vec<(TaskTable, usize)>>;
+
+/// All models on one task; the published simulation, which every table holds, first.
+fn of_task(measured: &[(Model, Phases)], at: usize) -> Vec<ModelTables> {
+    let of = |(model, phases): &(Model, Phases)| ModelTables {
+        model: *model,
+        tables: phases.iter().map(|tasks| tasks[at].0.clone()).collect(),
+        taught: phases.iter().map(|tasks| tasks[at].1).sum(),
+    };
+    let ours: Vec<ModelTables> = measured.iter().map(of).collect();
+    let tables = ours.first().map_or(Vec::new(), |first| first.tables.clone());
+    let published = ModelTables { model: Model::Published, tables, taught: 0 };
+    std::iter::once(published).chain(ours).collect()
+}
+
+/// The fingers of a model, their ribs moved by a share of the pitch.
+fn fingers(model: Model, file: &str, phase_share: f64) -> Result<FingerSource, Failure> {
+    let touching = match model {
+        Model::Published | Model::Paper => return Ok(FingerSource::Paper),
+        Model::ComputedPad => Touching::Pad,
+        Model::ComputedPadAndRoof => Touching::PadAndRoof,
+    };
+    let source = setup::find("finger", FINGERS, file)?;
+    let printed = PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let mut fingers = ComputedFingers::new(printed, touching);
+    fingers.phase_share = phase_share;
+    Ok(FingerSource::Computed(Box::new(fingers)))
+}

@@ -1,0 +1,172 @@
+//! Finger models beside the published experiments: how far the ranges of each agree with the
+//! robot's. Nothing is fitted to the experiments here.
+
+use super::{Agreement, RangeSource, TaskTable};
+use crate::verify::compare::statistics::median;
+use serde_json::{Value, json};
+
+/// What predicts a range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// The publication's simulation.
+    Published,
+    /// Ours with the paper's springs.
+    Paper,
+    /// Ours with springs from the ribs, the part touching the pad.
+    ComputedPad,
+    /// The same, the part touching pad and roof.
+    ComputedPadAndRoof,
+}
+
+impl Model {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Model::Published => "published",
+            Model::Paper => "paper",
+            Model::ComputedPad => "computed-pad",
+            Model::ComputedPadAndRoof => "computed-pad-and-roof",
+        }
+    }
+
+    fn source(self) -> RangeSource {
+        match self {
+            Model::Published => RangeSource::Simulation,
+            _ => RangeSource::Ours,
+        }
+    }
+}
+
+/// What a model says of the designs of a task, once for each rib phase.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelTables {
+    /// The model.
+    pub model: Model,
+    /// At least one; the phases of a model that has none are one.
+    pub tables: Vec<TaskTable>,
+    /// Starts that were taught since the task's own does not insert, over all phases.
+    pub taught: usize,
+}
+
+/// A number over the rib phases.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread {
+    /// Median.
+    pub median: f64,
+    /// Smallest and largest.
+    pub range: [f64; 2],
+}
+
+impl Spread {
+    fn of(values: impl Iterator<Item = Option<f64>>) -> Option<Self> {
+        let values: Vec<f64> = values.flatten().collect();
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Some(Spread { median: median(&values)?, range: [low, high] })
+    }
+}
+
+impl ModelTables {
+    /// A quantity of the agreement with the experiments, over the phases.
+    pub fn spread(&self, of: impl Fn(&Agreement) -> Option<f64>) -> Option<Spread> {
+        let agreement =
+            |table: &TaskTable| Agreement::of(&table.rows, self.model.source(), RangeSource::Bench);
+        Spread::of(self.tables.iter().map(|table| of(&agreement(table))))
+    }
+
+    /// Ranges of the designs in their order, mm: the median over the phases; `None` where
+    /// there is no range.
+    pub fn ranges_mm(&self) -> Vec<Option<f64>> {
+        let designs = self.tables.first().map_or(0, |table| table.rows.len());
+        let range = |at: usize| {
+            let of = |table: &TaskTable| table.rows.get(at)?.range_mm(self.model.source());
+            Some(Spread::of(self.tables.iter().map(of))?.median)
+        };
+        (0..designs).map(range).collect()
+    }
+
+    fn task(&self) -> &str {
+        self.tables.first().map_or("", |table| &table.task)
+    }
+
+    fn designs(&self) -> f64 {
+        self.spread(|found| Some(found.designs as f64)).map_or(0.0, |spread| spread.median)
+    }
+
+    fn json(&self) -> Value {
+        let median = |of: &dyn Fn(&Agreement) -> Option<f64>| self.spread(of).map(|s| s.median);
+        let mut row = json!({
+            "task": self.task(),
+            "model": self.model.name(),
+            "designs": self.designs() as usize,
+            "spearman": median(&|found| found.spearman),
+            "mean_absolute_error_mm": median(&|found| found.mean_absolute_error_mm),
+            "mean_deviation_percent": median(&|found| found.mean_deviation_percent),
+            "failure_match_percent": median(&Agreement::match_percent),
+            "ranges_mm": self.ranges_mm(),
+        });
+        if self.tables.len() > 1 {
+            let range = |of: &dyn Fn(&Agreement) -> Option<f64>| self.spread(of).map(|s| s.range);
+            row["over_phases"] = json!({
+                "phases": self.tables.len(),
+                "spearman": range(&|found| found.spearman),
+                "mean_absolute_error_mm": range(&|found| found.mean_absolute_error_mm),
+                "mean_deviation_percent": range(&|found| found.mean_deviation_percent),
+                "failure_match_percent": range(&Agreement::match_percent),
+            });
+        }
+        row
+    }
+
+    /// A line of the table; within 100 columns unless there are phases.
+    fn text(&self) -> String {
+        let several = self.tables.len() > 1;
+        let cell = |of: &dyn Fn(&Agreement) -> Option<f64>, digits: usize, width: usize| {
+            let words = |Spread { median, range: [low, high] }: Spread| match several {
+                false => format!("{median:.digits$}"),
+                true => format!("{median:.digits$} ({low:.digits$} .. {high:.digits$})"),
+            };
+            let wide = if several { width + 16 } else { width };
+            let words = self.spread(of).map_or("-".to_owned(), words);
+            format!("{words:>wide$}")
+        };
+        format!(
+            "{:<6} {:<22}{:>7}{}{}{}{}{:>8}\n",
+            self.task(),
+            self.model.name(),
+            self.designs(),
+            cell(&|found| found.spearman, 2, 10),
+            cell(&|found| found.mean_absolute_error_mm, 2, 10),
+            cell(&|found| found.mean_deviation_percent, 0, 11),
+            cell(&Agreement::match_percent, 0, 10),
+            self.taught,
+        )
+    }
+}
+
+/// The list `agreement`.
+pub fn models_json(models: &[ModelTables]) -> Value {
+    models.iter().map(ModelTables::json).collect()
+}
+
+/// A table of the agreements, a line each, and of the ranges.
+pub fn models_text(models: &[ModelTables]) -> String {
+    let phases = models.iter().map(|model| model.tables.len()).max().unwrap_or(1);
+    let more = if phases > 1 { 16 } else { 0 };
+    let head = ["Spearman", "error, mm", "deviation, %", "match, %"];
+    let widths = [10, 10, 11, 10];
+    let mut text = format!("{:<6} {:<22}{:>7}", "task", "model", "designs");
+    for (head, width) in head.into_iter().zip(widths) {
+        text.push_str(&format!("{head:>width$}", width = width + more));
+    }
+    text.push_str(&format!("{:>8}\n", "taught"));
+    text.extend(models.iter().map(ModelTables::text));
+    text.push_str("\nranges, mm, of designs 1, 2 ..\n");
+    for model in models {
+        let range = |mm: Option<f64>| mm.map_or("   -".to_owned(), |mm| format!("{mm:4.1}"));
+        let ranges: Vec<String> = model.ranges_mm().into_iter().map(range).collect();
+        let (task, name) = (model.task(), model.model.name());
+        text.push_str(&format!("{task:<6} {name:<22} {}\n", ranges.join(" ")));
+    }
+    text
+}

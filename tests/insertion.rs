@@ -284,7 +284,8 @@ fn a_picture_shows_each_phase_twice() {
     let rig = direct("rj45");
     let finger = finger(2.0, 50.0);
     let trial = trial(&rig, &finger, 0.0);
-    let svg = picture::svg(&rig.task, &finger.pad, &trial);
+    let svg = picture::svg(&rig.task, &finger.pad, &trial, "a <trial>");
     assert_eq!(svg.matches("(y, z)").count(), trial.phases.len());
     assert_eq!(svg.matches("(x, z)").count(), trial.phases.len());
+    assert!(svg.contains("a &lt;trial&gt;") && svg.contains("10 mm"));
 }

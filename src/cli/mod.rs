@@ -10,6 +10,7 @@ mod cross_check;
 mod evaluate;
 mod export;
 mod failure;
+mod film;
 mod finger;
 mod manual;
 mod measure;

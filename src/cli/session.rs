@@ -2,7 +2,7 @@
 
 use super::progress::Progress;
 use super::setup::Setup;
-use super::{Failure, report, say, summary, unusable};
+use super::{Failure, film, report, say, summary, unusable};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
 use crate::evaluation::tolerance::Search;
@@ -86,6 +86,9 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     }
     study.check_journal()?;
     let record = study.record();
+    if ending != Ending::Interrupted && !stop.load(Ordering::SeqCst) {
+        film::boundary(study.dir(), &record, setup, &pool)?;
+    }
     report::write(study.dir(), &record, &setup.evaluator.surrogate)?;
     if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {
         return Err(Failure::running(format!("interrupted; {}", resume_hint(&study))));

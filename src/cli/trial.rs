@@ -1,5 +1,6 @@
 //! `optimize trial`: one simulated insertion.
 
+use super::film::FilmArguments;
 use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
 use super::specimen::{Chosen, FingerArguments};
@@ -30,6 +31,8 @@ pub struct Arguments {
     offset_mm: f64,
     #[command(flatten)]
     repeat: RepeatArguments,
+    #[command(flatten)]
+    film: FilmArguments,
     /// Draw plug, fingertips and socket at the end of each phase
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<std::path::PathBuf>,
@@ -57,8 +60,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let repeats = found.repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
     let start = words::taught(found.taught).map_or(String::new(), |line| line + "\n");
+    let drawn = arguments.svg.iter().map(|file| format!("wrote         {}\n", file.display()));
+    let wrote: String = drawn.chain([arguments.film.written()]).collect();
     let chosen = found.chosen.text(&found.setup);
-    print(&format!("{chosen}\n{start}{}{repeats}", text(&found.trial)))
+    print(&format!("{chosen}\n{start}{}{repeats}{wrote}", text(&found.trial)))
 }
 
 /// Simulates, with a sample each `every_s` seconds if that is given.
@@ -69,15 +74,17 @@ pub fn find(arguments: &Arguments, every_s: Option<f64>) -> Result<Found, Failur
     let offset = arguments.offset_mm * MM;
     let taught = setup.evaluator.taught(specimen).map_err(Failure::input)?;
     let rig = setup.evaluator.rig_from(specimen, taught, 1.0).map_err(Failure::input)?;
-    let grasped = rig.grasp(&specimen.finger);
-    let (trial, samples) = match every_s {
-        Some(every_s) => grasped.traced(offset, every_s),
-        None => (grasped.trial(offset), Vec::new()),
+    let filmed = arguments.film.record(&*rig, specimen, arguments.offset_mm)?;
+    let (trial, samples) = match (every_s, filmed) {
+        (Some(every_s), _) => rig.grasp(&specimen.finger).traced(offset, every_s),
+        (None, Some(recording)) => (recording.trial, Vec::new()),
+        (None, None) => (rig.grasp(&specimen.finger).trial(offset), Vec::new()),
     };
-    drop(grasped);
     drop(rig);
     if let Some(file) = &arguments.svg {
-        write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial))?;
+        let label =
+            format!("{}, start shifted by {:+.1} mm", specimen.task.name, arguments.offset_mm);
+        write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
     }
     let repeats = arguments.repeat.outcomes(&setup, &chosen, offset)?;
     Ok(Found { setup, chosen, taught, trial, samples, repeats })
@@ -127,11 +134,15 @@ fn text(trial: &Trial) -> String {
         trial.peak_force_n,
         trial.slip_mm,
     );
+    if trial.phases.is_empty() {
+        return text;
+    }
+    text += "\nphase         end s   tip x mm  tip y mm  tip z mm  tilt deg  slip mm  peak N\n";
     for phase in &trial.phases {
         let [x, y, z] = phase.tip_mm;
         text.push_str(&format!(
-            "  {:<12} ends at {:6.2} s, tip {x:7.2} {y:7.2} {z:7.2} mm, tilt {:5.2} deg, peak {:5.1} N\n",
-            phase.name, phase.time_s, phase.tilt_deg, phase.peak_force_n
+            "{:<12} {:6.2}  {x:9.2} {y:9.2} {z:9.2} {:9.2} {:8.2} {:7.1}\n",
+            phase.name, phase.time_s, phase.tilt_deg, phase.slip_mm, phase.peak_force_n
         ));
     }
     text

@@ -19,8 +19,9 @@ pub fn check(dir: &Path, record: &StudyRecord, setup: &Setup) -> Result<(), Fail
         evaluator.specimen(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
     let rig = evaluator.rig(&specimen, 1.0).map_err(Failure::input)?;
     let trial = rig.grasp(&specimen.finger).trial(0.0);
+    let label = format!("{}, nominal start, evaluation {}", specimen.task.name, nearest.index);
     let file = dir.join(PICTURE);
-    write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial))?;
+    write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
     let class = match trial.outcome {
         Outcome::Failed(class) => format!("{} (class {})", class.label(), class.number()),
         outcome => outcome.word().to_owned(),

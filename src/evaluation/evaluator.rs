@@ -168,7 +168,9 @@ impl Evaluator {
         if window.nominal != Outcome::Inserted {
             return Ok(Firm::NONE);
         }
-        let (whole, half) = (self.rig(specimen, 1.0)?, self.rig(specimen, 0.5)?);
+        let taught = self.taught(specimen)?;
+        let rig = |factor| self.rig_from(specimen, taught, factor);
+        let (whole, half) = (rig(1.0)?, rig(0.5)?);
         let [whole, half] = [&whole, &half].map(|rig| Stoppable { rig: &**rig, stop });
         let repeats = Repeats::new([&whole, &half], &specimen.finger, seed, firm::REPEATS);
         Ok(firm::measure(&repeats, window))

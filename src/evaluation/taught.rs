@@ -8,7 +8,7 @@ use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
 use super::{OffsetStep, Window};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
-use crate::trial::{Conditions, Grasped, Rig, Sample, Trial};
+use crate::trial::{Conditions, Grasped, Recording, Rig, Sample, Trial};
 
 /// Distance between the starts that are tried, in grid steps.
 const STRIDE: OffsetStep = 5;
@@ -44,11 +44,19 @@ impl Rig for Moved<&dyn Rig> {
     fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
         Box::new(MovedGrasp { grasped: self.rig.grasp_in(finger, conditions), by: offset(self.by) })
     }
+
+    fn record(&self, finger: &Finger, shift: f64) -> Option<Recording> {
+        self.rig.record(finger, shift + offset(self.by))
+    }
 }
 
 impl Rig for Moved<Box<dyn Rig>> {
     fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
         Box::new(MovedGrasp { grasped: self.rig.grasp_in(finger, conditions), by: offset(self.by) })
+    }
+
+    fn record(&self, finger: &Finger, shift: f64) -> Option<Recording> {
+        self.rig.record(finger, shift + offset(self.by))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Contact engines behind one trait; they know scenes, not studies.
 
 use crate::scene::{Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 pub mod direct;
 pub mod mjcf;
@@ -9,6 +9,9 @@ pub mod mjcf;
 pub mod mujoco;
 pub mod rapier;
 pub(crate) mod shapes;
+mod surface;
+
+pub use surface::{Surface, surface};
 
 /// Builds worlds from scenes.
 pub trait Engine: Send + Sync {
@@ -79,6 +82,22 @@ pub struct ContactForce {
     pub normal_sum: f64,
 }
 
+/// A point at which two bodies press on one another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPoint {
+    /// Where, m.
+    pub point: Point3<f64>,
+    /// Force on the second body over the last step, with friction, N.
+    pub force: Vector3<f64>,
+}
+
+impl ContactPoint {
+    /// The same seen from another frame.
+    pub fn seen(&self, from: &Pose) -> Self {
+        ContactPoint { point: from * self.point, force: from * self.force }
+    }
+}
+
 /// A scene that is being simulated.
 pub trait World: Send + Sync {
     /// Advances by one step; every step is checked for divergence.
@@ -105,6 +124,12 @@ pub trait World: Send + Sync {
 
     /// Contact between two bodies over the last step.
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce;
+
+    /// The points at which two bodies press on one another, for pictures; none if the engine does
+    /// not tell.
+    fn contact_points(&self, _first: BodyId, _second: BodyId) -> Vec<ContactPoint> {
+        Vec::new()
+    }
 
     /// An independent copy that continues bit for bit alike.
     fn snapshot(&self) -> Box<dyn World>;

@@ -17,6 +17,7 @@ pub mod printer;
 mod provenance;
 mod published;
 pub mod quartiles;
+pub mod replay;
 pub mod sensitivity;
 pub mod stiffness;
 mod stiffness_plot;

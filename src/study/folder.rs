@@ -6,6 +6,7 @@
 //!                  when the originals have changed or gone; inputs-2/ and so on
 //!                  those of a further segment
 //! journal.jsonl    what was measured
+//! replay/          films of the trials at both ends of the recommended window
 //! walk.json        what the walk and the repeats found of the best designs
 //! evaluations.csv  the same as a table; convergence.svg and report.html beside it
 //! .lock            held by the process that writes

@@ -3,13 +3,14 @@
 use super::cell::{self, Hand, WorkCell};
 use super::classify::{Facts, Placement, classify, within};
 use super::motion::{Move, Tcp};
+use super::record::{Frame, Recorder};
 use super::trace::{Sample, Trace};
 use super::watch::Watch;
 use super::{PhaseEnd, Poses, Trial};
 use crate::input::robot::Mounted;
 use crate::input::task::{Ending, Hold, Phase, Stage, Task};
 use crate::outcome::Outcome;
-use crate::physics::{Diverged, World};
+use crate::physics::{ContactPoint, Diverged, World};
 use crate::scene::{BodyId, Pose};
 use crate::units::{DEG, MM};
 use nalgebra::{Point3, Vector3};
@@ -64,6 +65,8 @@ pub(super) struct Attempt<'a> {
     phases: Vec<PhaseEnd>,
     /// Samples, if they are wanted.
     pub trace: Option<Trace>,
+    /// Films it, if that was asked for.
+    pub recorder: Option<Recorder>,
 }
 
 impl<'a> Attempt<'a> {
@@ -85,6 +88,7 @@ impl<'a> Attempt<'a> {
             corners,
             phases: Vec::new(),
             trace: None,
+            recorder: None,
         }
     }
 
@@ -98,6 +102,7 @@ impl<'a> Attempt<'a> {
             corners: self.corners.clone(),
             phases: self.phases.clone(),
             trace: self.trace.clone(),
+            recorder: self.recorder.clone(),
             ..*self
         }
     }
@@ -220,6 +225,7 @@ impl<'a> Attempt<'a> {
         self.time += dt;
         let contact = self.world.contact(self.cell.socket, self.cell.plug);
         self.watch.see_force(&contact.net, dt);
+        self.record(dt);
         self.watch_grasp(dt)?;
         if self.stage == Stage::Search {
             self.watch.entered = self.watch.entered || self.leading_edge_inside();
@@ -242,6 +248,32 @@ impl<'a> Attempt<'a> {
             tilt_deg: placement.tilt / DEG,
             force_n: (self.socket.rotation * force).into(),
             slip_mm: self.slip() / MM,
+        }
+    }
+
+    /// Where a body presses the plug, task frame.
+    fn presses(&self, body: BodyId) -> impl Iterator<Item = ContactPoint> {
+        let points = self.world.contact_points(body, self.cell.plug);
+        points.into_iter().map(|point| point.seen(&self.socket))
+    }
+
+    /// Takes a frame, if the trial is filmed.
+    fn record(&mut self, dt: f64) {
+        if !self.recorder.as_mut().is_some_and(|recorder| recorder.wants(dt)) {
+            return;
+        }
+        let frame = Frame {
+            time_s: self.time,
+            stage: self.stage,
+            poses: self.poses(),
+            jaws: self.cell.hands.map(|hand| self.pose(hand.jaw)),
+            force: self.socket * self.watch.force,
+            slip: if self.phases.is_empty() { 0.0 } else { self.slip() },
+            contacts: self.presses(self.cell.socket).collect(),
+            grips: self.cell.hands.into_iter().flat_map(|hand| self.presses(hand.finger)).collect(),
+        };
+        if let Some(recorder) = &mut self.recorder {
+            recorder.frames.push(frame);
         }
     }
 
@@ -323,6 +355,7 @@ impl<'a> Attempt<'a> {
             slip_mm: self.slip() / MM,
             peak_force_n: self.watch.phase_peak,
             poses: self.poses(),
+            contacts: self.presses(self.cell.socket).collect(),
         };
         self.watch.phase_peak = 0.0;
         self.phases.push(end);

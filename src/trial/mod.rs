@@ -2,6 +2,7 @@
 
 use crate::finger::Finger;
 use crate::outcome::Outcome;
+use crate::physics::ContactPoint;
 use crate::scene::Pose;
 use serde::Serialize;
 
@@ -14,11 +15,13 @@ pub mod engine;
 pub mod fake;
 pub mod motion;
 pub mod picture;
+pub mod record;
 pub mod run;
 mod trace;
 mod watch;
 
 pub use conditions::Conditions;
+pub use record::Recording;
 pub use trace::Sample;
 
 /// State at the end of one phase of a trial.
@@ -39,6 +42,9 @@ pub struct PhaseEnd {
     /// Where the bodies are, task frame, m; for pictures.
     #[serde(skip)]
     pub poses: Poses,
+    /// Points at which the socket presses the plug, task frame; for pictures.
+    #[serde(skip)]
+    pub contacts: Vec<ContactPoint>,
 }
 
 /// Where plug and fingers are, task frame, m.
@@ -83,6 +89,12 @@ pub trait Rig: Send + Sync {
     /// The same in the world as the task file says.
     fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
         self.grasp_in(finger, &Conditions::NOMINAL)
+    }
+
+    /// The trial of such a pair of fingers with the start shifted by `offset` metres along y, filmed
+    /// from the grasp on; `None` if there is nothing to be seen.
+    fn record(&self, _finger: &Finger, _offset: f64) -> Option<Recording> {
+        None
     }
 }
 

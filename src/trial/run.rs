@@ -1,8 +1,9 @@
 //! A trial in a contact engine: where it is run, and what happens if it diverges.
 
 use super::attempt::{Attempt, Stop, turned};
+use super::record::{Frame, Recorder};
 use super::trace::{Sample, Trace};
-use super::{Conditions, Grasped, Rig, Trial, cell};
+use super::{Conditions, Grasped, Recording, Rig, Trial, cell};
 use crate::finger::Finger;
 use crate::input::arm::ArmError;
 use crate::input::robot::{Mounted, Robot};
@@ -68,6 +69,7 @@ impl EngineRig {
         engine: &dyn Engine,
         finger: &Finger,
         conditions: &Conditions,
+        recorder: Option<Recorder>,
     ) -> Prepared<'_> {
         let task = Arc::new(conditions.task(&self.task));
         let mut cell = cell::build(&task, &self.robot, finger);
@@ -75,6 +77,7 @@ impl EngineRig {
         let world = engine.world(&cell.scene);
         let mut attempt = Attempt::new(&self.robot, task, cell, world);
         attempt.yaw = conditions.yaw;
+        attempt.recorder = recorder;
         let end = attempt.prepare();
         Prepared { attempt, end }
     }
@@ -86,9 +89,24 @@ impl Rig for EngineRig {
             rig: self,
             finger: *finger,
             conditions: *conditions,
-            prepared: self.prepare(&*self.engine, finger, conditions),
+            prepared: self.prepare(&*self.engine, finger, conditions, None),
             halved: OnceLock::new(),
         })
+    }
+
+    fn record(&self, finger: &Finger, offset: f64) -> Option<Recording> {
+        let by = |engine: &dyn Engine| {
+            let filmed = Some(Recorder::default());
+            let prepared = self.prepare(engine, finger, &Conditions::NOMINAL, filmed);
+            let (trial, _, frames) = prepared.watched(offset, None);
+            Recording::new(trial, frames)
+        };
+        let recording = by(&*self.engine);
+        if recording.trial.outcome != Outcome::Diverged {
+            return Some(recording);
+        }
+        let again = by(&*self.engine.halved());
+        Some(Recording { trial: Trial { retried: true, ..again.trial }, ..again })
     }
 }
 
@@ -120,7 +138,7 @@ impl Ready<'_> {
         }
         let again = || {
             let engine = self.rig.engine.halved();
-            self.rig.prepare(&*engine, &self.finger, &self.conditions)
+            self.rig.prepare(&*engine, &self.finger, &self.conditions, None)
         };
         let (trial, samples) = self.halved.get_or_init(again).run(offset, every_s);
         (Trial { retried: true, ..trial }, samples)
@@ -136,16 +154,27 @@ struct Prepared<'a> {
 
 impl Prepared<'_> {
     fn run(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+        let (trial, samples, _) = self.watched(offset, every_s.map(Trace::new));
+        (trial, samples)
+    }
+
+    /// The trial, and what was asked for on the way: samples from the search on, frames from the
+    /// grasp on if it is filmed.
+    fn watched(&self, offset: f64, trace: Option<Trace>) -> (Trial, Vec<Sample>, Vec<Frame>) {
         let mut attempt = self.attempt.copy();
-        attempt.trace = every_s.map(Trace::new);
+        attempt.trace = trace;
         // Shifting the start by y is shifting the socket by -y: the part has
         // touched nothing of it yet. So all offsets share grasp and approach.
         let socket = Pose::translation(0.0, -offset, 0.0) * turned(attempt.yaw);
         attempt.socket = turned(-attempt.yaw) * Pose::translation(0.0, offset, 0.0);
         attempt.world.place(attempt.cell.socket, socket);
+        if let Some(recorder) = &mut attempt.recorder {
+            recorder.seen(&attempt.socket);
+        }
         let end = self.end.and_then(|()| attempt.search_and_assemble());
         let samples = attempt.trace.take().map_or_else(Vec::new, |trace| trace.samples);
-        (attempt.result(end), samples)
+        let frames = attempt.recorder.take().map_or_else(Vec::new, |recorder| recorder.frames);
+        (attempt.result(end), samples, frames)
     }
 }
 
@@ -216,5 +245,36 @@ mod tests {
         );
         assert!((last.tip_mm[2] + trial.depth_mm).abs() < 1e-2, "{last:?}");
         assert!((trial.simulated_s - last.time_s) < 2e-3);
+    }
+
+    #[test]
+    fn a_recorded_trial_is_the_same_trial() {
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+        let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
+        let recording = rig.record(&finger, 5e-4).unwrap();
+        assert_eq!(recording.trial, rig.grasp(&finger).trial(5e-4));
+        let frames = &recording.frames;
+        let last = frames.last().unwrap();
+        assert!((last.depth_mm() - recording.trial.depth_mm).abs() < 0.01);
+        // The socket is pushed the way the plug goes, and the points carry the whole force.
+        let pushed = frames.iter().map(|frame| frame.force.norm()).fold(0.0, f64::max);
+        assert!(pushed > 0.9 * recording.trial.peak_force_n, "{pushed}");
+        assert!(
+            frames
+                .iter()
+                .any(|frame| !frame.contacts.is_empty() && frame.contacts[0].force.z > 0.0)
+        );
+        // The grip bends both fingers outward.
+        let held = frames.iter().find(|frame| frame.time_s > 0.29).unwrap();
+        let [left, right] = [0, 1].map(|finger| held.deflection_mm(finger)[1]);
+        assert!(left < -0.1 && right > 0.1, "{left} and {right}");
+        // The shift of the start is the same before and after the robot comes to the socket.
+        let jump = |pair: &[Frame]| {
+            let [a, b] = [&pair[0], &pair[1]].map(|f| f.poses.plug.translation.vector);
+            (a - b).norm()
+        };
+        assert!(frames.windows(2).all(|pair| jump(pair) < 2e-3));
     }
 }

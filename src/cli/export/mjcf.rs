@@ -1,8 +1,8 @@
 //! `optimize export mjcf`: the scene of a trial.
 
-use crate::cli::Failure;
 use crate::cli::setup::{Setup, SetupArguments};
 use crate::cli::specimen::FingerArguments;
+use crate::cli::{Failure, print};
 use crate::evaluation::evaluator::Specimen;
 use crate::physics::mjcf::{self, MjcfSettings};
 use crate::study::write_file;
@@ -38,5 +38,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Failure::usage(format!("{error}; --robot servo and --robot rigid need none of it"))
     })?;
     write_file(&arguments.out, &text)?;
-    Ok(())
+    print(&format!("wrote {}: the scene of {}, for MuJoCo\n", arguments.out.display(), task.name))
 }

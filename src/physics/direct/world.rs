@@ -7,7 +7,7 @@ use super::cone::{Compliance, Cone};
 use super::contacts::{Detector, Touch};
 use super::joints::SprungJoint;
 use super::solver::{Contact, Solver, lever, relative};
-use crate::physics::{ContactForce, Diverged, World};
+use crate::physics::{ContactForce, ContactPoint, Diverged, World};
 use crate::scene::{BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring};
 use nalgebra::Vector3;
 
@@ -224,6 +224,16 @@ impl World for DirectWorld {
             sum.normal_sum += force.normal_sum;
         }
         sum
+    }
+
+    fn contact_points(&self, first: BodyId, second: BodyId) -> Vec<ContactPoint> {
+        let per_step = 1.0 / self.settings.step_s;
+        let point = |(touch, contact): (&Touch, &Contact)| {
+            let sign = self.pairs.get(touch.pair)?.sign(first, second)?;
+            let force = contact.impulse.xyz() * (sign * per_step);
+            (force != Vector3::zeros()).then_some(ContactPoint { point: touch.point, force })
+        };
+        self.touches.iter().zip(&self.contacts).filter_map(point).collect()
     }
 
     fn snapshot(&self) -> Box<dyn World> {

@@ -1,0 +1,170 @@
+//! Films of trials: `--record` and `--plot` of `trial`, and the pairs at the ends of a study's
+//! recommended window.
+
+use super::Failure;
+use super::setup::Setup;
+use crate::evaluation::evaluator::Specimen;
+use crate::evaluation::tolerance::offset;
+use crate::evaluation::{OffsetStep, Window, grid_mm};
+use crate::outcome::Outcome;
+use crate::report::replay::{self, Film, PairEnd};
+use crate::study::{StudyRecord, write_file, write_own_file};
+use crate::trial::{Recording, Rig};
+use clap::Args;
+use rayon::ThreadPool;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What is made of a recorded trial.
+#[derive(Debug, Clone, Args)]
+pub struct FilmArguments {
+    /// Record the trial: a page that plays it, a table of every millisecond, or a glTF scene
+    #[arg(long, value_name = "FILE.html|.csv|.glb", value_parser = recordable)]
+    record: Option<PathBuf>,
+    /// Draw force against depth
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+}
+
+impl FilmArguments {
+    /// Records the trial at this offset and writes what was asked for; `None` if nothing was.
+    pub fn record(
+        &self,
+        rig: &dyn Rig,
+        specimen: &Specimen,
+        offset_mm: f64,
+    ) -> Result<Option<Recording>, Failure> {
+        if self.record.is_none() && self.plot.is_none() {
+            return Ok(None);
+        }
+        let recording = rig.record(&specimen.finger, offset_mm * crate::units::MM);
+        let recording = recording.ok_or_else(|| {
+            Failure::usage("--record and --plot need an engine that simulates: --engine direct")
+        })?;
+        let label = shifted(offset_mm);
+        let film = Film {
+            label: &label,
+            task: &specimen.task,
+            pad: &specimen.finger.pad,
+            recording: &recording,
+        };
+        if let Some(file) = &self.record {
+            write(file, &film)?;
+        }
+        if let Some(file) = &self.plot {
+            let svg = replay::curve_svg(&film);
+            write_file(file, &svg.map_err(|error| Failure::running(error.to_string()))?)?;
+        }
+        Ok(Some(recording))
+    }
+
+    /// The files that were written, in words.
+    pub fn written(&self) -> String {
+        let files = self.record.iter().chain(&self.plot);
+        files.map(|file| format!("wrote         {}\n", file.display())).collect()
+    }
+}
+
+fn write(file: &Path, film: &Film) -> Result<(), Failure> {
+    match extension(file).as_deref() {
+        Some("csv") => write_file(file, &replay::csv(film.recording))?,
+        Some("glb") => write_file(file, &replay::glb(film))?,
+        _ => {
+            let title = format!("{}, {}", film.task.name, film.label);
+            write_file(file, &replay::page(&title, &[*film]))?;
+        }
+    }
+    Ok(())
+}
+
+fn extension(file: &Path) -> Option<String> {
+    Some(file.extension()?.to_str()?.to_lowercase())
+}
+
+fn recordable(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    match extension(&file).as_deref() {
+        Some("html" | "csv" | "glb") => Ok(file),
+        _ => Err("its name must end with .html, .csv or .glb, which says what is written".into()),
+    }
+}
+
+fn shifted(offset_mm: f64) -> String {
+    format!("start shifted by {offset_mm:+.1} mm")
+}
+
+/// Records the pair at each end of the recommended design's windows, the last offset that
+/// inserts beside the first that fails, into the study's folder; what an earlier run left there is
+/// replaced or, where there is no pair, removed.
+pub fn boundary(
+    dir: &Path,
+    record: &StudyRecord,
+    setup: &Setup,
+    pool: &ThreadPool,
+) -> Result<(), Failure> {
+    let found = record.recommendation();
+    for (at, template) in setup.evaluator.templates.iter().enumerate() {
+        for end in PairEnd::BOTH {
+            let file = dir.join(end.file(at));
+            let pair = match found.as_ref().and_then(|found| Some((found, found.recorded.on(at)?)))
+            {
+                None => None,
+                Some((found, task)) => {
+                    let best = found.recorded;
+                    let specimen = setup
+                        .evaluator
+                        .specimen(template, &best.design, best.stiffness)
+                        .map_err(Failure::input)?;
+                    pair(setup, &specimen, &task.window, end, pool)?
+                }
+            };
+            match pair {
+                Some(page) => {
+                    let folder = file.parent().unwrap_or(dir);
+                    fs::create_dir_all(folder).map_err(|error| {
+                        Failure::running(format!("{}: {error}", folder.display()))
+                    })?;
+                    write_own_file(&file, &page)?;
+                }
+                // It need not be there.
+                None => drop(fs::remove_file(&file)),
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A page of both trials; `None` if no trial failed there, or the engine shows nothing.
+fn pair(
+    setup: &Setup,
+    specimen: &Specimen,
+    window: &Window,
+    end: PairEnd,
+    pool: &ThreadPool,
+) -> Result<Option<String>, Failure> {
+    let (last, outward): (OffsetStep, OffsetStep) = match end {
+        PairEnd::Negative => (window.negative_steps, -1),
+        PairEnd::Positive => (window.positive_steps, 1),
+    };
+    let failed = match end {
+        PairEnd::Negative => window.end_negative,
+        PairEnd::Positive => window.end_positive,
+    };
+    if window.nominal != Outcome::Inserted || failed.is_none() {
+        return Ok(None);
+    }
+    let rig = setup.evaluator.rig(specimen, 1.0).map_err(Failure::input)?;
+    let film = |step| rig.record(&specimen.finger, offset(step));
+    let (inside, outside) = pool.install(|| rayon::join(|| film(last), || film(last + outward)));
+    let Some((inside, outside)) = inside.zip(outside) else { return Ok(None) };
+    let labels = [last, last + outward].map(|step| shifted(grid_mm(step)));
+    let film = |label, recording| Film {
+        label,
+        task: &specimen.task,
+        pad: &specimen.finger.pad,
+        recording,
+    };
+    let films = [film(&labels[0], &inside), film(&labels[1], &outside)];
+    let title = format!("{}: the {} end of the window", specimen.task.name, end.word());
+    Ok(Some(replay::page(&title, &films)))
+}

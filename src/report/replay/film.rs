@@ -1,0 +1,130 @@
+//! A film as JSON for the page: mm, s, N.
+
+use super::Film;
+use crate::outcome::Outcome;
+use crate::physics::{ContactPoint, surface};
+use crate::scene::{Geom, Pose};
+use crate::trial::record::Frame;
+use crate::units::MM;
+use serde_json::{Value, json};
+
+/// Time between two frames of a page, s, unless there would be too many.
+const INTERVAL: f64 = 4e-3;
+/// Most frames of a page.
+const MOST: f64 = 500.0;
+/// Height of the jaws above the grasp point, mm: for the eye.
+const JAW_MM: f64 = 45.0;
+
+/// The bodies of a film: kind, whose pose they have, shapes.
+pub(super) fn bodies(film: &Film) -> Vec<(&'static str, &'static str, Vec<Geom>)> {
+    let task = film.task;
+    let tip = |side| film.pad.geoms(film.task.grip.shoulder(), side);
+    vec![
+        ("socket", "socket", task.socket.iter().map(|part| part.geom()).collect()),
+        ("plug", "plug", task.plug.parts.iter().map(|part| part.geom()).collect()),
+        ("finger", "finger0", tip(-1.0)),
+        ("finger", "finger1", tip(1.0)),
+    ]
+}
+
+/// Everything that the page shows of a film.
+pub(super) fn to_json(film: &Film) -> Value {
+    let trial = &film.recording.trial;
+    let every = INTERVAL.max(trial.simulated_s / MOST);
+    let frames = thinned(&film.recording.frames, every);
+    let each = |of: &dyn Fn(&Frame) -> f64, digits| -> Vec<f64> {
+        frames.iter().map(|frame| round(of(frame), digits)).collect()
+    };
+    let poses = |of: &dyn Fn(&Frame) -> Pose| -> Vec<f64> {
+        frames.iter().flat_map(|frame| pose(&of(frame))).collect()
+    };
+    let points = |of: &dyn Fn(&Frame) -> &[ContactPoint]| -> Vec<Vec<f64>> {
+        frames.iter().map(|frame| of(frame).iter().flat_map(contact).collect()).collect()
+    };
+    let phases: Vec<_> = trial.phases.iter().map(|p| (&p.name, round(p.time_s, 4))).collect();
+    let outcome = match trial.outcome {
+        Outcome::Failed(class) => format!("failed: {} (class {})", class.label(), class.number()),
+        outcome => outcome.word().to_owned(),
+    };
+    json!({
+        "outcome": outcome,
+        "kind": trial.outcome.word(),
+        "decided_s": film.recording.decided_s,
+        "phases": phases,
+        "bodies": bodies(film).iter().flat_map(shapes).collect::<Vec<_>>(),
+        "beam": beam(film),
+        "time": each(&|frame| frame.time_s, 4),
+        "pose": {
+            "plug": poses(&|frame| frame.poses.plug),
+            "finger0": poses(&|frame| frame.poses.fingers[0]),
+            "finger1": poses(&|frame| frame.poses.fingers[1]),
+            "jaw0": poses(&|frame| frame.jaws[0]),
+            "jaw1": poses(&|frame| frame.jaws[1]),
+        },
+        "force": each(&|frame| frame.force.norm(), 2),
+        "depth": each(&|frame| frame.depth_mm(), 3),
+        "tilt": each(&|frame| frame.tilt_deg(), 3),
+        "slip": each(&|frame| frame.slip / MM, 3),
+        "contact": points(&|frame| &frame.contacts),
+        "grip": points(&|frame| &frame.grips),
+    })
+}
+
+/// The finger between the roof of its tip and its jaw, mm, about its frame.
+fn beam(film: &Film) -> Value {
+    let top = |corner: nalgebra::Point3<f64>| corner.coords / MM;
+    let geoms = film.pad.geoms(film.task.grip.shoulder(), 1.0);
+    let corners =
+        geoms.iter().flat_map(|geom| geom.shape.corners().into_iter().map(|p| top(geom.pose * p)));
+    let high = corners.fold(nalgebra::Vector3::repeat(f64::NEG_INFINITY), |high, p| high.sup(&p));
+    let shoulder = film.task.grip.shoulder() / MM;
+    json!({"half_mm": high.x, "thick_mm": high.y, "low_mm": high.z, "high_mm": shoulder + JAW_MM})
+}
+
+/// Frames at least so many seconds apart, and the last.
+pub(super) fn thinned(frames: &[Frame], every: f64) -> Vec<&Frame> {
+    let mut kept: Vec<&Frame> = Vec::new();
+    for (i, frame) in frames.iter().enumerate() {
+        // Half a microsecond for the noise of adding up steps.
+        let due = kept.last().is_none_or(|last| frame.time_s - last.time_s > every - 5e-7);
+        if due || i + 1 == frames.len() {
+            kept.push(frame);
+        }
+    }
+    kept
+}
+
+fn shapes((kind, of, geoms): &(&str, &str, Vec<Geom>)) -> Vec<Value> {
+    let one = |geom: &Geom| {
+        let found = surface(&geom.shape);
+        let points: Vec<f64> = found
+            .points
+            .iter()
+            .flat_map(|p| <[f64; 3]>::from((geom.pose * p).coords / MM))
+            .map(|mm| round(mm, 4))
+            .collect();
+        let triangles: Vec<u32> = found.triangles.into_iter().flatten().collect();
+        json!({"kind": kind, "of": of, "points": points, "triangles": triangles})
+    };
+    geoms.iter().map(one).collect()
+}
+
+/// Position, mm, and quaternion x, y, z, w.
+fn pose(pose: &Pose) -> [f64; 7] {
+    let (p, q) = (pose.translation.vector / MM, pose.rotation.coords);
+    let [x, y, z] = [p.x, p.y, p.z].map(|mm| round(mm, 4));
+    let [i, j, k, w] = [q.x, q.y, q.z, q.w].map(|value| round(value, 6));
+    [x, y, z, i, j, k, w]
+}
+
+/// Point, mm, and force, N.
+fn contact(contact: &ContactPoint) -> [f64; 6] {
+    let (p, f) = (contact.point.coords / MM, contact.force);
+    [round(p.x, 3), round(p.y, 3), round(p.z, 3), round(f.x, 2), round(f.y, 2), round(f.z, 2)]
+}
+
+fn round(value: f64, digits: i32) -> f64 {
+    let scale = 10f64.powi(digits);
+    // Adding 0 turns -0 into 0.
+    (value * scale).round() / scale + 0.0
+}

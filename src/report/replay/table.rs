@@ -1,0 +1,35 @@
+//! A recording as a table: one line each millisecond, units in the header.
+
+use crate::trial::Recording;
+use crate::units::MM;
+use std::fmt::Write;
+
+/// Columns of the table.
+const HEADER: &str = "time_s,phase,force_n,force_x_n,force_y_n,force_z_n,depth_mm,tilt_deg,slip_mm,\
+    tip_x_mm,tip_y_mm,tip_z_mm,finger_minus_y_bend_y_mm,finger_minus_y_bend_z_mm,\
+    finger_plus_y_bend_y_mm,finger_plus_y_bend_z_mm,contact_points";
+
+/// The table as CSV.
+pub fn csv(recording: &Recording) -> String {
+    let mut out = HEADER.to_owned() + "\n";
+    for frame in &recording.frames {
+        let phase = phase(recording, frame.time_s).replace(['"', ',', '\n'], " ");
+        let (f, tip) = (frame.force, frame.poses.plug.translation.vector / MM);
+        let [[_, ly, lz], [_, ry, rz]] = [0, 1].map(|finger| frame.deflection_mm(finger));
+        // Writing to a String cannot fail.
+        let _ = write!(out, "{:.4},{phase},", frame.time_s);
+        let _ = write!(out, "{:.4},{:.4},{:.4},{:.4},", f.norm(), f.x, f.y, f.z);
+        let (depth, tilt, slip) = (frame.depth_mm(), frame.tilt_deg(), frame.slip / MM);
+        let _ = write!(out, "{depth:.4},{tilt:.4},{slip:.4},");
+        let _ = write!(out, "{:.4},{:.4},{:.4},", tip.x, tip.y, tip.z);
+        let _ = writeln!(out, "{ly:.4},{lz:.4},{ry:.4},{rz:.4},{}", frame.contacts.len());
+    }
+    out
+}
+
+/// The phase at a time; the last one from its end on.
+fn phase(recording: &Recording, time_s: f64) -> &str {
+    let phases = &recording.trial.phases;
+    let now = phases.iter().find(|phase| time_s <= phase.time_s + 1e-9).or(phases.last());
+    now.map_or("", |phase| &phase.name)
+}

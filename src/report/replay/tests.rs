@@ -1,0 +1,112 @@
+//! Films of made-up recordings: what a page, a table and a glTF file hold.
+
+use super::*;
+use crate::input::shipped::TASKS;
+use crate::input::task::Stage;
+use crate::outcome::{FailureClass, Outcome};
+use crate::physics::ContactPoint;
+use crate::scene::Pose;
+use crate::trial::record::Frame;
+use crate::trial::{PhaseEnd, Poses, Trial};
+use crate::units::MM;
+use nalgebra::{Point3, Vector3};
+
+pub fn task() -> Task {
+    Task::parse(TASKS[0].text, TASKS[0].file).unwrap()
+}
+
+/// A plug that sinks by 10 mm in a second and is pressed by a force that grows to 20 N.
+pub fn recording() -> Recording {
+    let frame = |i: u32| {
+        let time_s = f64::from(i) * 1e-3;
+        let plug = Pose::translation(0.0, 0.0, -10.0 * MM * time_s);
+        let force = Vector3::new(0.0, 0.0, 20.0 * time_s);
+        Frame {
+            time_s,
+            stage: Stage::Assembly,
+            poses: Poses { plug, fingers: [plug; 2] },
+            jaws: [plug * Pose::translation(0.0, 0.5 * MM, 0.0); 2],
+            force,
+            slip: 0.0,
+            contacts: vec![ContactPoint { point: Point3::origin(), force }],
+            grips: Vec::new(),
+        }
+    };
+    let frames: Vec<Frame> = (0..=1000).map(frame).collect();
+    let end = PhaseEnd {
+        name: "</script><script>alert(1)</script>".to_owned(),
+        time_s: 1.0,
+        tip_mm: [0.0, 0.0, -10.0],
+        tilt_deg: 0.0,
+        slip_mm: 0.0,
+        peak_force_n: 20.0,
+        poses: frames[0].poses,
+        contacts: Vec::new(),
+    };
+    let trial = Trial {
+        outcome: Outcome::Failed(FailureClass::Jammed),
+        margin: -0.1,
+        depth_mm: 10.0,
+        tilt_deg: 0.0,
+        peak_force_n: 20.0,
+        slip_mm: 0.0,
+        phases: vec![end],
+        simulated_s: 1.0,
+        retried: false,
+    };
+    Recording { trial, frames, decided_s: 1.0 }
+}
+
+#[test]
+fn a_page_holds_the_film_and_fetches_nothing() {
+    let (task, recording) = (task(), recording());
+    let film =
+        Film { label: "</title><script>", task: &task, pad: &Pad::PAPER, recording: &recording };
+    let page = page("\"</title><script>alert(1)</script>", &[film, film]);
+    assert_eq!(page.matches("<script").count(), 2, "the data and the viewer");
+    assert_eq!(page.matches("<canvas").count(), 2);
+    assert!(page.contains("failed: jammed (class 3)") && page.contains("default-src 'none'"));
+    assert!(page.len() < 600_000, "{} bytes", page.len());
+}
+
+#[test]
+fn the_table_has_a_line_a_millisecond_and_units() {
+    let table = csv(&recording());
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert!(header.contains(&"depth_mm") && header.contains(&"force_n"));
+    assert_eq!(lines.clone().count(), 1001);
+    let last: Vec<&str> = lines.last().unwrap().split(',').collect();
+    assert_eq!(last.len(), header.len());
+    let column = |name: &str| last[header.iter().position(|h| *h == name).unwrap()];
+    assert_eq!(
+        (column("time_s"), column("force_n"), column("depth_mm")),
+        ("1.0000", "20.0000", "10.0000")
+    );
+    assert_eq!(column("finger_plus_y_bend_y_mm"), "-0.5000");
+}
+
+#[test]
+fn the_gltf_file_is_as_long_as_it_says_and_its_numbers_lie_within() {
+    let (task, recording) = (task(), recording());
+    let glb = glb(&Film { label: "a", task: &task, pad: &Pad::PAPER, recording: &recording });
+    let word = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().unwrap()) as usize;
+    assert_eq!((&glb[..4], word(4), word(8)), (&b"glTF"[..], 2, glb.len()));
+    let json: serde_json::Value = serde_json::from_slice(&glb[20..20 + word(12)]).unwrap();
+    let bytes = word(20 + word(12));
+    for view in json["bufferViews"].as_array().unwrap() {
+        let end = view["byteOffset"].as_u64().unwrap() + view["byteLength"].as_u64().unwrap();
+        assert!(end as usize <= bytes);
+    }
+    assert_eq!(json["animations"][0]["channels"].as_array().unwrap().len(), 6);
+    let times = &json["accessors"][0];
+    assert_eq!((times["min"][0].as_f64(), times["max"][0].as_f64()), (Some(0.0), Some(1.0)));
+}
+
+#[test]
+fn the_curve_is_drawn_with_its_units() {
+    let (task, recording) = (task(), recording());
+    let svg = curve_svg(&Film { label: "a", task: &task, pad: &Pad::PAPER, recording: &recording })
+        .unwrap();
+    assert!(svg.contains("force plug to socket (N)") && svg.contains("top (mm)"));
+}

@@ -6,7 +6,6 @@ use super::{Failure, evaluate, stiffness, trial};
 use crate::input::shipped::{SPACES, Source, TASKS};
 use crate::input::space::{Parameter, Space};
 use crate::input::task::Task;
-use crate::report;
 use crate::surrogate::Prediction;
 use crate::trial::Sample;
 use clap::{Args, Parser};
@@ -63,7 +62,7 @@ pub fn trial(
 /// As the command fails.
 pub fn stiffness(words: &[String]) -> Result<Value, Failure> {
     let arguments: stiffness::Arguments = read(words)?;
-    Ok(report::stiffness::json(&arguments.model()?))
+    arguments.json()
 }
 
 /// The stiffness predicted for an infill, density in percent and direction in degrees, as

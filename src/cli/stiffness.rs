@@ -2,10 +2,12 @@
 
 use super::setup::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
 use super::{Failure, print, print_json};
-use crate::report::stiffness;
+use crate::input::printed::PrintedFinger;
+use crate::report::{stiffness, stiffness_means};
 use crate::study::write_file;
-use crate::surrogate::Model;
+use crate::surrogate::{Model, means};
 use clap::Args;
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// Show the stiffness model.
@@ -27,22 +29,34 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let model = arguments.model()?;
+    let (model, finger) = arguments.model()?;
     if let Some(path) = &arguments.svg {
         let svg = stiffness::svg(&model).map_err(|error| Failure::running(error.to_string()))?;
         write_file(path, &svg)?;
     }
     if arguments.json {
-        print_json(&stiffness::json(&model))
-    } else {
-        print(&stiffness::table(&model))
+        return print_json(&arguments.json()?);
     }
+    let means = means(model.measurements(), &finger).map_err(Failure::input)?;
+    print(&(stiffness::table(&model) + &stiffness_means::text(&means)))
 }
 
 impl Arguments {
-    /// The model of the data that the arguments name.
-    pub fn model(&self) -> Result<Model, Failure> {
+    /// The model of the data that the arguments name, and the finger.
+    fn model(&self) -> Result<(Model, PrintedFinger), Failure> {
         let data = stiffness_data(self.stiffness_data.as_deref())?;
-        surrogate(&data, &printed_finger(&self.finger)?)
+        let finger = printed_finger(&self.finger)?;
+        Ok((surrogate(&data, &finger)?, finger))
+    }
+
+    /// What `--json` prints.
+    pub fn json(&self) -> Result<Value, Failure> {
+        let (model, finger) = self.model()?;
+        let means = means(model.measurements(), &finger).map_err(Failure::input)?;
+        let mut json = stiffness::json(&model);
+        if let Some(keys) = json.as_object_mut() {
+            keys.extend(stiffness_means::json(&means));
+        }
+        Ok(json)
     }
 }

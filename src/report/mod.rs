@@ -20,6 +20,7 @@ pub mod quartiles;
 pub mod replay;
 pub mod sensitivity;
 pub mod stiffness;
+pub mod stiffness_means;
 mod stiffness_plot;
 #[cfg(test)]
 mod tests;

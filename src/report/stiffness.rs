@@ -60,12 +60,16 @@ pub(super) fn decimals(value: f64, places: usize) -> String {
     if value.is_finite() { format!("{value:.places$}") } else { "-".to_owned() }
 }
 
-/// The same as JSON: `designs`, `models` (a list, one of each axis and model), `used` (per axis).
-pub fn json(model: &Model) -> Value {
-    let key = |axis| match axis {
+/// The axis in keys.
+pub(super) fn key(axis: Axis) -> &'static str {
+    match axis {
         Axis::Assembly => "assembly",
         Axis::Compliance => "compliance",
-    };
+    }
+}
+
+/// The same as JSON: `designs`, `models` (a list, one of each axis and model), `used` (per axis).
+pub fn json(model: &Model) -> Value {
     let models = model.loo().iter().map(|row| {
         json!({
             "axis": key(row.axis),

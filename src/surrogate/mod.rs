@@ -21,6 +21,7 @@ mod hull;
 mod kind;
 mod link;
 mod loo;
+mod means;
 mod model;
 mod ridge;
 mod row;
@@ -36,6 +37,7 @@ pub use compare::{Comparison, LeftOut, Verdict, compare};
 pub use computed::Computed;
 pub use kind::ModelKind;
 pub use loo::Loo;
+pub use means::{ComputedFinger, Means, Spread, means};
 pub use model::{ENOUGH, FitError, Model, fit};
 
 /// A value with its standard deviation, both in the same unit.

@@ -1,9 +1,11 @@
-//! Files: read up to a limit, written whole or not at all.
+//! Files: read up to a limit, written whole or not at all; and what no text may hold that
+//! others are to see.
 //!
 //! What the user names may be anything that opens: a link, a pipe, a device. What the
 //! program keeps for itself, in a study's folder or in the cache, are plain files: there no
 //! link is followed and nothing that could block is opened.
 
+use std::fmt::Write as _;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -170,9 +172,36 @@ pub fn is_open_file(found: &Metadata, open: &File) -> io::Result<bool> {
     Ok(found.is_file() == open.is_file())
 }
 
+/// The text with control characters, which move a terminal's cursor or worse, and those that
+/// turn the direction of writing as `\u001b`: the escapes of JSON, so that JSON stays what it is.
+pub fn visible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        if turns || (c.is_control() && !"\n\t\r".contains(c)) {
+            // Writing to a String cannot fail.
+            let _ = write!(shown, "\\u{:04x}", u32::from(c));
+        } else {
+            shown.push(c);
+        }
+    }
+    shown
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn control_characters_are_shown_and_json_stays_json() {
+        let text = "red \u{1b}[31m, C1 \u{9b}2J, turned \u{202e}, kept \t\n ä";
+        let shown = "red \\u001b[31m, C1 \\u009b2J, turned \\u202e, kept \t\n ä";
+        assert_eq!(visible(text), shown);
+        let value = serde_json::json!({"name": "\u{9b}2J\u{1b}"});
+        let line = visible(&value.to_string());
+        assert!(!line.chars().any(char::is_control), "{line}");
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&line).unwrap(), value);
+    }
 
     #[test]
     fn many_writers_of_one_file_leave_one_whole_text_and_nothing_else() {

@@ -236,3 +236,69 @@ fn a_bad_first_line_is_refused_and_a_good_one_may_follow() {
 fn no_input_is_no_error() {
     assert_eq!(run(&mut command(&["ask-tell"])).succeeds(), "");
 }
+
+#[test]
+fn what_is_known_can_be_told_and_is_not_asked_again() {
+    for name in OPTIMIZERS {
+        let mut header = header(name, "minimize", Some(3));
+        header["parameters"][0]["step"] = json!(1);
+        let mut talk = Talk::begin(&header);
+        let known = |x: i32, n: i32| json!({"values": {"x": x, "n": n}, "value": x * x + n});
+        let answer = talk.answer(&json!({"tell": [known(0, 3), known(1, 5)]}));
+        assert_eq!(
+            answer["best"],
+            json!({"id": null, "values": {"x": 0.0, "n": 3.0}, "value": 3.0})
+        );
+        talk.error(r#"{"tell":[{"values":{"x":0,"n":3},"value":1}]}"#, "though it is known");
+        talk.error(r#"{"tell":[{"values":{"x":0},"value":1}]}"#, "`n` is missing");
+        talk.error(
+            r#"{"tell":[{"values":{"x":0.5,"n":1},"value":1}]}"#,
+            "`x` must be low + k step",
+        );
+        talk.error(r#"{"tell":[{"values":{"x":0,"n":1,"m":1},"value":1}]}"#, "`m` is no parameter");
+        talk.error(r#"{"tell":[{"values":{"x":0,"n":1}}]}"#, "value");
+        talk.error(r#"{"tell":[[0,1.5]]}"#, "must be an object");
+        let mut seen = vec![json!({"x": 0.0, "n": 3.0}), json!({"x": 1.0, "n": 5.0})];
+        let mut open = None;
+        while seen.len() < 55 {
+            let points = talk.ask(3);
+            for point in &points {
+                assert!(!seen.contains(&point["values"]), "{name}: {point}");
+                seen.push(point["values"].clone());
+            }
+            let values = &points[0]["values"];
+            let again = json!({"tell": [{"values": values, "value": 1}]});
+            talk.error(&again.to_string(), "is asked as id");
+            // While a batch is open, too.
+            if open.is_none() {
+                let free = (1..=9).step_by(2).map(|n| json!({"x": 5.0, "n": f64::from(n)}));
+                open = free.into_iter().find(|values| !seen.contains(values));
+                let values = open.clone().unwrap();
+                talk.answer(&json!({"tell": [{"values": values, "value": 99}]}));
+                seen.push(open.clone().unwrap());
+            }
+            talk.answer(&told(&points, 1.0));
+        }
+        assert_eq!(talk.ask(1), Vec::<Value>::new(), "{name}: all 55 are known");
+    }
+}
+
+#[test]
+fn sessions_beyond_any_use_are_refused_at_once() {
+    let wide = |count: usize, optimizer: &str| {
+        let parameter = |i| json!({"name": format!("x{i}"), "low": 0, "high": 1});
+        let parameters: Vec<Value> = (0..count).map(parameter).collect();
+        json!({"parameters": parameters, "optimizer": optimizer, "seed": 1, "direction": "minimize"})
+    };
+    let mut talk = Talk::silent();
+    talk.error(&wide(20_000, "cma-es").to_string(), "cma-es takes 200 at most");
+    talk.error(&wide(50_000, "random").to_string(), "random takes 10000 at most");
+    talk.error(&wide(150_000, "random").to_string(), "longer than 4194304 bytes");
+    let bounds = r#"{"parameters":[{"name":"x","low":1e15,"high":1000000000000001}],
+        "optimizer":"random","seed":1,"direction":"minimize"}"#
+        .replace('\n', "");
+    talk.error(&bounds, "too small beside");
+    talk.say(&wide(10_000, "random").to_string());
+    talk.error(r#"{"ask":1000}"#, "more than 1000000 numbers");
+    assert_eq!(talk.ask(2).len(), 2);
+}

@@ -262,3 +262,204 @@ fn a_lock_that_is_removed_lets_no_second_writer_in() {
     second.kill().unwrap();
     second.wait().unwrap();
 }
+
+/// A changed copy of a shipped file.
+fn changed(studies: &Studies, name: &str, text: &str, changes: &[(&str, &str)]) -> String {
+    let mut text = text.to_owned();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replacen(from, to, 1);
+    }
+    let path = studies.dir(name);
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn input_files_that_mean_nothing_are_refused_before_anything_is_simulated() {
+    let studies = Studies::new();
+    let usb = include_str!("../tasks/usb.toml");
+    let line = |text: &str, key: &str| {
+        text.lines().find(|line| line.starts_with(key)).expect("the key is there").to_owned()
+    };
+    let parts = |count: usize| {
+        let part = |i| {
+            format!(
+                "[[socket.part]]\nname = \"p{i}\"\nshape = \"cylinder\"\ncentre_mm = [0, 0]\n\
+                 diameter_mm = 1\nz_mm = [0, 1]\n"
+            )
+        };
+        (0..count).map(part).collect::<String>() + "[grip]"
+    };
+    let (few, many) = (parts(3_000), parts(100_000));
+    let cylinder = "[[plug.part]]\nname = \"c\"\nshape = \"cylinder\"\ncentre_mm = [0, 0]\n\
+                    diameter_mm = 1e160\nz_mm = [0, 1]\n[grip]";
+    for (from, to, words) in [
+        (line(usb, "speed_mm_per_s"), "speed_mm_per_s = 0.001", "it may take 60 s"),
+        (line(usb, "settle_s"), "settle_s = 1e9", "it may take 60 s"),
+        (line(usb, "move_mm"), "move_mm = [0.0, 0.0, -1e9]", "must lie in -1000 .. 1000"),
+        ("[grip]".to_owned(), cylinder, "diameter_mm: is 1e160"),
+        ("[grip]".to_owned(), &few, "there may be 200"),
+        ("[grip]".to_owned(), &many, "is longer than"),
+        (line(usb, "finger_plug ="), "finger_plug = 0.0", "finger_plug_torsion_mm: is"),
+        (line(usb, "description"), "description = \"\\u001b[31m\"", "control character"),
+    ] {
+        let task = changed(&studies, "task.toml", usb, &[(&from, to)]);
+        let words = ["task.toml", words];
+        studies.study("s", 3, &["--task", &task]).fails(2, &words);
+    }
+    let codesign = include_str!("../spaces/codesign.toml");
+    let mass = "[[parameter]]\nkey = \"finger.mass_g\"\nlow = 1e300\nhigh = 1e300\nstep = 1.0\n\
+                source = \"\"\n[[parameter]]";
+    let space = changed(&studies, "mass.toml", codesign, &[("[[parameter]]", mass)]);
+    studies.study("s", 3, &["--space", &space]).fails(2, &["mass.toml", "finger.mass_g"]);
+    let typical = include_str!("../uncertainties/typical.toml");
+    let wide = [("half_width_mm = 0.03", "half_width_mm = 1000")];
+    let wide = changed(&studies, "wide.toml", typical, &wide);
+    let drawn = ["--objective", "success-rate", "--uncertainty", &wide];
+    studies.study("s", 3, &drawn).fails(2, &["wide.toml", "clearance.half_width_mm", "at most"]);
+    let weights = ["--task", "usb,rj45", "--aggregate", "weighted", "--weights", "1e308,1e308"];
+    studies.study("s", 3, &weights).fails(2, &["1e308 is no weight"]);
+    let given = ["--stiffness-compliance", "1e300", "--stiffness-assembly", "1"];
+    let evaluate = ["evaluate", "--task", "usb", "--engine", "fake"];
+    optimize(&[&evaluate[..], &given].concat()).fails(2, &["1e-6 to 1e6"]);
+    assert!(!studies.dir("s").exists(), "no study was begun");
+}
+
+#[test]
+fn what_a_terminal_would_obey_is_shown_instead() {
+    let studies = Studies::new();
+    let ran = optimize(&["--task", "\u{1b}[31mred\u{9b}2J", "--budget", "3"]);
+    ran.fails(2, &["\\u001b[31mred\\u009b2J"]);
+    assert!(!ran.stderr.chars().any(|c| c.is_control() && c != '\n'), "{:?}", ran.stderr);
+    let ran = optimize(&["--task", "usb", "--budget", "\u{1b}[31m"]);
+    ran.fails(2, &["--budget"]);
+    assert!(!ran.stderr.chars().any(|c| c.is_control() && c != '\n'), "{:?}", ran.stderr);
+    let name = "e\u{1b}[31m";
+    studies.study(name, 6, &[]).succeeds();
+    let svg = studies.dir("compare.svg");
+    let compare = run(command(&["compare"]).arg(studies.dir(name)).arg("--svg").arg(&svg));
+    for text in [compare.succeeds(), &read(&svg), &read(&studies.dir(name).join("report.html"))] {
+        assert!(!text.chars().any(|c| c.is_control() && !"\n\t\r".contains(c)));
+    }
+}
+
+/// A journal all of whose checks fit again.
+fn sealed(text: &str) -> String {
+    use sha2::{Digest, Sha256};
+    let line = |line: &str| match line.rsplit_once(",\"check\":\"") {
+        None => format!("{line}\n"),
+        Some((content, rest)) => {
+            let digest = Sha256::digest(content.as_bytes());
+            let check: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
+            format!("{content},\"check\":\"{check}{}\n", &rest[16..])
+        }
+    };
+    text.lines().map(line).collect()
+}
+
+#[test]
+fn a_study_that_was_written_by_hand_is_checked_anew() {
+    let studies = Studies::new();
+    studies.study("s", 6, &[]).succeeds();
+    let report = || optimize(&["report", studies.dir("s").to_str().unwrap()]);
+    let both = |change: &dyn Fn(&str) -> String, words: &[&str]| {
+        let paths = ["study.toml", "journal.jsonl"].map(|name| studies.dir("s").join(name));
+        let before = paths.each_ref().map(|path| read(path));
+        for (path, text) in paths.iter().zip(&before) {
+            let text = change(text);
+            fs::write(path, if path.ends_with("journal.jsonl") { sealed(&text) } else { text })
+                .unwrap();
+        }
+        assert_ne!(before, paths.each_ref().map(|path| read(path)), "{words:?}: no change");
+        studies.resume("s").fails(2, words);
+        assert!(matches!(report().code, Some(0 | 2)), "{words:?}");
+        for (path, text) in paths.iter().zip(&before) {
+            fs::write(path, text).unwrap();
+        }
+    };
+    let replace = |a: &'static str, b: &'static str| move |text: &str| text.replacen(a, b, 1);
+    for (key, value) in [("batch", "0"), ("batch", "4294967295"), ("budget", "9223372036854775807")]
+    {
+        let change = move |text: &str| {
+            let toml = text.lines().map(|line| match line.starts_with(&format!("{key} = ")) {
+                true => format!("{key} = {value}\n"),
+                false => format!("{line}\n"),
+            });
+            toml.collect::<String>().replace("\"batch\":4", &format!("\"batch\":{value}"))
+        };
+        both(&change, &["study.toml", key, "it must lie in"]);
+    }
+    let space = |text: &str| {
+        text.replace("high = 30.0", "high = 60.0").replace("\"high\":30.0", "\"high\":60.0")
+    };
+    both(&space, &["study.toml", "space", "input files"]);
+    let values = |text: &str| {
+        let third = text.lines().nth(2).unwrap_or_default();
+        let values = third.split("\"values\":").nth(1).and_then(|rest| rest.split(']').next());
+        match values {
+            Some(values) => text.replacen(&format!("{values}]"), "[]", 1),
+            None => text.to_owned(),
+        }
+    };
+    both(&values, &["journal.jsonl", "line 3", "it has 0 values"]);
+    both(
+        &replace(
+            "\"params\":{\"infill_density_percent\":",
+            "\"params\":{\"infill_density_percent\":0.0",
+        ),
+        &["line 3"],
+    );
+    both(&replace("\"positive_mm\":", "\"positive_mm\":1e30"), &["line 3"]);
+    both(
+        &replace("\"failure_counts\":[0", "\"failure_counts\":[4294967295"),
+        &["line 3", "cannot be"],
+    );
+    studies.resume("s").succeeds();
+}
+
+#[test]
+fn the_journal_says_what_came_from_the_cache_and_a_swapped_entry_is_measured_again() {
+    let studies = Studies::new();
+    let cache = studies.dir("cache");
+    let more = ["--cache", cache.to_str().unwrap(), "--optimizer", "random"];
+    studies.study("first", 6, &more).succeeds();
+    studies.study("second", 9, &more).succeeds();
+    let cached = |name: &str, value: &str| {
+        let text = read(&studies.dir(name).join("journal.jsonl"));
+        text.lines().filter(|line| line.contains(&format!("\"cached\":[{value}]"))).count()
+    };
+    assert_eq!((cached("first", "true"), cached("first", "false")), (0, 6));
+    assert_eq!((cached("second", "true"), cached("second", "false")), (6, 3));
+    // Every entry under the name of another, and one with a changed number.
+    let folders = fs::read_dir(&cache).unwrap().map(|entry| entry.unwrap().path());
+    let entries = folders.flat_map(|folder| fs::read_dir(folder).unwrap());
+    let mut entries: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    let texts: Vec<String> = entries.iter().map(|path| read(path)).collect();
+    for (path, text) in entries.iter().zip(texts.iter().cycle().skip(1)) {
+        fs::write(path, text).unwrap();
+    }
+    fs::write(&entries[0], sealed(&texts[0].replace("\"trials\":", "\"trials\":1"))).unwrap();
+    studies.study("third", 9, &more).succeeds();
+    assert_eq!((cached("third", "true"), cached("third", "false")), (0, 9));
+    assert_eq!(studies.journal("third"), studies.journal("second"));
+}
+
+#[test]
+fn a_limit_of_the_file_size_is_a_message_and_leaves_a_whole_journal() {
+    let studies = Studies::new();
+    let expected = {
+        studies.study("reference", 22, &[]).succeeds();
+        studies.journal("reference")
+    };
+    let study = "--task usb --engine fake --budget 22 --no-cache --quiet --out";
+    let line = format!("ulimit -f 16; exec \"$0\" {study} \"$1\"");
+    let dir = studies.dir("limited");
+    let ran = shell(&line, &[dir.to_str().unwrap()]);
+    ran.fails(1, &["journal.jsonl: cannot write", "optimize resume"]);
+    let kept = studies.journal("limited");
+    assert!(kept.lines().count() > 3 && expected.starts_with(&kept));
+    studies.resume("limited").succeeds();
+    assert_eq!(studies.journal("limited"), expected);
+}

@@ -123,6 +123,7 @@ fn recorded() -> impl Strategy<Value = Recorded> {
                 datetime_start: "2026-01-02T03:04:05.678901".to_owned(),
                 datetime_complete: "2026-01-02T03:04:06.000000".to_owned(),
                 wall_s,
+                cached: Vec::new(),
             },
         },
     )
@@ -240,6 +241,7 @@ impl Evaluate for ClosedForm {
         Ok(Measured {
             stiffness: Prediction { compliance, assembly, hull_distance: 0.0 },
             tasks: vec![evaluate(&FakeRig::default(), &finger, Search::Strides)],
+            cached: Vec::new(),
         })
     }
 }
@@ -309,6 +311,7 @@ impl Evaluate for NotAll {
         Ok(Measured {
             stiffness: Prediction { compliance: one, assembly: one, hull_distance: 0.0 },
             tasks: vec![evaluate(&FakeRig::default(), &finger, Search::Walk)],
+            cached: Vec::new(),
         })
     }
 }

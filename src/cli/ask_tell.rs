@@ -1,9 +1,9 @@
 //! `optimize ask-tell`: an optimizer on standard input and output.
 
 use super::{Failure, print};
-use crate::optimizer::ask_tell::Session;
+use crate::optimizer::ask_tell::{LONGEST_LINE, Session};
 use clap::Args;
-use std::io::{self, BufRead};
+use std::io::{self, BufRead, Read};
 
 /// Optimize anything: JSON lines on standard input and output, see docs/ask-tell.md.
 #[derive(Debug, Args)]
@@ -14,11 +14,19 @@ pub fn run(_: &Arguments) -> Result<(), Failure> {
     let mut session = Session::new();
     let mut input = io::stdin().lock();
     let mut line = Vec::new();
+    let unreadable = |error| Failure::running(format!("cannot read the input: {error}"));
     loop {
         line.clear();
-        let read = input.read_until(b'\n', &mut line);
-        if read.map_err(|error| Failure::running(format!("cannot read the input: {error}")))? == 0 {
+        let read = (&mut input).take(LONGEST_LINE + 1).read_until(b'\n', &mut line);
+        if read.map_err(unreadable)? == 0 {
             return Ok(());
+        }
+        if line.len() as u64 > LONGEST_LINE {
+            if !line.ends_with(b"\n") {
+                input.skip_until(b'\n').map_err(unreadable)?;
+            }
+            print(&(Session::too_long() + "\n"))?;
+            continue;
         }
         // What is not UTF-8 is not JSON either: it is answered with an error.
         if let Some(answer) = session.answer(&String::from_utf8_lossy(&line)) {

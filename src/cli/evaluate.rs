@@ -101,7 +101,7 @@ fn text(chosen: &Chosen, setup: &Setup, evaluation: &Evaluation) -> String {
             "failures      {c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",
             evaluation.diverged, evaluation.trials
         ),
-        format!("peak force    {:.1} N", evaluation.peak_force_n),
+        format!("peak force    {}", words::number(evaluation.peak_force_n, 1, "N")),
     ];
     lines.extend(words::taught(evaluation.taught));
     lines.extend(words::drawn_text(evaluation));

@@ -50,6 +50,7 @@ pub struct SessionArguments {
 /// Runs a study until its budget is spent, and reports.
 pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Result<(), Failure> {
     let config = study.config.clone();
+    check(&config, setup)?;
     let kind: OptimizerKind = config.optimizer.parse().map_err(bad_config)?;
     let goals = config.goals();
     let plan = setup.plan(config.seed, |measure| goals.need(measure))?;
@@ -95,6 +96,26 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     }
     summary::show(study.dir(), &record, ending, known, arguments.json)?;
     unusable::check(study.dir(), &record, setup)
+}
+
+/// Whether `study.toml` says what the input files say, which it was once written from.
+fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
+    let evaluator = &setup.evaluator;
+    let tasks = evaluator.templates.iter().map(|template| template.task().name.as_str());
+    let uncertainty = setup.uncertainty.as_ref().map(|errors| &errors.name);
+    for (key, same) in [
+        ("tasks", tasks.eq(config.tasks())),
+        ("robot", evaluator.robot.name == config.robot),
+        ("uncertainty", uncertainty == config.uncertainty.as_ref()),
+        ("space", setup.space == config.space),
+    ] {
+        if !same {
+            return Err(bad_config(format!(
+                "{key}: is not what the input files in the folder say; restore the file from a copy"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// The optimizer of a study.

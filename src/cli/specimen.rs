@@ -5,6 +5,7 @@ use super::setup::Setup;
 use super::words;
 use crate::evaluation::evaluator::Specimen;
 use crate::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
+use crate::input::shown;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::surrogate::Prediction;
 use crate::units::{MM, N_PER_MM};
@@ -179,7 +180,8 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
         // Written so that a NaN is outside.
         Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
         Some(parameter) => Err(Failure::usage(format!(
-            "{flag} {value}: {key} must lie between {} and {} in the space `{}`",
+            "{flag} {}: {key} must lie between {} and {} in the space `{}`",
+            shown(value),
             parameter.low,
             parameter.high,
             setup.space.name()
@@ -192,8 +194,8 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
 
 fn stiffness(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("a stiffness is a number above 0, in N/mm".to_owned()),
+        Ok(value) if (1e-6..=1e6).contains(&value) => Ok(value),
+        _ => Err("a stiffness is a number above 0, 1e-6 to 1e6, in N/mm".to_owned()),
     }
 }
 

@@ -6,7 +6,7 @@ use super::setup::{self, Setup, SetupArguments};
 use crate::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
 use crate::input::shipped::UNCERTAINTIES;
 use crate::optimizer::OptimizerKind;
-use crate::study::{Study, StudyConfig, study_name};
+use crate::study::{LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, study_name};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -33,12 +33,12 @@ pub struct Arguments {
     #[command(flatten)]
     setup: SetupArguments,
     /// Evaluations in all; run the same command with a larger one to go on
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=LARGEST_BUDGET))]
     budget: u64,
     /// Then up to N evaluations more, by Nelder-Mead from the best design; the budget of
     /// such a study cannot be raised
     #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
-          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=1_000_000))]
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=LARGEST_BUDGET))]
     polish: u64,
     /// Optimizer: gp, cma-es, random, sobol or grid
     #[arg(long, value_name = "NAME", default_value = "gp")]
@@ -66,7 +66,7 @@ pub struct Arguments {
     seed: u64,
     /// Designs proposed and evaluated at a time; part of the study, unlike --threads
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 4,
-          value_parser = clap::value_parser!(u64).range(1..=10_000))]
+          value_parser = clap::value_parser!(u64).range(1..=LARGEST_BATCH))]
     batch: u64,
     /// Folder of the study.
     #[arg(

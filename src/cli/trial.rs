@@ -4,7 +4,7 @@ use super::film::FilmArguments;
 use super::repeat::{self, RepeatArguments};
 use super::setup::{Setup, SetupArguments};
 use super::specimen::{Chosen, FingerArguments};
-use super::words::{self, merge};
+use super::words::{self, merge, number};
 use super::{Failure, print, print_json};
 use crate::evaluation::{OffsetStep, grid_mm};
 use crate::outcome::Outcome;
@@ -126,13 +126,13 @@ fn text(trial: &Trial) -> String {
         Outcome::Inserted | Outcome::Diverged => String::new(),
     };
     let mut text = format!(
-        "outcome       {}{reason}\ndepth         {:.2} mm\ntilt          {:.2} deg\npeak force    {:.1} N\n\
-         slip          {:.2} mm\n",
+        "outcome       {}{reason}\ndepth         {}\ntilt          {}\npeak force    {}\n\
+         slip          {}\n",
         trial.outcome.word(),
-        trial.depth_mm,
-        trial.tilt_deg,
-        trial.peak_force_n,
-        trial.slip_mm,
+        number(trial.depth_mm, 2, "mm"),
+        number(trial.tilt_deg, 2, "deg"),
+        number(trial.peak_force_n, 1, "N"),
+        number(trial.slip_mm, 2, "mm"),
     );
     if trial.phases.is_empty() {
         return text;

@@ -81,15 +81,24 @@ pub fn drawn_text(evaluation: &Evaluation) -> Vec<String> {
     if let Some(robust) = &evaluation.robust {
         let value = robust.value_mm.map_or("none".to_owned(), |value| format!("{value:.2} mm"));
         lines.push(format!(
-            "robust range  {value}: {} windows of mean {:.2} mm, standard deviation {:.2} mm, {} \
-             diverged",
+            "robust range  {value}: {} windows of mean {}, standard deviation {}, {} diverged",
             robust.ranges_mm.len(),
-            robust.mean_mm(),
-            robust.sd_mm(),
+            number(robust.mean_mm(), 2, "mm"),
+            number(robust.sd_mm(), 2, "mm"),
             robust.diverged
         ));
     }
     lines
+}
+
+/// A measured number with so many decimals and its unit, or that there is none.
+pub fn number(value: f64, decimals: usize, unit: &str) -> String {
+    if !value.is_finite() {
+        return "none".to_owned();
+    }
+    let value = format!("{value:.decimals$}");
+    // After a collision that a body was thrown far by.
+    if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
 }
 
 /// Adds the fields of one JSON object to another.

@@ -14,12 +14,19 @@ use crate::finger::model::{CentreFrom, FingerSource, Made};
 use crate::input::robot::Robot;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::input::task::{StartRule, Task};
+use crate::input::{Check, InputError, shown};
 use crate::outcome::Outcome;
 use crate::surrogate::{Model, Prediction};
 use crate::trial::Rig;
 use crate::trial::engine::EngineKind;
 use crate::trial::run::RigError;
+use crate::units::N_PER_MM;
 use std::sync::atomic::AtomicBool;
+
+/// What a stiffness is called in errors.
+const DESIGN: &str = "design";
+/// Stiffest finger, N/mm: a thousand times that of a solid one.
+const STIFFEST_N_PER_MM: f64 = 1e6;
 
 /// Stiffness model, tasks, robot and engine: all that decides what a design measures.
 pub struct Evaluator {
@@ -48,6 +55,20 @@ pub struct Specimen {
     pub stiffness: Prediction,
 }
 
+/// Whether a finger of this stiffness, N/mm, can be simulated: the model may give none far
+/// from what was measured.
+fn check_stiffness(key: &str, n_per_mm: f64) -> Result<(), InputError> {
+    let check = Check { file: DESIGN };
+    match check.positive(key, n_per_mm)? <= STIFFEST_N_PER_MM {
+        true => Ok(()),
+        false => {
+            let found = shown(n_per_mm);
+            let problem = format!("is {found} N/mm; it may be {STIFFEST_N_PER_MM} at most");
+            check.fail(key, problem)
+        }
+    }
+}
+
 /// What is known of one design after its evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
@@ -55,6 +76,9 @@ pub struct Measured {
     pub stiffness: Prediction,
     /// What was measured on each task, in their order.
     pub tasks: Vec<Evaluation>,
+    /// For each task whether it was not simulated now but known from before; empty where
+    /// nothing could be.
+    pub cached: Vec<bool>,
 }
 
 /// Evaluates designs, several at a time.
@@ -86,6 +110,13 @@ impl Evaluator {
         design: &Design,
         stiffness: Prediction,
     ) -> Result<Specimen, Impossible> {
+        for (key, axis) in [
+            ("compliance stiffness", stiffness.compliance),
+            ("assembly stiffness", stiffness.assembly),
+        ] {
+            check_stiffness(key, axis.mean / N_PER_MM)?;
+            Check { file: DESIGN }.not_negative(key, axis.sd / N_PER_MM)?;
+        }
         let (compliance, assembly) = (stiffness.compliance.mean, stiffness.assembly.mean);
         let at_pad = AtPad { compliance, assembly };
         let (task, Made { finger, centre }) = template.apply(design, &self.fingers, at_pad)?;
@@ -188,6 +219,6 @@ impl Evaluator {
         let stiffness = self.predict(design)?;
         let on = |template| Ok(measure(&self.specimen(template, design, stiffness)?)?);
         let tasks = self.templates.iter().map(on).collect::<Result<_, Impossible>>()?;
-        Ok(Measured { stiffness, tasks })
+        Ok(Measured { stiffness, tasks, cached: Vec::new() })
     }
 }

@@ -123,7 +123,10 @@ impl From<Evaluation> for EvaluationRow {
             slip_mm: evaluation.slip_mm,
             trials: evaluation.trials,
             simulated_s: evaluation.simulated_s,
-            end_shares: evaluation.end_shares,
+            // A share that is no number would not be read again.
+            end_shares: evaluation
+                .end_shares
+                .map(|share| if share.is_finite() { share } else { 0.0 }),
             taught_start_mm: evaluation.taught.map(grid_mm),
             success: evaluation.success.as_ref().map(SuccessRow::from),
             robust: evaluation.robust.map(RobustRow::from),

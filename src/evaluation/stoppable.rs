@@ -19,7 +19,7 @@ impl Rig for Stoppable<'_> {
         if self.stop.load(Ordering::SeqCst) {
             return Box::new(Stopped);
         }
-        let grasped = self.rig.grasp_in(finger, conditions);
+        let grasped = self.rig.grasp_until(finger, conditions, self.stop);
         Box::new(StoppableGrasp { grasped, stop: self.stop })
     }
 }

@@ -36,12 +36,47 @@ pub enum InputError {
     },
 }
 
+/// Largest size of any number in a file: beyond it the unit is wrong, and sums and products
+/// would leave what floating point holds.
+const LARGEST: f64 = 1e9;
+/// Smallest number where one must be above 0.
+const SMALLEST: f64 = 1e-9;
+/// Longest length and largest coordinate, mm.
+const LONGEST_MM: f64 = 1000.0;
+
 /// Reads TOML; `file` is named in errors.
 pub(crate) fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError> {
-    toml::from_str(text).map_err(|error| InputError::Syntax {
+    let syntax = |error: toml::de::Error| InputError::Syntax {
         file: file.to_owned(),
         message: error.to_string().trim_end().to_owned(),
-    })
+    };
+    let found = toml::from_str(text).map_err(syntax)?;
+    let table: toml::Table = toml::from_str(text).map_err(syntax)?;
+    match control_character(&table) {
+        Some(key) => Check { file }.fail(&key, "has a control character, such as \\u001b"),
+        None => Ok(found),
+    }
+}
+
+/// The key of a text with a control character in it: such texts reach terminals and pages.
+pub(crate) fn control_character(table: &toml::Table) -> Option<String> {
+    fn within(value: &toml::Value) -> bool {
+        match value {
+            toml::Value::String(text) => text.chars().any(|c| c.is_control() && c != '\n'),
+            toml::Value::Array(items) => items.iter().any(within),
+            toml::Value::Table(table) => control_character(table).is_some(),
+            _ => false,
+        }
+    }
+    let plain = |key: &str| !key.chars().any(char::is_control);
+    let found = table.iter().find(|(key, value)| within(value) || !plain(key))?;
+    Some(if plain(found.0) { found.0.clone() } else { "a key".to_owned() })
+}
+
+/// A number as messages show it: never hundreds of digits.
+pub fn shown(value: f64) -> String {
+    let plain = value == 0.0 || (1e-6..1e12).contains(&value.abs()) || !value.is_finite();
+    if plain { value.to_string() } else { format!("{value:e}") }
 }
 
 /// Checks the values of one file.
@@ -61,27 +96,40 @@ impl Check<'_> {
         })
     }
 
-    /// The value, if it is finite.
+    /// The value, if it is finite and not beyond [`LARGEST`].
     pub fn finite(&self, key: &str, value: f64) -> Result<f64, InputError> {
-        if value.is_finite() {
+        // Written so that a NaN is outside.
+        if value.abs() <= LARGEST {
             return Ok(value);
         }
-        self.fail(key, format!("is {value}; it must be a finite number"))
+        let value = shown(value);
+        self.fail(key, format!("is {value}; it must be a finite number of size 1e9 or less"))
     }
 
-    /// The value, if it is finite and above 0.
+    /// The value, if it is above 0: from [`SMALLEST`] to [`LARGEST`].
     pub fn positive(&self, key: &str, value: f64) -> Result<f64, InputError> {
-        if value.is_finite() && value > 0.0 {
+        if (SMALLEST..=LARGEST).contains(&value) {
             return Ok(value);
         }
-        self.fail(key, format!("is {value}; it must be a finite number above 0"))
+        let value = shown(value);
+        self.fail(key, format!("is {value}; it must be a finite number above 0, 1e-9 to 1e9"))
     }
 
-    /// The value, if it is finite and not below 0.
+    /// The value, if it is not below 0 and not beyond [`LARGEST`].
     pub fn not_negative(&self, key: &str, value: f64) -> Result<f64, InputError> {
-        if value.is_finite() && value >= 0.0 {
+        if (0.0..=LARGEST).contains(&value) {
             return Ok(value);
         }
-        self.fail(key, format!("is {value}; it must be a finite number, 0 or above"))
+        let value = shown(value);
+        self.fail(key, format!("is {value}; it must be a finite number, 0 or above, 1e9 at most"))
+    }
+
+    /// A coordinate or a difference of two, mm.
+    pub fn distance(&self, key: &str, mm: f64) -> Result<f64, InputError> {
+        if self.finite(key, mm)?.abs() <= LONGEST_MM {
+            return Ok(mm);
+        }
+        let mm = shown(mm);
+        self.fail(key, format!("is {mm}; it must lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))
     }
 }

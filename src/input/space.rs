@@ -1,6 +1,6 @@
 //! Search spaces: named, bounded, stepped parameters, and the designs in them.
 
-use crate::input::{Check, InputError, read};
+use crate::input::{Check, InputError, read, shown};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -118,6 +118,22 @@ impl std::fmt::Display for Design {
     }
 }
 
+/// Most parameters of a space.
+const MOST_PARAMETERS: usize = 100;
+/// Smallest step: a thousand times the digit to which values are rounded.
+const FINEST_STEP: f64 = 1e-6;
+
+/// Between what a parameter's values must lie, in the unit of its key: as in a table of
+/// measured stiffness, or wherever a number may lie.
+fn bounds(key: &str) -> [f64; 2] {
+    match key {
+        // A finger of no density is no finger.
+        DENSITY_KEY => [0.1, 100.0],
+        DIRECTION_KEY => [0.0, 90.0],
+        _ => [-1e6, 1e6],
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawSpace {
@@ -143,8 +159,9 @@ impl Space {
 
     fn check(raw: RawSpace, file: &str) -> Result<Self, InputError> {
         let fail = |key: &str, problem: &str| Check { file }.fail(key, problem);
-        if raw.parameter.is_empty() {
-            return fail("parameter", "a space needs at least one [[parameter]]");
+        if !(1..=MOST_PARAMETERS).contains(&raw.parameter.len()) {
+            let problem = format!("a space needs one [[parameter]] to {MOST_PARAMETERS} of them");
+            return fail("parameter", &problem);
         }
         for (i, p) in raw.parameter.iter().enumerate() {
             if raw.parameter[..i].iter().any(|other| other.key == p.key) {
@@ -158,6 +175,17 @@ impl Space {
             }
             if p.step <= 0.0 {
                 return fail(&p.key, "step must be above 0");
+            }
+            let [least, most] = bounds(&p.key);
+            if p.low < least || p.high > most {
+                let [least, most] = [least, most].map(shown);
+                return fail(&p.key, &format!("must lie in {least} .. {most}"));
+            }
+            if p.step < FINEST_STEP {
+                return fail(&p.key, "step must be 1e-6 or more");
+            }
+            if p.high > p.low && p.step > (p.high - p.low) * (1.0 + 1e-9) {
+                return fail(&p.key, "step must not be larger than high - low");
             }
             let levels = (p.high - p.low) / p.step;
             if (levels - levels.round()).abs() > 1e-6 || levels > 1e6 {
@@ -239,6 +267,11 @@ source = "paper"
             ("low = 10.0", "low = 40.0", "above high"),
             ("step = 1.0", "step = -1.0", "above 0"),
             ("step = 1.0", "step = 3.0", "whole number"),
+            ("step = 1.0", "step = 1e9", "larger than high - low"),
+            ("step = 1.0", "step = 1e-7", "1e-6 or more"),
+            ("low = 10.0", "low = 0.0", "must lie in 0.1 .. 100"),
+            ("low = 10.0", "low = -1000.0", "must lie in 0.1 .. 100"),
+            ("high = 30.0", "high = 900.0", "must lie in 0.1 .. 100"),
             ("step = 1.0", "stepp = 1.0", "stepp"),
         ] {
             let error = Space::parse(&GOOD.replace(from, to), "s.toml").unwrap_err().to_string();

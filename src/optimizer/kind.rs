@@ -37,6 +37,16 @@ impl OptimizerKind {
         }
     }
 
+    /// Most parameters that it copes with: its model, its covariance or its points must
+    /// neither fill the memory nor take minutes.
+    pub fn most_parameters(self) -> usize {
+        match self {
+            Self::Gp => 100,
+            Self::CmaEs => 200,
+            Self::Random | Self::Sobol | Self::Grid => 10_000,
+        }
+    }
+
     /// Whether it can look for a front of several objectives: it models each of them, or
     /// looks everywhere alike.
     pub fn takes_several_objectives(self) -> bool {

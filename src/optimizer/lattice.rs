@@ -104,7 +104,11 @@ impl Optimizer for GridSearch {
         (0..n).map_while(|_| self.next()).collect()
     }
 
-    fn tell(&mut self, _observations: &[Observation]) {}
+    fn tell(&mut self, observations: &[Observation]) {
+        for observation in observations {
+            self.proposed.insert(&observation.point);
+        }
+    }
 
     fn stop(&self) -> Option<StopReason> {
         self.proposed.stop()

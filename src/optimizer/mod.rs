@@ -157,7 +157,9 @@ pub trait Optimizer {
     /// Proposes up to `n` new points.
     fn ask(&mut self, n: usize) -> Vec<GridPoint>;
 
-    /// Reports the values of all points of the last [`ask`](Self::ask), in its order.
+    /// Reports the values of all points of the last [`ask`](Self::ask), in its order; or,
+    /// when no point waits for its value, those of points that were measured elsewhere, which
+    /// are then not proposed any more.
     fn tell(&mut self, observations: &[Observation]);
 
     /// Why there is nothing more to ask for, if so.

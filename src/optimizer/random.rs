@@ -21,7 +21,11 @@ impl Optimizer for RandomSearch {
         (0..n).map_while(|_| self.proposed.next_unseen()).collect()
     }
 
-    fn tell(&mut self, _observations: &[Observation]) {}
+    fn tell(&mut self, observations: &[Observation]) {
+        for observation in observations {
+            self.proposed.insert(&observation.point);
+        }
+    }
 
     fn stop(&self) -> Option<StopReason> {
         self.proposed.stop()

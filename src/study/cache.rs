@@ -9,6 +9,7 @@
 //! many processes need no lock; of two writers the later wins with an equal file. A file
 //! that is torn or damaged fails its check and is measured and written again.
 
+use super::fits;
 use super::provenance::SOURCES;
 use super::seal::{seal, unseal};
 use crate::evaluation::Evaluation;
@@ -39,7 +40,11 @@ pub struct Key(String);
 
 #[derive(Serialize, Deserialize)]
 struct Entry {
+    /// SHA-256 of what determines the evaluation: another entry under this name shows.
     key: String,
+    /// SHA-256 of `measured` as it is written: an accident shows. Who computes it anew is not
+    /// found out; the journal says which values came from here.
+    measured_sha256: String,
     measured: Evaluation,
 }
 
@@ -58,8 +63,7 @@ impl Cache {
     /// `Debug` must show all of them; it shows numbers so that they read back as the same bits.
     pub fn key(&self, inputs: &impl Debug) -> Key {
         let text = format!("{}inputs {inputs:?}\n", self.context);
-        let digest = Sha256::digest(text.as_bytes());
-        Key(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+        Key(sha256(&text))
     }
 
     /// The evaluation of that name, if a whole one is there.
@@ -67,7 +71,11 @@ impl Cache {
         let text = files::read_own(&self.path(key), LARGEST_OWN).ok()?;
         let (content, _) = unseal(text.strip_suffix('\n')?).ok()?;
         let entry: Entry = serde_json::from_str(&content).ok()?;
-        if entry.key != key.0 {
+        let whole = serde_json::to_string(&entry.measured).ok()?;
+        if entry.key != key.0 || entry.measured_sha256 != sha256(&whole) {
+            return None;
+        }
+        if !fits::plausible(&entry.measured) {
             return None;
         }
         self.found.fetch_add(1, Ordering::Relaxed);
@@ -101,13 +109,18 @@ impl Cache {
     }
 
     fn write(&self, key: &Key, measured: &Evaluation) -> io::Result<()> {
-        let entry = Entry { key: key.0.clone(), measured: measured.clone() };
+        let measured_sha256 = sha256(&serde_json::to_string(measured)?);
+        let entry = Entry { key: key.0.clone(), measured_sha256, measured: measured.clone() };
         let text = seal(&entry, None::<&()>)?;
         let path = self.path(key);
         let folder = path.parent().unwrap_or(&self.dir);
         fs::create_dir_all(folder)?;
         files::write_own(&path, text.as_bytes())
     }
+}
+
+fn sha256(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

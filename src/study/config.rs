@@ -5,7 +5,13 @@ use super::provenance::Provenance;
 use crate::evaluation::objective::{Aggregate, Constraint, Goals, Objectives};
 use crate::finger::model::FingerModelKind;
 use crate::input::space::Space;
+use crate::optimizer::OptimizerKind;
 use serde::{Deserialize, Serialize};
+
+/// Most evaluations of a study, and of a polish.
+pub const LARGEST_BUDGET: u64 = 1_000_000;
+/// Most designs proposed at a time.
+pub const LARGEST_BATCH: u64 = 10_000;
 
 /// Everything that decides what a study measures. The number of threads is not
 /// part of it: it changes no result.
@@ -67,6 +73,41 @@ impl StudyConfig {
     /// The tasks in one word: `usb+rj45`.
     pub fn task_name(&self) -> String {
         self.tasks().collect::<Vec<_>>().join("+")
+    }
+
+    /// Whether it can be run as it is, whoever wrote it.
+    ///
+    /// # Errors
+    /// Which field cannot be so, and what would be right.
+    pub fn check(&self) -> Result<(), String> {
+        for (key, value, [least, most]) in [
+            ("budget", self.budget, [1, LARGEST_BUDGET]),
+            ("polish", self.polish, [0, LARGEST_BUDGET]),
+            ("batch", self.batch, [1, LARGEST_BATCH]),
+        ] {
+            if !(least..=most).contains(&value) {
+                return Err(format!("{key}: is {value}; it must lie in {least} .. {most}"));
+            }
+        }
+        let kind: OptimizerKind =
+            self.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
+        if self.objective.single().is_none() && !kind.takes_several_objectives() {
+            return Err(format!("optimizer: {kind} knows one objective only"));
+        }
+        if self.objective.single().is_none() && self.polish > 0 {
+            return Err("polish: knows one objective only".to_owned());
+        }
+        if self.tasks.is_empty() || self.several_tasks() != self.aggregate.is_some() {
+            return Err("tasks: needs one, or several and an aggregate".to_owned());
+        }
+        if let Some(Aggregate::Weighted(weights)) = &self.aggregate {
+            Aggregate::weighted(weights.clone(), self.tasks.len())
+                .map_err(|error| format!("aggregate: {error}"))?;
+        }
+        if self.uncertainty.is_some() != self.goals().need_draws() {
+            return Err("uncertainty: goes with success-rate and robust-range".to_owned());
+        }
+        self.provenance.check()
     }
 
     /// What is asked of a design.

@@ -21,7 +21,9 @@ use super::rule::Rule;
 use super::store::{FileStore, Store};
 use super::walked;
 use crate::files::{self, LARGEST_INPUT, LARGEST_OWN};
+use crate::input::control_character;
 use sha2::{Digest, Sha256};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
@@ -243,10 +245,17 @@ pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
         }
         Err(error) => return Err(StudyError::io("read", &path)(error)),
     };
-    toml::from_str(&text).map_err(|error| StudyError::File {
-        path,
-        problem: format!("{}; restore the file from a copy", error.to_string().trim_end()),
-    })
+    let wrong = |problem: String| StudyError::File {
+        path: path.clone(),
+        problem: format!("{}; restore the file from a copy", problem.trim_end()),
+    };
+    let config: StudyConfig = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    let table = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    if let Some(key) = control_character(&table) {
+        return Err(wrong(format!("{key}: has a control character")));
+    }
+    config.check().map_err(wrong)?;
+    Ok(config)
 }
 
 /// The copies of the input files of the last segment, checked against its provenance.
@@ -281,7 +290,8 @@ fn write_inputs(dir: &Path, segment: usize, inputs: &Inputs) -> Result<(), Study
             Err(_) if fs::symlink_metadata(folder).is_ok_and(|found| found.is_dir()) => {}
             made => made.map_err(StudyError::io("create the folder", folder))?,
         }
-        write_own_file(&path, text)?;
+        // As it is: its hash is recorded.
+        files::write_own(&path, text.as_bytes()).map_err(StudyError::io("write", &path))?;
     }
     Ok(())
 }
@@ -300,19 +310,29 @@ fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
 }
 
 /// Writes a file that the user has named, and the folders to it: see [`files::write_named`].
+/// A text is written without control characters.
 pub fn write_file(path: &Path, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), StudyError> {
     if let Some(parent) = path.parent() {
         fs::create_dir_all(parent).map_err(StudyError::io("create the folder", parent))?;
     }
-    files::write_named(path, content.as_ref()).map_err(StudyError::io("write", path))
+    files::write_named(path, &plain(content.as_ref())).map_err(StudyError::io("write", path))
 }
 
-/// Writes a file of a study's folder: see [`files::write_own`].
+/// Writes a file of a study's folder: see [`files::write_own`]. A text is written without
+/// control characters.
 pub fn write_own_file(
     path: &Path,
     content: &(impl AsRef<[u8]> + ?Sized),
 ) -> Result<(), StudyError> {
-    files::write_own(path, content.as_ref()).map_err(StudyError::io("write", path))
+    files::write_own(path, &plain(content.as_ref())).map_err(StudyError::io("write", path))
+}
+
+/// A text without control characters; what is none, as a solid in binary form, as it is.
+fn plain(content: &[u8]) -> Cow<'_, [u8]> {
+    match std::str::from_utf8(content) {
+        Ok(text) if !content.contains(&0) => files::visible(text).into_bytes().into(),
+        _ => content.into(),
+    }
 }
 
 /// Makes the names of new files survive a power failure; not every system can.

@@ -9,7 +9,7 @@ use super::error::{LineError, StudyError};
 use super::provenance::Segment;
 use super::record::Recorded;
 use super::store::Store;
-use super::{header, line};
+use super::{fits, header, line};
 use crate::files::{self, LARGEST_JOURNAL};
 use std::fs::OpenOptions;
 use std::io::{self, Write};
@@ -185,7 +185,7 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, St
     let text = |line: &[u8]| String::from_utf8_lossy(line).trim_end_matches('\n').to_owned();
     header::check(&text(first), &text(second), config).map_err(foreign)?;
     for (number, line) in (3..).zip(rest) {
-        contents.add(&text(line)).map_err(|source| StudyError::Line {
+        contents.add(&text(line), config).map_err(|source| StudyError::Line {
             path: path.to_owned(),
             line: number,
             source,
@@ -196,14 +196,19 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, St
 
 impl Contents {
     /// Reads one line after the header.
-    fn add(&mut self, line: &str) -> Result<(), LineError> {
+    fn add(&mut self, line: &str, config: &StudyConfig) -> Result<(), LineError> {
         let expected = self.evaluations.len() as u64;
         match header::decode_segment(line)? {
-            None => self.evaluations.push(line::decode(line, expected)?),
+            None => {
+                let recorded = line::decode(line, expected)?;
+                fits::fits(&recorded, config)?;
+                self.evaluations.push(recorded);
+            }
             Some(segment) if segment.first != expected => {
                 return Err(LineError::Order { found: segment.first, expected });
             }
             Some(segment) => {
+                segment.provenance.check().map_err(LineError::Format)?;
                 // The evaluation it was written with was torn off.
                 self.segments.retain(|other| other.first < expected || other.first == 0);
                 self.segments.push(segment);

@@ -1,12 +1,13 @@
 //! The lines of a journal: Optuna's JournalStorage records, with a check.
 //!
 //! A journal begins with a "create study" line and a "study attribute" line;
-//! every further line is one finished evaluation, a whole Optuna trial. Three
-//! fields are ours beside Optuna's: `evaluation` (the index), `check`, and `wall_s`.
+//! every further line is one finished evaluation, a whole Optuna trial. Four
+//! fields are ours beside Optuna's: `evaluation` (the index), `check`, `wall_s` and
+//! `cached` (for each task whether its values came from the cache).
 //!
 //! `check` is the beginning (16 hexadecimal digits) of the SHA-256 of the
 //! line's bytes before `,"check"`. After it stand `datetime_start`,
-//! `datetime_complete` and `wall_s`, the only fields that differ between two
+//! `datetime_complete`, `wall_s` and `cached`, the only fields that differ between two
 //! runs of the same study; [`super::strip_times`] (or `sed 's/,"datetime_start".*//'`) removes them.
 
 use super::error::LineError;
@@ -80,6 +81,8 @@ struct Times {
     datetime_start: String,
     datetime_complete: String,
     wall_s: f64,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    cached: Vec<bool>,
 }
 
 /// The line of one evaluation, with its newline.
@@ -104,6 +107,7 @@ pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::
         datetime_start: recorded.timing.datetime_start.clone(),
         datetime_complete: recorded.timing.datetime_complete.clone(),
         wall_s: recorded.timing.wall_s,
+        cached: recorded.timing.cached.clone(),
     };
     seal(&content, Some(&times))
 }
@@ -125,6 +129,9 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
             return Err(LineError::Format(format!("`{stamp}` is not a time stamp")));
         }
     }
+    if !(times.wall_s >= 0.0 && times.wall_s.is_finite()) {
+        return Err(LineError::Format("`wall_s` is no duration".to_owned()));
+    }
     Ok(Recorded {
         index: trial.evaluation,
         score: trial
@@ -137,6 +144,7 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
             datetime_start: times.datetime_start,
             datetime_complete: times.datetime_complete,
             wall_s: times.wall_s,
+            cached: times.cached,
         },
     })
 }

@@ -5,6 +5,7 @@ mod cache;
 mod config;
 mod differences;
 mod error;
+mod fits;
 mod folder;
 mod header;
 mod journal;
@@ -23,7 +24,7 @@ mod walk;
 mod walked;
 
 pub use cache::{Cache, Key};
-pub use config::{StudyConfig, study_name};
+pub use config::{LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
 pub use error::{LineError, StudyError};
 pub use folder::{
     CONFIG_FILE, IfChanged, Inputs, JOURNAL_FILE, Study, read_config, sha256, write_file,

@@ -45,6 +45,18 @@ impl Provenance {
         }
     }
 
+    /// Whether the roles, which become names of files, can be ours.
+    ///
+    /// # Errors
+    /// Which one cannot.
+    pub fn check(&self) -> Result<(), String> {
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        match self.input_sha256.keys().find(|role| !role.chars().all(plain)) {
+            None => Ok(()),
+            Some(role) => Err(format!("input_sha256: `{role}` is no input file")),
+        }
+    }
+
     /// In what another differs, one line each; `None` if in nothing.
     pub fn differences(&self, now: &Provenance) -> Option<String> {
         differences(self, now, ["the study", "now"])

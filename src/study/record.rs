@@ -60,6 +60,8 @@ pub struct Timing {
     pub datetime_complete: String,
     /// Wall-clock duration, s.
     pub wall_s: f64,
+    /// For each task whether its values came from the cache; empty where that is not known.
+    pub cached: Vec<bool>,
 }
 
 impl Recorded {

@@ -16,6 +16,7 @@
 //! - evaluations that end out of order wait in memory until all earlier ones are written.
 
 use super::error::StudyError;
+use super::fits;
 use super::folder::Study;
 use super::journal::Journal;
 use super::record::{Recorded, Timing};
@@ -171,19 +172,19 @@ impl Runner<'_> {
         if self.stop.load(Ordering::SeqCst) {
             return Ok(None);
         }
-        let Measured { stiffness, tasks } = measured.map_err(|source| StudyError::Impossible {
-            index,
-            design: design.to_string(),
-            source,
+        let Measured { stiffness, tasks, cached } = measured.map_err(|source| {
+            StudyError::Impossible { index, design: design.to_string(), source }
         })?;
         let timing = Timing {
             datetime_start,
             datetime_complete: time::now(),
             wall_s: clock.elapsed().as_secs_f64(),
+            cached,
         };
         let design = design.clone();
         let mut recorded = Recorded { index, design, score: None, stiffness, tasks, timing };
-        recorded.score = self.goals.score(&recorded.tasks());
+        // What is no number has failed.
+        recorded.score = self.goals.score(&recorded.tasks()).filter(fits::sound);
         Ok(Some(recorded))
     }
 }

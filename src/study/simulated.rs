@@ -8,6 +8,7 @@ use crate::evaluation::template::Impossible;
 use crate::evaluation::tolerance::Search;
 use crate::input::space::Design;
 use crate::trial::run::RigError;
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Measures designs by simulation, or finds them in the cache.
@@ -26,21 +27,29 @@ pub struct Simulated<'a> {
 
 impl Evaluate for Simulated<'_> {
     fn evaluate(&self, design: &Design) -> Result<Measured, Impossible> {
-        self.evaluator.evaluate_by(design, |specimen| self.measure(specimen))
+        // The tasks come one after the other.
+        let cached = RefCell::new(Vec::new());
+        let measured = self.evaluator.evaluate_by(design, |specimen| {
+            let (evaluation, known) = self.measure(specimen)?;
+            cached.borrow_mut().push(known);
+            Ok(evaluation)
+        })?;
+        Ok(Measured { cached: cached.into_inner(), ..measured })
     }
 }
 
 impl Simulated<'_> {
-    fn measure(&self, specimen: &Specimen) -> Result<Evaluation, RigError> {
+    /// The evaluation, and whether it was in the cache.
+    fn measure(&self, specimen: &Specimen) -> Result<(Evaluation, bool), RigError> {
         let keep = self.cache.map(|cache| (cache, cache.key(&(specimen, self.search, self.plan))));
         if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
-            return Ok(found);
+            return Ok((found, true));
         }
         let evaluation = self.evaluator.measure(specimen, self.search, self.plan, self.stop)?;
         // Once it is set trials may have been skipped.
         if let Some((cache, key)) = keep.filter(|_| !self.stop.load(Ordering::SeqCst)) {
             cache.put(&key, &evaluation);
         }
-        Ok(evaluation)
+        Ok((evaluation, false))
     }
 }

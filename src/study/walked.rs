@@ -12,6 +12,7 @@
 //! The first of the three, by the rule on the firm windows that are left, is recommended. What
 //! this finds is kept beside the journal, in `walk.json`, and is no part of the budget.
 
+use super::fits;
 use super::provenance::Provenance;
 use super::record::{Recorded, Walked};
 use super::rule::{Rule, Standing};
@@ -64,7 +65,9 @@ impl WalkFile {
     pub fn read(dir: &Path, provenance: Option<&Provenance>) -> Option<WalkFile> {
         let text = files::read_own(&dir.join(WALK_FILE), LARGEST_OWN).ok()?;
         let file: WalkFile = serde_json::from_str(&text).ok()?;
-        (Some(&file.provenance) == provenance).then_some(file)
+        let walked = file.designs.iter().filter_map(|row| row.walked.as_ref());
+        let plausible = walked.flat_map(|walked| &walked.tasks).all(fits::plausible);
+        (Some(&file.provenance) == provenance && plausible).then_some(file)
     }
 }
 

@@ -8,6 +8,7 @@ use super::trace::{Sample, Trace};
 use super::watch::Watch;
 use super::{PhaseEnd, Poses, Trial};
 use crate::input::robot::Mounted;
+use crate::input::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
 use crate::input::task::{Ending, Hold, Phase, Stage, Task};
 use crate::outcome::Outcome;
 use crate::physics::{ContactPoint, Diverged, World};
@@ -15,13 +16,8 @@ use crate::scene::{BodyId, Pose};
 use crate::units::{DEG, MM};
 use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Time for the jaws to close and the fingers to come to rest, s.
-const GRASP_TIME: f64 = 0.3;
-/// Time to lift, tilt and carry the part to the start, s.
-const CARRY_TIME: f64 = 0.2;
-/// A tolerance-based move that is not there by then is stuck, s after its command ended.
-const TOLERANCE_TIMEOUT: f64 = 1.0;
 /// The leading edge is inside when it is this far below the socket's top, m:
 /// more than contacts sink, less than any preload.
 const ENTERED_DEPTH: f64 = 0.15 * MM;
@@ -36,6 +32,8 @@ pub(super) enum Stop {
     Lost,
     ForceLimit,
     Diverged,
+    /// The study is to stop: what comes of it is worthless.
+    Interrupted,
 }
 
 impl From<Diverged> for Stop {
@@ -47,6 +45,8 @@ impl From<Diverged> for Stop {
 /// An attempt as it goes on.
 pub(super) struct Attempt<'a> {
     robot: &'a Mounted,
+    /// Set when it is to end at once.
+    stop: &'a AtomicBool,
     /// The task under the conditions of this attempt.
     task: Arc<Task>,
     pub cell: WorkCell,
@@ -70,11 +70,18 @@ pub(super) struct Attempt<'a> {
 }
 
 impl<'a> Attempt<'a> {
-    pub fn new(robot: &'a Mounted, task: Arc<Task>, cell: WorkCell, world: Box<dyn World>) -> Self {
+    pub fn new(
+        robot: &'a Mounted,
+        task: Arc<Task>,
+        cell: WorkCell,
+        world: Box<dyn World>,
+        stop: &'a AtomicBool,
+    ) -> Self {
         let pose = world.pose(cell.command);
         let corners = task.plug.parts.iter().flat_map(|part| part.solid.corners()).collect();
         Attempt {
             robot,
+            stop,
             task,
             cell,
             world,
@@ -96,6 +103,7 @@ impl<'a> Attempt<'a> {
     pub fn copy(&self) -> Attempt<'a> {
         Attempt {
             robot: self.robot,
+            stop: self.stop,
             task: Arc::clone(&self.task),
             cell: self.cell.clone(),
             world: self.world.snapshot(),
@@ -110,7 +118,7 @@ impl<'a> Attempt<'a> {
     /// Grasp, lift, tilt, carry to the start, and the approach through the air.
     pub fn prepare(&mut self) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
-        for i in 1..=self.steps(GRASP_TIME) {
+        for i in 1..=self.steps(GRASP_S) {
             let time = i as f64 * self.world.step_s();
             for (side, hand) in self.cell.hands.iter().enumerate() {
                 self.world.set_spring(hand.slide, 1, cell::closing(side, task.grip.force, time));
@@ -125,7 +133,7 @@ impl<'a> Attempt<'a> {
         self.world.place(self.cell.stand, Pose::translation(0.0, 0.0, -1.0));
         let [x, y, z] = task.strategy.start;
         let start = Tcp { position: Vector3::new(x, y, z), tilt: task.strategy.tilt };
-        self.follow(Move::lasting(self.target, start, CARRY_TIME), self.rest_time())?;
+        self.follow(Move::lasting(self.target, start, CARRY_S), self.rest_time())?;
         self.end_phase("carry");
         for phase in task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach) {
             self.phase(phase)?;
@@ -159,7 +167,7 @@ impl<'a> Attempt<'a> {
         let end = match phase.ending {
             Ending::Duration(rest) => self.follow(motion, rest.max(self.rest_time())),
             Ending::Tolerance(within) => self.reach(motion, within),
-            Ending::Touch { preload } => self.touch(motion, preload),
+            Ending::Touch { preload } => self.touch(motion, preload, phase.speed),
         };
         self.end_phase(&phase.name);
         end
@@ -187,7 +195,7 @@ impl<'a> Attempt<'a> {
     /// Commands a move and waits until the TCP is there, as near as asked.
     fn reach(&mut self, motion: Move, within: f64) -> Result<(), Stop> {
         self.follow(motion, 0.0)?;
-        for _ in 0..self.steps(TOLERANCE_TIMEOUT) {
+        for _ in 0..self.steps(TOLERANCE_TIMEOUT_S) {
             if (self.tcp() - self.target.position).amax() < within {
                 break;
             }
@@ -196,8 +204,8 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Moves until the plug touches the socket, then on by the preload.
-    fn touch(&mut self, motion: Move, preload: f64) -> Result<(), Stop> {
+    /// Moves until the plug touches the socket, then on by the preload at this speed, m/s.
+    fn touch(&mut self, motion: Move, preload: f64, speed: f64) -> Result<(), Stop> {
         let (start, end) = (motion.at(0.0), motion.at(f64::INFINITY));
         // A robot that trails its command touches after it has ended.
         let steps = self.steps(motion.duration() + self.robot.settling());
@@ -209,7 +217,6 @@ impl<'a> Attempt<'a> {
             }
         }
         let along = (end.position - start.position).normalize();
-        let speed = (end.position - start.position).norm() / motion.duration();
         // From where the TCP is, not from its command: a soft flange lags behind,
         // and the lag would come on top of the preload.
         let reached = along.dot(&(self.tcp() - start.position));
@@ -219,6 +226,9 @@ impl<'a> Attempt<'a> {
 
     /// One step of the command, the engine and the monitors.
     fn step(&mut self) -> Result<(), Stop> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(Stop::Interrupted);
+        }
         self.world.drive(self.cell.command, self.target.pose());
         self.world.step()?;
         let dt = self.world.step_s();
@@ -291,7 +301,7 @@ impl<'a> Attempt<'a> {
     }
 
     fn watch_grasp(&mut self, dt: f64) -> Result<(), Stop> {
-        if self.time < GRASP_TIME {
+        if self.time < GRASP_S {
             return Ok(());
         }
         let pressed = |hand: Hand| self.world.contact(hand.finger, self.cell.plug).normal_sum;
@@ -373,7 +383,7 @@ impl<'a> Attempt<'a> {
             lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
             entered: self.watch.entered,
         };
-        let diverged = end == Err(Stop::Diverged);
+        let diverged = matches!(end, Err(Stop::Diverged | Stop::Interrupted));
         let outcome = if diverged { Outcome::Diverged } else { classify(facts) };
         Trial {
             outcome,

@@ -174,6 +174,8 @@ fn servo_flange(servo: &Servo) -> (Motion, Springs) {
 fn pad_friction(task: &Task) -> Friction {
     let coefficient = task.friction.finger_plug;
     let patch = task.friction.finger_torsion / coefficient.max(f64::MIN_POSITIVE);
+    // Without friction there is no torsional friction, whatever its radius.
+    let patch = if coefficient > 0.0 { patch } else { 0.0 };
     Friction { coefficient, patch }
 }
 

@@ -5,6 +5,7 @@ use crate::outcome::Outcome;
 use crate::physics::ContactPoint;
 use crate::scene::Pose;
 use serde::Serialize;
+use std::sync::atomic::AtomicBool;
 
 mod attempt;
 pub mod cell;
@@ -85,6 +86,17 @@ pub trait Rig: Send + Sync {
     /// Grasps the part with a pair of such fingers under these conditions; what
     /// follows does not depend on the offset until the approach, so it is done once.
     fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_>;
+
+    /// The same, where grasp and trials end at once, with a worthless result, when `stop` is
+    /// set; rigs whose trials take no time need not ask.
+    fn grasp_until<'a>(
+        &'a self,
+        finger: &Finger,
+        conditions: &Conditions,
+        _stop: &'a AtomicBool,
+    ) -> Box<dyn Grasped + 'a> {
+        self.grasp_in(finger, conditions)
+    }
 
     /// The same in the world as the task file says.
     fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {

@@ -1,5 +1,6 @@
 //! Commanded motion of the TCP: straight, minimum-jerk, in simulated time.
 
+use crate::input::task::duration::SHORTEST_MOVE_S;
 use crate::scene::Pose;
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
@@ -34,19 +35,16 @@ pub struct Move {
     duration: f64,
 }
 
-/// Shortest move, s: a tiny displacement is not made in one jerk.
-const SHORTEST: f64 = 0.02;
-
 impl Move {
     /// A move at a mean speed (m/s).
     pub fn new(from: Tcp, to: Tcp, speed: f64) -> Self {
-        let duration = ((to.position - from.position).norm() / speed).max(SHORTEST);
+        let duration = ((to.position - from.position).norm() / speed).max(SHORTEST_MOVE_S);
         Move { from, to, duration }
     }
 
     /// A move that takes a given time (s).
     pub fn lasting(from: Tcp, to: Tcp, duration: f64) -> Self {
-        Move { from, to, duration: duration.max(SHORTEST) }
+        Move { from, to, duration: duration.max(SHORTEST_MOVE_S) }
     }
 
     /// Time it takes, s.

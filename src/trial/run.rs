@@ -7,12 +7,17 @@ use super::{Conditions, Grasped, Recording, Rig, Trial, cell};
 use crate::finger::Finger;
 use crate::input::arm::ArmError;
 use crate::input::robot::{Mounted, Robot};
-use crate::input::task::Task;
+use crate::input::task::{Phase, Stage, Task};
 use crate::outcome::Outcome;
 use crate::physics::{Engine, Unsupported};
 use crate::scene::Pose;
 use crate::units::N_PER_MM;
+use nalgebra::Vector3;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
+
+/// For trials that nobody stops.
+static NEVER: AtomicBool = AtomicBool::new(false);
 
 /// A task, a robot in place for it, and an engine that can simulate both.
 pub struct EngineRig {
@@ -34,6 +39,16 @@ pub enum RigError {
         task: String,
         /// What its arm lacks.
         error: ArmError,
+    },
+    /// A trial would not end in time.
+    #[error("the robot `{robot}` on the task `{task}`: {problem}")]
+    TooLong {
+        /// Name of the robot.
+        robot: String,
+        /// Name of the task.
+        task: String,
+        /// Which phase takes how long.
+        problem: String,
     },
     /// The engine cannot simulate the two.
     #[error(transparent)]
@@ -59,23 +74,32 @@ impl EngineRig {
         let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(|error| {
             RigError::Robot { robot: robot.name.clone(), task: task.name.clone(), error }
         })?;
+        let lead = |phase: &Phase| match Vector3::from(phase.displacement).try_normalize(0.0) {
+            Some(along) if phase.stage == Stage::Assembly => mounted.lead(&along).abs(),
+            _ => 0.0,
+        };
+        if let Some(problem) = task.strategy.too_long(lead, mounted.settling()) {
+            let (robot, task) = (robot.name.clone(), task.name.clone());
+            return Err(RigError::TooLong { robot, task, problem });
+        }
         engine.supports(&cell::build(&task, &mounted, finger).scene)?;
         Ok(EngineRig { task, robot: mounted, engine })
     }
 
     /// Grasps, carries and approaches.
-    fn prepare(
-        &self,
+    fn prepare<'a>(
+        &'a self,
         engine: &dyn Engine,
         finger: &Finger,
         conditions: &Conditions,
         recorder: Option<Recorder>,
-    ) -> Prepared<'_> {
+        stop: &'a AtomicBool,
+    ) -> Prepared<'a> {
         let task = Arc::new(conditions.task(&self.task));
         let mut cell = cell::build(&task, &self.robot, finger);
         conditions.displace(&mut cell);
         let world = engine.world(&cell.scene);
-        let mut attempt = Attempt::new(&self.robot, task, cell, world);
+        let mut attempt = Attempt::new(&self.robot, task, cell, world, stop);
         attempt.yaw = conditions.yaw;
         attempt.recorder = recorder;
         let end = attempt.prepare();
@@ -85,19 +109,29 @@ impl EngineRig {
 
 impl Rig for EngineRig {
     fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+        self.grasp_until(finger, conditions, &NEVER)
+    }
+
+    fn grasp_until<'a>(
+        &'a self,
+        finger: &Finger,
+        conditions: &Conditions,
+        stop: &'a AtomicBool,
+    ) -> Box<dyn Grasped + 'a> {
         Box::new(Ready {
             rig: self,
             finger: *finger,
             conditions: *conditions,
-            prepared: self.prepare(&*self.engine, finger, conditions, None),
+            prepared: self.prepare(&*self.engine, finger, conditions, None, stop),
             halved: OnceLock::new(),
+            stop,
         })
     }
 
     fn record(&self, finger: &Finger, offset: f64) -> Option<Recording> {
         let by = |engine: &dyn Engine| {
             let filmed = Some(Recorder::default());
-            let prepared = self.prepare(engine, finger, &Conditions::NOMINAL, filmed);
+            let prepared = self.prepare(engine, finger, &Conditions::NOMINAL, filmed, &NEVER);
             let (trial, _, frames) = prepared.watched(offset, None);
             Recording::new(trial, frames)
         };
@@ -118,6 +152,8 @@ struct Ready<'a> {
     prepared: Prepared<'a>,
     /// The same at half the step, once a trial has diverged.
     halved: OnceLock<Prepared<'a>>,
+    /// Set when trials are to end at once.
+    stop: &'a AtomicBool,
 }
 
 impl Grasped for Ready<'_> {
@@ -138,7 +174,7 @@ impl Ready<'_> {
         }
         let again = || {
             let engine = self.rig.engine.halved();
-            self.rig.prepare(&*engine, &self.finger, &self.conditions, None)
+            self.rig.prepare(&*engine, &self.finger, &self.conditions, None, self.stop)
         };
         let (trial, samples) = self.halved.get_or_init(again).run(offset, every_s);
         (Trial { retried: true, ..trial }, samples)
@@ -216,6 +252,32 @@ mod tests {
         let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
         let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
         EngineRig::new(task, &robot, engine).unwrap().grasp(&finger).trial(0.0)
+    }
+
+    #[test]
+    fn a_trial_ends_at_once_when_it_is_to_stop() {
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+        let rig = EngineRig::new(task, &robot, Box::<Direct>::default()).unwrap();
+        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+        let stop = AtomicBool::new(true);
+        let at_once = rig.grasp_until(&finger, &Conditions::NOMINAL, &stop).trial(0.0);
+        assert_eq!((at_once.outcome, at_once.simulated_s), (Outcome::Diverged, 0.0));
+        stop.store(false, std::sync::atomic::Ordering::SeqCst);
+        let grasped = rig.grasp_until(&finger, &Conditions::NOMINAL, &stop);
+        stop.store(true, std::sync::atomic::Ordering::SeqCst);
+        let after_the_grasp = grasped.trial(0.0);
+        assert!(after_the_grasp.simulated_s < 1.5, "nothing but grasp and approach");
+    }
+
+    #[test]
+    fn a_robot_that_takes_too_long_to_follow_is_refused() {
+        let ur5e = ROBOTS.iter().find(|robot| robot.name == "ur5e").unwrap();
+        let slow = ur5e.text.replace("damping_nms_per_rad = ", "damping_nms_per_rad = 1000");
+        let robot = Robot::parse(&slow, ur5e.file).unwrap();
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let error = EngineRig::new(task, &robot, Box::<Direct>::default()).err().unwrap();
+        assert!(error.to_string().contains("it may take 60 s"), "{error}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! One value for the values of several tasks.
 
+use crate::input::shown;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -30,8 +31,11 @@ impl Aggregate {
                 weights.len()
             ));
         }
-        match weights.iter().find(|weight| !(weight.is_finite() && **weight > 0.0)) {
-            Some(bad) => Err(format!("{bad} is no weight; it must be a number above 0")),
+        match weights.iter().find(|weight| !(1e-6..=1e6).contains(*weight)) {
+            Some(bad) => {
+                let bad = shown(*bad);
+                Err(format!("{bad} is no weight; it must be a number above 0, 1e-6 to 1e6"))
+            }
             None => Ok(Aggregate::Weighted(weights)),
         }
     }
@@ -103,6 +107,7 @@ mod tests {
         }
         assert!(Aggregate::weighted(vec![1.0], 2).unwrap_err().contains("1 weights for 2 tasks"));
         assert!(Aggregate::weighted(vec![0.0, 1.0], 2).unwrap_err().contains("above 0"));
+        assert!(Aggregate::weighted(vec![1e308, 1.0], 2).unwrap_err().contains("1e308 is no"));
         assert!("weighted".parse::<Aggregate>().is_err());
     }
 }

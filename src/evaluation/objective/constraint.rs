@@ -86,7 +86,13 @@ impl FromStr for Constraint {
         };
         let measure: Measure = name.trim().parse()?;
         match limit.trim().parse() {
-            Ok(limit) if f64::is_finite(limit) => Ok(Constraint { measure, bound, limit }),
+            // Violations are shares of the limit.
+            Ok(limit) if limit == 0.0 || (1e-9..=1e9).contains(&f64::abs(limit)) => {
+                Ok(Constraint { measure, bound, limit })
+            }
+            Ok(limit) if f64::is_finite(limit) => {
+                Err("a limit is 0 or of a size between 1e-9 and 1e9".to_owned())
+            }
             _ => Err(format!(
                 "`{}` is not a number; give the limit of {} without its unit",
                 limit.trim(),
@@ -121,6 +127,8 @@ mod tests {
             ("force<=3", "range, centred-range"),
             ("peak-force<=30N", "peak-force (N) without its unit"),
             ("slip<=inf", "not a number"),
+            ("slip<=1e300", "between 1e-9 and 1e9"),
+            ("slip<=1e-300", "between 1e-9 and 1e9"),
             ("slip<=", "not a number"),
         ] {
             let error = bad.parse::<Constraint>().unwrap_err();

@@ -73,6 +73,14 @@ enum RawSearch {
     Strides,
 }
 
+/// Largest error of a length, mm: no part is placed so badly.
+const LARGEST_MM: f64 = 20.0;
+/// Largest error of a clearance, mm.
+const LARGEST_CLEARANCE_MM: f64 = 2.0;
+/// Largest error of an angle, degrees.
+const LARGEST_DEG: f64 = 30.0;
+/// Largest factor on the stiffness model's own error.
+const LARGEST_FACTOR: f64 = 10.0;
 /// Most trials or samples a design may take.
 const MOST: u32 = 100_000;
 
@@ -126,17 +134,38 @@ impl Check<'_> {
             return self.fail(friction, "must be below 100: friction cannot be negative");
         }
         Ok(Errors {
-            offset_sd: self.not_negative("offset.sd_mm", raw.offset.sd_mm)? * MM,
-            yaw_sd: self.not_negative("yaw.sd_deg", raw.yaw.sd_deg)? * DEG,
+            offset_sd: self.error("offset.sd_mm", raw.offset.sd_mm, [LARGEST_MM, MM])?,
+            yaw_sd: self.error("yaw.sd_deg", raw.yaw.sd_deg, [LARGEST_DEG, DEG])?,
             friction_half_width: half_width * PERCENT,
-            stiffness_sd_factor: self
-                .not_negative("stiffness.sd_factor", raw.stiffness.sd_factor)?,
-            clearance_half_width: self
-                .not_negative("clearance.half_width_mm", raw.clearance.half_width_mm)?
-                * MM,
-            grasp_across_sd: self.not_negative("grasp.across_sd_mm", raw.grasp.across_sd_mm)? * MM,
-            grasp_low_max: self.not_negative("grasp.low_max_mm", raw.grasp.low_max_mm)? * MM,
+            stiffness_sd_factor: self.error(
+                "stiffness.sd_factor",
+                raw.stiffness.sd_factor,
+                [LARGEST_FACTOR, 1.0],
+            )?,
+            clearance_half_width: self.error(
+                "clearance.half_width_mm",
+                raw.clearance.half_width_mm,
+                [LARGEST_CLEARANCE_MM, MM],
+            )?,
+            grasp_across_sd: self.error(
+                "grasp.across_sd_mm",
+                raw.grasp.across_sd_mm,
+                [LARGEST_MM, MM],
+            )?,
+            grasp_low_max: self.error(
+                "grasp.low_max_mm",
+                raw.grasp.low_max_mm,
+                [LARGEST_MM, MM],
+            )?,
         })
+    }
+
+    /// An error in SI units, at most as `largest` in its own, of which one is `unit`.
+    fn error(&self, key: &str, value: f64, [largest, unit]: [f64; 2]) -> Result<f64, InputError> {
+        if self.not_negative(key, value)? <= largest {
+            return Ok(value * unit);
+        }
+        self.fail(key, format!("is {value}; it may be {largest} at most"))
     }
 
     fn count(&self, key: &str, count: u32, least: u32) -> Result<u32, InputError> {

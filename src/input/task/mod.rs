@@ -1,5 +1,6 @@
 //! Tasks: plug, socket, grip, friction, search strategy and success, from one TOML file.
 
+pub mod duration;
 pub(crate) mod geometry;
 mod raw;
 mod raw_finger;

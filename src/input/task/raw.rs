@@ -3,7 +3,7 @@
 use super::geometry::{Part, Solid};
 use super::raw_finger::RawFinger;
 use super::{Ending, Friction, Grip, Hold, Phase, Plug, Stage, StartRule, Strategy, Success, Task};
-use crate::input::{Check, InputError, read};
+use crate::input::{Check, InputError, read, shown};
 use crate::units::{DEG, GRAM, MM};
 use nalgebra::Vector3;
 use serde::Deserialize;
@@ -139,6 +139,17 @@ struct RawSuccess {
     tilt_deg: f64,
 }
 
+/// Thinnest part and narrowest opening, mm: a thousandth of what a printer prints.
+const THINNEST_MM: f64 = 1e-3;
+/// Most parts of a plug or a socket: what a collision costs grows with their product.
+const MOST_PARTS: usize = 200;
+/// Most corners of an outline.
+const MOST_CORNERS: usize = 256;
+/// Most phases of a strategy.
+const MOST_PHASES: usize = 100;
+/// Largest radius of the patch that torsional friction stands for, mm: larger is none.
+const LARGEST_PATCH_MM: f64 = 100.0;
+
 /// Reads and checks a task; `file` is named in errors.
 pub fn parse(text: &str, file: &str) -> Result<Task, InputError> {
     check(read(text, file)?, file)
@@ -169,14 +180,7 @@ fn check(raw: RawTask, file: &str) -> Result<Task, InputError> {
             check.span("socket.opening_y_mm", raw.socket.opening_y_mm)?,
         ],
         grip: check.grip(&raw.grip)?,
-        friction: Friction {
-            finger_plug: check.friction("friction.finger_plug", raw.friction.finger_plug)?,
-            finger_torsion: check.not_negative(
-                "friction.finger_plug_torsion_mm",
-                raw.friction.finger_plug_torsion_mm,
-            )? * MM,
-            plug_socket: check.friction("friction.plug_socket", raw.friction.plug_socket)?,
-        },
+        friction: check.frictions(&raw.friction)?,
         finger: check.finger(&raw.finger)?,
         strategy: check.strategy(&raw.strategy)?,
         success: Success {
@@ -202,15 +206,45 @@ impl Check<'_> {
         if (0.0..=5.0).contains(&value) {
             return Ok(value);
         }
+        let value = shown(value);
         self.fail(key, format!("is {value}; a coefficient of friction lies in 0 .. 5"))
     }
 
+    /// A size above 0, m.
+    fn size(&self, key: &str, mm: f64) -> Result<f64, InputError> {
+        if self.distance(key, self.positive(key, mm)?)? < THINNEST_MM {
+            return self.fail(key, format!("is {mm}; it must be {THINNEST_MM} mm or more"));
+        }
+        Ok(mm * MM)
+    }
+
+    fn frictions(&self, raw: &RawFriction) -> Result<Friction, InputError> {
+        let key = "friction.finger_plug_torsion_mm";
+        let torsion = self.not_negative(key, raw.finger_plug_torsion_mm)?;
+        let finger_plug = self.friction("friction.finger_plug", raw.finger_plug)?;
+        // The moment is that of the friction at the edge of the pressed patch.
+        if torsion > LARGEST_PATCH_MM * finger_plug {
+            let problem = format!(
+                "is {}; with a friction of {} it may be {} at most: the pressed patch has \
+                 {LARGEST_PATCH_MM} mm then",
+                shown(torsion),
+                shown(finger_plug),
+                shown(LARGEST_PATCH_MM * finger_plug)
+            );
+            return self.fail(key, problem);
+        }
+        let plug_socket = self.friction("friction.plug_socket", raw.plug_socket)?;
+        Ok(Friction { finger_plug, finger_torsion: torsion * MM, plug_socket })
+    }
+
     fn span(&self, key: &str, span: [f64; 2]) -> Result<[f64; 2], InputError> {
-        self.finite(key, span[0])?;
-        self.finite(key, span[1])?;
-        if span[0] >= span[1] {
-            let [a, b] = span;
-            return self.fail(key, format!("is [{a}, {b}]; the first must be below the second"));
+        let [a, b] = span;
+        self.distance(key, a)?;
+        self.distance(key, b)?;
+        if b - a < THINNEST_MM {
+            let problem =
+                format!("is [{a}, {b}]; the first must be below the second by {THINNEST_MM} mm");
+            return self.fail(key, problem);
         }
         Ok([span[0] * MM, span[1] * MM])
     }
@@ -218,6 +252,10 @@ impl Check<'_> {
     fn parts(&self, key: &str, parts: &[RawPart]) -> Result<Vec<Part>, InputError> {
         if parts.is_empty() {
             return self.fail(key, "needs at least one part");
+        }
+        if parts.len() > MOST_PARTS {
+            let count = parts.len();
+            return self.fail(key, format!("are {count}; there may be {MOST_PARTS}"));
         }
         parts.iter().map(|part| self.part(key, part)).collect()
     }
@@ -241,10 +279,10 @@ impl Check<'_> {
             }
             RawPart::Cylinder { centre_mm, diameter_mm, z_mm, .. } => Solid::Cylinder {
                 centre: [
-                    self.finite(&at("centre_mm"), centre_mm[0])? * MM,
-                    self.finite(&at("centre_mm"), centre_mm[1])? * MM,
+                    self.distance(&at("centre_mm"), centre_mm[0])? * MM,
+                    self.distance(&at("centre_mm"), centre_mm[1])? * MM,
                 ],
-                radius: self.positive(&at("diameter_mm"), *diameter_mm)? * MM / 2.0,
+                radius: self.size(&at("diameter_mm"), *diameter_mm)? / 2.0,
                 z: self.span(&at("z_mm"), *z_mm)?,
             },
             RawPart::Prism { axis, outline_mm, span_mm, .. } => Solid::Prism {
@@ -259,15 +297,15 @@ impl Check<'_> {
 
     /// A strictly convex outline: every turn is to the same side.
     fn outline(&self, key: &str, outline: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, InputError> {
-        if outline.len() < 3 {
-            return self.fail(key, "needs at least three corners");
+        if !(3..=MOST_CORNERS).contains(&outline.len()) {
+            return self.fail(key, format!("needs three corners at least, {MOST_CORNERS} at most"));
         }
         let n = outline.len();
         let mut turns = Vec::with_capacity(n);
         for i in 0..n {
             let [a, b, c] = [outline[i], outline[(i + 1) % n], outline[(i + 2) % n]];
-            self.finite(key, a[0])?;
-            self.finite(key, a[1])?;
+            self.distance(key, a[0])?;
+            self.distance(key, a[1])?;
             turns.push((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]));
         }
         let convex = turns.iter().all(|&t| t > 1e-9) || turns.iter().all(|&t| t < -1e-9);
@@ -299,7 +337,11 @@ impl Check<'_> {
             return self.fail("strategy.tilt_deg", "must lie in -45 .. 45");
         }
         for value in raw.start_mm {
-            self.finite("strategy.start_mm", value)?;
+            self.distance("strategy.start_mm", value)?;
+        }
+        if raw.phase.len() > MOST_PHASES {
+            let count = raw.phase.len();
+            return self.fail("strategy.phase", format!("are {count}; there may be {MOST_PHASES}"));
         }
         let phases: Vec<_> =
             raw.phase.iter().map(|phase| self.phase(phase)).collect::<Result<_, _>>()?;
@@ -311,18 +353,22 @@ impl Check<'_> {
         if late > first_search {
             return self.fail("strategy.phase", "phases with stage = \"approach\" come first");
         }
-        Ok(Strategy {
+        let strategy = Strategy {
             tilt: tilt * DEG,
             start: raw.start_mm.map(|v| v * MM),
             rule: raw.start,
             phases,
-        })
+        };
+        match strategy.too_long(|_| 0.0, 0.0) {
+            Some(problem) => self.fail("strategy.phase", problem),
+            None => Ok(strategy),
+        }
     }
 
     fn phase(&self, raw: &RawPhase) -> Result<Phase, InputError> {
         let at = |field: &str| format!("strategy.phase \"{}\" {field}", raw.name);
         for value in raw.move_mm {
-            self.finite(&at("move_mm"), value)?;
+            self.distance(&at("move_mm"), value)?;
         }
         if raw.move_mm == [0.0; 3] {
             return self.fail(&at("move_mm"), "is zero; a phase must move");

@@ -24,6 +24,11 @@ impl Batch {
         Batch { first, points, ..Batch::default() }
     }
 
+    /// Its points with their ids.
+    pub fn points(&self) -> impl Iterator<Item = (u64, &GridPoint)> {
+        (self.first..).zip(&self.points)
+    }
+
     /// Whether every point has its value.
     pub fn complete(&self) -> bool {
         self.values.len() == self.points.len()

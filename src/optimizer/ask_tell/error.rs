@@ -1,7 +1,7 @@
 //! What a line can be refused for.
 
-use super::message::LARGEST_BATCH;
-use crate::optimizer::UnknownOptimizer;
+use super::message::{LARGEST_BATCH, LONGEST_LINE, MOST_NUMBERS};
+use crate::optimizer::{OptimizerKind, UnknownOptimizer};
 
 /// Why a line was refused; nothing was changed by it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -42,6 +42,41 @@ pub enum AskTellError {
     /// Too many points at once.
     #[error("ask: {0} is more than {LARGEST_BATCH}, the most that can be asked at once")]
     AskedTooMany(usize),
+    /// More parameters than an optimizer copes with.
+    #[error("parameters: there are {found}; {optimizer} takes {most} at most")]
+    TooManyParameters {
+        /// How many.
+        found: usize,
+        /// The optimizer.
+        optimizer: OptimizerKind,
+        /// How many it takes.
+        most: usize,
+    },
+    /// More numbers at once than are handed out.
+    #[error(
+        "{points} points of {parameters} parameters are more than {MOST_NUMBERS} numbers, the \
+         most at once"
+    )]
+    TooManyNumbers {
+        /// How many points.
+        points: usize,
+        /// Of how many parameters.
+        parameters: usize,
+    },
+    /// A line that is not read to its end.
+    #[error("the line is longer than {LONGEST_LINE} bytes, the most of a line")]
+    TooLong,
+    /// A point that was never asked, with values that it cannot have.
+    #[error("tell: `{name}` {problem}")]
+    KnownValues {
+        /// A parameter, or what was taken for one.
+        name: String,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// A point that was never asked, told twice or asked after all.
+    #[error("tell: a point is told by its values though it {0}")]
+    KnownAlready(String),
     /// Asked while the optimizer waits for values.
     #[error("ask: tell the values of {} first (null for one that failed)", list(.0))]
     Untold(Vec<u64>),

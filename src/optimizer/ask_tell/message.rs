@@ -5,6 +5,7 @@ use super::parameter::ParameterLine;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// Most points of one batch, and most that can be asked at once.
 pub const LARGEST_BATCH: usize = 10_000;
@@ -46,6 +47,31 @@ impl Direction {
     }
 }
 
+/// Most bytes of a line: every line of fewer than 10000 points is far shorter.
+pub const LONGEST_LINE: u64 = 4 << 20;
+/// Most numbers that one ask, or the batch that it is taken from, may have.
+pub const MOST_NUMBERS: usize = 1_000_000;
+
+/// One entry of a tell.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Told {
+    /// Of a point that was asked.
+    Asked(PointValue),
+    /// Of a point that was measured before, and never asked.
+    Known(KnownValue),
+}
+
+/// The value of a point that was never asked.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KnownValue {
+    /// A value for each parameter.
+    pub values: BTreeMap<String, f64>,
+    /// Its value; `null` if the evaluation failed. It may not be left out.
+    #[serde(deserialize_with = "must_be_given")]
+    pub value: Option<f64>,
+}
+
 /// The value of one point.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -71,14 +97,14 @@ struct AskLine {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TellLine {
-    tell: Vec<PointValue>,
+    tell: Vec<Value>,
 }
 
 /// A line that was understood.
 pub(super) enum Line {
     Header(Header),
     Ask(usize),
-    Tell(Vec<PointValue>),
+    Tell(Vec<Told>),
 }
 
 impl Line {
@@ -87,13 +113,35 @@ impl Line {
             .map_err(|error| AskTellError::Syntax(format!("not a line of JSON: {error}")))?;
         let has = |key| value.get(key).is_some();
         if has("parameters") {
+            objects(&value, "parameters")?;
             read(value, "parameters").map(Line::Header)
         } else if has("ask") {
             read(value, "ask").map(|line: AskLine| Line::Ask(line.ask))
         } else if has("tell") {
-            read(value, "tell").map(|line: TellLine| Line::Tell(line.tell))
+            objects(&value, "tell")?;
+            let line: TellLine = read(value, "tell")?;
+            line.tell.into_iter().map(told).collect::<Result<_, _>>().map(Line::Tell)
         } else {
             Err(AskTellError::UnknownLine)
+        }
+    }
+}
+
+fn told(entry: Value) -> Result<Told, AskTellError> {
+    match entry.get("values") {
+        None => read(entry, "tell").map(Told::Asked),
+        Some(_) => read(entry, "tell").map(Told::Known),
+    }
+}
+
+/// A list in place of an object would be read field by field.
+fn objects(line: &Value, kind: &str) -> Result<(), AskTellError> {
+    let entries = line.get(kind).and_then(Value::as_array);
+    match entries.is_none_or(|entries| entries.iter().all(Value::is_object)) {
+        true => Ok(()),
+        false => {
+            let problem = format!("in the `{kind}` line: every entry must be an object, in braces");
+            Err(AskTellError::Syntax(problem))
         }
     }
 }

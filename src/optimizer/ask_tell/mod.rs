@@ -4,12 +4,13 @@
 //! and writing: one line in, at most one line out.
 
 mod batch;
+mod decimal;
 mod error;
 mod message;
 mod parameter;
 mod session;
 
 pub use error::AskTellError;
-pub use message::{Direction, Header, LARGEST_BATCH, PointValue};
+pub use message::{Direction, Header, KnownValue, LARGEST_BATCH, LONGEST_LINE, PointValue, Told};
 pub use parameter::{Parameter, ParameterLine};
 pub use session::{Best, Session};

@@ -1,10 +1,13 @@
 //! A parameter, and the levels an optimizer sees of it.
 
 use super::AskTellError;
+use super::decimal::Decimal;
 use serde::Deserialize;
 
 /// Steps of a parameter that names none: each is 1e-9 of its span.
 const FINE_STEPS: u32 = 1_000_000_000;
+/// The same as a power of ten.
+const FINE_DIGITS: i32 = 9;
 /// Most steps of a parameter.
 const MOST_STEPS: f64 = 1e9;
 /// How far from whole the number of steps may be.
@@ -34,6 +37,8 @@ pub struct Parameter {
     high: f64,
     step: Option<f64>,
     steps: u32,
+    /// `low` and the step, where their sums have few enough digits.
+    exact: Option<(Decimal, Decimal)>,
 }
 
 impl Parameter {
@@ -69,7 +74,22 @@ impl Parameter {
             return fail("step must not be larger than high - low");
         }
         let (low, high, step) = (line.low, line.high, line.step);
-        Ok(Parameter { name: line.name.clone(), low, high, step, steps })
+        // Rounding to binary numbers must not make one of two neighbours.
+        let largest = low.abs().max(high.abs());
+        if steps > 0 && span / f64::from(steps) < 4.0 * (largest.next_up() - largest) {
+            return fail("its steps are too small beside low and high: neighbours would be equal");
+        }
+        let exact = || {
+            let first = Decimal::of(low)?;
+            let step = match step {
+                Some(step) => Decimal::of(step)?,
+                None => Decimal::of(high)?.plus(-1, first)?.over_ten_to(FINE_DIGITS),
+            };
+            // If the last sum has few enough digits, all have.
+            first.plus(i128::from(steps), step)?;
+            Some((first, step))
+        };
+        Ok(Parameter { name: line.name.clone(), low, high, step, steps, exact: exact() })
     }
 
     /// Number of distinct values.
@@ -85,18 +105,28 @@ impl Parameter {
         if level >= self.steps {
             return self.high;
         }
-        let share = f64::from(level) / f64::from(self.steps);
-        let value = match self.step {
-            Some(step) => self.low + f64::from(level) * step,
-            None => self.low + (self.high - self.low) * share,
+        let exact = || {
+            let (low, step) = self.exact?;
+            Some(low.plus(i128::from(level), step)?.nearest())
         };
-        fifteen_digits(value).clamp(self.low, self.high)
+        let value = exact().unwrap_or_else(|| self.low + f64::from(level) * self.width());
+        value.clamp(self.low, self.high)
     }
-}
 
-/// 0.1 + 2 · 0.1 is to read 0.3, not 0.30000000000000004.
-fn fifteen_digits(value: f64) -> f64 {
-    format!("{value:.14e}").parse().unwrap_or(value)
+    fn width(&self) -> f64 {
+        self.step.unwrap_or((self.high - self.low) / f64::from(self.steps.max(1)))
+    }
+
+    /// The level with this value: the nearest where no step is named.
+    pub fn level(&self, value: f64) -> Option<u32> {
+        if !(self.low..=self.high).contains(&value) {
+            return None;
+        }
+        let level = ((value - self.low) / self.width().max(f64::MIN_POSITIVE)).round();
+        let level = (level as u32).min(self.steps);
+        let off = (self.value(level) - value).abs();
+        (self.step.is_none() || off <= WHOLE * self.width()).then_some(level)
+    }
 }
 
 #[cfg(test)]
@@ -125,6 +155,34 @@ mod tests {
     }
 
     #[test]
+    fn values_are_on_the_lattice_and_differ_however_large_the_bounds_are() {
+        for (low, high, step) in [
+            (1e15, 1e15 + 100.0, Some(1.0)),
+            (-1e8 - 0.5, 1e8, Some(0.5)),
+            (0.0, 1e-300, None),
+            (1e300, 3e300, Some(4e291)),
+            (-7.0, 1e6, None),
+        ] {
+            let axis = Parameter::new(&line(low, high, step)).unwrap();
+            let levels = axis.levels();
+            let some = (0..levels.min(50)).chain(levels.saturating_sub(50)..levels);
+            let values: Vec<f64> = some.clone().map(|k| axis.value(k)).collect();
+            assert!(values.windows(2).all(|pair| pair[0] < pair[1]) || levels < 100, "{low}");
+            for (k, value) in some.zip(values) {
+                let documented = low + f64::from(k) * axis.width();
+                let ulp = documented.abs().next_up() - documented.abs();
+                assert!(
+                    (value - documented).abs() <= 3.0 * ulp.max(1e-9 * axis.width()),
+                    "{value}"
+                );
+                assert_eq!(axis.level(value), Some(k));
+            }
+        }
+        let whole = Parameter::new(&line(0.0, 9.0, Some(3.0))).unwrap();
+        assert_eq!([6.0, 5.0, -3.0, 12.0].map(|v| whole.level(v)), [Some(2), None, None, None]);
+    }
+
+    #[test]
     fn each_wrong_parameter_is_answered_with_what_is_right() {
         for (wrong, word) in [
             (line(1.0, 0.0, None), "above high"),
@@ -133,6 +191,9 @@ mod tests {
             (line(0.0, 1.0, Some(1e-12)), "at most 1e9"),
             (line(0.0, 1.0, Some(0.0)), "above 0"),
             (line(0.0, 1.0, Some(1e9)), "larger than"),
+            (line(1e15, 1e15 + 1.0, Some(0.25)), "too small beside"),
+            (line(1e15, 1e15 + 1.0, None), "too small beside"),
+            (line(0.3, 0.3 + 1e-12, None), "too small beside"),
         ] {
             let error = Parameter::new(&wrong).unwrap_err().to_string();
             assert!(error.contains(word) && error.contains("`x`"), "{error}");

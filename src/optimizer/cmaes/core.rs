@@ -103,6 +103,11 @@ impl CmaEs {
         self.sigma
     }
 
+    /// Moves the mean, before the first sample.
+    pub fn begin_at(&mut self, mean: &[f64]) {
+        self.mean = DVector::from_column_slice(mean);
+    }
+
     /// Standard deviation of coordinate `i`, units of x.
     pub fn std(&self, i: usize) -> f64 {
         self.sigma * sqrt(self.c[(i, i)].max(0.0))

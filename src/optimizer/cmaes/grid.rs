@@ -156,6 +156,15 @@ impl Optimizer for CmaEsOptimizer {
             self.proposed.insert(&o.point);
             self.values.insert(o.point.clone(), value);
         }
+        // Known results before the first ask: the search begins at the best of them.
+        if self.generation.is_empty() && self.restarts.current().generation() == 0 {
+            let finite = self.values.iter().filter(|(_, value)| value.is_finite());
+            if let Some((point, _)) = finite.min_by(|a, b| a.1.total_cmp(b.1)) {
+                let (grid, unit) = (self.proposed.grid(), self.proposed.grid().unit(point));
+                let mean = grid.free_axes().into_iter().map(|axis| unit[axis]).collect();
+                self.restarts.begin_at(mean);
+            }
+        }
         // A candidate that was asked and not told would keep its generation waiting for ever.
         self.generation.retain(|c| self.values.contains_key(&c.point));
     }

@@ -111,6 +111,13 @@ impl Restarts {
         }
     }
 
+    /// Lets the first run start from this mean, if nothing was told to it yet.
+    pub fn begin_at(&mut self, mean: Vec<f64>) {
+        if self.evaluations == 0 && mean.len() == self.start.low.len() {
+            self.current.begin_at(&mean);
+        }
+    }
+
     /// Ends the current run and starts the next.
     pub fn restart(&mut self) {
         self.end(None);

@@ -7,8 +7,12 @@ use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
 use crate::evaluation::tolerance::Search;
 use crate::evaluation::uncertainty::Uncertainty;
+use crate::finger::model::FingerSource;
+use crate::input::finger_file::is_shape;
+use crate::input::space::{Design, GridPoint, Parameter};
+use crate::input::stiffness::Measurement;
 use crate::optimizer::gp::DEFAULT_NOISE_FLOOR;
-use crate::optimizer::{self, Grid, Optimizer, OptimizerKind, Polished};
+use crate::optimizer::{self, Grid, Informed, Optimizer, OptimizerKind, Polished};
 use crate::study::{
     Cache, Confirmer, Ending, IfChanged, Runner, Simulated, Study, StudyConfig, StudyError,
 };
@@ -129,10 +133,33 @@ fn optimizer(
     let floors: Vec<f64> =
         measures.map(|&measure| noise_floor(measure, setup.uncertainty.as_ref())).collect();
     let search = optimizer::build_for(kind, grid.clone(), config.seed, &floors);
+    let search = match measured_points(setup) {
+        points if kind == OptimizerKind::Gp && !points.is_empty() => {
+            let own = setup.space.parameters().len() + 1;
+            Box::new(Informed::new(search, own, points)) as Box<dyn Optimizer + Send>
+        }
+        _ => search,
+    };
     match config.polish {
         0 => search,
         polish => Box::new(Polished::new(search, grid, config.budget, polish)),
     }
+}
+
+/// Of a space of printed fingers the points next to the measured ones, which have the shape of the
+/// finger file: what the other numbers add to the infill is told against those.
+fn measured_points(setup: &Setup) -> Vec<GridPoint> {
+    let parameters = setup.space.parameters();
+    let FingerSource::Computed(fingers) = &setup.evaluator.fingers else { return Vec::new() };
+    if !parameters.iter().any(|parameter| is_shape(&parameter.key)) {
+        return Vec::new();
+    }
+    let point = |measured: &Measurement| {
+        let infill = Design::infill(measured.density_percent, measured.direction_deg);
+        let value = |p: &Parameter| infill.get(&p.key).or_else(|| fingers.file.value(&p.key));
+        parameters.iter().map(|p| Some(p.nearest(value(p)?))).collect::<Option<_>>().map(GridPoint)
+    };
+    setup.evaluator.surrogate.measurements().iter().filter_map(point).collect()
 }
 
 /// Standard deviation of what a measure's steps round off, in its unit: ranges have steps of

@@ -4,18 +4,19 @@ use super::Failure;
 use crate::evaluation::evaluator::Evaluator;
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
-use crate::evaluation::template::Template;
+use crate::evaluation::template::{Template, printable};
 use crate::evaluation::uncertainty::Uncertainty;
 use crate::finger::Finger;
 use crate::finger::computed::Touching;
 use crate::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
+use crate::input::finger_file::{FingerFile, is_shape};
 use crate::input::printed::PrintedFinger;
 use crate::input::robot::Robot;
 use crate::input::shipped::{self, FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
-use crate::input::space::Space;
+use crate::input::space::{Parameter, Space};
 use crate::input::stiffness;
 use crate::input::task::{StartRule, Task};
-use crate::study::{Inputs, Provenance, sha256};
+use crate::study::{FINGER, Inputs, Provenance, sha256};
 use crate::surrogate::{self, FitError, Model};
 use crate::trial::Rig;
 use crate::trial::run::RigError;
@@ -39,7 +40,7 @@ pub struct SetupArguments {
     /// Task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas
     #[arg(long, value_name = "NAME")]
     pub task: String,
-    /// Search space: infill, codesign, or the path of a space file
+    /// Search space: infill, codesign, finger, or the path of a space file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]
     pub space: String,
     /// Robot: see `optimize tasks`, or the path of a robot file
@@ -64,18 +65,35 @@ pub struct SetupArguments {
 /// Where the springs of a finger come from that were not measured.
 #[derive(Debug, Clone, clap::Args)]
 pub struct FingerModelArguments {
-    /// Where a finger's remote centre and unmeasured springs come from
-    #[arg(long = "finger-model", value_enum, default_value = "paper")]
-    pub kind: FingerModelKind,
+    /// Where a finger's remote centre and unmeasured springs come from [default: paper; computed
+    /// for a space with numbers of the printed finger]
+    #[arg(long = "finger-model", value_enum)]
+    pub kind: Option<FingerModelKind>,
     /// Finger file of --finger-model computed: finray9, or the path of one
     #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
     pub finger: String,
 }
 
 impl FingerModelArguments {
-    /// The finger file, if fingers are computed.
-    pub fn source(&self) -> Result<Option<Source>, Failure> {
-        match self.kind {
+    /// The finger file, if fingers are computed: as those of a space with numbers of a printed
+    /// finger have to be.
+    pub fn source(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
+        let shape = |p: &&Parameter| is_shape(&p.key);
+        let shaped = space.and_then(|space| space.parameters().iter().find(shape));
+        match (self.kind, shaped) {
+            (Some(FingerModelKind::Paper), Some(Parameter { key, .. })) => {
+                Err(Failure::usage(format!(
+                    "the space sets {key}, which --finger-model computed knows, paper does not"
+                )))
+            }
+            (Some(kind), _) => self.of(kind),
+            (None, Some(_)) => self.of(FingerModelKind::Computed),
+            (None, None) => self.of(FingerModelKind::Paper),
+        }
+    }
+
+    fn of(&self, kind: FingerModelKind) -> Result<Option<Source>, Failure> {
+        match kind {
             FingerModelKind::Paper if self.finger != DEFAULT_FINGER => {
                 Err(Failure::usage("--finger goes with --finger-model computed"))
             }
@@ -88,8 +106,8 @@ impl FingerModelArguments {
 /// The fingers that a finger file makes; without one, the paper's.
 pub fn fingers(source: Option<&Source>) -> Result<FingerSource, Failure> {
     let Some(Source { file, text }) = source else { return Ok(FingerSource::Paper) };
-    let printed = PrintedFinger::parse(text, file).map_err(Failure::input)?;
-    Ok(FingerSource::Computed(Box::new(ComputedFingers::new(printed, TOUCHING))))
+    let file = FingerFile::parse(text, file).map_err(Failure::input)?;
+    Ok(FingerSource::Computed(Box::new(ComputedFingers::new(file, TOUCHING))))
 }
 
 /// Everything that is needed to measure a design.
@@ -106,7 +124,6 @@ pub struct Setup {
 /// Roles of the input files beside the tasks and the errors.
 const SPACE: &str = "space";
 const ROBOT: &str = "robot";
-const FINGER: &str = "finger";
 pub const STIFFNESS_DATA: &str = "stiffness";
 const UNCERTAINTY: &str = "uncertainty";
 
@@ -130,7 +147,8 @@ impl Setup {
         let space = find("space", SPACES, &arguments.space)?;
         let robot = find("robot", ROBOTS, &arguments.robot)?;
         let stiffness = stiffness_data(arguments.stiffness_data.as_deref())?;
-        let finger = arguments.finger_model.source()?;
+        let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
+        let finger = arguments.finger_model.source(Some(&parsed))?;
         Setup::parse(&tasks, [&space, &robot, &stiffness], finger.as_ref(), arguments.engine)
     }
 
@@ -162,6 +180,9 @@ impl Setup {
         let [space_source, robot_source, stiffness_source] = others;
         let file = &space_source.file;
         let space = Space::parse(&space_source.text, file).map_err(Failure::input)?;
+        if let FingerSource::Computed(fingers) = &fingers {
+            printable::check(&space, file, &fingers.file).map_err(Failure::input)?;
+        }
         let robot = Robot::parse(&robot_source.text, &robot_source.file).map_err(Failure::input)?;
         let fits = |task: &Task| engine.rig(task, &robot, &fingers.any(task), 1.0).map(|_| ());
         let template = |task: &Source| {

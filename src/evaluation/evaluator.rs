@@ -1,5 +1,6 @@
 //! Design in, evaluation out: the one way from a design to what is measured of it.
 
+use super::leaving;
 use super::robustness::firm::{self, Firm};
 use super::robustness::repeat::Repeats;
 use super::robustness::{self, Plan};
@@ -97,7 +98,14 @@ impl Evaluator {
     /// If it rests on the computed stiffness and the finger cannot be computed.
     pub fn predict(&self, design: &Design) -> Result<Prediction, Impossible> {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
-        Ok(self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?)
+        let plain = self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?;
+        match &self.fingers {
+            FingerSource::Paper => Ok(plain),
+            FingerSource::Computed(fingers) => {
+                let measured = self.surrogate.measurements();
+                Ok(leaving::predict(fingers, measured, design, plain)?)
+            }
+        }
     }
 
     /// A design of this stiffness on one of the tasks.

@@ -1,6 +1,7 @@
 //! What a trial, a window search and an evaluation report.
 
 pub mod evaluator;
+mod leaving;
 pub mod objective;
 pub mod pareto;
 pub mod robustness;

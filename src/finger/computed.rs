@@ -37,6 +37,14 @@ impl Touching {
             Touching::PadAndRoof => &computed.pad_and_roof,
         }
     }
+
+    /// The same, to be corrected.
+    pub(super) fn of_mut(self, computed: &mut FingerStiffness) -> &mut PlanarStiffness {
+        match self {
+            Touching::Pad => &mut computed.pad,
+            Touching::PadAndRoof => &mut computed.pad_and_roof,
+        }
+    }
 }
 
 /// What a task file or a design says in place of the computed values.

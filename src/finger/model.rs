@@ -7,8 +7,8 @@ use super::printed::infill::{self, pitch};
 use super::printed::known::Known;
 use super::printed::mechanics::FingerStiffness;
 use crate::input::finger::{Coupling, Rcc};
-use crate::input::printed::PrintedFinger;
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::input::finger_file::{FingerFile, is_shape};
+use crate::input::space::{DIRECTION_KEY, Design};
 use crate::input::task::Task;
 use crate::units::MM;
 use serde::{Deserialize, Serialize};
@@ -52,7 +52,7 @@ pub enum FingerSource {
 #[derive(Debug)]
 pub struct ComputedFingers {
     /// The finger file.
-    pub printed: PrintedFinger,
+    pub file: FingerFile,
     /// What presses them.
     pub touching: Touching,
     /// By how much the first rib is moved against the file's, as a share of the pitch.
@@ -132,8 +132,8 @@ impl FingerSource {
 
 impl ComputedFingers {
     /// FingerSource of a file, with its rib phase.
-    pub fn new(printed: PrintedFinger, touching: Touching) -> Self {
-        ComputedFingers { printed, touching, phase_share: 0.0, known: Known::default() }
+    pub fn new(file: FingerFile, touching: Touching) -> Self {
+        ComputedFingers { file, touching, phase_share: 0.0, known: Known::default() }
     }
 
     /// The stiffness of a design from its ribs, computed once; NaN of the infill is refused.
@@ -141,15 +141,11 @@ impl ComputedFingers {
     /// # Errors
     /// If the printed finger cannot be.
     pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, FingerError> {
-        let value = |key| design.get(key).unwrap_or(f64::NAN);
-        let infill = infill::Design {
-            density_percent: value(DENSITY_KEY),
-            direction_deg: value(DIRECTION_KEY),
-            phase_mm: None,
-        };
-        let moved = self.phase_share * pitch(&self.printed, &infill);
-        let phase_mm = (moved != 0.0).then(|| (self.printed.ribs.phase + moved) / MM);
-        self.known.stiffness(&self.printed, &infill::Design { phase_mm, ..infill })
+        let printed = self.file.with(design)?;
+        let infill = infill::Design::of(design, None);
+        let moved = self.phase_share * pitch(&printed, &infill);
+        let phase_mm = (moved != 0.0).then(|| (printed.ribs.phase + moved) / MM);
+        self.known.stiffness(&printed, &infill::Design { phase_mm, ..infill })
     }
 
     fn finger(
@@ -162,8 +158,15 @@ impl ComputedFingers {
         if task.finger.coupling.is_some() {
             return Err(FingerError::Coupled { task: task.name.clone() });
         }
-        let stiffness = self.stiffness(design)?;
-        let (printed, touching) = (&self.printed, self.touching);
+        let mut stiffness = self.stiffness(design)?;
+        if design.0.keys().any(|key| is_shape(key)) {
+            // Fingers that nobody has measured: none may be refused because measured over computed
+            // stiffness of others does not suit its centre.
+            let plane = self.touching.of_mut(&mut stiffness);
+            let corrected = plane.corrected(at_pad.compliance, at_pad.assembly);
+            *plane = corrected.unwrap_or(*plane);
+        }
+        let (printed, touching) = (&self.file.with(design)?, self.touching);
         let shoulder = task.grip.shoulder();
         Computed { printed, stiffness: &stiffness, touching, shoulder }.finger(at_pad, given)
     }

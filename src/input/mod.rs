@@ -3,6 +3,8 @@
 pub mod arm;
 pub mod experiments;
 pub mod finger;
+pub mod finger_file;
+pub(crate) mod numbers;
 pub mod printed;
 pub mod published;
 pub mod robot;
@@ -14,7 +16,7 @@ pub mod task;
 use serde::de::DeserializeOwned;
 
 /// What is wrong with a task, space or robot file.
-#[derive(Debug, thiserror::Error, PartialEq)]
+#[derive(Debug, Clone, thiserror::Error, PartialEq)]
 pub enum InputError {
     /// Not TOML, an unknown key or a missing field; the text names the line.
     #[error("{file}: {message}")]

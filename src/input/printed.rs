@@ -28,6 +28,8 @@ pub struct PrintedFinger {
     pub tilt: f64,
     /// Width of a printed line, m.
     pub line_width: f64,
+    /// Width of the narrowest gap between ribs that stays open, m.
+    pub smallest_gap: f64,
 }
 
 /// The sides of a finger, m; X along it from the tip, Y across it from the front.
@@ -159,6 +161,7 @@ struct RawMaterial {
 #[serde(deny_unknown_fields)]
 struct RawPrint {
     line_width_mm: f64,
+    smallest_gap_mm: f64,
 }
 
 impl PrintedFinger {
@@ -168,7 +171,22 @@ impl PrintedFinger {
     /// # Errors
     /// If the text is not such a file, or a value cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let raw: RawFinger = read(text, file)?;
+        PrintedFinger::checked(read(text, file)?, file)
+    }
+
+    /// The same of a file that was read as TOML already.
+    ///
+    /// # Errors
+    /// As of [`PrintedFinger::parse`].
+    pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
+        let raw = table.try_into().map_err(|error: toml::de::Error| InputError::Syntax {
+            file: file.to_owned(),
+            message: error.to_string().trim_end().to_owned(),
+        })?;
+        PrintedFinger::checked(raw, file)
+    }
+
+    fn checked(raw: RawFinger, file: &str) -> Result<Self, InputError> {
         let check = Check { file };
         Ok(PrintedFinger {
             outline: check.finger_outline(&raw)?,
@@ -177,6 +195,7 @@ impl PrintedFinger {
             material: check.material(raw.material)?,
             tilt: check.angle("mount.tilt_deg", raw.mount.tilt_deg)?,
             line_width: check.length("print.line_width_mm", raw.print.line_width_mm)?,
+            smallest_gap: check.length("print.smallest_gap_mm", raw.print.smallest_gap_mm)?,
             name: raw.name,
             description: raw.description,
             file: file.to_owned(),

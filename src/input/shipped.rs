@@ -37,6 +37,7 @@ pub const TASKS: &[Shipped] = shipped! {
 pub const SPACES: &[Shipped] = shipped! {
     "infill": "spaces/infill.toml",
     "codesign": "spaces/codesign.toml",
+    "finger": "spaces/finger.toml",
 };
 
 /// Robots.

@@ -9,7 +9,24 @@ pub const DENSITY_KEY: &str = "infill_density_percent";
 /// Key of the infill direction, degrees.
 pub const DIRECTION_KEY: &str = "infill_direction_deg";
 
-/// One parameter of a space; values are `low + k * step`.
+/// How the values of a parameter follow one another.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scale {
+    /// By a difference.
+    #[default]
+    Linear,
+    /// By a factor.
+    Log,
+}
+
+impl Scale {
+    fn is_linear(&self) -> bool {
+        *self == Scale::Linear
+    }
+}
+
+/// One parameter of a space; values are `low + k * step`, on a log scale `low * step^k`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
@@ -19,8 +36,12 @@ pub struct Parameter {
     pub low: f64,
     /// Largest value, in the unit of the key.
     pub high: f64,
-    /// Smallest difference that can be made (printed, set), same unit.
+    /// Smallest difference that can be made (printed, set), same unit; on a log scale the factor
+    /// between neighbours.
     pub step: f64,
+    /// How the values follow one another.
+    #[serde(default, skip_serializing_if = "Scale::is_linear")]
+    pub scale: Scale,
     /// Where the bounds come from.
     pub source: String,
 }
@@ -28,13 +49,40 @@ pub struct Parameter {
 impl Parameter {
     /// Number of distinct values.
     pub fn levels(&self) -> u32 {
-        ((self.high - self.low) / self.step).round() as u32 + 1
+        self.steps().round() as u32 + 1
+    }
+
+    /// Steps from the lowest to the highest value.
+    fn steps(&self) -> f64 {
+        match self.scale {
+            Scale::Linear => (self.high - self.low) / self.step,
+            Scale::Log => libm::log(self.high / self.low) / libm::log(self.step),
+        }
+    }
+
+    /// The level whose value is nearest.
+    pub fn nearest(&self, value: f64) -> u32 {
+        let steps = match self.scale {
+            Scale::Linear => (value - self.low) / self.step,
+            Scale::Log => libm::log(value / self.low) / libm::log(self.step),
+        };
+        steps.round().clamp(0.0, f64::from(self.levels() - 1)) as u32
     }
 
     /// The value of level `k`, rounded so that it prints as it was written.
     pub fn value(&self, level: u32) -> f64 {
-        let value = self.low + f64::from(level) * self.step;
-        (value * 1e9).round() / 1e9
+        match self.scale {
+            Scale::Linear => {
+                let value = self.low + f64::from(level) * self.step;
+                (value * 1e9).round() / 1e9
+            }
+            Scale::Log => {
+                let share = f64::from(level) / self.steps().round().max(1.0);
+                let value = self.low * libm::pow(self.high / self.low, share);
+                // Four digits.
+                format!("{value:.3e}").parse().unwrap_or(value)
+            }
+        }
     }
 }
 
@@ -84,7 +132,8 @@ impl Design {
 }
 
 /// Ends of keys, and the units they stand for.
-const UNITS: [(&str, &str); 8] = [
+const UNITS: [(&str, &str); 9] = [
+    ("_gpa", " GPa"),
     ("_percent", " %"),
     ("_deg", "°"),
     ("_mm_per_s", " mm/s"),
@@ -173,8 +222,12 @@ impl Space {
             if p.low > p.high {
                 return fail(&p.key, "low must not be above high");
             }
-            if p.step <= 0.0 {
-                return fail(&p.key, "step must be above 0");
+            match p.scale {
+                Scale::Linear if p.step <= 0.0 => return fail(&p.key, "step must be above 0"),
+                Scale::Log if p.step <= 1.0 || p.low <= 0.0 => {
+                    return fail(&p.key, "on a log scale step must be above 1 and low above 0");
+                }
+                _ => {}
             }
             let [least, most] = bounds(&p.key);
             if p.low < least || p.high > most {
@@ -184,10 +237,10 @@ impl Space {
             if p.step < FINEST_STEP {
                 return fail(&p.key, "step must be 1e-6 or more");
             }
-            if p.high > p.low && p.step > (p.high - p.low) * (1.0 + 1e-9) {
+            if p.scale.is_linear() && p.high > p.low && p.step > (p.high - p.low) * (1.0 + 1e-9) {
                 return fail(&p.key, "step must not be larger than high - low");
             }
-            let levels = (p.high - p.low) / p.step;
+            let levels = p.steps();
             if (levels - levels.round()).abs() > 1e-6 || levels > 1e6 {
                 return fail(&p.key, "high - low must be a whole number of steps, at most 1e6");
             }
@@ -242,6 +295,29 @@ source = "paper"
         let space = Space::parse(GOOD, "s.toml").unwrap();
         assert_eq!(space.levels(), vec![21]);
         assert_eq!(space.design(&GridPoint(vec![20])).get(DENSITY_KEY), Some(30.0));
+    }
+
+    #[test]
+    fn a_log_scale_has_equal_factors_and_holds_its_ends() {
+        let text = GOOD.replace("low = 10.0", "low = 0.5").replace("high = 30.0", "high = 4.0");
+        let text = text.replace("step = 1.0", "step = 1.189207115\nscale = 'log'");
+        let space = Space::parse(&text, "s.toml").unwrap();
+        let parameter = &space.parameters()[0];
+        assert_eq!(parameter.levels(), 13);
+        let values = [0, 1, 4, 8, 12].map(|level| parameter.value(level));
+        assert_eq!(values, [0.5, 0.5946, 1.0, 2.0, 4.0]);
+        assert_eq!([0.1, 1.03, 2.0, 9.0].map(|value| parameter.nearest(value)), [0, 4, 8, 12]);
+        let error = Space::parse(&text.replace("low = 0.5", "low = 0.0"), "s.toml").unwrap_err();
+        assert!(error.to_string().contains("log scale"), "{error}");
+        let again: Space = toml::from_str(&toml::to_string(&space).unwrap()).unwrap();
+        assert_eq!(again, space);
+    }
+
+    #[test]
+    fn the_nearest_level_of_a_linear_scale() {
+        let space = Space::parse(GOOD, "s.toml").unwrap();
+        let parameter = &space.parameters()[0];
+        assert_eq!([0.0, 12.4, 30.0].map(|value| parameter.nearest(value)), [0, 2, 20]);
     }
 
     #[test]

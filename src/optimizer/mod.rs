@@ -6,6 +6,7 @@
 pub mod ask_tell;
 pub mod cmaes;
 pub mod gp;
+mod informed;
 mod kind;
 mod lattice;
 mod nelder_mead;
@@ -14,6 +15,7 @@ mod proposed;
 mod random;
 mod sobol;
 
+pub use informed::Informed;
 pub use kind::{OptimizerKind, UnknownOptimizer, build, build_for};
 pub use lattice::GridSearch;
 pub use polish::Polished;

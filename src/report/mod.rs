@@ -19,6 +19,7 @@ mod published;
 pub mod quartiles;
 pub mod replay;
 pub mod sensitivity;
+mod shape;
 pub mod stiffness;
 pub mod stiffness_means;
 mod stiffness_plot;

@@ -3,7 +3,7 @@
 use super::theme::variables;
 use super::{
     ReportError, best, convergence, front, limits, map, others, printer, provenance, published,
-    windows,
+    shape, windows,
 };
 use crate::study::StudyRecord;
 use crate::surrogate::Model;
@@ -65,6 +65,7 @@ fn sections(record: &StudyRecord, model: &Model) -> Result<Vec<Section>, ReportE
     let sections = [
         section("best", "Best design", best::section(record)),
         printer::section(record).and_then(|printer| section("printer", "To the printer", printer)),
+        shape::section(record).and_then(|shape| section("shape", "Beyond the infill alone", shape)),
         section("convergence", "Convergence", convergence::section(record, PLOT)?),
         front::section(record, PLOT)?
             .and_then(|front| section("front", "Between the objectives", front)),

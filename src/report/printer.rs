@@ -5,17 +5,15 @@ use crate::finger::export::{sheet, stl, title};
 use crate::finger::printed::geometry::Geometry;
 use crate::finger::printed::infill::Design;
 use crate::finger::printed::mechanics;
-use crate::input::printed::PrintedFinger;
+use crate::input::finger_file::FingerFile;
 use crate::input::shipped::FINGERS;
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY};
 use crate::study::StudyRecord;
 use maud::{Markup, html};
 
 const SURFACE: &str = "finger.stl";
 const SHEET: &str = "finger-sheet.html";
 
-/// The files, by their names; none if nothing is recommended or the shipped finger cannot have
-/// that infill.
+/// The files, by their names; none if nothing is recommended or its finger cannot be printed.
 pub fn files(record: &StudyRecord) -> Vec<(&'static str, Vec<u8>)> {
     let Some(geometry) = recommended(record) else { return Vec::new() };
     let surface = Prism::finger(&geometry).ok().map(|prism| stl::write(&prism, &title(&geometry)));
@@ -40,14 +38,16 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     })
 }
 
+/// The finger file of a study; the shipped one of a study that has none.
+pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
+    record.finger.clone().or_else(|| {
+        let shipped = FINGERS.first()?;
+        FingerFile::parse(shipped.text, shipped.file).ok()
+    })
+}
+
 fn recommended(record: &StudyRecord) -> Option<Geometry> {
     let best = record.recommended()?;
-    let (file, value) = (FINGERS.first()?, |key| best.design.get(key));
-    let design = Design {
-        density_percent: value(DENSITY_KEY)?,
-        direction_deg: value(DIRECTION_KEY)?,
-        phase_mm: None,
-    };
-    let finger = PrintedFinger::parse(file.text, file.file).ok()?;
-    Geometry::new(&finger, &design).ok()
+    let finger = finger_file(record)?.with(&best.design).ok()?;
+    Geometry::new(&finger, &Design::of(&best.design, None)).ok()
 }

@@ -58,6 +58,7 @@ fn record(task: &str, evaluations: Vec<Recorded>) -> StudyRecord {
         segments,
         evaluations,
         walked: Vec::new(),
+        finger: None,
         firm_values: Default::default(),
     }
 }

@@ -22,6 +22,7 @@ use super::store::{FileStore, Store};
 use super::walked;
 use crate::files::{self, LARGEST_INPUT, LARGEST_OWN};
 use crate::input::control_character;
+use crate::input::finger_file::FingerFile;
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -34,6 +35,8 @@ pub const CONFIG_FILE: &str = "study.toml";
 /// Name of the journal's file.
 pub const JOURNAL_FILE: &str = "journal.jsonl";
 const INPUTS: &str = "inputs";
+/// Role of the finger file among the inputs.
+pub const FINGER: &str = "finger";
 const LOCK_FILE: &str = ".lock";
 /// Who has the lock, if that is not known.
 const UNKNOWN_OWNER: &str = "of unknown number";
@@ -209,7 +212,10 @@ impl StudyRecord {
         evaluations: Vec<Recorded>,
     ) -> Self {
         let (walked, firm_values) = Default::default();
-        let mut record = StudyRecord { config, segments, evaluations, walked, firm_values };
+        let finger = read_inputs(dir, &segments)
+            .ok()
+            .and_then(|inputs| FingerFile::parse(inputs.get(FINGER)?, "inputs/finger").ok());
+        let mut record = StudyRecord { config, segments, evaluations, walked, finger, firm_values };
         let provenance = record.segments.last().map(|segment| &segment.provenance);
         let goals = record.config.goals();
         let rule = Rule { goals: &goals, space: &record.config.space };

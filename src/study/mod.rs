@@ -27,7 +27,7 @@ pub use cache::{Cache, Key};
 pub use config::{LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
 pub use error::{LineError, StudyError};
 pub use folder::{
-    CONFIG_FILE, IfChanged, Inputs, JOURNAL_FILE, Study, read_config, sha256, write_file,
+    CONFIG_FILE, FINGER, IfChanged, Inputs, JOURNAL_FILE, Study, read_config, sha256, write_file,
     write_own_file,
 };
 pub use header::SCHEMA_VERSION;

@@ -6,6 +6,7 @@ use crate::evaluation::Evaluation;
 use crate::evaluation::objective::{Goals, Measure, Score};
 use crate::evaluation::pareto;
 use crate::evaluation::robustness::firm::Firm;
+use crate::input::finger_file::FingerFile;
 use crate::input::space::Design;
 use crate::surrogate::Prediction;
 use std::collections::BTreeMap;
@@ -21,6 +22,8 @@ pub struct StudyRecord {
     pub evaluations: Vec<Recorded>,
     /// What the walk found of the best designs, best first; empty if they were not walked.
     pub walked: Vec<Walked>,
+    /// The finger file, if its fingers were computed.
+    pub finger: Option<FingerFile>,
     /// The firm value of the first objective of the designs whose ends were repeated, by evaluation.
     pub firm_values: BTreeMap<u64, f64>,
 }
@@ -98,6 +101,11 @@ impl StudyRecord {
         best(&self.config.goals(), self.current())
     }
 
+    /// The best of those current evaluations of which something holds.
+    pub fn best_where(&self, holds: impl Fn(&Recorded) -> bool) -> Option<&Recorded> {
+        best(&self.config.goals(), self.current().iter().filter(|recorded| holds(recorded)))
+    }
+
     /// The [`front`] of the [`current`](Self::current) evaluations.
     pub fn front(&self) -> Vec<&Recorded> {
         front(&self.config.goals(), self.current())
@@ -151,7 +159,10 @@ pub fn volume(goals: &Goals, evaluations: &[Recorded]) -> Volume {
 
 /// Of the evaluations that keep all constraints the one with the best first objective (of
 /// equals the better in the next, and then the earliest).
-pub fn best<'a>(goals: &Goals, evaluations: &'a [Recorded]) -> Option<&'a Recorded> {
+pub fn best<'a>(
+    goals: &Goals,
+    evaluations: impl IntoIterator<Item = &'a Recorded>,
+) -> Option<&'a Recorded> {
     let mut best: Option<(&Recorded, &[f64])> = None;
     for recorded in evaluations {
         if let Some(values) = recorded.feasible()

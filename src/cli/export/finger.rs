@@ -4,11 +4,11 @@ use crate::cli::setup::find;
 use crate::cli::{Failure, print};
 use crate::finger::export::{self, drawing, dxf, prism::Prism, sheet, slicer, stl, three_mf};
 use crate::finger::printed::geometry::Geometry;
-use crate::finger::printed::infill::Design;
+use crate::finger::printed::infill;
 use crate::finger::printed::mechanics;
-use crate::input::printed::PrintedFinger;
+use crate::input::finger_file::FingerFile;
 use crate::input::shipped::FINGERS;
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY};
+use crate::input::space::Design;
 use crate::study::{StudyRecord, write_file};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -30,9 +30,9 @@ pub struct Arguments {
     /// Infill direction, degrees
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "density")]
     direction: Option<f64>,
-    /// Finger: finray9, or the path of a finger file
-    #[arg(long, value_name = "NAME", default_value = "finray9")]
-    finger: String,
+    /// Finger: finray9, or the path of a finger file [default: the study's, or finray9]
+    #[arg(long, value_name = "NAME")]
+    finger: Option<String>,
     /// Where the first rib lies, mm [default: the finger file's]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     phase_mm: Option<f64>,
@@ -43,6 +43,9 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
+
+/// The finger of the paper.
+const DEFAULT: &str = "finray9";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
@@ -85,21 +88,27 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The finger that is asked for.
 fn geometry(arguments: &Arguments) -> Result<Geometry, Failure> {
-    let design = match &arguments.dir {
-        Some(dir) => best(dir)?,
-        None => [arguments.density, arguments.direction],
+    let (design, of_study) = match (&arguments.dir, arguments.density, arguments.direction) {
+        (Some(dir), ..) => best(dir)?,
+        (None, Some(density), Some(direction)) => (Design::infill(density, direction), None),
+        _ => {
+            return Err(Failure::usage("give the folder of a study, or --density and --direction"));
+        }
     };
-    let [Some(density_percent), Some(direction_deg)] = design else {
-        return Err(Failure::usage("give the folder of a study, or --density and --direction"));
+    let file = match (&arguments.finger, of_study) {
+        (None, Some(file)) => file,
+        (named, _) => {
+            let source = find("finger", FINGERS, named.as_deref().unwrap_or(DEFAULT))?;
+            FingerFile::parse(&source.text, &source.file).map_err(Failure::input)?
+        }
     };
-    let source = find("finger", FINGERS, &arguments.finger)?;
-    let file = PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)?;
-    let design = Design { density_percent, direction_deg, phase_mm: arguments.phase_mm };
-    Geometry::new(&file, &design).map_err(Failure::input)
+    let finger = file.with(&design).map_err(Failure::input)?;
+    let infill = infill::Design::of(&design, arguments.phase_mm);
+    Geometry::new(&finger, &infill).map_err(Failure::input)
 }
 
-/// Density and direction of the design that a study recommends.
-fn best(dir: &Path) -> Result<[Option<f64>; 2], Failure> {
+/// The design that a study recommends, and the finger file of its fingers.
+fn best(dir: &Path) -> Result<(Design, Option<FingerFile>), Failure> {
     let record = StudyRecord::load(dir)?;
     let Some(best) = record.recommended() else {
         return Err(Failure::usage(format!(
@@ -107,7 +116,7 @@ fn best(dir: &Path) -> Result<[Option<f64>; 2], Failure> {
             dir.display()
         )));
     };
-    Ok([DENSITY_KEY, DIRECTION_KEY].map(|key| best.design.get(key)))
+    Ok((best.design.clone(), record.finger.clone()))
 }
 
 fn finger(geometry: &Geometry) -> Result<Prism, Failure> {

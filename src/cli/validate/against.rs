@@ -7,7 +7,7 @@ use crate::cli::{Failure, print, print_json};
 use crate::evaluation::tolerance::Search;
 use crate::finger::computed::Touching;
 use crate::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
-use crate::input::printed::PrintedFinger;
+use crate::input::finger_file::FingerFile;
 use crate::input::robot::Robot;
 use crate::input::shipped::FINGERS;
 use crate::input::task::Task;
@@ -26,7 +26,7 @@ pub fn run(
     robot: &Robot,
     search: Search,
 ) -> Result<(), Failure> {
-    if arguments.finger_model.kind == FingerModelKind::Computed {
+    if arguments.finger_model.kind == Some(FingerModelKind::Computed) {
         let problem = "--against bench compares all finger models; leave out --finger-model";
         return Err(Failure::usage(problem));
     }
@@ -85,8 +85,8 @@ fn fingers(model: Model, file: &str, phase_share: f64) -> Result<FingerSource, F
         Model::ComputedPadAndRoof => Touching::PadAndRoof,
     };
     let source = setup::find("finger", FINGERS, file)?;
-    let printed = PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)?;
-    let mut fingers = ComputedFingers::new(printed, touching);
+    let file = FingerFile::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let mut fingers = ComputedFingers::new(file, touching);
     fingers.phase_share = phase_share;
     Ok(FingerSource::Computed(Box::new(fingers)))
 }

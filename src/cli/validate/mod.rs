@@ -153,7 +153,7 @@ impl Arguments {
         robot: &Robot,
         search: Search,
     ) -> Result<Vec<TaskTable>, Failure> {
-        let fingers = setup::fingers(self.finger_model.source()?.as_ref())?;
+        let fingers = setup::fingers(self.finger_model.source(None)?.as_ref())?;
         let engine = self.engine;
         let windows = Windows { fingers: &fingers, robot, engine, search, teach: false };
         let found = windows.measure(tasks, &self.fingers.designs()).map_err(Failure::input)?;

@@ -12,19 +12,20 @@
 //! Values are in the unit that the key carries. They are put into the task as read,
 //! before its checks, so that no design escapes them.
 
-mod numbers;
+pub mod printable;
 mod space;
 
 use crate::finger::Finger;
 use crate::finger::computed::AtPad;
 use crate::finger::model::{FingerSource, Made, RCC_KEY, TILTING_KEY};
 use crate::finger::printed::FingerError;
+use crate::input::finger_file::is_shape;
+use crate::input::numbers::{self, numbers};
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::input::task::Task;
 use crate::input::{Check, InputError, read};
 use crate::trial::run::RigError;
 use crate::units::{GRAM, MM, N_PER_MM};
-use numbers::numbers;
 
 const TASK: &str = "task";
 /// What values are called in errors that concern no file.
@@ -110,8 +111,14 @@ impl Template {
             .0
             .iter()
             .map(|(key, &value)| (key.as_str(), value))
-            .filter(|(key, _)| !is_infill(key))
+            .filter(|(key, _)| !is_infill(key) && !is_shape(key))
             .partition(|(key, _)| finger_keys().contains(key));
+        let shaped = design.0.keys().find(|key| is_shape(key));
+        if let (FingerSource::Paper, Some(key)) = (fingers, shaped) {
+            let problem = "is a number of a printed finger, which the paper's model does not know; \
+                           --finger-model computed does";
+            return Ok(Check { file: DESIGN }.fail(key, problem)?);
+        }
         let task = self.changed(&of_task)?;
         let direction = design.get(DIRECTION_KEY);
         if task.finger.rcc.is_some_and(|rcc| rcc.varies()) && direction.is_none() {

@@ -3,6 +3,7 @@
 use super::{Impossible, Template, is_infill};
 use crate::finger::computed::AtPad;
 use crate::finger::model::FingerSource;
+use crate::input::finger_file::is_shape;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Parameter, Space};
 use crate::input::task::Task;
 use crate::input::{Check, InputError};
@@ -29,7 +30,8 @@ impl Template {
             let problem = "is missing: a space must have it; to hold it fixed let low equal high";
             return check.fail(missing, problem);
         }
-        let parameters = || space.parameters().iter().filter(|p| !is_infill(&p.key));
+        let other = |p: &&Parameter| !is_infill(&p.key) && !is_shape(&p.key);
+        let parameters = || space.parameters().iter().filter(other);
         let mut designs = vec![Design::default()];
         for parameter in parameters() {
             let values = extremes(parameter);
@@ -75,7 +77,7 @@ impl Template {
 }
 
 /// The smallest and the largest value, and the one nearest to zero.
-fn extremes(parameter: &Parameter) -> Vec<f64> {
+pub(super) fn extremes(parameter: &Parameter) -> Vec<f64> {
     let last = parameter.levels() - 1;
     let zero = (-parameter.low / parameter.step).round().clamp(0.0, f64::from(last)) as u32;
     let mut levels = vec![0, zero, last];

@@ -93,7 +93,7 @@ impl Fit<'_> {
 
     /// Ribs can be printed, and leave room between them.
     pub fn ribs(&self) -> Checked {
-        let PrintedFinger { ribs, line_width, .. } = self.finger;
+        let PrintedFinger { ribs, line_width, smallest_gap, skin, .. } = self.finger;
         let Design { density_percent, direction_deg, phase_mm } = *self.design;
         if !(density_percent > 0.0 && density_percent < 100.0) {
             let problem = format!("is {density_percent}; it must be above 0 and below 100");
@@ -107,24 +107,31 @@ impl Fit<'_> {
             return self.fail("phase_mm", "must be a finite number".into());
         }
         let pitch = pitch(self.finger, self.design);
-        if pitch - ribs.thickness < NARROWEST_VOID {
-            let most = ribs.line_spacing / (ribs.thickness + NARROWEST_VOID) / PERCENT;
+        let gap = smallest_gap.max(NARROWEST_VOID);
+        if pitch - ribs.thickness < gap {
+            let most = ribs.line_spacing / (ribs.thickness + gap) / PERCENT;
             let problem = format!(
-                "is {:.3}; at {density_percent} % infill the ribs lie {:.3} mm apart and merge: \
-                 thinner ribs, or a density of at most {most:.1} %",
+                "is {:.3}; at {density_percent} % infill the ribs lie {:.3} mm apart and merge, \
+                 their gaps below print.smallest_gap_mm = {:.3}: thinner ribs, or a density of at \
+                 most {most:.1} %",
                 ribs.thickness / MM,
                 pitch / MM,
+                gap / MM,
             );
             return self.fail("ribs.thickness_mm", problem);
         }
-        if ribs.thickness < 0.5 * line_width {
-            let problem = format!(
-                "is {:.3}; a line of print.line_width_mm = {:.3} does not print thinner than \
-                 half of it",
-                ribs.thickness / MM,
-                line_width / MM
-            );
-            return self.fail("ribs.thickness_mm", problem);
+        for (key, thickness) in
+            [("ribs.thickness_mm", ribs.thickness), ("skin.thickness_mm", *skin)]
+        {
+            if thickness < 0.5 * line_width {
+                let problem = format!(
+                    "is {:.3}; a line of print.line_width_mm = {:.3} does not print thinner than \
+                     half of it",
+                    thickness / MM,
+                    line_width / MM
+                );
+                return self.fail(key, problem);
+            }
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! The infill of a printed finger.
 
 use crate::input::printed::PrintedFinger;
+use crate::input::space::{self, DENSITY_KEY, DIRECTION_KEY};
 use crate::units::{DEG, MM, PERCENT};
 use nalgebra::{Point2, Vector2};
 
@@ -13,6 +14,18 @@ pub struct Design {
     pub direction_deg: f64,
     /// Where the first rib lies, mm; the finger file's if not given.
     pub phase_mm: Option<f64>,
+}
+
+impl Design {
+    /// The infill that a design of a space has; NaN of what it does not name, which no finger has.
+    pub fn of(design: &space::Design, phase_mm: Option<f64>) -> Self {
+        let value = |key| design.get(key).unwrap_or(f64::NAN);
+        Design {
+            density_percent: value(DENSITY_KEY),
+            direction_deg: value(DIRECTION_KEY),
+            phase_mm,
+        }
+    }
 }
 
 /// Openings narrower than this, as the area over half the perimeter, close in printing, m.

@@ -27,6 +27,9 @@ mod tests;
 /// What is wrong with a printed finger.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FingerError {
+    /// A number of the finger file that a design sets to what cannot be.
+    #[error(transparent)]
+    Value(#[from] crate::input::InputError),
     /// Parts that do not fit one another.
     #[error("{file}: {key}: {problem}")]
     Geometry {

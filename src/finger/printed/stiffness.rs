@@ -19,6 +19,15 @@ impl PlanarStiffness {
         Some(PlanarStiffness { stiffness, compliance })
     }
 
+    /// The same finger with these free stiffnesses in y and z, N/m, and the same stiffness against
+    /// tilting. The correlations of the compliances stay, so what was positive definite is: the
+    /// centre's distances change by the roots of new over old compliance.
+    pub fn corrected(&self, compliance: f64, assembly: f64) -> Option<Self> {
+        let free = [self.in_compliance() / compliance, self.in_assembly() / assembly, 1.0];
+        let roots = Matrix3::from_diagonal(&Vector3::from(free.map(f64::sqrt)));
+        PlanarStiffness::new((roots * self.compliance * roots).try_inverse()?)
+    }
+
     /// The matrix: N/m, N/rad, N m/rad; order y, z, rx.
     pub fn matrix(&self) -> &Matrix3<f64> {
         &self.stiffness
@@ -118,6 +127,22 @@ mod tests {
         assert!((pad.in_compliance() - softer).abs() < 1e-9 * softer);
         let softer = 1.0 / (1.0 / kz + front * front / kt);
         assert!((pad.in_assembly() - softer).abs() < 1e-9 * softer);
+    }
+
+    #[test]
+    fn a_corrected_finger_keeps_its_tilting_and_its_correlations() {
+        let matrix = Matrix3::new(9e3, 2e4, -90.0, 2e4, 9e4, -60.0, -90.0, -60.0, 3.0);
+        let pad = PlanarStiffness::new(matrix).unwrap();
+        let (ky, kz) = (1.6 * pad.in_compliance(), 2.2 * pad.in_assembly());
+        let found = pad.corrected(ky, kz).unwrap();
+        let close = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-9;
+        assert!(close(found.in_compliance(), ky) && close(found.in_assembly(), kz));
+        assert!(close(found.tilting(), pad.tilting()));
+        assert!(close(found.coupling_yz(), pad.coupling_yz()));
+        assert!(close(found.centre_below_pad(), pad.centre_below_pad() / 1.6f64.sqrt()));
+        // What is left of each spring at the centre is positive.
+        let left = 1.0 / ky - found.centre_below_pad().powi(2) / found.tilting();
+        assert!(left > 0.0, "{left}");
     }
 
     #[test]

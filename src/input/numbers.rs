@@ -6,7 +6,7 @@ use toml::Value;
 const VECTOR: [&str; 3] = ["x", "y", "z"];
 
 /// Every number within `value` with its path, which begins with `path`.
-pub(super) fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)> {
+pub(crate) fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)> {
     let below = |name: &str| format!("{path}.{name}");
     match value {
         Value::Integer(_) | Value::Float(_) => vec![(path.to_owned(), value)],
@@ -28,7 +28,7 @@ pub(super) fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a 
 }
 
 /// What is wrong with a key that is none of `keys`: how a key that begins like it goes on.
-pub(super) fn unknown(key: &str, keys: &[&str]) -> String {
+pub(crate) fn unknown(key: &str, keys: &[&str]) -> String {
     let mut end = key.len();
     loop {
         let prefix = if end == 0 { String::new() } else { format!("{}.", &key[..end]) };

@@ -1,0 +1,95 @@
+//! What the parameters of the finger itself give beyond the infill alone.
+
+use super::elements::table;
+use super::printer::finger_file;
+use super::text::{design, stiffness};
+use crate::input::finger_file::is_shape;
+use crate::input::space::{Design, Parameter, label};
+use crate::study::{Recorded, StudyRecord};
+use maud::{Markup, html};
+
+/// The section; `None` if the space has no such parameter.
+pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
+    let parameters = record.config.space.parameters();
+    let shape: Vec<&Parameter> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
+    let index = record.recommended().filter(|_| !shape.is_empty())?.index;
+    // As the search found it, which alone has looked at the others, too.
+    let best = record.current().iter().find(|recorded| recorded.index == index)?;
+    let file = finger_file(record)?;
+    let plain: Vec<(&str, f64)> = shape
+        .iter()
+        .filter_map(|p| Some((p.key.as_str(), p.value(p.nearest(file.value(&p.key)?)))))
+        .collect();
+    let alone = record.best_where(|recorded| {
+        plain.iter().all(|(key, value)| recorded.design.get(key) == Some(*value))
+    });
+    let head = ["", "range", "largest contact force", "compliance", "assembly"];
+    let mut rows = Vec::new();
+    if let Some(alone) = alone {
+        rows.push(row(&format!("infill alone: {}", infill(&alone.design)), alone));
+    }
+    rows.push(row("with the finger's parameters", best));
+    let changed: Vec<String> = plain
+        .iter()
+        .filter_map(|&(key, from)| Some((key, from, best.design.get(key)?)))
+        .filter(|(_, from, to)| from != to)
+        .map(|(key, from, to)| {
+            let (name, unit) = label(key);
+            format!("{name} {to}{unit} in place of {from}{unit}")
+        })
+        .collect();
+    Some(html! {
+        (table(&head, &rows))
+        @match alone {
+            Some(alone) => p { (gain(alone, best)) }
+            None => p { "No evaluation of this study has the finger as its file has it." }
+        }
+        @if changed.is_empty() {
+            p { "The best design has the finger as its file has it." }
+        } @else {
+            p.warn {
+                "It leaves the measured fingers: " (changed.join(", ")) ". Its stiffness was \
+                computed from its ribs and scaled by measured over computed at its infill; the \
+                standard deviation holds how far that ratio differs from finger to finger. Print \
+                and measure this finger before you trust the result."
+            }
+        }
+    })
+}
+
+fn infill(of: &Design) -> String {
+    let infill = of.0.iter().filter(|(key, _)| super::text::is_infill(key));
+    design(&Design(infill.map(|(key, value)| (key.clone(), *value)).collect()))
+}
+
+fn range(recorded: &Recorded) -> Vec<f64> {
+    recorded.tasks.iter().map(|task| task.window.range_mm()).collect()
+}
+
+fn row(name: &str, recorded: &Recorded) -> Vec<String> {
+    let each = |value: &dyn Fn(usize) -> String| {
+        (0..recorded.tasks.len()).map(value).collect::<Vec<_>>().join(", ")
+    };
+    vec![
+        name.to_owned(),
+        each(&|i| format!("{:.1} mm", recorded.tasks[i].window.range_mm())),
+        each(&|i| format!("{:.1} N", recorded.tasks[i].peak_force_n)),
+        stiffness(recorded.stiffness.compliance),
+        stiffness(recorded.stiffness.assembly),
+    ]
+}
+
+/// How much more range, and at what force.
+fn gain(alone: &Recorded, best: &Recorded) -> String {
+    let of = |(i, (before, now)): (usize, (f64, f64))| {
+        let forces = [alone, best].map(|recorded| recorded.tasks[i].peak_force_n);
+        format!(
+            "{:+.1} mm of range, at {:.1} N in place of {:.1} N",
+            now - before,
+            forces[1],
+            forces[0]
+        )
+    };
+    let ranges = range(alone).into_iter().zip(range(best)).enumerate();
+    format!("The finger's parameters give {}.", ranges.map(of).collect::<Vec<_>>().join("; "))
+}

@@ -2,7 +2,9 @@
 
 use super::setup::{self, STIFFNESS_DATA};
 use super::{Failure, print};
-use crate::report;
+use crate::files::{self, LARGEST_OWN};
+use crate::report::replay::PairEnd;
+use crate::report::{self, Replay};
 use crate::study::{StudyRecord, write_evaluations_csv, write_own_file};
 use crate::surrogate::Model;
 use clap::Args;
@@ -44,6 +46,22 @@ pub fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(), Fail
     for (name, content) in report::printer::files(record) {
         write_own_file(&dir.join(name), &content)?;
     }
-    write_own_file(&dir.join(PAGE), &report::page(record, model).map_err(drawn)?)?;
+    write_own_file(
+        &dir.join(PAGE),
+        &report::page(record, model, &replays(dir, record)).map_err(drawn)?,
+    )?;
     Ok(())
+}
+
+/// The films that the study kept; none of those that are missing.
+fn replays(dir: &Path, record: &StudyRecord) -> Vec<Replay> {
+    let several = record.config.several_tasks();
+    let of = |(at, task): (usize, &str)| {
+        let on = if several { format!(" on {task}") } else { String::new() };
+        PairEnd::BOTH.map(|end| {
+            let page = files::read_own(&dir.join(end.file(at)), LARGEST_OWN).ok()?;
+            Some(Replay { label: format!("Play the {} end{on}", end.word()), page })
+        })
+    };
+    record.config.tasks().enumerate().flat_map(of).flatten().collect()
 }

@@ -3,6 +3,7 @@
 use super::elements::definitions;
 use super::text::{design, infill, is_infill, outcome, stiffness, values};
 use crate::evaluation::objective::Measure;
+use crate::evaluation::robustness::firm::REPEATS;
 use crate::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
 use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Recorded, StudyRecord, nearest};
@@ -15,6 +16,7 @@ pub(super) fn section(record: &StudyRecord) -> Markup {
     let found = best.feasible().unwrap_or_default();
     html! {
         p.big { (infill(&best.design)) }
+        (firm(record))
         @if objectives.single().is_none() {
             p {
                 "has the best " (objectives.first().name()) ": " (objectives.show(found))
@@ -36,6 +38,63 @@ pub(super) fn section(record: &StudyRecord) -> Markup {
         }
         (definitions(&facts(record, best, found)))
     }
+}
+
+/// How firm the recommendation is, what is as good, how much it matters, and the command again.
+fn firm(record: &StudyRecord) -> Markup {
+    let found = record.recommendation();
+    let ranges = found.as_ref().and_then(|found| found.firm_ranges_mm());
+    let equivalent = found.as_ref().map_or(0, |found| found.equivalent.len());
+    let count = record.current().len();
+    html! {
+        div.card {
+            @if let Some(ranges) = ranges {
+                p {
+                    "Firm range: " b { (format!("{:.1} mm", record.aggregated(Measure::Range, &ranges))) }
+                    " inserts in all of " (REPEATS) " repeats with friction, start and step varied."
+                }
+            }
+            @if equivalent > 1 {
+                p { (equivalent) " of " (count) " designs are equivalent: choose by other needs." }
+            } @else if equivalent == 1 {
+                p { "No other of " (count) " designs is as good." }
+            }
+            @if let Some([low, high]) = record.spread_mm() {
+                p { (format!("Over all designs the range goes from {low:.1} to {high:.1} mm.")) }
+            }
+            p { "Again: " code { (command(record)) } }
+            p {
+                a href="evaluations.csv" { "table of all evaluations" } ", "
+                a href="journal.jsonl" { "journal" } ", "
+                a href="convergence.svg" { "convergence" }
+            }
+        }
+    }
+}
+
+/// The command that repeats the study with shipped files of these names.
+fn command(record: &StudyRecord) -> String {
+    let config = &record.config;
+    let mut command = format!(
+        "optimize --task {} --space {} --robot {} --optimizer {} --objective {} --seed {} --budget {}",
+        config.tasks.join(","),
+        config.space.name(),
+        config.robot,
+        config.optimizer,
+        config.objective,
+        config.seed,
+        config.budget
+    );
+    for constraint in &config.constraints {
+        command += &format!(" --constraint '{constraint}'");
+    }
+    if let Some(errors) = &config.uncertainty {
+        command += &format!(" --uncertainty {errors}");
+    }
+    if config.polish > 0 {
+        command += &format!(" --polish {}", config.polish);
+    }
+    command + &format!(" --batch {}", config.batch)
 }
 
 fn none(record: &StudyRecord) -> Markup {

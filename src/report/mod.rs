@@ -7,6 +7,7 @@ pub mod compare;
 mod compare_plot;
 mod convergence;
 mod elements;
+mod explore;
 mod front;
 mod limits;
 mod map;
@@ -23,6 +24,7 @@ mod shape;
 pub mod stiffness;
 pub mod stiffness_means;
 mod stiffness_plot;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -33,7 +35,7 @@ mod windows;
 use crate::study::StudyRecord;
 
 pub use compare_plot::svg as compare_svg;
-pub use page::page;
+pub use page::{Replay, page};
 pub use text::volume_unit;
 
 /// Why a plot could not be made.

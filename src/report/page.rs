@@ -1,9 +1,9 @@
-//! `report.html`: one file, no scripts, nothing fetched.
+//! `report.html`: one file, a little script of its own, nothing fetched.
 
 use super::theme::variables;
 use super::{
-    ReportError, best, convergence, front, limits, map, others, printer, provenance, published,
-    shape, windows,
+    ReportError, best, convergence, explore, front, limits, map, others, printer, provenance,
+    published, shape, windows,
 };
 use crate::study::StudyRecord;
 use crate::surrogate::Model;
@@ -13,15 +13,28 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 /// a phone shrinks it to fit.
 const PLOT: (u32, u32) = (560, 400);
 
+/// A film that the study kept.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Replay {
+    /// What a button says.
+    pub label: String,
+    /// The page that plays it.
+    pub page: String,
+}
+
 /// The report of a study as a page that opens offline. `model` is the stiffness model of the
 /// study; the map marks the designs it was fitted to.
 ///
 /// # Errors
 /// If the drawing library refuses.
-pub fn page(record: &StudyRecord, model: &Model) -> Result<String, ReportError> {
+pub fn page(
+    record: &StudyRecord,
+    model: &Model,
+    replays: &[Replay],
+) -> Result<String, ReportError> {
     let config = &record.config;
     let title = format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed);
-    let sections = sections(record, model)?;
+    let sections = sections(record, model, replays)?;
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -29,6 +42,7 @@ pub fn page(record: &StudyRecord, model: &Model) -> Result<String, ReportError> 
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
+                meta http-equiv="Content-Security-Policy" content=(super::replay::POLICY);
                 title { (title) }
                 style { (PreEscaped(style())) }
             }
@@ -42,7 +56,10 @@ pub fn page(record: &StudyRecord, model: &Model) -> Result<String, ReportError> 
                             (config.evaluations()) " evaluations."
                         }
                     }
-                    @for (id, title, body) in sections {
+                    nav aria-label="contents" {
+                        @for (id, title, _) in &sections { a href=(format!("#{id}")) { (title) } }
+                    }
+                    @for (id, title, body) in &sections {
                         section id=(id) { h2 { (title) } (body) }
                     }
                 }
@@ -55,7 +72,11 @@ pub fn page(record: &StudyRecord, model: &Model) -> Result<String, ReportError> 
 type Section = (&'static str, String, Markup);
 
 /// Id, title and body of each section; what does not apply is left out.
-fn sections(record: &StudyRecord, model: &Model) -> Result<Vec<Section>, ReportError> {
+fn sections(
+    record: &StudyRecord,
+    model: &Model,
+    replays: &[Replay],
+) -> Result<Vec<Section>, ReportError> {
     let first = record.config.objective.first().name();
     let first = first[..1].to_uppercase() + &first[1..];
     let map = map::section(record, model.measurements(), (PLOT.0, 500))?;
@@ -64,6 +85,9 @@ fn sections(record: &StudyRecord, model: &Model) -> Result<Vec<Section>, ReportE
     let section = |id, title: &str, body| Some((id, title.to_owned(), body));
     let sections = [
         section("best", "Best design", best::section(record)),
+        films(replays)
+            .and_then(|films| section("replay", "Both ends of its window, played", films)),
+        explore::section(record).and_then(|views| section("explore-views", "All designs", views)),
         printer::section(record).and_then(|printer| section("printer", "To the printer", printer)),
         shape::section(record).and_then(|shape| section("shape", "Beyond the infill alone", shape)),
         section("convergence", "Convergence", convergence::section(record, PLOT)?),
@@ -80,6 +104,25 @@ fn sections(record: &StudyRecord, model: &Model) -> Result<Vec<Section>, ReportE
         section("provenance", "Provenance", provenance::provenance(record)),
     ];
     Ok(sections.into_iter().flatten().collect())
+}
+
+/// Buttons that play the films; nothing without films.
+fn films(replays: &[Replay]) -> Option<Markup> {
+    (!replays.is_empty()).then(|| {
+        html! {
+            p { "The last start that inserts beside the first that fails:" }
+            @for (i, replay) in replays.iter().enumerate() {
+                button type="button" data-film=(format!("film{i}")) { (replay.label) }
+                script type="application/json" id=(format!("film{i}")) {
+                    (PreEscaped(explore::embedded(&replay.page.as_str().into())))
+                }
+            }
+            dialog #player aria-label="a film of two trials" {
+                button #close type="button" { "Close" }
+                iframe #film title="a film of two trials" {}
+            }
+        }
+    })
 }
 
 /// A part for each task, under its name if there are several.

@@ -1,0 +1,94 @@
+//! The evaluations to look into: a surface of the model, windows, course, force, all parameters
+//! at once, linked by the evaluation that is chosen. The script is our own, 10 kB.
+
+use super::surface;
+use super::text::outcome;
+use crate::evaluation::objective::Measure;
+use crate::input::space::label;
+use crate::outcome::Outcome;
+use crate::study::{Recorded, StudyRecord};
+use maud::{Markup, PreEscaped, html};
+use serde_json::{Value, json};
+
+/// Views, what is chosen, data and script.
+pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
+    record.best()?;
+    let view = |id: &str, label: &str, caption: &str| {
+        html! { figure { svg id=(id) role="img" aria-label=(label) {} figcaption { (caption) } } }
+    };
+    let importance = surface::importance(record);
+    Some(html! {
+        p.muted {
+            "Click a mark to choose an evaluation in all views; the arrow keys go to the next. The \
+            recommended one has a black ring in white."
+        }
+        div #explore tabindex="0" {
+            p #selected aria-live="polite" {}
+            div.views {
+                figure {
+                    svg #surface role="img" aria-label="mean of the model over two parameters" {}
+                    svg #scale role="img" aria-label="colour scale" {}
+                    figcaption {
+                        "Mean of a Gaussian process through the evaluations, and the evaluations on it. \
+                        Hover for its standard deviation. The scale begins at the lowest twentieth, so \
+                        that failures do not flatten it; the other parameters are the recommended one's."
+                    }
+                }
+                (view("bars", "windows as bars", "Windows of the 60 widest, the widest on top."))
+                (view("course", "value against evaluation", "Value of each evaluation, and the best so far."))
+                (view("force", "peak force against range", "Peak force against range."))
+                (view("parallel", "all parameters", "All parameters and the value."))
+            }
+        }
+        @if !importance.is_empty() {
+            h3 { "What matters" }
+            p {
+                "Share of the model's variance over the space that a parameter makes by itself: "
+                (importance.iter().map(|(name, share)| format!("{name} {:.0} %", 100.0 * share)).collect::<Vec<_>>().join(", "))
+                ". What is missing to 100 % they make together."
+            }
+        }
+        div #tip hidden role="status" {}
+        script type="application/json" id="study" { (PreEscaped(embedded(&to_json(record)))) }
+        script { (PreEscaped(include_str!("explore.js"))) }
+    })
+}
+
+/// JSON for a script element, which ends at the first `</`.
+pub(super) fn embedded(value: &Value) -> String {
+    value.to_string().replace('<', "\\u003c")
+}
+
+fn to_json(record: &StudyRecord) -> Value {
+    let parameters = record.config.space.parameters();
+    let measure = record.config.objective.first();
+    let named: Vec<Value> = parameters
+        .iter()
+        .map(|p| {
+            let (name, unit) = label(&p.key);
+            json!({"label": name, "unit": unit, "low": p.low, "high": p.high})
+        })
+        .collect();
+    let evaluation = |recorded: &Recorded| {
+        let x: Vec<f64> = parameters.iter().filter_map(|p| recorded.design.get(&p.key)).collect();
+        let window = recorded.on(0).map(|found| &found.window);
+        let inserts = window.filter(|window| window.nominal == Outcome::Inserted);
+        let end = |end: Option<Outcome>| end.map_or("no failure".to_owned(), outcome);
+        json!({
+            "index": recorded.index,
+            "x": x,
+            "value": recorded.value(),
+            "feasible": recorded.feasible().is_some(),
+            "window": inserts.map(|w| [w.negative_mm(), w.positive_mm()]),
+            "ends": window.map(|w| [end(w.end_negative), end(w.end_positive)]),
+            "force": recorded.on(0).and_then(|found| Measure::PeakForce.value(found)),
+        })
+    };
+    json!({
+        "parameters": named,
+        "measure": {"label": measure.label(), "unit": measure.unit(), "sense": measure.sense()},
+        "evaluations": record.current().iter().map(evaluation).collect::<Vec<_>>(),
+        "best": record.recommended().map(|best| best.index),
+        "model": surface::to_json(record),
+    })
+}

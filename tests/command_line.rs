@@ -433,3 +433,23 @@ fn a_finger_is_computed_from_its_ribs() {
     let unknown = [&infill[..], &["--finger", "finray"]].concat();
     optimize(&unknown).fails(2, &["did you mean `finray9`"]);
 }
+
+/// A column in N/m under a header of N/mm.
+#[test]
+fn a_stiffness_file_in_another_unit_is_asked_about() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mine.csv");
+    let text = include_str!("../data/measured_stiffness.csv");
+    for (factor, question) in [(1000.0, "divide them by 1000"), (0.001, "multiply them by 1000")] {
+        let scaled = |line: &str| match line.rsplit_once(',') {
+            Some((before, value)) => match value.parse::<f64>() {
+                Ok(value) => format!("{before},{}\n", value * factor),
+                Err(_) => format!("{line}\n"),
+            },
+            None => String::new(),
+        };
+        fs::write(&file, text.lines().map(scaled).collect::<String>()).unwrap();
+        let ran = optimize(&["stiffness", "--stiffness-data", file.to_str().unwrap()]);
+        ran.fails(2, &["stiffness_compliance_n_per_mm", question]);
+    }
+}

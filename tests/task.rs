@@ -301,3 +301,210 @@ fn a_check_says_what_a_reader_finds() {
         assert_eq!(found["problems"][0]["key"], key);
     }
 }
+
+fn surface(name: &str) -> finger_opt::connector::mesh::import::Mesh {
+    use finger_opt::connector::mesh::{Surface, import::Mesh, read};
+    let file = format!("{}/examples/meshes/{name}.stl", env!("CARGO_MANIFEST_DIR"));
+    let triangles = read(&std::fs::read(&file).unwrap(), name).unwrap();
+    Mesh { file: name.to_owned(), surface: Surface::new(&triangles, MM, name).unwrap() }
+}
+
+fn imported(pair: &str, like: Option<&Task>) -> finger_opt::connector::mesh::import::Imported {
+    use finger_opt::connector::mesh::import::{Along, Request, import};
+    let request = Request { name: "mine", along: Along::MinusZ, resolution: 64, like };
+    import(surface(&format!("{pair}-plug")), surface(&format!("{pair}-socket")), &request).unwrap()
+}
+
+/// A bevelled outline with a rib and a chamfered pocket: exact, nothing in the clearance.
+#[test]
+fn an_extruded_pair_is_imported_exactly() {
+    let found = imported("keyed", None);
+    assert_eq!(found.exact, [true; 2], "{:?} parts", found.parts());
+    assert!(found.intrusion.unwrap().0.depth < 2e-3 * MM, "{:?}", found.intrusion);
+    assert!((found.clearance - 0.2 * MM).abs() < 0.005 * MM, "{}", found.clearance);
+    assert_eq!(problems(&found.task), []);
+}
+
+/// The usb task's pair of meshes gives the parts of the hand-written file, but for the boss, which
+/// has 24 flats; so its windows are those of the file.
+#[test]
+fn the_usb_meshes_are_the_usb_task() {
+    let usb = Task::parse(shipped("usb"), "usb").unwrap();
+    let found = imported("usb", Some(&usb));
+    assert_eq!(found.exact, [true; 2]);
+    let corners = |task: &Task| -> Vec<_> {
+        let near = task.plug.parts.iter().flat_map(|part| part.solid.corners());
+        near.filter(|p| p.z < 43.0 * MM).collect()
+    };
+    let written = corners(&usb);
+    for corner in corners(&found.task) {
+        let off = written.iter().map(|p| (p - corner).norm()).fold(f64::INFINITY, f64::min);
+        assert!(off < 1e-3 * MM, "{corner} is off by {off} m");
+    }
+    let differ = |axis: usize, end: usize| found.task.opening[axis][end] - usb.opening[axis][end];
+    assert!((0..4).all(|i| differ(i / 2, i % 2).abs() < 1e-3 * MM));
+    assert_eq!(problems(&found.task), []);
+    // The nominal start and one near each end of the window, -0.8 to +5.8 mm, fail and insert alike.
+    let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+    let outcomes = |task: &Task| {
+        let rig = EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap();
+        let finger = Finger::new(3.84 * N_PER_MM, 35.0 * N_PER_MM);
+        let grasped = rig.grasp(&finger);
+        [-1.1, -0.6, 5.6, 6.1].map(|offset_mm| grasped.trial(offset_mm * MM).outcome)
+    };
+    assert_eq!(outcomes(&found.task), outcomes(&usb));
+}
+
+/// A bowl cannot be cut into few flat-sided pieces: hulls, whose intrusion is measured.
+#[test]
+fn a_hollow_curved_socket_is_approximated_and_measured() {
+    use finger_opt::connector::mesh::{Surface, import};
+    // A bowl: a spherical hollow of 130 rings has more layers than are cut exactly.
+    let (rings, flats) = (130usize, 24usize);
+    let at = |ring: usize, flat: usize| {
+        let (down, round) = (ring as f64 / rings as f64, flat as f64 / flats as f64);
+        let (polar, turn) = (down * std::f64::consts::FRAC_PI_2, round * std::f64::consts::TAU);
+        nalgebra::Point3::new(
+            5.0 * polar.cos() * turn.cos(),
+            5.0 * polar.cos() * turn.sin(),
+            -5.0 * polar.sin(),
+        )
+    };
+    let mut triangles = Vec::new();
+    for ring in 0..rings {
+        for flat in 0..flats {
+            let [a, b] = [at(ring, flat), at(ring, flat + 1)];
+            let [c, d] = [at(ring + 1, flat), at(ring + 1, flat + 1)];
+            triangles.extend([[a, b, c], [b, d, c]]);
+        }
+    }
+    // Outer skin: a cone frustum of the same flats from the rim down.
+    let outer = |flat: usize, z: f64| {
+        let turn = flat as f64 / flats as f64 * std::f64::consts::TAU;
+        nalgebra::Point3::new(8.0 * turn.cos(), 8.0 * turn.sin(), z)
+    };
+    for flat in 0..flats {
+        let (rim, next) = (at(0, flat), at(0, flat + 1));
+        let [a, b, c, d] =
+            [outer(flat, 0.0), outer(flat + 1, 0.0), outer(flat, -8.0), outer(flat + 1, -8.0)];
+        let foot = nalgebra::Point3::new(0.0, 0.0, -8.0);
+        triangles.extend([[rim, a, b], [rim, b, next], [a, c, b], [b, c, d], [c, foot, d]]);
+    }
+    let bowl = Surface::new(&triangles, MM, "bowl").unwrap();
+    let plug = surface("keyed-plug");
+    let request = import::Request {
+        name: "bowl",
+        along: import::Along::MinusZ,
+        resolution: 32,
+        like: Some(&Task::parse(shipped("usb"), "usb").unwrap()),
+    };
+    let found =
+        import::import(plug, import::Mesh { file: "bowl".to_owned(), surface: bowl }, &request)
+            .unwrap();
+    assert_eq!(found.exact, [true, false]);
+    let (intrusion, of) = found.intrusion.unwrap();
+    assert_eq!(of, "socket");
+    assert!(intrusion.depth > 0.0);
+    assert!(found.resolution.is_none_or(|finer| finer > 32));
+}
+
+#[test]
+fn a_mesh_that_is_no_solid_is_refused_with_what_is_wrong() {
+    use finger_opt::connector::mesh::{Surface, read};
+    let file = format!("{}/examples/meshes/keyed-plug.stl", env!("CARGO_MANIFEST_DIR"));
+    let whole = read(&std::fs::read(&file).unwrap(), "p.stl").unwrap();
+    let error = |triangles: &[[nalgebra::Point3<f64>; 3]], unit: f64| {
+        Surface::new(triangles, unit, "p.stl").unwrap_err().to_string()
+    };
+    assert!(error(&whole[1..], MM).contains("not watertight: 3 edges"));
+    let mut turned = whole.clone();
+    turned[0].swap(1, 2);
+    assert!(error(&turned, MM).contains("opposite sides"));
+    assert!(error(&whole, 1.0).contains("too large"));
+    assert!(error(&whole, 1e-3 * MM).contains("too small"));
+    let inward: Vec<_> = whole.iter().map(|t| [t[0], t[2], t[1]]).collect();
+    let mended = Surface::new(&inward, MM, "p.stl").unwrap();
+    assert!(mended.was_inward && mended.volume() > 0.0);
+    assert!(read(b"hello", "p.stl").unwrap_err().to_string().contains("no faces"));
+    // The same solid as OBJ.
+    let mut obj = String::new();
+    for point in whole.iter().flatten() {
+        obj.push_str(&format!("v {} {} {}\n", point.x, point.y, point.z));
+    }
+    for i in 0..whole.len() {
+        obj.push_str(&format!("f {} {}//1 {}/2\n", 3 * i + 1, 3 * i + 2, 3 * i + 3));
+    }
+    let same = Surface::new(&read(obj.as_bytes(), "p.obj").unwrap(), MM, "p.obj").unwrap();
+    let volume = Surface::new(&whole, MM, "p.stl").unwrap().volume();
+    assert!((same.volume() - volume).abs() < 1e-6 * volume);
+}
+
+/// Every key that the types know is in docs/tasks.md, and no other.
+#[test]
+fn the_document_has_every_key_and_no_other() {
+    let document = include_str!("../docs/tasks.md");
+    let mut documented: Vec<&str> = document
+        .lines()
+        .filter(|line| line.starts_with("| `"))
+        .flat_map(|line| line[2..].split(" | ").next().unwrap_or("").split(", "))
+        .map(|key| key.trim_matches('`'))
+        .collect();
+    documented.sort_unstable();
+    let mut known = Vec::new();
+    explore("", &mut known);
+    known.sort();
+    known.dedup();
+    assert_eq!(documented, known);
+}
+
+/// Asks the reader for the keys below a path, by one that no table has: its answer lists them.
+fn explore(path: &str, known: &mut Vec<String>) {
+    let keys = |extra: &[(&str, &str)]| -> Result<Vec<String>, String> {
+        let mut value = toml::Table::new();
+        for (key, word) in extra {
+            value.insert((*key).to_owned(), (*word).into());
+        }
+        value.insert("?".to_owned(), 0.into());
+        let mut inner = toml::Value::Table(value);
+        for name in path.split('.').filter(|name| !name.is_empty()).rev() {
+            if ["part", "phase", "coupling"].contains(&name) {
+                inner = vec![inner].into();
+            }
+            inner = toml::Value::Table([(name.to_owned(), inner)].into_iter().collect());
+        }
+        let toml::Value::Table(table) = inner else { unreachable!("a table") };
+        let message = Task::from_table(table, "t").unwrap_err().to_string();
+        let listed = message.split_once("expected").and_then(|(_, after)| after.lines().next());
+        match listed {
+            Some(listed) => Ok(listed.split('`').skip(1).step_by(2).map(str::to_owned).collect()),
+            None => Err(message),
+        }
+    };
+    let short = |key: &str| {
+        let path = format!("{path}.{key}");
+        path.trim_start_matches('.').replace("plug.part", "part").replace("socket.part", "part")
+    };
+    let sections = ["plug", "socket", "grip", "friction", "finger", "strategy", "success"];
+    let mut below = Vec::new();
+    if path.ends_with("part") {
+        known.push("part.shape".to_owned());
+        for shape in keys(&[("shape", "?")]).unwrap() {
+            below.extend(keys(&[("shape", &shape)]).unwrap());
+        }
+    } else {
+        below = keys(&[]).unwrap();
+    }
+    assert!(!below.is_empty(), "{path}");
+    for key in below {
+        if !(path.is_empty() && sections.contains(&key.as_str())) {
+            known.push(match key.as_str() {
+                "part" => format!("{path}.part"),
+                _ => short(&key),
+            });
+        }
+        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        if sections.contains(&path.as_str()) || ["part", "phase", "coupling"].contains(&&*key) {
+            explore(&path, known);
+        }
+    }
+}

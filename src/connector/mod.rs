@@ -4,6 +4,7 @@ pub mod body;
 pub mod check;
 pub mod draft;
 pub mod hold;
+pub mod mesh;
 pub mod nominal;
 pub mod path;
 pub mod picture;

@@ -40,6 +40,8 @@ const UPRIGHT_DEG: f64 = 2.0;
 const LEAST_UPRIGHT_DEG: f64 = 3.0;
 /// What may be missing of the full depth beside what a tilt takes: m, and a share.
 const MISSING: (f64, f64) = (0.2 * MM, 0.02);
+/// Share of the full depth at which the play is measured.
+const WITHIN: f64 = 0.9;
 /// A plug that goes in less than this does not go in, m.
 const LEAST_DEPTH: f64 = 1.0 * MM;
 
@@ -81,7 +83,8 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     let [bottom, _] = plug.extent(2);
     let tip = section(&plug, bottom + LEAST_DEPTH);
     grasp(&mut task, &plug);
-    success(&mut task, &plug, &seat);
+    let play = Seating::new(&task, &plug, &socket).play(WITHIN * seat.depth, seat.at, 1);
+    success(&mut task, &plug, &seat, play);
     let rise = (RISE / (tip[1][1] - tip[1][0])).min(1.0);
     let [least, most] = TILT_DEG;
     task.strategy.tilt = round(libm::asin(rise) / DEG, 0.1).clamp(least, most) * DEG;
@@ -97,10 +100,8 @@ fn grasp(task: &mut Task, plug: &ConvexBody) {
     task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
 }
 
-fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat) {
-    let within = section(plug, seat.depth)[1];
-    let [low, high] = task.opening[1];
-    let play = (high - low - (within[1] - within[0])).max(0.0);
+/// `play` in y, m.
+fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
     let tilt = upright.ceil().max(LEAST_UPRIGHT_DEG) * DEG;
     // A tilted plug is stopped where the outer end of what stops it comes down first.

@@ -11,6 +11,10 @@ const TOLERANCE: f64 = 0.02 * MM;
 const STEP: f64 = 0.25 * MM;
 /// How finely the deepest is found, m.
 const FINE: f64 = 0.005 * MM;
+/// Overlap of what only touches, m.
+const TOUCHING: f64 = 1e-3 * MM;
+/// Farthest that a plug is moved aside, m.
+const MOST_PLAY: f64 = 10.0 * MM;
 /// Places tried along x and along y where the way down is looked for.
 const GRID: i32 = 8;
 /// How often that grid is drawn in about its best place.
@@ -54,6 +58,35 @@ impl<'a> Seating<'a> {
             depth += STEP;
         }
         Seat { depth: free, at, stopped_by: None }
+    }
+
+    /// How far the upright plug can be moved along an axis (0 x, 1 y) at this depth, there and
+    /// back, m: what opening and plug really leave, chamfers aside.
+    pub fn play(&self, depth: f64, at: [f64; 2], axis: usize) -> f64 {
+        // What is found seated may touch walls, so first to the middle between them.
+        let mut middle = at;
+        for axis in [0, 1, 0, 1] {
+            let [back, forth] = self.ways(depth, middle, axis);
+            middle[axis] += (forth - back) / 2.0;
+        }
+        self.ways(depth, middle, axis).iter().sum()
+    }
+
+    /// How far the plug can be moved back and forth along an axis, m.
+    fn ways(&self, depth: f64, at: [f64; 2], axis: usize) -> [f64; 2] {
+        let least = self.overlap(depth, at).0.max(TOUCHING);
+        [-1.0, 1.0].map(|sign| {
+            let (mut free, mut blocked) = (0.0, MOST_PLAY);
+            while blocked - free > TOUCHING {
+                let middle = (free + blocked) / 2.0;
+                let mut place = at;
+                place[axis] += sign * middle;
+                let hit = self.overlap(depth, place).0 > least;
+                let end = if hit { &mut blocked } else { &mut free };
+                *end = middle;
+            }
+            free
+        })
     }
 
     /// Bisects between a depth that is free and one that is not.
@@ -152,6 +185,18 @@ mod tests {
             assert!((seat.depth / MM - depth_mm).abs() < 0.04, "{name}: {seat:?}");
             assert!(by_names[0].starts_with(by[0]), "{name}: {by_names:?}");
             assert!(by_names[1].starts_with(by[1]), "{name}: {by_names:?}");
+        }
+    }
+
+    #[test]
+    fn the_play_of_a_key_is_its_clearance() {
+        let file = TASKS.iter().find(|file| file.name == "ket12").unwrap();
+        let task = Task::parse(file.text, file.file).unwrap();
+        let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
+        let seating = Seating::new(&task, &plug, &socket);
+        for (axis, clearance_mm) in [(0, 0.208), (1, 0.195)] {
+            let play = seating.play(20.0 * MM, [0.0, 0.0], axis);
+            assert!((play / MM - clearance_mm).abs() < 0.005, "{axis}: {play}");
         }
     }
 

@@ -1,8 +1,9 @@
 //! A task as a commented TOML file.
 
 use super::hold;
-use crate::input::task::{Ending, Hold, Part, Phase, Solid, Stage, Task};
+use crate::input::task::{Ending, Hold, Part, Phase, Solid, Stage, StartRule, Task};
 use crate::units::{DEG, GRAM, MM};
+use nalgebra::Point3;
 use std::fmt::Write;
 
 /// What is said beside the keys.
@@ -91,6 +92,10 @@ fn solid(solid: &Solid) -> String {
             list(outline.iter().map(|&corner| pair(corner))),
             pair(*span)
         ),
+        Solid::Hull { points } => {
+            let point = |p: &Point3<f64>| list(p.iter().map(|&v| mm(v)));
+            format!("shape = \"hull\"\npoints_mm = {}\n", list(points.iter().map(point)))
+        }
     }
 }
 
@@ -131,6 +136,10 @@ fn strategy(out: &mut String, task: &Task) {
         round(strategy.tilt / DEG, 100.0),
         list(strategy.start.iter().map(|&v| mm(v)))
     );
+    if strategy.rule == StartRule::Taught {
+        out.truncate(out.trim_end().len());
+        out.push_str("\nstart = \"taught\"\n\n");
+    }
     for item in &strategy.phases {
         phase(out, item);
     }

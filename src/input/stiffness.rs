@@ -117,6 +117,23 @@ pub enum SurrogateError {
         /// What is wrong and what would be right.
         problem: String,
     },
+    /// A column in another unit.
+    #[error(
+        "{file}: {column}: the middle value is {own} N/mm, that of the measured printed fingers is {usual}; \
+         {question}"
+    )]
+    Unit {
+        /// The file as given.
+        file: String,
+        /// Column, as in the header.
+        column: &'static str,
+        /// Its middle value, N/mm.
+        own: f64,
+        /// The same of the shipped measurements, N/mm.
+        usual: f64,
+        /// What it may be.
+        question: &'static str,
+    },
     /// A measurement, not read from a file, that cannot be used.
     #[error("design {design}: {column}: {problem}")]
     Value {
@@ -143,6 +160,11 @@ pub enum SurrogateError {
 
 /// Reads and checks a measurement file; `file` is named in errors.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
+    unit(rows(text, file)?, file)
+}
+
+/// Reads a measurement file and checks each value by itself.
+fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     // The reader counts a line of a "\r\n" file too few.
     let text = text.replace("\r\n", "\n");
     let mut reader = csv::Reader::from_reader(text.as_bytes());
@@ -169,6 +191,31 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError>
     }
     enough(&found)?;
     Ok(found)
+}
+
+/// Stiffnesses that are so many times those of the shipped fingers are in another unit.
+const OTHER_UNIT: f64 = 100.0;
+
+/// Asks about columns that look as if they were in another unit: nobody prints a finger a hundred
+/// times as stiff or as soft as the measured ones.
+fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
+    let shipped = rows(SHIPPED_CSV, SHIPPED_FILE)?;
+    for (axis, column) in [(Axis::Assembly, HEADER[3]), (Axis::Compliance, HEADER[4])] {
+        let [own, usual] = [&found, &shipped].map(|all| median(all, axis) / N_PER_MM);
+        let question = match own / usual {
+            ratio if ratio > OTHER_UNIT => "are these N/m? divide them by 1000",
+            ratio if ratio < 1.0 / OTHER_UNIT => "are these N/um or kN/mm? multiply them by 1000",
+            _ => continue,
+        };
+        return Err(SurrogateError::Unit { file: file.to_owned(), column, own, usual, question });
+    }
+    Ok(found)
+}
+
+fn median(all: &[Measurement], axis: Axis) -> f64 {
+    let mut values: Vec<f64> = all.iter().map(|one| one.stiffness(axis)).collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 /// Checks measurements that were not read from a file.

@@ -87,6 +87,12 @@ impl Solid {
                 }
             }
             Solid::Cylinder { centre, .. } => *centre = [centre[0] + x, centre[1] + y],
+            Solid::Hull { points } => {
+                for corner in points {
+                    corner.x += x;
+                    corner.y += y;
+                }
+            }
             Solid::Prism { axis, outline, span } => {
                 // The outline's two axes, in the order x, y, z.
                 let (along, first, second) = match axis {

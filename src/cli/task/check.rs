@@ -92,7 +92,8 @@ impl Checked {
         self.nominal.as_ref().is_some_and(|nominal| nominal.trial.outcome == Outcome::Inserted)
     }
 
-    fn json(&self) -> Value {
+    /// `valid`, `problems` and `nominal`.
+    pub fn json(&self) -> Value {
         let nominal = self.nominal.as_ref().map(|nominal| {
             let trial = &nominal.trial;
             json!({

@@ -1,6 +1,7 @@
 //! `optimize task`: one's own connector.
 
 mod check;
+mod import;
 mod new;
 mod show;
 
@@ -38,6 +39,9 @@ enum Command {
     /// Exit code 0 if nothing is wrong and the plug goes in, 2 otherwise.
     #[command(after_help = "Example: optimize task check usb-c.toml --svg usb-c.svg")]
     Check(check::Arguments),
+    #[command(after_help = "Example: optimize task import --plug plug.stl --socket socket.stl \
+                            --unit mm --out mine.toml")]
+    Import(import::Arguments),
 }
 
 /// Runs the command.
@@ -47,6 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(Command::New(arguments)) => new::run(arguments),
         Some(Command::Show(arguments)) => show::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Import(arguments)) => import::run(arguments),
     }
 }
 

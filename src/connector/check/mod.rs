@@ -100,5 +100,6 @@ fn field(solid: &crate::input::task::Solid, axis: usize) -> &'static str {
         Solid::Cylinder { .. } => ["diameter_mm", "diameter_mm", "z_mm"][axis],
         Solid::Prism { axis: along, .. } if *along == axis => "span_mm",
         Solid::Prism { .. } => "outline_mm",
+        Solid::Hull { .. } => "points_mm",
     }
 }

@@ -1,7 +1,10 @@
 //! Exact convex parts, and the mass properties of a body made of them.
 
 use crate::scene::{Geom, Inertia, Pose, Shape};
+use crate::units::MM;
 use nalgebra::{Matrix3, Point3, Translation3, Vector3};
+use rapier3d_f64::parry::math::Vector;
+use rapier3d_f64::parry::transformation::try_convex_hull;
 
 /// A convex part of a plug or socket.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +45,11 @@ pub enum Solid {
         /// Start and end along the axis of extrusion.
         span: [f64; 2],
     },
+    /// The convex hull of some points.
+    Hull {
+        /// Its corners.
+        points: Vec<Point3<f64>>,
+    },
 }
 
 impl Part {
@@ -66,7 +74,7 @@ impl Solid {
                 Shape::Cylinder { half_height: (z[1] - z[0]) / 2.0, radius: *radius },
                 Vector3::new(centre[0], centre[1], (z[0] + z[1]) / 2.0),
             ),
-            Solid::Prism { .. } => {
+            Solid::Prism { .. } | Solid::Hull { .. } => {
                 let corners = self.corners();
                 let middle =
                     corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / corners.len() as f64;
@@ -87,6 +95,7 @@ impl Solid {
                 };
                 span.iter().flat_map(|&at| outline.iter().map(move |p| place(at, p))).collect()
             }
+            Solid::Hull { points } => points.clone(),
             _ => {
                 let (shape, origin) = self.shape();
                 shape.corners().into_iter().map(|p| p + origin).collect()
@@ -113,6 +122,7 @@ impl Solid {
                 (volume, middle, Matrix3::from_diagonal(&Vector3::new(across, across, along)))
             }
             Solid::Prism { axis, outline, span } => prism_moments(*axis, outline, *span),
+            Solid::Hull { points } => hull_moments(points),
         }
     }
 }
@@ -165,6 +175,51 @@ fn prism_moments(
     (volume, middle, tensor)
 }
 
+/// Corners, and triangles of them that look outward.
+pub type Triangles = (Vec<Point3<f64>>, Vec<[usize; 3]>);
+
+/// The corners and the outward triangles of the convex hull of some points; none if they lie in
+/// a plane or nearly so.
+pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
+    let scaled: Vec<_> = points.iter().map(|p| Vector::new(p.x / MM, p.y / MM, p.z / MM)).collect();
+    let (corners, faces) = try_convex_hull(&scaled).ok()?;
+    let corners: Vec<_> = corners.iter().map(|v| Point3::new(v.x, v.y, v.z) * MM).collect();
+    let faces: Vec<_> = faces.iter().map(|face| face.map(|corner| corner as usize)).collect();
+    (surface_moments(&corners, &faces).0 > FLAT).then_some((corners, faces))
+}
+
+/// A hull of less volume is flat, m3.
+const FLAT: f64 = 1e-3 * MM * MM * MM;
+
+fn hull_moments(points: &[Point3<f64>]) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    // The task file's checks leave no flat hull.
+    let (corners, faces) = hull(points).unwrap_or_default();
+    surface_moments(&corners, &faces)
+}
+
+/// Volume, centroid and second moments about it of what a closed surface of outward triangles
+/// holds: the sum of the tetrahedra between each and the origin.
+pub fn surface_moments(
+    corners: &[Point3<f64>],
+    faces: &[[usize; 3]],
+) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    let (mut volume, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
+    for face in faces {
+        let [a, b, c] = face.map(|corner| corners[corner].coords);
+        let part = a.dot(&b.cross(&c)) / 6.0;
+        let sum = a + b + c;
+        volume += part;
+        first += sum * (part / 4.0);
+        let squares = a * a.transpose() + b * b.transpose() + c * c.transpose();
+        second += (squares + sum * sum.transpose()) * (part / 20.0);
+    }
+    if volume == 0.0 {
+        return (0.0, Vector3::zeros(), Matrix3::zeros());
+    }
+    let centre = first / volume;
+    (volume, centre, second - centre * centre.transpose() * volume)
+}
+
 /// Mass properties of parts of one density with the given total mass (kg). The
 /// products of inertia are left out: they are zero or small for these plugs.
 pub fn inertia(parts: &[Part], mass: f64) -> Inertia {
@@ -197,7 +252,11 @@ mod tests {
             span: [0.001, 0.007],
         };
         let part = |solid| [Part { name: String::new(), solid, friction: None }];
+        let hull = Solid::Hull { points: prism.corners() };
         let (a, b) = (inertia(&part(cuboid), 0.03), inertia(&part(prism), 0.03));
+        let c = inertia(&part(hull), 0.03);
+        assert!((a.centre - c.centre).norm() < 1e-12, "{c:?}");
+        assert!((a.moments - c.moments).norm() < 1e-9 * a.moments.norm(), "{c:?}");
         assert!((a.centre - b.centre).norm() < 1e-15);
         assert!((a.moments - b.moments).norm() < 1e-9 * a.moments.norm());
         // m (h^2 + d^2) / 12 about x.

@@ -1,11 +1,11 @@
 //! The task file as written, and the checks that turn it into a [`Task`].
 
-use super::geometry::{Part, Solid};
+use super::geometry::{self, Part, Solid};
 use super::raw_finger::RawFinger;
 use super::{Ending, Friction, Grip, Hold, Phase, Plug, Stage, StartRule, Strategy, Success, Task};
 use crate::input::{Check, InputError, read, shown};
 use crate::units::{DEG, GRAM, MM};
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -62,6 +62,11 @@ enum RawPart {
         axis: RawAxis,
         outline_mm: Vec<[f64; 2]>,
         span_mm: [f64; 2],
+        friction: Option<f64>,
+    },
+    Hull {
+        name: String,
+        points_mm: Vec<[f64; 3]>,
         friction: Option<f64>,
     },
 }
@@ -264,7 +269,8 @@ impl Check<'_> {
         let (name, friction) = match part {
             RawPart::Box { name, friction, .. }
             | RawPart::Cylinder { name, friction, .. }
-            | RawPart::Prism { name, friction, .. } => (name, *friction),
+            | RawPart::Prism { name, friction, .. }
+            | RawPart::Hull { name, friction, .. } => (name, *friction),
         };
         let at = |field: &str| format!("{key} \"{name}\" {field}");
         let solid = match part {
@@ -290,9 +296,22 @@ impl Check<'_> {
                 outline: self.outline(&at("outline_mm"), outline_mm)?,
                 span: self.span(&at("span_mm"), *span_mm)?,
             },
+            RawPart::Hull { points_mm, .. } => self.hull(&at("points_mm"), points_mm)?,
         };
         let friction = friction.map(|mu| self.friction(&at("friction"), mu)).transpose()?;
         Ok(Part { name: name.clone(), solid, friction })
+    }
+
+    /// Points that span a volume; those inside the hull are left out.
+    fn hull(&self, key: &str, points: &[[f64; 3]]) -> Result<Solid, InputError> {
+        for &value in points.iter().flatten() {
+            self.finite(key, value)?;
+        }
+        let points: Vec<_> = points.iter().map(|p| Point3::from(p.map(|v| v * MM))).collect();
+        match geometry::hull(&points) {
+            Some((points, _)) => Ok(Solid::Hull { points }),
+            None => self.fail(key, "lie in a plane; a hull needs four points or more that do not"),
+        }
     }
 
     /// A strictly convex outline: every turn is to the same side.

@@ -1,0 +1,61 @@
+//! How far convex parts reach beyond the surface that they stand for.
+
+use super::surface::Surface;
+use crate::input::task::{Part, geometry};
+use crate::physics::shapes;
+use crate::units::MM;
+use nalgebra::Point3;
+use parry::query::PointQuery;
+use parry::shape::{TriMesh, TriMeshFlags};
+use rapier3d_f64::parry;
+
+/// Distance of the points at which parts are looked at, m.
+const SPACING: f64 = 0.2 * MM;
+/// Most points along one side of a triangle.
+const MOST: usize = 60;
+
+/// The farthest that a part reaches out of the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Intrusion {
+    /// How far, m.
+    pub depth: f64,
+    /// Where, m.
+    pub at: Point3<f64>,
+}
+
+/// The largest intrusion where it counts.
+pub fn largest(
+    surface: &Surface,
+    parts: &[Part],
+    counts: impl Fn(&Point3<f64>) -> bool,
+) -> Option<Intrusion> {
+    let points: Vec<_> = surface.points.iter().map(|p| shapes::vector(&(p.coords / MM))).collect();
+    let faces: Vec<_> = surface.faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
+    let mesh = TriMesh::with_flags(points, faces, TriMeshFlags::ORIENTED).ok()?;
+    let outside = |at: Point3<f64>| {
+        let point = shapes::vector(&(at.coords / MM));
+        let found = mesh.project_local_point(point, true);
+        let depth = if found.is_inside { 0.0 } else { (found.point - point).length() * MM };
+        Intrusion { depth, at }
+    };
+    let samples = parts.iter().flat_map(samples).filter(|p| counts(p));
+    samples.map(outside).max_by(|a, b| a.depth.total_cmp(&b.depth))
+}
+
+/// Points all over a part.
+fn samples(part: &Part) -> Vec<Point3<f64>> {
+    let Some((corners, faces)) = geometry::hull(&part.solid.corners()) else { return Vec::new() };
+    let mut found = Vec::new();
+    for face in faces {
+        let [a, b, c] = face.map(|corner| corners[corner]);
+        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+        let steps = ((longest / SPACING).ceil() as usize).clamp(1, MOST);
+        for i in 0..=steps {
+            for j in 0..=steps - i {
+                let (u, v) = (i as f64 / steps as f64, j as f64 / steps as f64);
+                found.push(a + (b - a) * u + (c - a) * v);
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,87 @@
+//! Plug and socket from triangle meshes: read, checked, cut into convex parts, measured.
+
+mod cut;
+mod decompose;
+pub mod import;
+mod intrusion;
+mod merge;
+mod read;
+mod surface;
+
+pub use read::read;
+pub use surface::Surface;
+
+/// Why a mesh cannot be used.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum MeshError {
+    /// Neither STL nor OBJ.
+    #[error("{file}: is neither an STL nor an OBJ file: {problem}")]
+    Format {
+        /// The file.
+        file: String,
+        /// What was found.
+        problem: String,
+    },
+    /// Open edges.
+    #[error(
+        "{file}: is not watertight: {edges} edges have a face on one side only, the first at {at_mm:?} mm \
+         (as in the file, scaled); close the surface in your CAD or with a mesh repair"
+    )]
+    Open {
+        /// The file.
+        file: String,
+        /// How many.
+        edges: usize,
+        /// The middle of one of them, mm.
+        at_mm: [f64; 3],
+    },
+    /// Neighbouring faces that look to opposite sides.
+    #[error(
+        "{file}: {edges} edges lie between faces that look to opposite sides, the first at {at_mm:?} mm; \
+         let all normals point outward"
+    )]
+    Orientation {
+        /// The file.
+        file: String,
+        /// How many.
+        edges: usize,
+        /// The middle of one of them, mm.
+        at_mm: [f64; 3],
+    },
+    /// Nothing inside.
+    #[error("{file}: holds no volume")]
+    Flat {
+        /// The file.
+        file: String,
+    },
+    /// Too large or too small.
+    #[error("{file}: is {size_mm:.3} mm long; connectors are 3 to 300 mm: {hint}")]
+    Size {
+        /// The file.
+        file: String,
+        /// Largest extent, mm.
+        size_mm: f64,
+        /// Which unit it may be in.
+        hint: &'static str,
+    },
+    /// No opening.
+    #[error("{file}: has no opening on its top ({along}): no closed hole goes in from there")]
+    NoOpening {
+        /// The file.
+        file: String,
+        /// Where the top was looked for.
+        along: String,
+    },
+    /// Nothing to hold.
+    #[error(
+        "{file}: no place to hold the plug was found: two faces across y, with a shoulder above them for \
+         the fingers' roofs; give --like T, whose grip fits, or write [grip] by hand"
+    )]
+    NoGrip {
+        /// The file.
+        file: String,
+    },
+    /// No strategy.
+    #[error(transparent)]
+    Plan(#[from] super::plan::PlanError),
+}

@@ -1,0 +1,110 @@
+//! STL (binary and text) and OBJ files to triangles.
+
+use super::MeshError;
+use nalgebra::Point3;
+
+/// Three corners, in the unit of the file.
+pub type Triangle = [Point3<f64>; 3];
+
+/// Bytes before the triangles of a binary STL, and of each triangle.
+const HEADER: usize = 84;
+const RECORD: usize = 50;
+
+/// The triangles of a file; `file` is named in errors, its extension is not asked.
+pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Triangle>, MeshError> {
+    let fail =
+        |problem: &str| MeshError::Format { file: file.to_owned(), problem: problem.to_owned() };
+    // A binary STL may begin with "solid", too: its length tells.
+    let triangles = match binary_count(bytes) {
+        Some(count) => binary(&bytes[HEADER..], count),
+        None => {
+            let text =
+                std::str::from_utf8(bytes).map_err(|_| fail("a binary file of odd length"))?;
+            let text_stl = text.trim_start().starts_with("solid");
+            let found = if text_stl { stl(text) } else { obj(text) };
+            found.map_err(|problem| fail(&problem))?
+        }
+    };
+    if triangles.is_empty() {
+        return Err(fail("no faces"));
+    }
+    if triangles.iter().flatten().any(|p| !p.iter().all(|v| v.is_finite())) {
+        return Err(fail("a coordinate is not a finite number"));
+    }
+    Ok(triangles)
+}
+
+fn binary_count(bytes: &[u8]) -> Option<usize> {
+    let count = u32::from_le_bytes(bytes.get(80..HEADER)?.try_into().ok()?) as usize;
+    (count.checked_mul(RECORD)?.checked_add(HEADER)? == bytes.len()).then_some(count)
+}
+
+fn binary(records: &[u8], count: usize) -> Vec<Triangle> {
+    let number = |bytes: &[u8]| {
+        bytes.try_into().map_or(f64::NAN, |four| f64::from(f32::from_le_bytes(four)))
+    };
+    let triangle = |record: &[u8]| {
+        // The first three numbers are a normal, which the corners' order says, too.
+        let values: Vec<f64> = record[12..48].chunks_exact(4).map(number).collect();
+        std::array::from_fn(|i| Point3::new(values[3 * i], values[3 * i + 1], values[3 * i + 2]))
+    };
+    records.chunks_exact(RECORD).take(count).map(triangle).collect()
+}
+
+fn point<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<Point3<f64>, String> {
+    let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
+    match (next(), next(), next()) {
+        (Some(x), Some(y), Some(z)) => Ok(Point3::new(x, y, z)),
+        _ => Err(format!("line {line}: three numbers are needed")),
+    }
+}
+
+fn stl(text: &str) -> Result<Vec<Triangle>, String> {
+    let mut corners = Vec::new();
+    let mut triangles = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("vertex") => corners.push(point(words, number + 1)?),
+            Some("endfacet") => {
+                let three = <[Point3<f64>; 3]>::try_from(std::mem::take(&mut corners));
+                let three = three
+                    .map_err(|_| format!("line {}: a facet has three vertices", number + 1))?;
+                triangles.push(three);
+            }
+            _ => {}
+        }
+    }
+    Ok(triangles)
+}
+
+fn obj(text: &str) -> Result<Vec<Triangle>, String> {
+    let mut points: Vec<Point3<f64>> = Vec::new();
+    let mut triangles = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => points.push(point(words, number + 1)?),
+            Some("f") => {
+                let corner = |word: &str| corner(word, &points);
+                let face: Option<Vec<_>> = words.map(corner).collect();
+                let face = face.ok_or(format!(
+                    "line {}: a face names a vertex that is not there",
+                    number + 1
+                ))?;
+                // A polygon as a fan, as viewers do.
+                triangles.extend((2..face.len()).map(|i| [face[0], face[i - 1], face[i]]));
+            }
+            _ => {}
+        }
+    }
+    Ok(triangles)
+}
+
+/// `7`, `7/1` or `7//3`, counted from 1, or from the end if negative.
+fn corner(word: &str, points: &[Point3<f64>]) -> Option<Point3<f64>> {
+    let number: i64 = word.split('/').next()?.parse().ok()?;
+    let count = i64::try_from(points.len()).ok()?;
+    let index = if number < 0 { count + number } else { number - 1 };
+    points.get(usize::try_from(index).ok()?).copied()
+}

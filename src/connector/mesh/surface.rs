@@ -1,0 +1,144 @@
+//! A closed surface of triangles that look outward.
+
+use super::MeshError;
+use super::read::Triangle;
+use crate::input::task::geometry::surface_moments;
+use crate::units::MM;
+use nalgebra::{Matrix3, Point3, Vector3};
+use std::collections::BTreeMap;
+
+/// Corners that are nearer than this are one, m: files have 32-bit numbers.
+const GRID: f64 = 1e-4 * MM;
+/// Least and largest size of a connector, m.
+const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
+
+/// A closed surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Corners, m.
+    pub points: Vec<Point3<f64>>,
+    /// Triangles, counter-clockwise from outside.
+    pub faces: Vec<[usize; 3]>,
+    /// Whether the file had them the other way round.
+    pub was_inward: bool,
+}
+
+impl Surface {
+    /// From triangles in a unit of so many metres; `file` is named in errors.
+    pub fn new(triangles: &[Triangle], unit: f64, file: &str) -> Result<Self, MeshError> {
+        let (points, mut faces) = weld(triangles, unit);
+        size(&points, file)?;
+        closed(&points, &faces, file)?;
+        let volume = surface_moments(&points, &faces).0;
+        if volume.abs() < GRID * GRID * GRID {
+            return Err(MeshError::Flat { file: file.to_owned() });
+        }
+        let was_inward = volume < 0.0;
+        if was_inward {
+            faces.iter_mut().for_each(|face| face.swap(1, 2));
+        }
+        Ok(Surface { points, faces, was_inward })
+    }
+
+    /// The surface turned and shifted.
+    pub fn moved(mut self, turn: &Matrix3<f64>, by: Vector3<f64>) -> Self {
+        for point in &mut self.points {
+            *point = Point3::from((turn * point.coords + by).map(snap));
+        }
+        self
+    }
+
+    /// Volume, m3.
+    pub fn volume(&self) -> f64 {
+        surface_moments(&self.points, &self.faces).0
+    }
+}
+
+/// To the grid.
+fn snap(value: f64) -> f64 {
+    (value / GRID).round() * GRID
+}
+
+fn weld(triangles: &[Triangle], unit: f64) -> (Vec<Point3<f64>>, Vec<[usize; 3]>) {
+    let mut places: BTreeMap<[i64; 3], usize> = BTreeMap::new();
+    let mut points = Vec::new();
+    let mut index = |p: &Point3<f64>| {
+        let p = p * unit;
+        let key: [i64; 3] = std::array::from_fn(|axis| (p[axis] / GRID).round() as i64);
+        *places.entry(key).or_insert_with(|| {
+            points.push(Point3::from(p.coords.map(snap)));
+            points.len() - 1
+        })
+    };
+    let mut faces = Vec::with_capacity(triangles.len());
+    for triangle in triangles {
+        let face = [index(&triangle[0]), index(&triangle[1]), index(&triangle[2])];
+        // What has shrunk to a line on the grid holds nothing; its neighbours still meet.
+        if face[0] != face[1] && face[1] != face[2] && face[2] != face[0] {
+            faces.push(face);
+        }
+    }
+    (points, without_films(faces))
+}
+
+/// Without pairs of faces that cover one another back to back: they hold nothing.
+fn without_films(faces: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
+    // The same face begins with the same corner.
+    let turned = |face: [usize; 3]| {
+        let first = (0..3).min_by_key(|&i| face[i]).unwrap_or(0);
+        [face[first], face[(first + 1) % 3], face[(first + 2) % 3]]
+    };
+    let mut seen: BTreeMap<[usize; 3], i32> = BTreeMap::new();
+    for face in &faces {
+        let [a, b, c] = turned(*face);
+        *seen.entry([a, b.min(c), b.max(c)]).or_default() += if b < c { 1 } else { -1 };
+    }
+    let kept = seen.into_iter().filter(|(_, count)| *count != 0);
+    kept.map(|([a, b, c], count)| if count > 0 { [a, b, c] } else { [a, c, b] }).collect()
+}
+
+fn size(points: &[Point3<f64>], file: &str) -> Result<(), MeshError> {
+    let along = |axis: usize| {
+        let [low, high] = super::super::body::span(points.iter().map(|p| p[axis]));
+        high - low
+    };
+    let largest = (0..3).map(along).fold(0.0, f64::max);
+    let [low, high] = SIZES;
+    let hint = match () {
+        () if largest > high => "too large; is it in mm and --unit says in or m?",
+        () if largest < low => "too small; is it in metres (--unit m) or inches (--unit in)?",
+        () => return Ok(()),
+    };
+    Err(MeshError::Size { file: file.to_owned(), size_mm: largest / MM, hint })
+}
+
+/// Every edge is walked as often in one direction as in the other.
+fn closed(points: &[Point3<f64>], faces: &[[usize; 3]], file: &str) -> Result<(), MeshError> {
+    let mut walked: BTreeMap<[usize; 2], [u32; 2]> = BTreeMap::new();
+    for face in faces {
+        for i in 0..3 {
+            let (a, b) = (face[i], face[(i + 1) % 3]);
+            let edge = walked.entry([a.min(b), a.max(b)]).or_default();
+            edge[usize::from(a > b)] += 1;
+        }
+    }
+    let middle = |[a, b]: &[usize; 2]| {
+        let middle = nalgebra::center(&points[*a], &points[*b]) / MM;
+        [middle.x, middle.y, middle.z].map(|v| (v * 1e3).round() / 1e3)
+    };
+    let file = file.to_owned();
+    let of = |wrong: fn(&[u32; 2]) -> bool| -> Vec<_> {
+        walked.iter().filter(|(_, ways)| wrong(ways)).map(|(edge, _)| *edge).collect()
+    };
+    let open = of(|[forth, back]| (forth + back) % 2 == 1);
+    if let Some(first) = open.first() {
+        return Err(MeshError::Open { file, edges: open.len(), at_mm: middle(first) });
+    }
+    let turned = of(|[forth, back]| forth != back);
+    match turned.first() {
+        Some(first) => {
+            Err(MeshError::Orientation { file, edges: turned.len(), at_mm: middle(first) })
+        }
+        None => Ok(()),
+    }
+}

@@ -227,3 +227,44 @@ fn every_room_stands_in_the_flow() {
         .collect();
     assert_eq!(rooms, FLOW.iter().map(|room| (*room).to_owned()).collect());
 }
+
+/// Path below the package and text of the README and every page of `docs/`.
+fn pages() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let docs = std::fs::read_dir(root.join("docs")).unwrap();
+    let names = docs.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let pages = names.filter(|name| name.ends_with(".md")).map(|name| format!("docs/{name}"));
+    let named = pages.chain(["README.md".to_owned()]);
+    named.map(|name| (name.clone(), std::fs::read_to_string(root.join(&name)).unwrap())).collect()
+}
+
+/// The targets of the links to files in a page, without their anchors.
+fn links(text: &str) -> Vec<&str> {
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next());
+    let files = targets.filter(|target| !target.starts_with("http") && !target.starts_with('#'));
+    files.filter_map(|target| target.split('#').next()).collect()
+}
+
+#[test]
+fn every_link_of_the_documents_leads_to_a_file() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (name, text) in pages() {
+        let folder = root.join(&name);
+        let folder = folder.parent().unwrap();
+        for target in links(&text) {
+            assert!(folder.join(target).exists(), "{name} links to {target}, which is not there");
+        }
+    }
+    assert_eq!(links("a [b](c.md#d) [e](https://f) ![g](h.svg)"), ["c.md", "h.svg"]);
+}
+
+#[test]
+fn every_document_is_a_page_of_the_book() {
+    let pages = pages();
+    let (_, summary) = pages.iter().find(|(name, _)| name == "docs/SUMMARY.md").unwrap();
+    let listed = links(summary);
+    for (name, _) in &pages {
+        let page = name.strip_prefix("docs/").unwrap_or("SUMMARY.md");
+        assert!(page == "SUMMARY.md" || listed.contains(&page), "{name} is not in docs/SUMMARY.md");
+    }
+}

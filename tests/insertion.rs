@@ -295,11 +295,12 @@ fn a_picture_shows_each_phase_twice() {
 fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
     use finger_opt::finger::computed::{AtPad, Touching};
     use finger_opt::finger::model::{ComputedFingers, FingerSource};
+    use finger_opt::input::finger_file::FingerFile;
     use finger_opt::input::space::Design;
     use finger_opt::scene::{Body, Joint, Motion, Pose, Scene};
     use nalgebra::Vector3;
     let task = direct("rj45").task;
-    let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
+    let printed = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
     for touching in [Touching::Pad, Touching::PadAndRoof] {
         let fingers = ComputedFingers::new(printed.clone(), touching);
         let fingers = FingerSource::Computed(Box::new(fingers));

@@ -41,6 +41,8 @@ finger() {
             done
     } > "$folder/table.txt"
     "$optimize" finger --density 20 --direction 20 --svg "$folder/finray9.svg" > "$folder/finray9.txt"
+    "$optimize" validate --against bench --strides --out "$work/bench" > /dev/null
+    cp "$work/bench/against_bench.txt" "$folder/"
     record windows "$folder"/*
 }
 

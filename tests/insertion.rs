@@ -289,3 +289,57 @@ fn a_picture_shows_each_phase_twice() {
     assert_eq!(svg.matches("(x, z)").count(), trial.phases.len());
     assert!(svg.contains("a &lt;trial&gt;") && svg.contains("10 mm"));
 }
+
+/// Loaded at its pad's middle in the engine, a computed finger is as stiff as it was measured there.
+#[test]
+fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
+    use finger_opt::finger::computed::{AtPad, Touching};
+    use finger_opt::finger::model::{ComputedFingers, FingerSource};
+    use finger_opt::input::finger_file::FingerFile;
+    use finger_opt::input::space::Design;
+    use finger_opt::scene::{Body, Joint, Motion, Pose, Scene};
+    use nalgebra::Vector3;
+    let task = direct("rj45").task;
+    let printed = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
+    for touching in [Touching::Pad, Touching::PadAndRoof] {
+        let fingers = ComputedFingers::new(printed.clone(), touching);
+        let fingers = FingerSource::Computed(Box::new(fingers));
+        let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
+        let finger = fingers.make(at_pad, &Design::infill(20.0, 20.0), &task).unwrap().finger;
+        for side in [-1.0, 1.0] {
+            let mut scene = Scene::default();
+            let jaw = Body {
+                name: "jaw".into(),
+                motion: Motion::Fixed,
+                pose: Pose::identity(),
+                geoms: Vec::new(),
+            };
+            let inertia = finger_opt::finger::inertia(&finger, side);
+            let body = Body { name: "finger".into(), motion: Motion::Free(inertia), ..jaw.clone() };
+            let (jaw, body) = (scene.body(jaw), scene.body(body));
+            let centre = Pose::translation(0.0, finger.centre(side).y, finger.centre(side).z);
+            scene.joint(Joint {
+                name: "springs".into(),
+                parent: jaw,
+                child: body,
+                in_parent: centre,
+                in_child: centre,
+                springs: finger.mounted(side),
+            });
+            let pad = nalgebra::Point3::new(0.0, 0.0, finger.pad.middle(task.grip.shoulder()));
+            for (axis, stiffness) in [(1, 2.6e3), (2, 45e3)] {
+                let mut force = Vector3::zeros();
+                force[axis] = 0.1;
+                let mut world = Direct::default().world(&scene);
+                let arm = pad - finger.centre(side);
+                world.push(body, force, arm.cross(&force));
+                for _ in 0..4000 {
+                    world.step().unwrap();
+                }
+                let moved = (world.pose(body) * pad - pad)[axis];
+                let found = 0.1 / moved;
+                assert!((found / stiffness - 1.0).abs() < 1e-3, "{side} {axis}: {found}");
+            }
+        }
+    }
+}

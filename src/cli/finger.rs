@@ -21,8 +21,8 @@ const PICTURE_LOAD: [f64; 2] = [-5.0, 0.0];
 /// Compute the stiffness of a printed finger from its ribs.
 ///
 /// Plane stress on the exact profile: free stiffnesses at the pad's middle at the modulus of the
-/// finger file, before any measured correction. Nothing is fitted. Studies and trials do not use
-/// it yet: they take measured springs and the paper's remote centre.
+/// finger file, before any measured correction. Nothing is fitted. Trials and studies use
+/// it with --finger-model computed.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Infill density, percent

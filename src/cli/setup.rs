@@ -30,7 +30,7 @@ pub const DEFAULT_ENGINE: &str = "direct";
 /// Finger file used unless another is named.
 pub const DEFAULT_FINGER: &str = "finray9";
 /// What presses the pad of a computed finger; why is in `docs/finger.md`.
-pub const TOUCHING: Touching = Touching::Pad;
+pub const TOUCHING: Touching = Touching::PadAndRoof;
 /// Search space used unless another is named.
 pub const DEFAULT_SPACE: &str = "infill";
 

@@ -5,6 +5,7 @@ mod frame;
 mod geometry;
 mod solid;
 mod stiffness;
+mod touch;
 
 use super::geometry::Geometry;
 use super::infill::Design;

@@ -62,8 +62,7 @@ fn off_the_space(design: &Design, space: &Space) -> Option<String> {
     }
     let off = space.parameters().iter().find(|parameter| {
         let value = design.get(&parameter.key).unwrap_or(f64::NAN);
-        let level = ((value - parameter.low) / parameter.step).round() as u32;
-        level >= parameter.levels() || parameter.value(level) != value
+        parameter.value(parameter.nearest(value)) != value
     });
     off.map(|parameter| format!("{design}: {} is no value of the space", parameter.key))
 }

@@ -42,6 +42,10 @@ pub const HEADER: [&str; 5] = [
     "stiffness_compliance_n_per_mm",
 ];
 
+/// Most designs of a table: the time to leave each out in turn and fit all models anew grows
+/// with the fourth power of their number.
+pub const MOST: usize = 100;
+
 /// Stiffness of one printed finger, as measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement {
@@ -147,6 +151,15 @@ pub enum SurrogateError {
     /// No design at all.
     #[error("no design is measured: give at least one")]
     None,
+    /// So many designs that leaving each out in turn would take minutes.
+    #[error(
+        "{found} measured designs are too many: {MOST} at most; give the average of fingers that \
+         are nearly alike"
+    )]
+    TooMany {
+        /// Designs given.
+        found: usize,
+    },
     /// No model could be fitted.
     #[error(
         "no stiffness model in the {axis} direction can be fitted: \
@@ -229,7 +242,11 @@ pub(crate) fn check_all(measurements: &[Measurement]) -> Result<(), SurrogateErr
 }
 
 fn enough(measurements: &[Measurement]) -> Result<(), SurrogateError> {
-    if measurements.is_empty() { Err(SurrogateError::None) } else { Ok(()) }
+    match measurements.len() {
+        0 => Err(SurrogateError::None),
+        found if found > MOST => Err(SurrogateError::TooMany { found }),
+        _ => Ok(()),
+    }
 }
 
 fn row(record: &csv::StringRecord) -> Result<Measurement, (&'static str, String)> {

@@ -1,0 +1,137 @@
+#!/usr/bin/env bash
+# Hard tests of studies, with their figures: scripts/matrix.sh [kills] [threads] [disks] [cache]
+# Everything if nothing is named. KILLS (443 unless set) is how often a study is killed;
+# ENGINE=direct kills studies that simulate.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+cargo build -q --features fake-engine
+optimize=$PWD/${CARGO_TARGET_DIR:-target}/debug/optimize
+work=$(mktemp -d)
+trap 'umount "$work/disk" 2>/dev/null || true; rm -rf "$work"' EXIT
+cd "$work"
+common=(--task usb --engine "${ENGINE:-fake}" --quiet)
+
+body() { sed 's/,"datetime_start".*//' "$1/journal.jsonl"; }
+same() { cmp -s <(body "$1") <(body "$2"); }
+fail() { echo "matrix: $*" >&2; exit 1; }
+
+# Studies of several kinds, killed at random moments, resumed and killed again, their tails torn.
+kills() {
+    local wanted=${KILLS:-443} done=0 studies=0 kinds=(
+        "--budget 22" "--budget 14 --polish 6" "--budget 14 --optimizer sobol --objective range,peak-force")
+    export FINGER_OPT_FAKE_DELAY_US=100
+    for kind in "${!kinds[@]}"; do
+        # shellcheck disable=SC2086
+        "$optimize" "${common[@]}" ${kinds[kind]} --no-cache --out "whole-$kind" >/dev/null
+    done
+    while ((done < wanted)); do
+        local kind=$((studies % ${#kinds[@]})) name=killed-$studies
+        for _ in 1 2 3 4 5; do
+            # shellcheck disable=SC2086
+            "$optimize" "${common[@]}" ${kinds[kind]} --no-cache --threads 2 --out "$name" >/dev/null 2>&1 &
+            local id=$!
+            sleep "0.$(printf %03d $((RANDOM % 400)))"
+            if kill -KILL "$id" 2>/dev/null; then done=$((done + 1)); fi
+            wait "$id" 2>/dev/null || true
+            if [ -s "$name/journal.jsonl" ] && ((RANDOM % 3 == 0)); then
+                truncate -s "-$((RANDOM % 200))" "$name/journal.jsonl" 2>/dev/null || true
+            fi
+        done
+        # shellcheck disable=SC2086
+        "$optimize" "${common[@]}" ${kinds[kind]} --no-cache --out "$name" >/dev/null
+        same "$name" "whole-$kind" || fail "$name differs from whole-$kind"
+        rm -rf "$name"
+        studies=$((studies + 1))
+    done
+    echo "kills         $done kills of $studies studies of ${#kinds[@]} kinds: every journal the same"
+}
+
+# Optimizers, batches, objectives and threads: the journal does not depend on the threads.
+threads() {
+    local count=0
+    for optimizer in gp cma-es random sobol grid; do
+        for batch in 1 3 4 7; do
+            local reference=
+            for threads in 1 2 3 8; do
+                local name=threads-$optimizer-$batch-$threads
+                "$optimize" "${common[@]}" --budget 18 --optimizer "$optimizer" --batch "$batch" \
+                    --threads "$threads" --no-cache --out "$name" >/dev/null
+                if [ -n "$reference" ]; then same "$name" "$reference" || fail "$name"; else reference=$name; fi
+                count=$((count + 1))
+            done
+        done
+    done
+    echo "threads       $count combinations of optimizer, batch and threads: the same journals"
+}
+
+# Disks that are full, from no space to almost enough, and read-only ones. Every command that writes.
+disks() {
+    local count=0 code
+    "$optimize" "${common[@]}" --budget 22 --no-cache --out whole >/dev/null
+    mkdir -p disk
+    for kilobytes in 4 16 24 32 48 64 96 128 192 256; do
+        mount -t tmpfs -o size=${kilobytes}k none disk || { echo "disks: left out, mounting is not allowed" >&2; return; }
+        code=0
+        "$optimize" "${common[@]}" --budget 22 --no-cache --out disk/s >/dev/null 2>error || code=$?
+        case $code in
+        0) ;;
+        1) grep -q . error || fail "a full disk of $kilobytes KB without a word" ;;
+        *) fail "a full disk of $kilobytes KB ends with $code" ;;
+        esac
+        if [ -s disk/s/study.toml ]; then
+            mkdir moved && cp -r disk/s/. moved/ && rm -f moved/.optimize-*
+            "$optimize" resume --quiet moved >/dev/null
+            same moved whole || fail "what $kilobytes KB kept is no beginning"
+            rm -rf moved
+        fi
+        umount disk
+        count=$((count + 1))
+    done
+    mount -t tmpfs -o size=4k none disk
+    head -c 4096 /dev/zero >disk/full
+    for command in "stiffness --svg disk/f.svg" \
+        "trial --task usb --engine fake --density 20 --direction 10 --svg disk/f.svg" \
+        "export mjcf --task usb --density 20 --direction 10 --out disk/f.xml"; do
+        code=0
+        # shellcheck disable=SC2086
+        "$optimize" $command >/dev/null 2>error || code=$?
+        ((code <= 2)) && { ((code == 0)) || grep -q . error; } || fail "$command: $code"
+        count=$((count + 1))
+    done
+    mount -o remount,ro disk
+    code=0
+    "$optimize" "${common[@]}" --budget 3 --no-cache --out disk/s >/dev/null 2>error || code=$?
+    [ "$code" = 1 ] || fail "a read-only disk ends with $code"
+    umount disk
+    echo "disks         $((count + 1)) full or read-only disks: a message, exit code 1, nothing lost"
+}
+
+# Studies that share a cache, at the same time; then one whose entries were damaged.
+cache() {
+    "$optimize" "${common[@]}" --budget 22 --no-cache --out alone >/dev/null
+    local ids=()
+    for i in 1 2 3 4 5 6; do
+        "$optimize" "${common[@]}" --budget 22 --cache shared --threads "$i" --out "cached-$i" >/dev/null &
+        ids+=($!)
+    done
+    for id in "${ids[@]}"; do wait "$id"; done
+    for i in 1 2 3 4 5 6; do same "cached-$i" alone || fail "cached-$i"; done
+    local entries
+    entries=$(find shared -name '*.json' | wc -l)
+    find shared -name '*.json' | while read -r entry; do
+        case $((RANDOM % 4)) in
+        0) truncate -s "-$((RANDOM % 300 + 1))" "$entry" ;;
+        1) sed -i 's/"trials":\([0-9]\)/"trials":1\1/' "$entry" ;;
+        2) : >"$entry" ;;
+        3) rm "$entry" && mkfifo "$entry" ;;
+        esac
+    done
+    "$optimize" "${common[@]}" --budget 22 --cache shared --out damaged >/dev/null
+    same damaged alone || fail "a damaged cache changed a journal"
+    echo "cache         6 studies at once, then $entries damaged entries: the same journals"
+}
+
+for part in "${@:-kills threads disks cache}"; do
+    for name in $part; do "$name"; done
+done

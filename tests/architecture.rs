@@ -22,6 +22,7 @@ const FLOW: [&str; 18] = [
     "sensitivity",
     "study",
     "verify",
+    "calibration",
     "report",
     "cli",
 ];

@@ -4,6 +4,8 @@ mod ask_tell;
 mod bench;
 mod bench_optimizers;
 pub mod call;
+mod calibrate;
+mod calibrated;
 mod check;
 mod compare;
 mod cross_check;
@@ -128,6 +130,10 @@ enum Command {
     Sensitivity(sensitivity::Arguments),
     #[command(after_help = "Example: optimize validate --task ket8 --strides")]
     Validate(validate::Arguments),
+    #[command(
+        after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
+    )]
+    Calibrate(calibrate::Arguments),
     #[command(after_help = "Example: optimize measure check published")]
     Measure(measure::Arguments),
     #[command(after_help = "Example: optimize bench --repeats 8")]
@@ -204,6 +210,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::CrossCheck(arguments)) => cross_check::run(&arguments),
         Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
         Some(Command::Validate(arguments)) => validate::run(&arguments),
+        Some(Command::Calibrate(arguments)) => calibrate::run(&arguments),
         Some(Command::Measure(arguments)) => measure::run(&arguments),
         Some(Command::Bench(arguments)) => bench::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),

@@ -77,6 +77,12 @@ impl Bench<'_> {
         numbers.iter().zip(ranges_mm).map(finger).collect()
     }
 
+    /// The process's standard deviations in a sample.
+    pub fn hyperparameters(&self, state: &[f64]) -> Hyperparameters {
+        let own = &state[self.first..self.first + COORDINATES];
+        Hyperparameters::from_coordinates(own, self.error_mm / self.scale_mm)
+    }
+
     fn measured(&self) -> Vec<usize> {
         self.observations.iter().map(|observation| observation.finger).collect()
     }
@@ -87,8 +93,7 @@ impl Bench<'_> {
     }
 
     fn conditioned(&self, state: &[f64], fingers: Vec<Finger>) -> Option<At> {
-        let own = &state[self.first..self.first + COORDINATES];
-        let hyperparameters = Hyperparameters::from_coordinates(own, self.error_mm / self.scale_mm);
+        let hyperparameters = self.hyperparameters(state);
         let (mut known, mut bounds) = (Vec::new(), Vec::new());
         let (mut values, mut repeats) = (Vec::new(), Vec::new());
         for (observation, finger) in self.observations.iter().zip(fingers) {

@@ -2,6 +2,7 @@
 
 use super::bench::{At, Bench, Posterior};
 use super::process::{Finger, Hyperparameters, TERMS};
+use crate::stream::stream;
 use rand::{Rng, RngExt};
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use rayon::prelude::*;
@@ -14,6 +15,8 @@ const WAVES: usize = 64;
 const TRIES: usize = 20;
 /// Degrees of freedom of the Matern 5/2 kernel's spectrum, a Student t.
 const FREEDOM: f64 = 5.0;
+/// Draws per sample where there is no closed formula.
+const EACH: usize = 5;
 
 /// A range as predicted, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +47,9 @@ pub fn predict(
     numbers: &[usize],
     of: Of,
 ) -> Vec<Predicted> {
+    if bench.observations.iter().any(|observation| observation.at_least) {
+        return from_draws(bench, posterior, numbers, of);
+    }
     let states: Vec<(&Vec<f64>, At)> =
         posterior.samples.iter().filter_map(|state| Some((state, bench.at(state)?))).collect();
     let one = |number: &usize| {
@@ -68,6 +74,45 @@ pub fn predict(
         }
     };
     numbers.par_iter().map(one).collect()
+}
+
+/// The same from draws: ranges that are known from below leave no closed formula.
+fn from_draws(
+    bench: &Bench<'_>,
+    posterior: &Posterior,
+    numbers: &[usize],
+    of: Of,
+) -> Vec<Predicted> {
+    let mut random = stream(0, numbers.len() as u64, "predict from draws");
+    let mut drawn = draws(bench, posterior, numbers, EACH, &mut random);
+    if of == Of::Measurement {
+        let states = posterior.samples.iter().flat_map(|state| std::iter::repeat_n(state, EACH));
+        for (draw, state) in drawn.iter_mut().zip(states) {
+            let noise = bench.hyperparameters(state).noise * bench.scale_mm;
+            for value in draw {
+                let normal: f64 = random.sample(StandardNormal);
+                *value += noise * normal;
+            }
+        }
+    }
+    let simulated = |number: &usize| {
+        let one = |state: &Vec<f64>| bench.fingers(&[*number], state)[0].simulated * bench.scale_mm;
+        posterior.samples.iter().map(one).sum::<f64>() / posterior.samples.len().max(1) as f64
+    };
+    let one = |(i, number): (usize, &usize)| {
+        let mut values: Vec<f64> = drawn.iter().map(|draw| draw[i]).collect();
+        values.sort_by(f64::total_cmp);
+        let at =
+            |share: f64| values.get((share * values.len() as f64) as usize).copied().unwrap_or(0.0);
+        let tail = (1.0 - INTERVAL) / 2.0;
+        Predicted {
+            mean_mm: values.iter().sum::<f64>() / values.len().max(1) as f64,
+            low_mm: at(tail).max(0.0),
+            high_mm: at(1.0 - tail).max(0.0),
+            simulated_mm: simulated(number),
+        }
+    };
+    numbers.iter().enumerate().map(one).collect()
 }
 
 /// The value that a mixture of normal distributions stays below with this probability.

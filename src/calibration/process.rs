@@ -36,7 +36,7 @@ const PROCESS: (f64, f64) = (0.05, 0.7);
 /// The same of its length.
 const LENGTH: (f64, f64) = (1.5, 0.4);
 /// The same of the noise: two windows of one finger differ by some steps of 0.1 mm.
-const NOISE: (f64, f64) = (0.05, 0.5);
+const NOISE: (f64, f64) = (0.05, 0.7);
 
 /// Standard deviations in units of the task's scale.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -47,8 +47,6 @@ const THIN: usize = 4;
 
 /// Tasks with all that is needed to calibrate them.
 pub struct Prepared {
-    /// Tasks and files.
-    pub setup: Setup,
     /// The tasks' fingers, in order.
     pub subjects: Vec<Subject>,
     /// What each coordinate is.
@@ -102,7 +100,7 @@ impl CalibrationArguments {
                 SubjectError::Emulator(_) => Failure::input(error),
                 _ => Failure::usage(format!("{measurements}: {error}")),
             })?;
-        Ok(Prepared { setup, subjects, layout })
+        Ok(Prepared { subjects, layout })
     }
 
     /// The tasks' fingers and their parameters.

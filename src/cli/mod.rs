@@ -3,9 +3,9 @@
 mod ask_tell;
 mod bench;
 mod bench_optimizers;
-pub mod call;
 mod calibrate;
 mod calibrated;
+pub mod call;
 mod check;
 mod compare;
 mod cross_check;

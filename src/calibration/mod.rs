@@ -6,14 +6,17 @@
 //! 3. [`process`]: what remains between simulation and bench, as a process over the stiffness.
 //! 4. [`bench`], [`sampler`]: the posterior of parameters and process, given measurements.
 //! 5. [`mod@predict`], [`loo`]: ranges with intervals; each measured finger predicted without it.
+//! 6. [`next`], [`replay`]: which finger to print, and how soon the best is found so.
 
 pub mod bench;
 pub mod calibrate;
 pub mod emulator;
 pub mod loo;
+pub mod next;
 pub mod predict;
 pub mod prior;
 pub mod process;
+pub mod replay;
 pub mod sampler;
 pub mod simulation;
 pub mod subject;

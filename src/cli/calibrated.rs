@@ -8,11 +8,13 @@ use crate::calibration::prior::{Parameter, Priors};
 use crate::calibration::sampler::Effort;
 use crate::calibration::simulation::Simulation;
 use crate::calibration::subject::{Subject, SubjectError};
+use crate::evaluation::template::Impossible;
 use crate::evaluation::template::Template;
 use crate::input::experiments::Experiment;
 use crate::input::shipped::PRIORS;
 use crate::input::space::Design;
 use clap::Args;
+use rayon::prelude::*;
 use std::path::PathBuf;
 
 /// Folder of the cache unless another is named: that of the studies.
@@ -47,10 +49,26 @@ const THIN: usize = 4;
 
 /// Tasks with all that is needed to calibrate them.
 pub struct Prepared {
+    setup: Setup,
     /// The tasks' fingers, in order.
     pub subjects: Vec<Subject>,
     /// What each coordinate is.
     pub layout: Layout,
+    cache: Option<PathBuf>,
+}
+
+impl Prepared {
+    /// Ranges of a task's fingers with all as the files say, mm.
+    pub fn simulate(&self, task: usize, fingers: &[usize]) -> Result<Vec<f64>, Failure> {
+        let (evaluator, subject) = (&self.setup.evaluator, &self.subjects[task]);
+        let simulation =
+            Simulation::new(evaluator, &evaluator.templates[task], &[], self.cache.clone());
+        let range = |&finger: &usize| {
+            Ok(simulation.window(&subject.designs[finger], None)?.window.range_mm())
+        };
+        let ranges = fingers.par_iter().map(range).collect::<Result<_, Impossible>>();
+        ranges.map_err(Failure::input)
+    }
 }
 
 impl CalibrationArguments {
@@ -91,6 +109,7 @@ impl CalibrationArguments {
             .collect();
         let experiments = measure::read(measurements, &names)?;
         let priors = self.priors()?;
+        let cache = self.cache(&setup);
         let (subjects, layout) = self
             .subjects(&setup, &priors.parameters, &experiments, more, quiet)
             .map_err(|error| match error {
@@ -100,7 +119,7 @@ impl CalibrationArguments {
                 SubjectError::Emulator(_) => Failure::input(error),
                 _ => Failure::usage(format!("{measurements}: {error}")),
             })?;
-        Ok(Prepared { subjects, layout })
+        Ok(Prepared { setup, subjects, layout, cache })
     }
 
     /// The tasks' fingers and their parameters.

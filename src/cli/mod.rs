@@ -2,6 +2,7 @@
 
 mod ask_tell;
 mod bench;
+mod bench_next;
 mod bench_optimizers;
 mod calibrate;
 mod calibrated;
@@ -16,6 +17,7 @@ mod film;
 mod finger;
 mod manual;
 mod measure;
+mod next;
 mod progress;
 mod recommended;
 mod repeat;
@@ -134,6 +136,8 @@ enum Command {
         after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
     )]
     Calibrate(calibrate::Arguments),
+    #[command(after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2")]
+    Next(next::Arguments),
     #[command(after_help = "Example: optimize measure check published")]
     Measure(measure::Arguments),
     #[command(after_help = "Example: optimize bench --repeats 8")]
@@ -211,6 +215,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
         Some(Command::Validate(arguments)) => validate::run(&arguments),
         Some(Command::Calibrate(arguments)) => calibrate::run(&arguments),
+        Some(Command::Next(arguments)) => next::run(&arguments),
         Some(Command::Measure(arguments)) => measure::run(&arguments),
         Some(Command::Bench(arguments)) => bench::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),

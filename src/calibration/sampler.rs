@@ -51,14 +51,14 @@ pub fn sample(
                 state[c] = old;
             }
         }
-        if sweep < effort.warm_up && (sweep + 1) % BATCH == 0 {
+        if sweep < effort.warm_up && (sweep + 1).is_multiple_of(BATCH) {
             for (step, accepted) in step.iter_mut().zip(&mut accepted) {
                 let share = *accepted as f64 / BATCH as f64;
                 *step = (*step * libm::exp(1.5 * (share - ACCEPTED))).clamp(0.05, 4.0);
                 *accepted = 0;
             }
         }
-        if sweep >= effort.warm_up && (sweep - effort.warm_up + 1) % effort.thin == 0 {
+        if sweep >= effort.warm_up && (sweep - effort.warm_up + 1).is_multiple_of(effort.thin) {
             kept.push(state.clone());
         }
     }

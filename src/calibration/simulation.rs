@@ -112,7 +112,7 @@ impl<'a> Simulation<'a> {
                 set.0.insert(path.clone(), parameter.applied(own, value));
             }
         }
-        let stiffness = self.evaluator.predict(design);
+        let stiffness = self.evaluator.predict(design)?;
         let mut specimen = self.evaluator.specimen(self.template, &set, stiffness)?;
         let mut robot = self.evaluator.robot.clone();
         for (parameter, value) in values() {

@@ -102,13 +102,11 @@ impl Subject {
         more.iter().for_each(|design| {
             numbered(design.clone());
         });
-        let stiffness: Vec<[f64; 2]> = designs
-            .iter()
-            .map(|design| {
-                let predicted = evaluator.predict(design);
-                [1.0 / predicted.compliance.mean, predicted.assembly.mean]
-            })
-            .collect();
+        let stiffness = |design: &Design| {
+            let predicted = evaluator.predict(design).map_err(EmulatorError::from)?;
+            Ok([1.0 / predicted.compliance.mean, predicted.assembly.mean])
+        };
+        let stiffness = designs.iter().map(stiffness).collect::<Result<Vec<_>, SubjectError>>()?;
         let shares = designs.iter().map(|design| shares(space, design)).collect();
         let places = standardised(&stiffness, of_space);
         Ok(Subject { task, designs, of_space, emulator, experiments: measured, places, shares })

@@ -58,6 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         stiffness_data: None,
         engine: arguments.engine,
         finger_model: arguments.finger_model.clone(),
+        start: None,
         given: Vec::new(),
     };
     let prepared = arguments.calibration.prepare(&setup, "published", &[], arguments.json)?;

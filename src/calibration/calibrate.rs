@@ -5,7 +5,7 @@ use super::loo::{LeftOut, leave_one_out};
 use super::predict::{Of, Predicted, draws, predict};
 use super::prior::Parameter;
 use super::process::COORDINATES;
-use super::sampler::Effort;
+use super::sampler::Settings;
 use super::subject::Subject;
 use crate::stream::stream;
 
@@ -61,15 +61,6 @@ impl Layout {
         };
         subjects.iter().enumerate().map(bench).collect()
     }
-}
-
-/// How a calibration is computed.
-#[derive(Debug, Clone, Copy)]
-pub struct Settings {
-    /// How long is sampled.
-    pub effort: Effort,
-    /// Names the random streams.
-    pub seed: u64,
 }
 
 /// What a calibration found on one task.

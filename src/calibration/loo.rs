@@ -1,8 +1,8 @@
 //! Each measured finger predicted by a calibration that never saw it.
 
 use super::bench::{Bench, Posterior};
-use super::calibrate::Settings;
 use super::predict::{Of, Predicted, predict};
+use super::sampler::Settings;
 use crate::stream::stream;
 use crate::verify::compare::statistics::{mean, spearman};
 use rayon::prelude::*;

@@ -1,9 +1,9 @@
 //! Printing as advised, replayed on fingers whose ranges are known: how soon the best is found.
 
 use super::bench::{Bench, Observation, Posterior, Simulator};
-use super::calibrate::Settings;
 use super::next::{Question, advise};
 use super::process::COORDINATES;
+use super::sampler::Settings;
 use crate::stream::stream;
 use crate::verify::compare::statistics::mean;
 use rand::seq::SliceRandom;

@@ -15,6 +15,15 @@ pub struct Effort {
     pub thin: usize,
 }
 
+/// How a calibration is computed.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings {
+    /// How long is sampled.
+    pub effort: Effort,
+    /// Names the random streams.
+    pub seed: u64,
+}
+
 /// Sweeps after which the steps adapt.
 const BATCH: usize = 25;
 /// Share of accepted steps that is aimed at: the best for one coordinate.

@@ -5,9 +5,8 @@ use super::setup::{
     DEFAULT_ENGINE, DEFAULT_ROBOT, DEFAULT_SPACE, EngineKind, FingerModelArguments, SetupArguments,
 };
 use super::{Failure, print, print_json};
-use crate::calibration::calibrate::Settings;
 use crate::calibration::replay::{self, Replayed, TOLD};
-use crate::calibration::sampler::Effort;
+use crate::calibration::sampler::{Effort, Settings};
 use clap::Args;
 use serde_json::json;
 

@@ -2,10 +2,10 @@
 
 use super::setup::{Setup, SetupArguments, find};
 use super::{Failure, measure, say};
-use crate::calibration::calibrate::{Layout, Settings};
+use crate::calibration::calibrate::Layout;
 use crate::calibration::emulator::{Emulator, EmulatorError};
 use crate::calibration::prior::{Parameter, Priors};
-use crate::calibration::sampler::Effort;
+use crate::calibration::sampler::{Effort, Settings};
 use crate::calibration::simulation::Simulation;
 use crate::calibration::subject::{Subject, SubjectError};
 use crate::evaluation::template::Impossible;

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! input -> finger -> surrogate -> physics -> trial -> connector
-//!       -> evaluation -> optimizer -> study -> verify -> report -> cli
+//!       -> evaluation -> optimizer -> study -> verify -> calibration -> report -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -46,6 +46,8 @@ pub mod sensitivity;
 pub mod study;
 
 pub mod verify;
+
+pub mod calibration;
 
 pub mod report;
 

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The rooms, from the vocabulary up to the command line; a room may use those before it.
-const FLOW: [&str; 18] = [
+const FLOW: [&str; 19] = [
     "units",
     "files",
     "stream",
@@ -22,6 +22,7 @@ const FLOW: [&str; 18] = [
     "sensitivity",
     "study",
     "verify",
+    "calibration",
     "report",
     "cli",
 ];

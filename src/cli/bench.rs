@@ -1,8 +1,8 @@
 //! `optimize bench`: how fast this machine simulates.
 
-use super::bench_optimizers;
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
 use super::{Failure, print, print_json};
+use super::{bench_next, bench_optimizers};
 use crate::evaluation::tolerance::{self, Search};
 use crate::finger::Finger;
 use crate::input::robot::Robot;
@@ -48,6 +48,8 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Other {
     Optimizers(bench_optimizers::Arguments),
+    #[command(after_help = "Example: optimize bench next --task rj45")]
+    Next(Box<bench_next::Arguments>),
 }
 
 /// What one task took.
@@ -66,8 +68,10 @@ impl TaskSpeed {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(Other::Optimizers(arguments)) = &arguments.other {
-        return bench_optimizers::run(arguments);
+    match &arguments.other {
+        Some(Other::Optimizers(arguments)) => return bench_optimizers::run(arguments),
+        Some(Other::Next(arguments)) => return bench_next::run(arguments),
+        None => (),
     }
     let source = shipped::resolve("robot", ROBOTS, &arguments.robot).map_err(Failure::input)?;
     let robot = Robot::parse(&source.text, &source.file).map_err(Failure::input)?;

@@ -2,7 +2,10 @@
 
 mod ask_tell;
 mod bench;
+mod bench_next;
 mod bench_optimizers;
+mod calibrate;
+mod calibrated;
 pub mod call;
 mod check;
 mod compare;
@@ -14,6 +17,7 @@ mod film;
 mod finger;
 mod manual;
 mod measure;
+mod next;
 mod progress;
 mod recommended;
 mod repeat;
@@ -128,6 +132,12 @@ enum Command {
     Sensitivity(sensitivity::Arguments),
     #[command(after_help = "Example: optimize validate --task ket8 --strides")]
     Validate(validate::Arguments),
+    #[command(
+        after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
+    )]
+    Calibrate(calibrate::Arguments),
+    #[command(after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2")]
+    Next(next::Arguments),
     #[command(after_help = "Example: optimize measure check published")]
     Measure(measure::Arguments),
     #[command(after_help = "Example: optimize bench --repeats 8")]
@@ -204,6 +214,8 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::CrossCheck(arguments)) => cross_check::run(&arguments),
         Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
         Some(Command::Validate(arguments)) => validate::run(&arguments),
+        Some(Command::Calibrate(arguments)) => calibrate::run(&arguments),
+        Some(Command::Next(arguments)) => next::run(&arguments),
         Some(Command::Measure(arguments)) => measure::run(&arguments),
         Some(Command::Bench(arguments)) => bench::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),

@@ -53,6 +53,9 @@ pub const FINGERS: &[Shipped] = shipped! { "finray9": "fingers/finray9.toml" };
 /// Distributions of the errors under which a finger is to work.
 pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typical.toml" };
 
+/// Distributions of what nobody measured in a cell, for `calibrate`.
+pub const PRIORS: &[Shipped] = shipped! { "bench": "priors/bench.toml" };
+
 /// Measured stiffness of printed fingers.
 pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffness.csv" };
 

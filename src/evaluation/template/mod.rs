@@ -99,6 +99,13 @@ impl Template {
         keys
     }
 
+    /// The number that the task file has under a key, in the unit of the key.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        let mut table = self.table.clone();
+        let number = numbers(TASK, &mut table).into_iter().find(|(name, _)| name == key)?.1;
+        number.as_float().or_else(|| number.as_integer().map(|whole| whole as f64))
+    }
+
     /// The task, and the finger of this stiffness at its pad, with the values that the design
     /// gives; what it does not name stays as in the task file and as `fingers` makes it.
     pub fn apply(

@@ -24,7 +24,7 @@ mod search;
 mod trained;
 mod warp;
 
-pub use acquisition::{log_expected_improvement, log_expected_volume, log_h};
+pub use acquisition::{log_expected_improvement, log_expected_volume, log_h, log_normal_cdf};
 pub use fit::{FitEffort, fit};
 pub use kernel::Hyperparameters;
 pub use likelihood::{Posterior, log_posterior};

@@ -100,6 +100,11 @@ impl Gp {
         (self.mean_at(&k), self.variance_at(&k))
     }
 
+    /// Posterior mean of the function at a point.
+    pub fn mean(&self, x: &[f64]) -> f64 {
+        self.mean_at(&self.covariances(x))
+    }
+
     /// Takes the posterior mean at `x` for observed (kriging believer). The mean stays as it is,
     /// the variance falls. Nothing changes if `x` cannot be told from points already there.
     pub fn believe(&mut self, x: &[f64]) {

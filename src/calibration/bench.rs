@@ -1,0 +1,163 @@
+//! The benches of one or several tasks: simulated, measured, and what follows for the
+//! parameters and for every finger.
+
+use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
+use super::sampler::{Effort, sample};
+use crate::optimizer::gp::log_normal_cdf;
+use rand::Rng;
+use std::cell::RefCell;
+
+/// Simulated ranges as a function of the uncertain parameters.
+pub trait Simulator: Sync {
+    /// Ranges of these fingers, by their numbers, mm; `shares` are those of the priors, 0 to 1.
+    fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64>;
+}
+
+/// What is known of one finger's range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// Number of the finger.
+    pub finger: usize,
+    /// Measured range, mm.
+    pub range_mm: f64,
+    /// Whether the range is this or more.
+    pub at_least: bool,
+    /// Measurements that this is the mean of.
+    pub repeats: u32,
+}
+
+/// The bench of one task.
+#[derive(Clone)]
+pub struct Bench<'a> {
+    /// What simulates its fingers.
+    pub simulator: &'a dyn Simulator,
+    /// Standardised stiffness of each finger.
+    pub places: &'a [Place],
+    /// What was measured.
+    pub observations: Vec<Observation>,
+    /// mm to one unit of the process.
+    pub scale_mm: f64,
+    /// Error of the simulator's stand-in, mm: a difference that no parameter explains.
+    pub error_mm: f64,
+    /// Coordinates of a sample that are the simulator's parameters.
+    pub parameters: Vec<usize>,
+    /// Its first coordinate of the hyperparameters.
+    pub first: usize,
+}
+
+/// A bench at one sample of the posterior.
+pub struct At {
+    /// Conditioned on the ranges that are known.
+    pub conditioned: Conditioned,
+    /// Fingers whose range is this or more.
+    pub bounds: Vec<(Finger, f64)>,
+}
+
+/// The share of the prior below a standard normal coordinate.
+pub fn share(coordinate: f64) -> f64 {
+    0.5 * libm::erfc(-coordinate * std::f64::consts::FRAC_1_SQRT_2)
+}
+
+impl Bench<'_> {
+    /// Shares of the parameters' priors in a sample.
+    pub fn shares(&self, state: &[f64]) -> Vec<f64> {
+        self.parameters.iter().map(|&coordinate| share(state[coordinate])).collect()
+    }
+
+    /// Fingers as simulated at a sample.
+    pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {
+        self.simulated(numbers, self.simulator.ranges_mm(numbers, &self.shares(state)))
+    }
+
+    fn simulated(&self, numbers: &[usize], ranges_mm: Vec<f64>) -> Vec<Finger> {
+        let finger = |(&number, range): (&usize, f64)| Finger {
+            place: self.places[number],
+            simulated: range / self.scale_mm,
+        };
+        numbers.iter().zip(ranges_mm).map(finger).collect()
+    }
+
+    /// The process's standard deviations in a sample.
+    pub fn hyperparameters(&self, state: &[f64]) -> Hyperparameters {
+        let own = &state[self.first..self.first + COORDINATES];
+        Hyperparameters::from_coordinates(own, self.error_mm / self.scale_mm)
+    }
+
+    fn measured(&self) -> Vec<usize> {
+        self.observations.iter().map(|observation| observation.finger).collect()
+    }
+
+    /// The bench at a sample; `None` where the process cannot be computed.
+    pub fn at(&self, state: &[f64]) -> Option<At> {
+        self.conditioned(state, self.fingers(&self.measured(), state))
+    }
+
+    fn conditioned(&self, state: &[f64], fingers: Vec<Finger>) -> Option<At> {
+        let hyperparameters = self.hyperparameters(state);
+        let (mut known, mut bounds) = (Vec::new(), Vec::new());
+        let (mut values, mut repeats) = (Vec::new(), Vec::new());
+        for (observation, finger) in self.observations.iter().zip(fingers) {
+            let value = observation.range_mm / self.scale_mm;
+            if observation.at_least {
+                bounds.push((finger, value));
+            } else {
+                known.push(finger);
+                values.push(value);
+                repeats.push(f64::from(observation.repeats));
+            }
+        }
+        let conditioned = Conditioned::new(hyperparameters, known, &values, &repeats)?;
+        Some(At { conditioned, bounds })
+    }
+}
+
+impl At {
+    /// Logarithm of the likelihood of what was measured.
+    fn log_likelihood(&self) -> f64 {
+        let noise = self.conditioned.hyperparameters().noise;
+        let bound = |(finger, bound): &(Finger, f64)| {
+            let (mean, sd) = self.conditioned.predict(finger);
+            log_normal_cdf((mean - bound) / sd.hypot(noise))
+        };
+        self.conditioned.log_likelihood + self.bounds.iter().map(bound).sum::<f64>()
+    }
+}
+
+/// Samples of parameters and hyperparameters: standard normal coordinates.
+#[derive(Debug, Clone)]
+pub struct Posterior {
+    /// One vector of coordinates per sample.
+    pub samples: Vec<Vec<f64>>,
+}
+
+impl Posterior {
+    /// Samples over `dimension` coordinates, which the benches' tell what they are.
+    pub fn sampled(
+        benches: &[Bench<'_>],
+        dimension: usize,
+        effort: Effort,
+        random: &mut impl Rng,
+    ) -> Self {
+        let mut parts = vec![Vec::new(); dimension];
+        for (part, bench) in benches.iter().enumerate() {
+            let own = bench.first..bench.first + COORDINATES;
+            bench.parameters.iter().copied().chain(own).for_each(|c| parts[c].push(part));
+        }
+        // Most coordinates leave the simulated ranges as they were.
+        let known: Vec<RefCell<(Vec<f64>, Vec<f64>)>> =
+            benches.iter().map(|_| RefCell::default()).collect();
+        let log_likelihood = |part: usize, state: &[f64]| {
+            let bench = &benches[part];
+            let numbers = bench.measured();
+            let shares = bench.shares(state);
+            let mut known = known[part].borrow_mut();
+            if known.0 != shares || known.1.len() != numbers.len() {
+                let ranges = bench.simulator.ranges_mm(&numbers, &shares);
+                *known = (shares, ranges);
+            }
+            let fingers = bench.simulated(&numbers, known.1.clone());
+            bench.conditioned(state, fingers).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
+        };
+        Posterior { samples: sample(&parts, &log_likelihood, effort, random) }
+    }
+}

@@ -1,0 +1,184 @@
+//! The simulator as a function that is quick to ask: a Gaussian process over design and
+//! parameters, from a designed set of simulations (Sacks et al. 1989,
+//! doi:10.1214/ss/1177012413), its error measured on simulations that it has not seen.
+
+use super::simulation::Simulation;
+use crate::evaluation::template::Impossible;
+use crate::input::space::{Design, Space};
+use crate::optimizer::SobolSequence;
+use crate::optimizer::gp::{FitEffort, Gp, fit};
+use crate::outcome::FailureClass;
+use rayon::prelude::*;
+
+/// One simulation in this many is kept to measure the error.
+const FRESH: usize = 8;
+/// A window's ends stand on a grid of 0.1 mm: the standard deviation of its width's rounding.
+const ROUNDING_MM: f64 = 0.04;
+/// Evaluations of the likelihood per start of the fit.
+const EVALUATIONS: usize = 30;
+
+/// One simulated window.
+#[derive(Debug, Clone)]
+struct Run {
+    /// Shares of the space, then of the parameters' priors.
+    at: Vec<f64>,
+    range_mm: f64,
+    failures: [Option<FailureClass>; 2],
+}
+
+/// The simulator's stand-in on one task.
+pub struct Emulator {
+    process: Gp,
+    mean_mm: f64,
+    sd_mm: f64,
+    runs: Vec<Run>,
+    /// Simulations it was fitted to.
+    pub simulations: usize,
+    /// Simulations its error was measured on.
+    pub fresh: usize,
+    /// Root mean square of that error, mm.
+    pub error_mm: f64,
+}
+
+/// Why there is no emulator.
+#[derive(Debug, thiserror::Error)]
+pub enum EmulatorError {
+    /// A design or a value of a parameter cannot be simulated.
+    #[error(transparent)]
+    Impossible(#[from] Impossible),
+    /// No process goes through the simulations.
+    #[error("{task}: no process goes through the {simulations} simulations; ask for more")]
+    NoFit {
+        /// The task.
+        task: String,
+        /// How many there are.
+        simulations: usize,
+    },
+}
+
+impl Emulator {
+    /// From `count` simulations of the space and the parameters' priors, of which one in eight
+    /// measures the error; `seed` names the set.
+    ///
+    /// # Errors
+    /// If one of them cannot be simulated, or nothing can be fitted.
+    pub fn new(
+        simulation: &Simulation<'_>,
+        space: &Space,
+        task: &str,
+        count: usize,
+        seed: u64,
+    ) -> Result<Self, EmulatorError> {
+        let dimension = space.parameters().len() + simulation.parameters().len();
+        let points: Vec<Vec<f64>> =
+            SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
+        let run = |at: Vec<f64>| {
+            let (design, shares) = at.split_at(space.parameters().len());
+            let evaluation = simulation.window(&design_at(space, design), Some(shares))?;
+            let window = &evaluation.window;
+            let class = |end: Option<crate::outcome::Outcome>| {
+                end.and_then(crate::outcome::Outcome::failure)
+                    .and_then(|n| FailureClass::try_from(n).ok())
+            };
+            Ok(Run {
+                range_mm: window.range_mm(),
+                failures: [class(window.end_negative), class(window.end_positive)],
+                at,
+            })
+        };
+        let runs = points.into_par_iter().map(run).collect::<Result<Vec<Run>, Impossible>>()?;
+        let simulations = count - count / FRESH;
+        Emulator::fitted(runs, simulations)
+            .ok_or_else(|| EmulatorError::NoFit { task: task.to_owned(), simulations })
+    }
+
+    fn fitted(runs: Vec<Run>, simulations: usize) -> Option<Self> {
+        let (known, fresh) = runs.split_at(simulations.min(runs.len()));
+        let n = known.len() as f64;
+        let mean_mm = known.iter().map(|run| run.range_mm).sum::<f64>() / n;
+        let variance = known.iter().map(|run| (run.range_mm - mean_mm).powi(2)).sum::<f64>() / n;
+        let sd_mm = variance.sqrt().max(ROUNDING_MM);
+        let x: Vec<Vec<f64>> = known.iter().map(|run| run.at.clone()).collect();
+        let y: Vec<f64> = known.iter().map(|run| (run.range_mm - mean_mm) / sd_mm).collect();
+        let floor = (ROUNDING_MM / sd_mm).powi(2);
+        let effort = FitEffort { evaluations: EVALUATIONS, restarts: true };
+        let process = Gp::new(&x, &y, floor, fit(&x, &y, floor, None, effort))?;
+        let mut emulator = Emulator {
+            process,
+            mean_mm,
+            sd_mm,
+            simulations,
+            fresh: fresh.len(),
+            error_mm: 0.0,
+            runs: Vec::new(),
+        };
+        let square = |run: &Run| (emulator.range_mm(&run.at) - run.range_mm).powi(2);
+        let squares: f64 = fresh.iter().map(square).sum();
+        emulator.error_mm = (squares / (fresh.len().max(1)) as f64).sqrt().max(ROUNDING_MM);
+        emulator.runs = runs;
+        Some(emulator)
+    }
+
+    /// The simulated range at shares of the space and of the parameters' priors, mm.
+    pub fn range_mm(&self, at: &[f64]) -> f64 {
+        (self.mean_mm + self.sd_mm * self.process.mean(at)).max(0.0)
+    }
+
+    /// Mean range over the simulations, mm.
+    pub fn mean_mm(&self) -> f64 {
+        self.mean_mm
+    }
+
+    /// The failure class at each end that most of the `count` simulations nearest to a design
+    /// met, whatever the parameters were.
+    pub fn failures(&self, design: &[f64], count: usize) -> [Option<FailureClass>; 2] {
+        let distance =
+            |run: &Run| -> f64 { run.at.iter().zip(design).map(|(a, b)| (a - b).powi(2)).sum() };
+        let mut nearest: Vec<&Run> = self.runs.iter().collect();
+        nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        [0, 1].map(|end| most(nearest.iter().take(count).filter_map(|run| run.failures[end])))
+    }
+}
+
+/// The class that occurs most often, the lower of equals.
+pub(super) fn most(classes: impl Iterator<Item = FailureClass>) -> Option<FailureClass> {
+    let mut counts = [0_usize; 4];
+    classes.for_each(|class| counts[usize::from(class.number()) - 1] += 1);
+    let best = *counts.iter().max()?;
+    FailureClass::ALL
+        .into_iter()
+        .zip(counts)
+        .find(|(_, count)| *count == best && best > 0)
+        .map(|(class, _)| class)
+}
+
+/// The design at shares of a space.
+fn design_at(space: &Space, shares: &[f64]) -> Design {
+    let value = |(parameter, share): (&crate::input::space::Parameter, &f64)| {
+        (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
+    };
+    Design(space.parameters().iter().zip(shares).map(value).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_on_fresh_simulations_is_what_the_process_leaves() {
+        let range = |at: &[f64]| 5.0 + 2.0 * at[0] - 3.0 * at[1] * at[2];
+        let runs: Vec<Run> = SobolSequence::new(3, 0, 0, "test")
+            .take(60)
+            .map(|at| Run {
+                range_mm: range(&at),
+                failures: [Some(FailureClass::Jammed), None],
+                at,
+            })
+            .collect();
+        let emulator = Emulator::fitted(runs, 52).unwrap();
+        assert!(emulator.error_mm < 0.15, "{}", emulator.error_mm);
+        let at = [0.3, 0.6, 0.2];
+        assert!((emulator.range_mm(&at) - range(&at)).abs() < 0.3);
+        assert_eq!(emulator.failures(&at[..2], 5), [Some(FailureClass::Jammed), None]);
+    }
+}

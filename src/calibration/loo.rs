@@ -1,0 +1,89 @@
+//! Each measured finger predicted by a calibration that never saw it.
+
+use super::bench::{Bench, Posterior};
+use super::predict::{Of, Predicted, predict};
+use super::sampler::Settings;
+use crate::stream::stream;
+use crate::verify::compare::statistics::{mean, spearman};
+use rayon::prelude::*;
+
+/// A measured finger, predicted without it.
+#[derive(Debug, Clone, Copy)]
+pub struct LeftOut {
+    /// Number of the finger.
+    pub finger: usize,
+    /// Its measured range, mm: the mean, if it was measured several times.
+    pub measured_mm: f64,
+    /// The range predicted for one more measurement.
+    pub predicted: Predicted,
+}
+
+/// How well left-out fingers were predicted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// Fingers.
+    pub fingers: usize,
+    /// Mean of `|predicted - measured| / measured`, percent; `None` without fingers.
+    pub mean_deviation_percent: Option<f64>,
+    /// Rank correlation; `None` below 3 fingers or if one side does not vary.
+    pub spearman: Option<f64>,
+    /// Fingers whose measured range lies in its interval.
+    pub inside: usize,
+}
+
+impl LeftOut {
+    fn deviation_percent(&self) -> f64 {
+        100.0 * (self.predicted.mean_mm - self.measured_mm).abs() / self.measured_mm
+    }
+
+    /// Whether the interval holds what was measured.
+    pub fn inside(&self) -> bool {
+        (self.predicted.low_mm..=self.predicted.high_mm).contains(&self.measured_mm)
+    }
+}
+
+impl Accuracy {
+    /// Of these fingers. One that does not insert at all has no deviation in percent.
+    pub fn of(left_out: &[LeftOut]) -> Self {
+        let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
+        let deviations: Vec<f64> = wide.map(LeftOut::deviation_percent).collect();
+        let pairs: Vec<(f64, f64)> =
+            left_out.iter().map(|one| (one.predicted.mean_mm, one.measured_mm)).collect();
+        Accuracy {
+            fingers: left_out.len(),
+            mean_deviation_percent: mean(&deviations),
+            spearman: spearman(&pairs),
+            inside: left_out.iter().filter(|one| one.inside()).count(),
+        }
+    }
+
+    /// Share of the fingers inside their intervals, percent.
+    pub fn coverage_percent(&self) -> Option<f64> {
+        (self.fingers > 0).then(|| 100.0 * self.inside as f64 / self.fingers as f64)
+    }
+}
+
+/// Leaves out each finger with a measured range on one of the benches; the others stay whole.
+pub fn leave_one_out(
+    benches: &[Bench<'_>],
+    task: usize,
+    dimension: usize,
+    settings: &Settings,
+) -> Vec<LeftOut> {
+    let known = || benches[task].observations.iter().filter(|one| !one.at_least);
+    let mut fingers: Vec<usize> = known().map(|one| one.finger).collect();
+    fingers.sort_unstable();
+    fingers.dedup();
+    let one = |finger: usize| {
+        let of_finger: Vec<f64> =
+            known().filter(|one| one.finger == finger).map(|one| one.range_mm).collect();
+        let mut benches = benches.to_vec();
+        benches[task].observations.retain(|one| one.finger != finger);
+        let mut random = stream(settings.seed, finger as u64, "leave one out");
+        let posterior = Posterior::sampled(&benches, dimension, settings.effort, &mut random);
+        let predicted = predict(&benches[task], &posterior, &[finger], Of::Measurement);
+        let measured_mm = mean(&of_finger)?;
+        Some(LeftOut { finger, measured_mm, predicted: *predicted.first()? })
+    };
+    fingers.into_par_iter().filter_map(one).collect()
+}

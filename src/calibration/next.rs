@@ -1,0 +1,160 @@
+//! Which finger to print next: the one with the largest expected gain of the best known range.
+//!
+//! Over joint draws of the true ranges the gain is what a finger has more than the best measured
+//! one (expected improvement with an unknown incumbent; Jones et al. 1998,
+//! doi:10.1023/A:1008306431147). Of several prints each is chosen with those before it counted as
+//! known, draw by draw (Ginsbourger et al. 2010, the multi-points criterion).
+
+use super::bench::{Bench, Posterior};
+use super::predict::{INTERVAL, draws};
+use super::process::Place;
+use rand::Rng;
+
+/// One finger to print.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Print {
+    /// Number of the finger.
+    pub finger: usize,
+    /// Its expected range, mm.
+    pub expected_mm: f64,
+    /// Lower end of the interval of its range.
+    pub low_mm: f64,
+    /// Upper end.
+    pub high_mm: f64,
+    /// How much the best known range is expected to gain by this print and those before it, less
+    /// what those gain.
+    pub expected_gain_mm: f64,
+    /// Why, in one line.
+    pub reason: String,
+}
+
+/// What to do next.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Advice {
+    /// The prints, best first.
+    pub next: Vec<Print>,
+    /// Expected range of the best measured finger, mm; `None` if none was measured.
+    pub best_known_mm: Option<f64>,
+    /// Whether no finger is expected to gain as much as its print costs.
+    pub stop: bool,
+}
+
+/// What is asked.
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// Fingers that may be printed.
+    pub among: &'a [usize],
+    /// How many at a time.
+    pub count: usize,
+    /// Gain that a print must promise to be worth its cost, mm.
+    pub cost_mm: f64,
+    /// Joint draws per sample of the posterior.
+    pub draws: usize,
+}
+
+/// Which fingers to print, given what was measured.
+pub fn advise(
+    bench: &Bench<'_>,
+    posterior: &Posterior,
+    question: &Question<'_>,
+    random: &mut impl Rng,
+) -> Advice {
+    let mut measured: Vec<usize> = bench.observations.iter().map(|one| one.finger).collect();
+    measured.sort_unstable();
+    measured.dedup();
+    let new: Vec<usize> =
+        question.among.iter().copied().filter(|finger| !measured.contains(finger)).collect();
+    let all = [measured.clone(), new.clone()].concat();
+    let drawn = draws(bench, posterior, &all, question.draws, random);
+    let known = measured.len();
+    let count = drawn.len().max(1) as f64;
+    let mean = |column: usize| drawn.iter().map(|draw| draw[column]).sum::<f64>() / count;
+    // Without a measured finger there is nothing to lose.
+    let mut best: Vec<f64> =
+        drawn.iter().map(|draw| draw[..known].iter().copied().fold(0.0, f64::max)).collect();
+    let best_known_mm = (0..known).map(mean).reduce(f64::max);
+    let mut left: Vec<usize> = (known..all.len()).collect();
+    let mut next: Vec<Print> = Vec::new();
+    while next.len() < question.count && !left.is_empty() {
+        let gain = |column: usize| {
+            let more = drawn.iter().zip(&best).map(|(draw, best)| (draw[column] - best).max(0.0));
+            more.sum::<f64>() / count
+        };
+        let gains: Vec<f64> = left.iter().map(|&column| gain(column)).collect();
+        let first = (0..gains.len()).rev().max_by(|&a, &b| gains[a].total_cmp(&gains[b]));
+        let Some(at) = first else { break };
+        let (column, gain) = (left.remove(at), gains[at]);
+        let mut values: Vec<f64> = drawn.iter().map(|draw| draw[column]).collect();
+        values.sort_by(f64::total_cmp);
+        let tail = |share: f64| {
+            values.get((share * (count - 1.0)).round() as usize).copied().unwrap_or(0.0)
+        };
+        let (low_mm, high_mm) = (tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0));
+        let expected_mm = mean(column);
+        let tried: Vec<usize> =
+            measured.iter().copied().chain(next.iter().map(|print| print.finger)).collect();
+        let places = Places { own: bench.places[all[column]], tried: &tried, all: bench.places };
+        let reason = reason(&places, expected_mm, high_mm, best_known_mm);
+        best.iter_mut().zip(&drawn).for_each(|(best, draw)| *best = best.max(draw[column]));
+        next.push(Print {
+            finger: all[column],
+            expected_mm,
+            low_mm,
+            high_mm,
+            expected_gain_mm: gain,
+            reason,
+        });
+    }
+    let stop = next.first().is_none_or(|print| print.expected_gain_mm < question.cost_mm);
+    Advice { next, best_known_mm, stop }
+}
+
+/// Where a finger lies among those tried before.
+struct Places<'a> {
+    own: Place,
+    tried: &'a [usize],
+    all: &'a [Place],
+}
+
+/// A finger this far from all others, in standard deviations of the space, tells something new.
+const FAR: f64 = 0.7;
+
+fn reason(places: &Places<'_>, expected_mm: f64, high_mm: f64, best_mm: Option<f64>) -> String {
+    let Some(best_mm) = best_mm.filter(|_| !places.tried.is_empty()) else {
+        return match places.tried.is_empty() {
+            true => "the widest that the simulation expects".to_owned(),
+            false => format!(
+                "wide as simulated, and {}",
+                places.news().unwrap_or_else(|| "near the first".to_owned())
+            ),
+        };
+    };
+    let news = places.news();
+    match (expected_mm - best_mm, news) {
+        (gain, Some(news)) if gain > 0.0 => {
+            format!("expected {gain:.1} mm wider than the best measured, and {news}")
+        }
+        (gain, None) if gain > 0.0 => format!("expected {gain:.1} mm wider than the best measured"),
+        (_, Some(news)) => format!("{news}; may reach {high_mm:.1} mm"),
+        (_, None) => format!("may reach {high_mm:.1} mm, more than the best measured"),
+    }
+}
+
+impl Places<'_> {
+    /// What no finger tried before tells.
+    fn news(&self) -> Option<String> {
+        let difference = |axis: usize| {
+            let by = self.tried.iter().map(|&finger| self.own[axis] - self.all[finger][axis]);
+            by.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+        };
+        // The first axis is 1 / ky: more of it is softer.
+        let compliance = -difference(0);
+        let assembly = difference(1);
+        let (by, axis) = match compliance.abs() > assembly.abs() {
+            true => (compliance, "compliance"),
+            false => (assembly, "assembly"),
+        };
+        let way = if by > 0.0 { "stiffer" } else { "softer" };
+        (by.abs() > FAR).then(|| format!("tells soft from stiff in {axis} ({way} than any tried)"))
+    }
+}

@@ -1,0 +1,213 @@
+//! What a posterior says of fingers: means, intervals, joint draws.
+
+use super::bench::{At, Bench, Posterior};
+use super::process::{Finger, Hyperparameters, TERMS};
+use crate::stream::stream;
+use rand::{Rng, RngExt};
+use rand_distr::{ChiSquared, Distribution, StandardNormal};
+use rayon::prelude::*;
+
+/// Share of the truths that an interval is to hold.
+pub const INTERVAL: f64 = 0.8;
+/// Waves that make up a draw of the process.
+const WAVES: usize = 64;
+/// Draws tried until one keeps to the ranges that are known from below.
+const TRIES: usize = 20;
+/// Degrees of freedom of the Matern 5/2 kernel's spectrum, a Student t.
+const FREEDOM: f64 = 5.0;
+/// Draws per sample where there is no closed formula.
+const EACH: usize = 5;
+
+/// A range as predicted, mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Predicted {
+    /// Mean.
+    pub mean_mm: f64,
+    /// Lower end of the interval.
+    pub low_mm: f64,
+    /// Upper end of the interval.
+    pub high_mm: f64,
+    /// What the simulation alone gives, averaged over the posterior.
+    pub simulated_mm: f64,
+}
+
+/// What an interval is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Of {
+    /// The range that many measurements would give on average.
+    Truth,
+    /// The next measurement.
+    Measurement,
+}
+
+/// Predicts fingers, by their numbers.
+pub fn predict(
+    bench: &Bench<'_>,
+    posterior: &Posterior,
+    numbers: &[usize],
+    of: Of,
+) -> Vec<Predicted> {
+    if bench.observations.iter().any(|observation| observation.at_least) {
+        return from_draws(bench, posterior, numbers, of);
+    }
+    let states: Vec<(&Vec<f64>, At)> =
+        posterior.samples.iter().filter_map(|state| Some((state, bench.at(state)?))).collect();
+    let one = |number: &usize| {
+        let part = |(state, at): &(&Vec<f64>, At)| {
+            let finger = bench.fingers(&[*number], state)[0];
+            let (mean, sd) = at.conditioned.predict(&finger);
+            let noise = match of {
+                Of::Truth => 0.0,
+                Of::Measurement => at.conditioned.hyperparameters().noise,
+            };
+            [mean, sd.hypot(noise), finger.simulated].map(|value| value * bench.scale_mm)
+        };
+        let parts: Vec<[f64; 3]> = states.iter().map(part).collect();
+        let mean =
+            |i: usize| parts.iter().map(|part| part[i]).sum::<f64>() / parts.len().max(1) as f64;
+        let tail = (1.0 - INTERVAL) / 2.0;
+        Predicted {
+            mean_mm: mean(0).max(0.0),
+            low_mm: quantile(&parts, tail).max(0.0),
+            high_mm: quantile(&parts, 1.0 - tail).max(0.0),
+            simulated_mm: mean(2),
+        }
+    };
+    numbers.par_iter().map(one).collect()
+}
+
+/// The same from draws: ranges that are known from below leave no closed formula.
+fn from_draws(
+    bench: &Bench<'_>,
+    posterior: &Posterior,
+    numbers: &[usize],
+    of: Of,
+) -> Vec<Predicted> {
+    let mut random = stream(0, numbers.len() as u64, "predict from draws");
+    let mut drawn = draws(bench, posterior, numbers, EACH, &mut random);
+    if of == Of::Measurement {
+        let states = posterior.samples.iter().flat_map(|state| std::iter::repeat_n(state, EACH));
+        for (draw, state) in drawn.iter_mut().zip(states) {
+            let noise = bench.hyperparameters(state).noise * bench.scale_mm;
+            for value in draw {
+                let normal: f64 = random.sample(StandardNormal);
+                *value += noise * normal;
+            }
+        }
+    }
+    let simulated = |number: &usize| {
+        let one = |state: &Vec<f64>| bench.fingers(&[*number], state)[0].simulated * bench.scale_mm;
+        posterior.samples.iter().map(one).sum::<f64>() / posterior.samples.len().max(1) as f64
+    };
+    let one = |(i, number): (usize, &usize)| {
+        let mut values: Vec<f64> = drawn.iter().map(|draw| draw[i]).collect();
+        values.sort_by(f64::total_cmp);
+        let at =
+            |share: f64| values.get((share * values.len() as f64) as usize).copied().unwrap_or(0.0);
+        let tail = (1.0 - INTERVAL) / 2.0;
+        Predicted {
+            mean_mm: values.iter().sum::<f64>() / values.len().max(1) as f64,
+            low_mm: at(tail).max(0.0),
+            high_mm: at(1.0 - tail).max(0.0),
+            simulated_mm: simulated(number),
+        }
+    };
+    numbers.iter().enumerate().map(one).collect()
+}
+
+/// The value that a mixture of normal distributions stays below with this probability.
+fn quantile(parts: &[[f64; 3]], probability: f64) -> f64 {
+    let wide = |sign: f64| parts.iter().map(move |[mean, sd, _]| mean + sign * 8.0 * sd);
+    let mut low = wide(-1.0).fold(f64::INFINITY, f64::min);
+    let mut high = wide(1.0).fold(f64::NEG_INFINITY, f64::max);
+    for _ in 0..50 {
+        let middle = (low + high) / 2.0;
+        let below = |[mean, sd, _]: &[f64; 3]| super::bench::share((middle - mean) / sd.max(1e-9));
+        let share = parts.iter().map(below).sum::<f64>() / parts.len() as f64;
+        *(if share < probability { &mut low } else { &mut high }) = middle;
+    }
+    (low + high) / 2.0
+}
+
+/// Joint draws of the fingers' true ranges, mm, a vector each: as many for every sample.
+pub fn draws(
+    bench: &Bench<'_>,
+    posterior: &Posterior,
+    numbers: &[usize],
+    each: usize,
+    random: &mut impl Rng,
+) -> Vec<Vec<f64>> {
+    let mut all = Vec::new();
+    for state in &posterior.samples {
+        let Some(at) = bench.at(state) else { continue };
+        let fingers = bench.fingers(numbers, state);
+        let bounded: Vec<Finger> =
+            fingers.iter().copied().chain(at.bounds.iter().map(|b| b.0)).collect();
+        for _ in 0..each {
+            let mut drawn = draw(&at, &bounded, random);
+            for _ in 1..TRIES {
+                let kept =
+                    drawn[fingers.len()..].iter().zip(&at.bounds).all(|(value, b)| *value >= b.1);
+                if kept {
+                    break;
+                }
+                drawn = draw(&at, &bounded, random);
+            }
+            drawn.truncate(fingers.len());
+            all.push(drawn.into_iter().map(|value| (value * bench.scale_mm).max(0.0)).collect());
+        }
+    }
+    all
+}
+
+/// One draw given the measurements: one of the prior, moved to them.
+fn draw(at: &At, fingers: &[Finger], random: &mut impl Rng) -> Vec<f64> {
+    let hyperparameters = at.conditioned.hyperparameters();
+    let prior = Departure::drawn(hyperparameters, random);
+    let measured = at.conditioned.fingers().iter().zip(at.conditioned.noises());
+    let known: Vec<f64> = measured
+        .map(|(finger, noise)| {
+            let normal: f64 = random.sample(StandardNormal);
+            prior.at(finger) + noise * normal
+        })
+        .collect();
+    let prior: Vec<f64> = fingers.iter().map(|finger| prior.at(finger)).collect();
+    at.conditioned.update(fingers, &prior, &known)
+}
+
+/// A draw of the departure from the simulation: trends, and waves whose numbers are drawn from
+/// the kernel's spectrum (Rahimi and Recht 2007, Random features for large-scale kernel machines).
+struct Departure {
+    terms: [f64; TERMS],
+    amplitude: f64,
+    /// Wave number along each axis, and phase.
+    waves: Vec<[f64; 3]>,
+}
+
+impl Departure {
+    fn drawn(hyperparameters: &Hyperparameters, random: &mut impl Rng) -> Self {
+        let terms = hyperparameters.terms.map(|sd| {
+            let normal: f64 = random.sample(StandardNormal);
+            sd * normal
+        });
+        let chi = ChiSquared::new(FREEDOM).ok();
+        let mut wave = || {
+            let [a, b]: [f64; 2] = std::array::from_fn(|_| random.sample(StandardNormal));
+            let stretch = chi.map_or(1.0, |chi| chi.sample(random) / FREEDOM).sqrt();
+            let length = hyperparameters.length * stretch;
+            [a / length, b / length, random.random::<f64>() * std::f64::consts::TAU]
+        };
+        Departure {
+            terms,
+            amplitude: hyperparameters.process * (2.0 / WAVES as f64).sqrt(),
+            waves: (0..WAVES).map(|_| wave()).collect(),
+        }
+    }
+
+    fn at(&self, finger: &Finger) -> f64 {
+        let [x, y] = finger.place;
+        let linear: f64 = self.terms.iter().zip(finger.terms()).map(|(a, b)| a * b).sum();
+        let wave = |[a, b, phase]: &[f64; 3]| libm::cos(a * x + b * y + phase);
+        linear + self.amplitude * self.waves.iter().map(wave).sum::<f64>()
+    }
+}

@@ -1,0 +1,208 @@
+//! What nobody measured in a cell, and within which bounds it lies: `priors/bench.toml`.
+
+use crate::input::{Check, InputError, read};
+use serde::{Deserialize, Serialize};
+
+/// A checked file of priors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Priors {
+    /// Name, as used on the command line.
+    pub name: String,
+    /// One line for lists.
+    pub description: String,
+    /// The uncertain numbers.
+    pub parameters: Vec<Parameter>,
+}
+
+/// One uncertain number, drawn evenly between its bounds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parameter {
+    /// What it is called.
+    pub name: String,
+    /// What it changes.
+    pub sets: Target,
+    /// How.
+    #[serde(rename = "as")]
+    pub way: Way,
+    /// Of what it is drawn evenly.
+    pub scale: Scale,
+    /// Lower bound.
+    pub low: f64,
+    /// Upper bound.
+    pub high: f64,
+    /// Whether all tasks share one value.
+    pub shared: bool,
+    /// Where the bounds come from.
+    pub source: String,
+}
+
+/// What a parameter changes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Target {
+    /// A number of the task file, by its path.
+    Task(String),
+    /// The width of the socket's opening, mm.
+    Clearance,
+    /// Compliance and assembly stiffness of the finger.
+    Stiffness,
+    /// Tilting stiffness of the finger.
+    Tilting,
+    /// Distance of the finger's remote centre.
+    Centre,
+    /// All stiffnesses of a robot that is a soft flange.
+    Flange,
+}
+
+/// The targets that are no path in a task file.
+const NAMED: [(&str, Target); 5] = [
+    ("task.clearance_mm", Target::Clearance),
+    ("finger.stiffness", Target::Stiffness),
+    ("finger.rotation_x_nm_per_rad", Target::Tilting),
+    ("finger.rcc_mm", Target::Centre),
+    ("robot.stiffness_n_per_mm", Target::Flange),
+];
+
+/// How a parameter changes a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Way {
+    /// It multiplies it.
+    Factor,
+    /// It is added to it.
+    Shift,
+}
+
+/// What is drawn evenly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scale {
+    /// The parameter.
+    Linear,
+    /// Its logarithm.
+    Log,
+}
+
+impl TryFrom<String> for Target {
+    type Error = String;
+    fn try_from(name: String) -> Result<Self, String> {
+        if let Some((_, target)) = NAMED.iter().find(|(known, _)| *known == name) {
+            return Ok(target.clone());
+        }
+        if name.starts_with("task.") {
+            return Ok(Target::Task(name));
+        }
+        let known = NAMED.map(|(name, _)| name);
+        Err(format!(
+            "`{name}` sets nothing; there are {}, and paths in a task file",
+            known.join(", ")
+        ))
+    }
+}
+
+impl From<Target> for String {
+    fn from(target: Target) -> String {
+        match target {
+            Target::Task(path) => path,
+            other => NAMED
+                .iter()
+                .find(|(_, named)| *named == other)
+                .map_or("", |(name, _)| name)
+                .to_owned(),
+        }
+    }
+}
+
+impl Parameter {
+    /// The value that this share of the prior lies below; `share` in 0 to 1.
+    pub fn at(&self, share: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => self.low + share * (self.high - self.low),
+            Scale::Log => self.low * libm::exp(share * libm::log(self.high / self.low)),
+        }
+    }
+
+    /// A number under this value of the parameter.
+    pub fn applied(&self, number: f64, value: f64) -> f64 {
+        match self.way {
+            Way::Factor => number * value,
+            Way::Shift => number + value,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawPriors {
+    name: String,
+    description: String,
+    parameter: Vec<Parameter>,
+}
+
+impl Priors {
+    /// Reads and checks priors; `file` is named in errors.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let raw: RawPriors = read(text, file)?;
+        let check = Check { file };
+        for (i, parameter) in raw.parameter.iter().enumerate() {
+            let Parameter { name, low, high, scale, way, .. } = parameter;
+            check.finite(name, *low)?;
+            check.finite(name, *high)?;
+            if low >= high {
+                return check.fail(name, "low must be below high");
+            }
+            if (*scale == Scale::Log || *way == Way::Factor) && *low <= 0.0 {
+                return check.fail(name, "low must be above 0: a factor, or a logarithm");
+            }
+            if parameter.source.trim().is_empty() {
+                return check.fail(name, "source is empty; say where the bounds come from");
+            }
+            if raw.parameter[..i]
+                .iter()
+                .any(|other| other.name == *name || other.sets == parameter.sets)
+            {
+                return check
+                    .fail(name, "is given twice; each name and each number may stand once");
+            }
+        }
+        Ok(Priors { name: raw.name, description: raw.description, parameters: raw.parameter })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::shipped::PRIORS;
+
+    #[test]
+    fn every_shipped_row_has_bounds_and_a_source() {
+        let file = PRIORS[0];
+        let priors = Priors::parse(file.text, file.file).unwrap();
+        assert!(priors.parameters.len() >= 8);
+        for parameter in &priors.parameters {
+            assert!((parameter.at(0.0) - parameter.low).abs() < 1e-12, "{}", parameter.name);
+            assert!((parameter.at(1.0) / parameter.high - 1.0).abs() < 1e-12, "{}", parameter.name);
+        }
+        let friction = &priors.parameters[0];
+        assert!((friction.applied(0.2, friction.at(0.5)) - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn each_bad_row_is_named() {
+        let good = PRIORS[0].text;
+        for (from, to, word) in [
+            ("low = 0.5", "low = 5.0", "below high"),
+            ("low = 0.5", "low = -0.5", "above 0"),
+            ("sets = \"task.friction.plug_socket\"", "sets = \"friction\"", "sets nothing"),
+            ("name = \"friction pad-plug\"", "name = \"friction plug-socket\"", "twice"),
+            ("scale = \"log\"", "scale = \"logg\"", "logg"),
+        ] {
+            let text = good.replacen(from, to, 1);
+            let error = Priors::parse(&text, "p.toml").unwrap_err().to_string();
+            assert!(error.contains(word) && error.contains("p.toml"), "{error}");
+        }
+        let text = good.replace("source = \"not", "source = \" \" # ");
+        assert!(Priors::parse(&text, "p").unwrap_err().to_string().contains("source is empty"));
+    }
+}

@@ -1,0 +1,183 @@
+//! What a bench measures beside what is simulated: trends, a Gaussian process over the
+//! stiffness, and noise (Kennedy and O'Hagan 2001, doi:10.1111/1467-9868.00294).
+//!
+//! In units of the task's scale, the mean simulated range:
+//!
+//! ```text
+//! y = 1 + a + (1 + r) (s(theta) - 1) + b1 / ky + b2 kz + d(ky, kz) + noise
+//! ```
+//!
+//! `s` is the simulated range; `a` an offset common to all fingers; `r` says how much of the
+//! simulated differences is true (Kennedy and O'Hagan's regression parameter is `1 + r`); the
+//! stiffnesses are standardised over the space. A window widens by the deflection that a contact
+//! force makes, which is linear in `1 / ky`, and by the force that a preload makes, which is linear
+//! in `kz`. Offset, `r`, `b1` and `b2` are normal about 0 and integrated out; `d` is a Matern 5/2
+//! process.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// A finger's place: its standardised `1 / ky` and `kz`.
+pub type Place = [f64; 2];
+
+/// Linear terms: offset, share of the simulated differences, `1 / ky`, `kz`.
+pub const TERMS: usize = 4;
+
+/// Coordinates of the sampler that make the hyperparameters.
+pub const COORDINATES: usize = 5;
+
+/// Standard deviation of the offset: how far simulated and measured windows differ on the whole.
+const OFFSET_SD: f64 = 0.5;
+/// Standard deviation of `r`: a simulation may also say nothing, or the contrary.
+const SHARE_SD: f64 = 1.0;
+/// Median and logarithmic standard deviation of the standard deviation of a trend.
+const TREND: (f64, f64) = (0.1, 1.0);
+/// The same of the process.
+const PROCESS: (f64, f64) = (0.05, 0.7);
+/// The same of its length.
+const LENGTH: (f64, f64) = (1.5, 0.4);
+/// The same of the noise: two windows of one finger differ by some steps of 0.1 mm.
+const NOISE: (f64, f64) = (0.05, 0.7);
+
+/// Standard deviations in units of the task's scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hyperparameters {
+    /// Of each linear term.
+    pub terms: [f64; TERMS],
+    /// Of the process.
+    pub process: f64,
+    /// Length of the process, in standard deviations of the stiffness.
+    pub length: f64,
+    /// Of one measurement.
+    pub noise: f64,
+}
+
+impl Hyperparameters {
+    /// From standard normal coordinates; `emulator` is the simulation's own error.
+    pub fn from_coordinates(z: &[f64], emulator: f64) -> Self {
+        let at = |i: usize, (median, sd): (f64, f64)| median * libm::exp(sd * z[i]);
+        Hyperparameters {
+            terms: [OFFSET_SD, SHARE_SD, at(0, TREND), at(1, TREND)],
+            process: at(2, PROCESS).hypot(emulator),
+            length: at(3, LENGTH),
+            noise: at(4, NOISE),
+        }
+    }
+
+    fn kernel(&self, a: &Place, b: &Place) -> f64 {
+        let r2 = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
+        let s = (5.0 * r2).sqrt() / self.length;
+        self.process.powi(2) * (1.0 + s + s * s / 3.0) * libm::exp(-s)
+    }
+
+    /// Prior covariance of two fingers.
+    pub fn covariance(&self, a: &Finger, b: &Finger) -> f64 {
+        let (x, y) = (a.terms(), b.terms());
+        let linear: f64 = (0..TERMS).map(|i| self.terms[i].powi(2) * x[i] * y[i]).sum();
+        linear + self.kernel(&a.place, &b.place)
+    }
+}
+
+/// A finger as simulated, in units of the task's scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finger {
+    /// Its stiffness.
+    pub place: Place,
+    /// Its simulated range.
+    pub simulated: f64,
+}
+
+impl Finger {
+    /// What each linear term multiplies.
+    pub fn terms(&self) -> [f64; TERMS] {
+        [1.0, self.simulated - 1.0, self.place[0], self.place[1]]
+    }
+}
+
+/// The bench, conditioned on its measurements.
+#[derive(Debug, Clone)]
+pub struct Conditioned {
+    hyperparameters: Hyperparameters,
+    fingers: Vec<Finger>,
+    factor: Cholesky<f64, Dyn>,
+    weights: DVector<f64>,
+    /// Standard deviation of each measured value's noise.
+    noises: Vec<f64>,
+    /// Logarithm of the marginal likelihood.
+    pub log_likelihood: f64,
+}
+
+impl Conditioned {
+    /// On the `measured` values of `fingers`, each the mean of `repeats`; `None` if their
+    /// covariance is not positive definite.
+    pub fn new(
+        hyperparameters: Hyperparameters,
+        fingers: Vec<Finger>,
+        measured: &[f64],
+        repeats: &[f64],
+    ) -> Option<Self> {
+        let n = fingers.len();
+        let noises: Vec<f64> = repeats.iter().map(|n| hyperparameters.noise / n.sqrt()).collect();
+        let mut covariance = DMatrix::zeros(n, n);
+        for j in 0..n {
+            for i in j..n {
+                covariance[(i, j)] = hyperparameters.covariance(&fingers[i], &fingers[j]);
+            }
+            covariance[(j, j)] += noises[j].powi(2);
+        }
+        let factor = Cholesky::new(covariance)?;
+        let residual =
+            DVector::from_iterator(n, measured.iter().zip(&fingers).map(|(y, f)| y - f.simulated));
+        let weights = factor.solve(&residual);
+        let determinant: f64 =
+            factor.l_dirty().diagonal().iter().map(|pivot| 2.0 * libm::log(*pivot)).sum();
+        let log_likelihood = -0.5 * (residual.dot(&weights) + determinant);
+        log_likelihood.is_finite().then_some(Conditioned {
+            hyperparameters,
+            fingers,
+            factor,
+            weights,
+            noises,
+            log_likelihood,
+        })
+    }
+
+    fn towards(&self, finger: &Finger) -> DVector<f64> {
+        let to = |known: &Finger| self.hyperparameters.covariance(known, finger);
+        DVector::from_iterator(self.fingers.len(), self.fingers.iter().map(to))
+    }
+
+    /// Mean and standard deviation of what the bench would give on average.
+    pub fn predict(&self, finger: &Finger) -> (f64, f64) {
+        let k = self.towards(finger);
+        let variance =
+            self.hyperparameters.covariance(finger, finger) - k.dot(&self.factor.solve(&k));
+        (finger.simulated + k.dot(&self.weights), variance.max(0.0).sqrt())
+    }
+
+    /// The values at `fingers` that a draw of the prior becomes under the measurements
+    /// (Matheron's rule; Wilson et al. 2020, arXiv 2002.09309); `prior` holds the draw's departure
+    /// from the simulation at `fingers`, `known` at the measured ones, with their noise.
+    pub fn update(&self, fingers: &[Finger], prior: &[f64], known: &[f64]) -> Vec<f64> {
+        let known = DVector::from_column_slice(known);
+        let weights = &self.weights - self.factor.solve(&known);
+        let value = |(finger, prior): (&Finger, &f64)| {
+            finger.simulated + prior + self.towards(finger).dot(&weights)
+        };
+        fingers.iter().zip(prior).map(value).collect()
+    }
+
+    /// The hyperparameters.
+    pub fn hyperparameters(&self) -> &Hyperparameters {
+        &self.hyperparameters
+    }
+
+    /// Standard deviation of the noise of each measured finger.
+    pub fn noises(&self) -> &[f64] {
+        &self.noises
+    }
+
+    /// The measured fingers.
+    pub fn fingers(&self) -> &[Finger] {
+        &self.fingers
+    }
+}

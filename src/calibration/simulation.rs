@@ -1,0 +1,147 @@
+//! Simulated windows under values of what nobody measured.
+
+use super::prior::{Parameter, Target};
+use crate::evaluation::Evaluation;
+use crate::evaluation::evaluator::{Evaluator, Specimen};
+use crate::evaluation::robustness::Plan;
+use crate::evaluation::template::{Impossible, Template};
+use crate::evaluation::tolerance::{self, Search};
+use crate::finger::Finger;
+use crate::input::robot::{Drive, Robot};
+use crate::input::space::Design;
+use crate::outcome::Outcome;
+use crate::study::Cache;
+use crate::trial::Conditions;
+use crate::units::MM;
+use std::path::PathBuf;
+
+/// Starts that are tried in turn where the task's own does not insert, mm from it: a person
+/// teaches the start where it inserts.
+const TAUGHT_MM: [f64; 5] = [0.0, 1.0, -1.0, 2.0, -2.0];
+
+/// Simulates fingers on one task.
+pub struct Simulation<'a> {
+    evaluator: &'a Evaluator,
+    template: &'a Template,
+    parameters: Vec<&'a Parameter>,
+    /// Where windows are kept, if they are.
+    cache: Option<PathBuf>,
+}
+
+impl<'a> Simulation<'a> {
+    /// With those of the parameters that this task and robot have.
+    pub fn new(
+        evaluator: &'a Evaluator,
+        template: &'a Template,
+        parameters: &'a [Parameter],
+        cache: Option<PathBuf>,
+    ) -> Self {
+        let soft = matches!(evaluator.robot.drive, Drive::Servo(_));
+        let has = |parameter: &&Parameter| match &parameter.sets {
+            Target::Task(path) => template.number(path).is_some(),
+            Target::Flange => soft,
+            Target::Clearance | Target::Stiffness | Target::Tilting | Target::Centre => true,
+        };
+        let parameters = parameters.iter().filter(has).collect();
+        Simulation { evaluator, template, parameters, cache }
+    }
+
+    /// The parameters that the task and the robot have, in order.
+    pub fn parameters(&self) -> &[&'a Parameter] {
+        &self.parameters
+    }
+
+    /// The window of a design with each parameter at this share of its prior; `None` for the
+    /// parameters leaves everything as in the files.
+    ///
+    /// # Errors
+    /// If the design cannot be simulated.
+    pub fn window(
+        &self,
+        design: &Design,
+        shares: Option<&[f64]>,
+    ) -> Result<Evaluation, Impossible> {
+        let (specimen, robot) = self.specimen(design, shares)?;
+        let mut last = None;
+        for shift in TAUGHT_MM {
+            let mut specimen = specimen.clone();
+            specimen.task.strategy.start[1] += shift * MM;
+            let evaluation = self.measure(&specimen, &robot)?;
+            let inserts = evaluation.window.nominal == Outcome::Inserted;
+            last = last.filter(|_| !inserts).or(Some(evaluation));
+            if inserts {
+                break;
+            }
+        }
+        // There is one: the first start is always tried.
+        match last {
+            Some(evaluation) => Ok(evaluation),
+            None => self.measure(&specimen, &robot),
+        }
+    }
+
+    fn measure(&self, specimen: &Specimen, robot: &Robot) -> Result<Evaluation, Impossible> {
+        let engine = self.evaluator.engine;
+        let cache = self.cache.as_ref().map(|dir| Cache::new(dir, robot, &engine.record()));
+        let search = Search::default();
+        let keep =
+            cache.as_ref().map(|cache| (cache, cache.key(&(specimen, search, &Plan::WINDOW))));
+        if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
+            return Ok(found);
+        }
+        let rig = engine.rig(&specimen.task, robot, &specimen.finger, 1.0)?;
+        let evaluation = tolerance::evaluate(&*rig, &specimen.finger, search);
+        if let Some((cache, key)) = keep {
+            cache.put(&key, &evaluation);
+        }
+        Ok(evaluation)
+    }
+
+    fn specimen(
+        &self,
+        design: &Design,
+        shares: Option<&[f64]>,
+    ) -> Result<(Specimen, Robot), Impossible> {
+        let shares = shares.unwrap_or_default();
+        let values = || self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
+        let mut set = design.clone();
+        for (parameter, value) in values() {
+            if let Target::Task(path) = &parameter.sets
+                && let Some(own) = design.get(path).or_else(|| self.template.number(path))
+            {
+                set.0.insert(path.clone(), parameter.applied(own, value));
+            }
+        }
+        let stiffness = self.evaluator.predict(design)?;
+        let mut specimen = self.evaluator.specimen(self.template, &set, stiffness)?;
+        let mut robot = self.evaluator.robot.clone();
+        for (parameter, value) in values() {
+            change(parameter, value, &mut specimen, &mut robot);
+        }
+        Ok((specimen, robot))
+    }
+}
+
+/// Changes what a parameter sets beside the numbers of the task file.
+fn change(parameter: &Parameter, value: f64, specimen: &mut Specimen, robot: &mut Robot) {
+    let Finger { compliance, assembly, rotation, rcc, .. } = &mut specimen.finger;
+    match parameter.sets {
+        Target::Task(_) => (),
+        Target::Clearance => {
+            let clearance = parameter.applied(0.0, value) * MM;
+            specimen.task = Conditions { clearance, ..Conditions::NOMINAL }.task(&specimen.task);
+        }
+        Target::Stiffness => {
+            *compliance = parameter.applied(*compliance, value);
+            *assembly = parameter.applied(*assembly, value);
+        }
+        Target::Tilting => rotation[0] = parameter.applied(rotation[0], value),
+        Target::Centre => *rcc = parameter.applied(*rcc / MM, value) * MM,
+        Target::Flange => {
+            if let Drive::Servo(servo) = &mut robot.drive {
+                let all = servo.stiffness.iter_mut().chain(&mut servo.rotational_stiffness);
+                all.for_each(|stiffness| *stiffness = parameter.applied(*stiffness, value));
+            }
+        }
+    }
+}

@@ -57,6 +57,7 @@ use std::process::ExitCode;
     name = "optimize",
     version,
     subcommand_negates_reqs = true,
+    arg_required_else_help = true,
     args_conflicts_with_subcommands = true,
     after_help = "Example: optimize --task usb --budget 200"
 )]

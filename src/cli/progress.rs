@@ -67,7 +67,8 @@ impl Progress {
         let best = self.best();
         let done = recorded.index + 1;
         if let Some(bar) = &self.bar {
-            bar.set_message(best);
+            let left = indicatif::HumanDuration(self.remaining(done));
+            bar.set_message(format!("{best}, about {left:#} left"));
             bar.inc(1);
         } else if let Some(every) = self.line_every
             && (done.is_multiple_of(every) || done == self.budget)
@@ -92,12 +93,10 @@ impl Progress {
 
 fn bar(done: u64, budget: u64) -> ProgressBar {
     let bar = ProgressBar::new(budget).with_position(done);
-    let style = "{bar:30} {pos}/{len}  {msg}  {elapsed} gone, {eta} left";
+    let style = "{bar:20} {pos}/{len}  {msg}  {elapsed} gone";
     if let Ok(style) = ProgressStyle::with_template(style) {
         bar.set_style(style);
     }
     bar.enable_steady_tick(Duration::from_millis(500));
-    // What an earlier run measured says nothing of this one's speed.
-    bar.reset_eta();
     bar
 }

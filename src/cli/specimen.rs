@@ -47,6 +47,8 @@ pub struct FingerArguments {
 /// A finger on a task, and where its stiffness comes from.
 pub struct Chosen {
     pub specimen: Specimen,
+    /// All that names the design: infill and what was set; empty for a stiffness alone.
+    pub design: Design,
     /// What was set beside the infill.
     pub set: Design,
     /// Whether the stiffness was given, not predicted.
@@ -86,7 +88,7 @@ impl FingerArguments {
         };
         let specimen =
             setup.evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
-        Ok(Chosen { specimen, set, given })
+        Ok(Chosen { specimen, design, set, given })
     }
 
     /// What is set beside the infill; a key of the space must keep to its bounds there.
@@ -138,11 +140,11 @@ impl Chosen {
             ),
         };
         let finger = self.finger_text(setup.evaluator.fingers.kind());
-        let set = match self.set.0.is_empty() {
+        let design = match self.design.0.is_empty() {
             true => String::new(),
-            false => format!("set           {}\n", self.set),
+            false => format!("design        {}\n", self.design.labelled()),
         };
-        format!("{set}{stiffness}{finger}")
+        format!("{design}{stiffness}{finger}")
     }
 
     /// What the finger model made of it, if it is not the paper's; a line that begins anew.

@@ -93,6 +93,7 @@ fn config(budget: u64) -> StudyConfig {
         polish: 0,
         finger_model: FingerModelKind::Paper,
         batch: 4,
+        asynchronous: false,
         provenance: Provenance::new(EngineKind::Fake, BTreeMap::new()),
         space: space(),
     }

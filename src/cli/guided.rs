@@ -126,7 +126,8 @@ impl Guided {
     /// If the result cannot be one of this work, or the journal cannot be written.
     pub fn take(&mut self, proposal: u64, result: &[u8]) -> Result<bool, NotTaken> {
         let Some(work) = self.measuring.get(&proposal) else { return Ok(false) };
-        let stiffness = self.setup.evaluator.predict(&work.design);
+        let impossible = |error| NotTaken::Failed(Failure::input(error));
+        let stiffness = self.setup.evaluator.predict(&work.design).map_err(impossible)?;
         let arrived = work.check(result, &stiffness).map_err(NotTaken::Refused)?;
         let progress = &mut self.progress;
         let mut see = |recorded: &_| progress.measured(recorded);

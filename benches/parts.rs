@@ -125,7 +125,6 @@ fn study(dir: &Path, evaluator: &Evaluator) -> Study {
             cache: None,
             stop: &stop,
         },
-        goals: &Goals::of(Measure::Range),
         pool: &pool,
         stop: &stop,
     };

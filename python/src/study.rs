@@ -134,7 +134,7 @@ impl Guided {
     }
 
     fn next<'py>(&self, py: Python<'py>) -> PyResult<Next<'py>> {
-        let order = interruptible(py, |_| self.open().as_mut().map(guided::Guided::next))?;
+        let order = interruptible(py, |_| self.open().as_mut().map(guided::Guided::order))?;
         let order = order.ok_or_else(|| RunError::new_err("the study is closed"))?;
         Ok(match order.map_err(raise)? {
             Order::Wait => (Vec::new(), None),

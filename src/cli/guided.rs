@@ -89,7 +89,7 @@ impl Guided {
     ///
     /// # Errors
     /// If the journal holds other designs than are proposed.
-    pub fn next(&mut self) -> Result<Order, Failure> {
+    pub fn order(&mut self) -> Result<Order, Failure> {
         match self.course.next(&self.study, &mut *self.optimizer)? {
             Next::Wait => Ok(Order::Wait),
             Next::Ended(ending) => Ok(Order::Finish(ending)),

@@ -107,7 +107,7 @@ pub fn conclude(
     study.check_journal()?;
     let record = study.record();
     if ending != Ending::Interrupted && !stop.load(Ordering::SeqCst) {
-        film::boundary(study.dir(), &record, setup, &pool)?;
+        film::boundary(study.dir(), &record, setup, pool)?;
     }
     report::write(study.dir(), &record, &setup.evaluator.surrogate)?;
     if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {

@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use finger_opt::evaluation::evaluator::Evaluator;
-use finger_opt::evaluation::objective::{Goals, Measure, Objectives};
+use finger_opt::evaluation::objective::{Measure, Objectives};
 use finger_opt::evaluation::robustness::Plan;
 use finger_opt::evaluation::template::Template;
 use finger_opt::evaluation::tolerance::{self, Search};

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Studies, read, resealed};
 use finger_opt::evaluation::evaluator::{Evaluate, Measured};
-use finger_opt::evaluation::objective::{Goals, Measure, Score};
+use finger_opt::evaluation::objective::Score;
 use finger_opt::evaluation::template::{Impossible, Template};
 use finger_opt::evaluation::tolerance::{Search, evaluate};
 use finger_opt::evaluation::{Evaluation, RobustRange, SuccessRate, Window};

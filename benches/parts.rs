@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use finger_opt::evaluation::evaluator::Evaluator;
-use finger_opt::evaluation::objective::{Goals, Measure, Objectives};
+use finger_opt::evaluation::objective::{Measure, Objectives};
 use finger_opt::evaluation::robustness::Plan;
 use finger_opt::evaluation::template::Template;
 use finger_opt::evaluation::tolerance::{self, Search};
@@ -93,6 +93,7 @@ fn config(budget: u64) -> StudyConfig {
         polish: 0,
         finger_model: FingerModelKind::Paper,
         batch: 4,
+        asynchronous: false,
         provenance: Provenance::new(EngineKind::Fake, BTreeMap::new()),
         space: space(),
     }
@@ -124,7 +125,6 @@ fn study(dir: &Path, evaluator: &Evaluator) -> Study {
             cache: None,
             stop: &stop,
         },
-        goals: &Goals::of(Measure::Range),
         pool: &pool,
         stop: &stop,
     };

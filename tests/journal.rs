@@ -4,7 +4,7 @@ mod common;
 
 use common::{Studies, read, resealed};
 use finger_opt::evaluation::evaluator::{Evaluate, Measured};
-use finger_opt::evaluation::objective::{Goals, Measure, Score};
+use finger_opt::evaluation::objective::Score;
 use finger_opt::evaluation::template::{Impossible, Template};
 use finger_opt::evaluation::tolerance::{Search, evaluate};
 use finger_opt::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
@@ -111,6 +111,7 @@ fn recorded() -> impl Strategy<Value = Recorded> {
     (any::<u64>(), design, prop::option::of(score()), stiffness, tasks, 0.0..1e9f64).prop_map(
         |(index, [density, direction], score, k, tasks, wall_s)| Recorded {
             index,
+            proposal: (index % 2 == 0).then_some(index / 3),
             design: Design::infill(density, direction),
             score,
             stiffness: Prediction {
@@ -253,12 +254,7 @@ fn run(dir: &Path, store: Failing) -> Result<Ending, StudyError> {
     let mut optimizer = Walk { grid, at: 0, stride: 1 };
     let stop = AtomicBool::new(false);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    let runner = Runner {
-        evaluator: &ClosedForm,
-        goals: &Goals::of(Measure::Range),
-        pool: &pool,
-        stop: &stop,
-    };
+    let runner = Runner { evaluator: &ClosedForm, pool: &pool, stop: &stop };
     runner.run(&mut study, &mut optimizer, &mut |_| ())
 }
 
@@ -325,12 +321,7 @@ fn a_design_that_cannot_be_stops_the_study_and_is_named() {
     let mut study = Study::resume(&dir).unwrap();
     let grid = Grid::new(study.config.space.levels());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let runner = Runner {
-        evaluator: &NotAll,
-        goals: &Goals::of(Measure::Range),
-        pool: &pool,
-        stop: &AtomicBool::new(false),
-    };
+    let runner = Runner { evaluator: &NotAll, pool: &pool, stop: &AtomicBool::new(false) };
     let mut walk = Walk { grid, at: 0, stride: 1 };
     let error = runner.run(&mut study, &mut walk, &mut |_| ()).unwrap_err();
     assert!(error.is_bad_input());

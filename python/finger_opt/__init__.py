@@ -14,6 +14,8 @@ raise :class:`InputError` (a ``ValueError``), what fails while it runs :class:`R
 from ._measure import Evaluation, Trial, evaluate, stiffness, trial
 from ._native import InputError, RunError, __version__
 from ._optimizer import Optimizer, Point
+from ._run import perform
+from ._study import Study, load_study
 from ._task import Task
 
 __all__ = [
@@ -22,10 +24,13 @@ __all__ = [
     "Optimizer",
     "Point",
     "RunError",
+    "Study",
     "Task",
     "Trial",
     "__version__",
     "evaluate",
+    "load_study",
+    "perform",
     "stiffness",
     "trial",
 ]

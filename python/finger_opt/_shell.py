@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 
@@ -12,4 +13,5 @@ def main() -> int:
     """Runs ``optimize`` with the arguments of this process; gives its exit code."""
     # The command line has its own way to stop: Python's would wait until it has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    os.environ.setdefault("FINGER_OPT_PYTHON", sys.executable)
     return _native.main(["optimize", *sys.argv[1:]])

@@ -17,6 +17,13 @@ pyo3::create_exception!(
     "Something failed while running; what was measured before is safe."
 );
 
+pyo3::create_exception!(
+    finger_opt,
+    Refused,
+    RunError,
+    "A result that cannot be one of the work it is said to be of; nothing of it is believed."
+);
+
 /// The exception of a failure.
 pub fn raise(failure: Failure) -> PyErr {
     match failure {

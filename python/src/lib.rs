@@ -5,6 +5,7 @@
 mod errors;
 mod measure;
 mod optimizer;
+mod study;
 
 use finger_opt::cli;
 use pyo3::prelude::*;
@@ -34,5 +35,13 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(measure::task_fields, module)?)?;
     module.add_function(wrap_pyfunction!(measure::task_text, module)?)?;
     module.add_class::<optimizer::Session>()?;
+    module.add("Refused", py.get_type::<errors::Refused>())?;
+    module.add_function(wrap_pyfunction!(study::perform, module)?)?;
+    module.add_function(wrap_pyfunction!(study::stop_performing, module)?)?;
+    module.add_function(wrap_pyfunction!(study::source_sha256, module)?)?;
+    module.add_function(wrap_pyfunction!(study::session, module)?)?;
+    module.add_function(wrap_pyfunction!(study::study_folder, module)?)?;
+    module.add_class::<study::Recorded>()?;
+    module.add_class::<study::Guided>()?;
     Ok(())
 }

@@ -13,9 +13,9 @@ use std::time::Duration;
 const LOOK: Duration = Duration::from_millis(100);
 
 /// Task files in place of names: what to call each in messages, and its text.
-type Files = Vec<(String, String)>;
+pub type Files = Vec<(String, String)>;
 
-fn sources(files: Files) -> Vec<Source> {
+pub fn sources(files: Files) -> Vec<Source> {
     files.into_iter().map(|(file, text)| Source { file, text }).collect()
 }
 

@@ -2,14 +2,17 @@
 //! prints out. Nothing is printed, and failures have the texts that the command prints.
 
 use super::setup;
-use super::{Failure, evaluate, stiffness, trial};
+use super::{Failure, evaluate, recommended, resume, stiffness, study, summary, trial};
 use crate::input::shipped::{SPACES, Source, TASKS};
 use crate::input::space::{Parameter, Space};
 use crate::input::task::Task;
+use crate::report;
+use crate::study::{StudyRecord, evaluations_csv};
 use crate::surrogate::Prediction;
 use crate::trial::Sample;
 use clap::{Args, Parser};
 use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 /// The words of one command.
@@ -21,7 +24,7 @@ struct Words<T: Args> {
 }
 
 /// Reads the words of a command; the text of a failure is clap's.
-fn read<T: Args>(words: &[String]) -> Result<T, Failure> {
+pub(super) fn read<T: Args>(words: &[String]) -> Result<T, Failure> {
     let read = Words::<T>::try_parse_from(words).map_err(|error| {
         let text = error.render().to_string();
         Failure::usage(text.strip_prefix("error: ").unwrap_or(&text).trim_end())
@@ -130,4 +133,77 @@ pub fn task_text(file: &str, fields: &Value) -> Result<String, Failure> {
         toml::to_string(fields).map_err(|error| Failure::usage(format!("{file}: {error}")))?;
     check_task(&Source { file: file.to_owned(), text: text.clone() })?;
     Ok(text)
+}
+
+/// The folder of the study of `optimize` with these words, which are checked; nothing is written.
+///
+/// # Errors
+/// As the command fails before it begins the study.
+pub fn study_folder(words: &[String], tasks: &[Source]) -> Result<PathBuf, Failure> {
+    let mut arguments: study::Arguments = read(words)?;
+    arguments.setup.given = tasks.to_vec();
+    Ok(arguments.look()?.2)
+}
+
+/// A study that is read from its folder, running or not.
+pub struct Read {
+    dir: PathBuf,
+    record: StudyRecord,
+}
+
+impl Read {
+    /// Reads the study in a folder.
+    ///
+    /// # Errors
+    /// If there is none, or it is damaged.
+    pub fn new(dir: &Path) -> Result<Self, Failure> {
+        Ok(Read { dir: dir.to_owned(), record: StudyRecord::load(dir)? })
+    }
+
+    /// What was asked for, as `study.toml` has it.
+    pub fn config(&self) -> Value {
+        json!(self.record.config)
+    }
+
+    /// How many evaluations its journal holds.
+    pub fn length(&self) -> usize {
+        self.record.evaluations.len()
+    }
+
+    /// The `recommended` design of `--json`; of several objectives the first of the front. Null
+    /// while there is none.
+    pub fn best(&self) -> Value {
+        let recommended = recommended::to_json(&self.record)["recommended"].take();
+        match (recommended.is_null(), self.record.front().first()) {
+            (true, Some(first)) if self.record.config.objective.single().is_none() => {
+                summary::recorded_json(&self.record, first)
+            }
+            _ => recommended,
+        }
+    }
+
+    /// The text of `evaluations.csv`.
+    ///
+    /// # Errors
+    /// If a cell cannot be written.
+    pub fn table(&self) -> Result<String, Failure> {
+        Ok(evaluations_csv(&self.dir, &self.record)?)
+    }
+
+    /// The answer as a piece of HTML.
+    pub fn card(&self) -> String {
+        report::card(&self.record)
+    }
+}
+
+/// The words of a study or of `resume`: where it is measured, and whether quietly.
+///
+/// # Errors
+/// If they are none.
+pub fn session(words: &[String]) -> Result<(Option<String>, bool), Failure> {
+    let session = match words {
+        [first, rest @ ..] if first == "resume" => read::<resume::Arguments>(rest)?.session,
+        words => read::<study::Arguments>(words)?.session,
+    };
+    Ok((session.executor, session.quiet))
 }

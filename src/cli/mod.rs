@@ -11,10 +11,12 @@ mod check;
 mod compare;
 mod cross_check;
 mod evaluate;
+mod executor;
 mod export;
 mod failure;
 mod film;
 mod finger;
+pub mod guided;
 mod manual;
 mod measure;
 mod next;
@@ -67,6 +69,18 @@ struct Cli {
     study: StudyOrNone,
     #[command(subcommand)]
     command: Option<Command>,
+}
+
+impl Cli {
+    /// Where a study is to be measured, if not here.
+    fn executor(&self) -> Option<&str> {
+        let session = match &self.command {
+            None => &self.study.0.as_ref()?.session,
+            Some(Command::Resume(arguments)) => &arguments.session,
+            Some(_) => return None,
+        };
+        session.executor.as_deref()
+    }
 }
 
 /// The arguments of a study, if no subcommand took its place. (clap's own
@@ -170,7 +184,8 @@ enum Command {
 /// Runs `optimize` with these arguments, the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     survive_size_limit();
-    let cli = match Cli::try_parse_from(arguments) {
+    let words: Vec<OsString> = arguments.into_iter().collect();
+    let cli = match Cli::try_parse_from(&words) {
         Ok(cli) => cli,
         Err(usage) if usage.use_stderr() => {
             say(usage.render().to_string().trim_end());
@@ -179,13 +194,14 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         // Help and version come this way, too.
         Err(asked) => asked.exit(),
     };
-    match dispatch(cli) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            say(&format!("error: {failure}"));
-            ExitCode::from(failure.exit_code())
-        }
-    }
+    let done = match cli.executor() {
+        Some(executor) => executor::run(executor, words.get(1..).unwrap_or_default()),
+        None => dispatch(cli).map(|()| ExitCode::SUCCESS),
+    };
+    done.unwrap_or_else(|failure| {
+        say(&format!("error: {failure}"));
+        ExitCode::from(failure.exit_code())
+    })
 }
 
 /// Lets a write beyond `ulimit -f` fail like one to a full disk; unasked the system ends the

@@ -48,7 +48,7 @@ impl Progress {
     }
 
     /// The best value, or how many designs there are on the front.
-    fn best(&self) -> String {
+    pub fn best(&self) -> String {
         match (self.goals.objectives.single(), self.front.points()) {
             (_, []) if self.goals.constraints.is_empty() => "no value yet".to_owned(),
             (_, []) => "nothing keeps the constraints yet".to_owned(),

@@ -15,8 +15,10 @@ use crate::optimizer::gp::DEFAULT_NOISE_FLOOR;
 use crate::optimizer::{self, Grid, Informed, Optimizer, OptimizerKind, Polished};
 use crate::study::{
     Cache, Confirmer, Ending, IfChanged, Runner, Simulated, Study, StudyConfig, StudyError,
+    StudyRecord,
 };
 use clap::Args;
+use rayon::ThreadPool;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -43,37 +45,36 @@ pub struct SessionArguments {
     /// file, in a new segment; the best design is then taken from that
     #[arg(long)]
     accept_changed: bool,
+    /// Where designs are measured, by the installed Python package: dask://HOST:PORT, slurm,
+    /// slurm:JOBS, processes or processes:N [default: on the threads of this process]
+    #[arg(long, value_name = "WHERE")]
+    pub executor: Option<String>,
     /// Print the result as JSON
     #[arg(long)]
-    json: bool,
+    pub json: bool,
     /// Show no progress
     #[arg(long)]
-    quiet: bool,
+    pub quiet: bool,
 }
 
 /// Runs a study until its budget is spent, and reports.
 pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Result<(), Failure> {
     let config = study.config.clone();
     check(&config, setup)?;
-    let kind: OptimizerKind = config.optimizer.parse().map_err(bad_config)?;
     let goals = config.goals();
     let plan = setup.plan(config.seed, |measure| goals.need(measure))?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(usize::from(arguments.threads.unwrap_or(0)))
-        .build()
-        .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))?;
+    let pool = arguments.pool()?;
     let stop = stop_on_interrupt(study.dir())?;
     let cache = arguments.cache(setup);
-    let simulated = |search, plan| Simulated {
+    let evaluator = Simulated {
         evaluator: &setup.evaluator,
-        search,
-        plan,
+        search: Search::default(),
+        plan: &plan,
         cache: cache.as_ref(),
         stop: &stop,
     };
-    let evaluator = simulated(Search::default(), &plan);
-    let runner = Runner { evaluator: &evaluator, goals: &goals, pool: &pool, stop: &stop };
-    let mut optimizer = optimizer(kind, setup, &config);
+    let runner = Runner { evaluator: &evaluator, pool: &pool, stop: &stop };
+    let mut optimizer = optimizer(setup, &config)?;
     let mut progress = Progress::new(&study, arguments.quiet);
     let ended =
         runner.run(&mut study, &mut *optimizer, &mut |recorded| progress.measured(recorded));
@@ -83,27 +84,40 @@ pub fn run(mut study: Study, setup: &Setup, arguments: &SessionArguments) -> Res
     }
     let ending = ended.map_err(|error| hint(error, &study))?;
     let known = cache.as_ref().map_or(0, Cache::found);
-    if ending != Ending::Interrupted && !arguments.no_confirm {
-        let walker = simulated(Search::Walk, &Plan::WINDOW);
-        let evaluator = &setup.evaluator;
-        let confirmer = Confirmer { walker: &walker, evaluator, pool: &pool, stop: &stop };
-        confirmer.confirm(&study).map_err(|error| hint(error, &study))?;
-    }
-    study.check_journal()?;
-    let record = study.record();
-    if ending != Ending::Interrupted && !stop.load(Ordering::SeqCst) {
-        film::boundary(study.dir(), &record, setup, &pool)?;
-    }
-    report::write(study.dir(), &record, &setup.evaluator.surrogate)?;
-    if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {
-        return Err(Failure::running(format!("interrupted; {}", resume_hint(&study))));
-    }
+    let record = conclude(&mut study, setup, arguments, (ending, cache.as_ref()), &pool, &stop)?;
     summary::show(study.dir(), &record, ending, known, arguments.json)?;
     unusable::check(study.dir(), &record, setup)
 }
 
+/// Confirms what is recommended and writes the report of a study that has ended so.
+pub fn conclude(
+    study: &mut Study,
+    setup: &Setup,
+    arguments: &SessionArguments,
+    (ending, cache): (Ending, Option<&Cache>),
+    pool: &ThreadPool,
+    stop: &AtomicBool,
+) -> Result<StudyRecord, Failure> {
+    if ending != Ending::Interrupted && !arguments.no_confirm {
+        let (evaluator, search, plan) = (&setup.evaluator, Search::Walk, &Plan::WINDOW);
+        let walker = Simulated { evaluator, search, plan, cache, stop };
+        let confirmer = Confirmer { walker: &walker, evaluator, pool, stop };
+        confirmer.confirm(study).map_err(|error| hint(error, study))?;
+    }
+    study.check_journal()?;
+    let record = study.record();
+    if ending != Ending::Interrupted && !stop.load(Ordering::SeqCst) {
+        film::boundary(study.dir(), &record, setup, pool)?;
+    }
+    report::write(study.dir(), &record, &setup.evaluator.surrogate)?;
+    if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {
+        return Err(Failure::running(format!("interrupted; {}", resume_hint(study))));
+    }
+    Ok(record)
+}
+
 /// Whether `study.toml` says what the input files say, which it was once written from.
-fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
+pub fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
     let evaluator = &setup.evaluator;
     let tasks = evaluator.templates.iter().map(|template| template.task().name.as_str());
     let uncertainty = setup.uncertainty.as_ref().map(|errors| &errors.name);
@@ -123,11 +137,11 @@ fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
 }
 
 /// The optimizer of a study.
-fn optimizer(
-    kind: OptimizerKind,
+pub fn optimizer(
     setup: &Setup,
     config: &StudyConfig,
-) -> Box<dyn Optimizer + Send> {
+) -> Result<Box<dyn Optimizer + Send>, Failure> {
+    let kind: OptimizerKind = config.optimizer.parse().map_err(bad_config)?;
     let grid = Grid::new(setup.space.levels());
     let measures = config.objective.measures().iter();
     let floors: Vec<f64> =
@@ -140,10 +154,10 @@ fn optimizer(
         }
         _ => search,
     };
-    match config.polish {
+    Ok(match config.polish {
         0 => search,
         polish => Box::new(Polished::new(search, grid, config.budget, polish)),
-    }
+    })
 }
 
 /// Of a space of printed fingers the points next to the measured ones, which have the shape of the
@@ -181,7 +195,21 @@ impl SessionArguments {
         if self.accept_changed { IfChanged::NewSegment } else { IfChanged::Refuse }
     }
 
-    fn cache(&self, setup: &Setup) -> Option<Cache> {
+    /// The threads that measure.
+    pub fn pool(&self) -> Result<ThreadPool, Failure> {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads())
+            .build()
+            .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))
+    }
+
+    /// How many there are; 0 for one per processor.
+    pub fn threads(&self) -> usize {
+        usize::from(self.threads.unwrap_or(0))
+    }
+
+    /// Where evaluations are kept for other studies, if they are.
+    pub fn cache(&self, setup: &Setup) -> Option<Cache> {
         let engine = setup.evaluator.engine;
         // A closed formula is faster than a file.
         let default = engine.simulates().then(|| PathBuf::from(CACHE));
@@ -195,7 +223,7 @@ fn bad_config(error: impl std::fmt::Display) -> Failure {
 }
 
 /// The failure, and how to go on after it where the journal is as it was written.
-fn hint(error: StudyError, study: &Study) -> Failure {
+pub fn hint(error: StudyError, study: &Study) -> Failure {
     let lost = matches!(error, StudyError::Interfered { .. });
     match Failure::from(error) {
         Failure::Run(error) if !lost => {
@@ -205,7 +233,8 @@ fn hint(error: StudyError, study: &Study) -> Failure {
     }
 }
 
-fn resume_hint(study: &Study) -> String {
+/// How far a study is, and how to go on.
+pub fn resume_hint(study: &Study) -> String {
     let (done, budget, dir) =
         (study.evaluations.len(), study.config.evaluations(), study.dir().display());
     format!("{done} of {budget} evaluations are safe; continue with: optimize resume {dir}")

@@ -6,12 +6,15 @@ use super::setup::{self, Setup, SetupArguments};
 use crate::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
 use crate::input::shipped::UNCERTAINTIES;
 use crate::optimizer::OptimizerKind;
-use crate::study::{LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, study_name};
+use crate::study::{LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, read_config, study_name};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
 /// Largest seed: TOML, in which studies keep theirs, has no larger whole numbers.
 const LARGEST_SEED: u64 = i64::MAX as u64;
+
+/// Batch of a new study unless another is given.
+const DEFAULT_BATCH: u64 = 4;
 
 /// Errors used unless others are named.
 const DEFAULT_UNCERTAINTY: &str = "typical";
@@ -31,7 +34,7 @@ pub enum AggregateKind {
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
+    pub setup: SetupArguments,
     /// Evaluations in all; run the same command with a larger one to go on
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=LARGEST_BUDGET))]
     budget: u64,
@@ -64,10 +67,15 @@ pub struct Arguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
           value_parser = clap::value_parser!(u64).range(..=LARGEST_SEED))]
     seed: u64,
-    /// Designs proposed and evaluated at a time; part of the study, unlike --threads
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 4,
+    /// Designs proposed and evaluated at a time; part of the study, unlike --threads [default: that
+    /// of the study if it goes on, else 4, with --executor the number of its workers]
+    #[arg(long, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u64).range(1..=LARGEST_BATCH))]
-    batch: u64,
+    batch: Option<u64>,
+    /// Tell each result as it comes and ask for one more design, so that no worker waits for the
+    /// slowest of a batch; the journal then depends on who was fast
+    #[arg(long = "async")]
+    asynchronous: bool,
     /// Folder of the study.
     #[arg(
         long,
@@ -76,21 +84,38 @@ pub struct Arguments {
     )]
     out: Option<PathBuf>,
     #[command(flatten)]
-    session: SessionArguments,
+    pub session: SessionArguments,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let setup = arguments.under_errors(Setup::from_arguments(&arguments.setup)?)?;
-    let config = arguments.config(&setup)?;
-    check(arguments.optimizer, &config)?;
-    let dir = arguments.out.clone().unwrap_or_else(|| default_folder(&config));
-    let if_changed = arguments.session.if_changed();
-    let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
+    let (study, setup) = arguments.open(None)?;
     session::run(study, &setup, &arguments.session)
 }
 
 impl Arguments {
+    /// Begins the study or goes on with it; where no batch is given a new study's is `workers`.
+    pub fn open(&self, workers: Option<u64>) -> Result<(Study, Setup), Failure> {
+        let (setup, mut config, dir) = self.look()?;
+        if self.batch.is_none() {
+            // A study that goes on keeps its own.
+            let kept = read_config(&dir).ok().map(|found| found.batch);
+            config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
+        }
+        let if_changed = self.session.if_changed();
+        let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
+        Ok((study, setup))
+    }
+
+    /// What the words name, checked: nothing is written.
+    pub fn look(&self) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
+        let setup = self.under_errors(Setup::from_arguments(&self.setup)?)?;
+        let config = self.config(&setup)?;
+        check(self.optimizer, &config)?;
+        let dir = self.out.clone().unwrap_or_else(|| default_folder(&config));
+        Ok((setup, config, dir))
+    }
+
     /// With the errors that the goals need.
     fn under_errors(&self, setup: Setup) -> Result<Setup, Failure> {
         let constrained = self.constraint.iter().map(|constraint| constraint.measure);
@@ -144,7 +169,8 @@ impl Arguments {
             seed: self.seed,
             budget: self.budget,
             polish: self.polish,
-            batch: self.batch,
+            batch: self.batch.unwrap_or(DEFAULT_BATCH),
+            asynchronous: self.asynchronous,
             provenance: setup.provenance(),
             space: setup.space.clone(),
         })
@@ -153,6 +179,12 @@ impl Arguments {
 
 /// Whether the optimizer can do what is asked for.
 fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
+    if config.asynchronous && (kind == OptimizerKind::CmaEs || config.polish > 0) {
+        return Err(Failure::usage(
+            "--async: cma-es and --polish learn from whole batches; leave it out, or give another \
+             --optimizer and no --polish",
+        ));
+    }
     if config.objective.single().is_some() {
         return Ok(());
     }

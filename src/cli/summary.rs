@@ -1,7 +1,7 @@
 //! What is printed of a whole study.
 
 use super::words::merge;
-use super::{Failure, print, print_json, recommended};
+use super::{Failure, print, recommended};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::firm::Firm;
 use crate::report::volume_unit;
@@ -17,12 +17,23 @@ pub fn show(
     known: u64,
     as_json: bool,
 ) -> Result<(), Failure> {
+    print(&words(dir, record, ending, known, as_json))
+}
+
+/// What is printed.
+pub fn words(
+    dir: &Path,
+    record: &StudyRecord,
+    ending: Ending,
+    known: u64,
+    as_json: bool,
+) -> String {
     if as_json {
         let mut fields = to_json(record, ending, known);
         merge(&mut fields, json!({"study": dir}));
-        return print_json(&fields);
+        return format!("{fields}\n");
     }
-    print(&text(dir, record, ending, known))
+    text(dir, record, ending, known)
 }
 
 fn text(dir: &Path, record: &StudyRecord, ending: Ending, known: u64) -> String {
@@ -177,7 +188,7 @@ fn to_json(record: &StudyRecord, ending: Ending, known: u64) -> Value {
     fields
 }
 
-fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
+pub fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
     let config = &record.config;
     let mut fields = json!({
         "evaluation": recorded.index,

@@ -35,7 +35,7 @@ mod windows;
 use crate::study::StudyRecord;
 
 pub use compare_plot::svg as compare_svg;
-pub use page::{Replay, page};
+pub use page::{Replay, card, page};
 pub use text::volume_unit;
 
 /// Why a plot could not be made.

@@ -69,6 +69,20 @@ pub fn page(
     Ok(page.into_string())
 }
 
+/// The answer of a study as a piece of a page, for notebooks.
+pub fn card(record: &StudyRecord) -> String {
+    let config = &record.config;
+    let title = format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed);
+    let card = html! {
+        div.finger-opt {
+            h3 { (title) }
+            p { (record.evaluations.len()) " of " (config.evaluations()) " evaluations" }
+            (best::section(record))
+        }
+    };
+    card.into_string()
+}
+
 type Section = (&'static str, String, Markup);
 
 /// Id, title and body of each section; what does not apply is left out.

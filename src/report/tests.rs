@@ -46,6 +46,7 @@ fn config(task: &str) -> StudyConfig {
         polish: 0,
         finger_model: Default::default(),
         batch: 4,
+        asynchronous: false,
         provenance: provenance(),
         space: Space::parse(include_str!("../../spaces/infill.toml"), "infill.toml").unwrap(),
     }
@@ -86,7 +87,7 @@ fn recorded(
     let score = Goals::of(Measure::Range).score(&[&evaluation]);
     let design = Design::infill(infill[0], infill[1]);
     let (tasks, timing) = (vec![evaluation], Timing::default());
-    Recorded { index, design, score, stiffness, tasks, timing }
+    Recorded { index, proposal: None, design, score, stiffness, tasks, timing }
 }
 
 /// An evaluation whose nominal start already ends so.

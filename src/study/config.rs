@@ -46,8 +46,12 @@ pub struct StudyConfig {
     /// Most evaluations of the polish that follows.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub polish: u64,
-    /// Designs the optimizer proposes at a time.
+    /// Designs the optimizer proposes at a time; of an asynchronous study, that are measured at
+    /// a time.
     pub batch: u64,
+    /// Whether each result is told as it comes, and one more design asked for.
+    #[serde(rename = "async", default, skip_serializing_if = "std::ops::Not::not")]
+    pub asynchronous: bool,
     /// What the study began to be measured with.
     pub provenance: Provenance,
     /// The search space in full.

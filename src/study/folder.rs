@@ -164,7 +164,7 @@ impl Study {
     }
 
     /// Saves what was measured, if the error says that the journal is lost.
-    pub(super) fn rescue(&self, error: StudyError) -> StudyError {
+    pub fn rescue(&self, error: StudyError) -> StudyError {
         match error {
             StudyError::Interfered { path, problem, .. } => {
                 let kept = self.journal.rescue(&self.evaluations);

@@ -1,9 +1,10 @@
 //! The lines of a journal: Optuna's JournalStorage records, with a check.
 //!
 //! A journal begins with a "create study" line and a "study attribute" line;
-//! every further line is one finished evaluation, a whole Optuna trial. Four
-//! fields are ours beside Optuna's: `evaluation` (the index), `check`, `wall_s` and
-//! `cached` (for each task whether its values came from the cache).
+//! every further line is one finished evaluation, a whole Optuna trial. Five
+//! fields of ours stand beside Optuna's: `evaluation` (the index), `proposal` (of an
+//! asynchronous study), `check`, `wall_s` and `cached` (for each task whether its values came from
+//! the cache).
 //!
 //! `check` is the beginning (16 hexadecimal digits) of the SHA-256 of the
 //! line's bytes before `,"check"`. After it stand `datetime_start`,
@@ -35,6 +36,8 @@ struct TrialLine {
     worker_id: String,
     study_id: u64,
     evaluation: u64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    proposal: Option<u64>,
     state: u8,
     values: Option<Vec<f64>>,
     params: BTreeMap<String, f64>,
@@ -93,6 +96,7 @@ pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::
         worker_id: WORKER.to_owned(),
         study_id: 0,
         evaluation: recorded.index,
+        proposal: recorded.proposal,
         state: if score.is_some() { COMPLETE } else { FAIL },
         values: score.map(|score| score.values.clone()),
         params: recorded.design.0.clone(),
@@ -134,6 +138,7 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
     }
     Ok(Recorded {
         index: trial.evaluation,
+        proposal: trial.proposal,
         score: trial
             .values
             .map(|values| Score { values, violations: trial.system_attrs.constraints }),

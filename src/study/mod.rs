@@ -3,6 +3,7 @@
 
 mod cache;
 mod config;
+mod course;
 mod differences;
 mod error;
 mod fits;
@@ -22,9 +23,11 @@ mod table;
 mod time;
 mod walk;
 mod walked;
+mod work;
 
 pub use cache::{Cache, Key};
 pub use config::{LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
+pub use course::{Arrived, Course, Next, Wanted};
 pub use error::{LineError, StudyError};
 pub use folder::{
     CONFIG_FILE, FINGER, IfChanged, Inputs, JOURNAL_FILE, Study, read_config, sha256, write_file,
@@ -33,12 +36,14 @@ pub use folder::{
 pub use header::SCHEMA_VERSION;
 pub use journal::Journal;
 pub use line::{decode, encode};
-pub use provenance::{Provenance, Segment};
+pub use provenance::{Provenance, SOURCES, Segment};
 pub use recommendation::Recommendation;
 pub use record::{Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume};
 pub use runner::{Ending, Runner};
 pub use seal::strip_times;
 pub use simulated::Simulated;
 pub use store::{FileStore, Store};
-pub use table::write_evaluations_csv;
+pub use table::{evaluations_csv, write_evaluations_csv};
+pub use time::now;
 pub use walk::Confirmer;
+pub use work::{Work, WorkError};

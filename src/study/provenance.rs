@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The sources that this program was built from.
-pub(super) const SOURCES: &str = env!("FINGER_OPT_SOURCE_SHA256");
+pub const SOURCES: &str = env!("FINGER_OPT_SOURCE_SHA256");
 
 /// What computed the values, and from which inputs: values of different provenance do not
 /// belong into one study unless the user says so.

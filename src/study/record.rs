@@ -42,6 +42,8 @@ pub struct Walked {
 pub struct Recorded {
     /// Place in the study, counted from 0; Optuna's trial number.
     pub index: u64,
+    /// Of an asynchronous study the number of its proposal, counted from 0.
+    pub proposal: Option<u64>,
     /// The design, in the units its keys carry.
     pub design: Design,
     /// The objectives and constraints; `None` if any of them has no value.

@@ -119,6 +119,7 @@ mod tests {
         task.peak_force_n = force_n;
         Recorded {
             index,
+            proposal: None,
             design: Design::infill(density, 20.0),
             score: goals().score(&[&task]),
             stiffness: Prediction::exact(3e3, 2e4),

@@ -9,6 +9,8 @@ use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;
 
+/// Name of the file.
+const TABLE: &str = "evaluations.csv";
 /// Lists of as many values as there were draws: no columns.
 const DRAWN: &str = "robust_ranges_mm";
 
@@ -17,13 +19,16 @@ type Row = Vec<(String, String)>;
 
 /// Writes `evaluations.csv` into a study's folder, one row per evaluation.
 pub fn write_evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<(), StudyError> {
-    let path = dir.join("evaluations.csv");
+    write_own_file(&dir.join(TABLE), &evaluations_csv(dir, record)?)
+}
+
+/// The text of `evaluations.csv`; `dir` is named in errors.
+pub fn evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<String, StudyError> {
     let table = |record| -> Result<String, Box<dyn std::error::Error>> {
         Ok(String::from_utf8(csv(record)?)?)
     };
-    let text = table(record)
-        .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
-    write_own_file(&path, &text)
+    table(record)
+        .map_err(|error| StudyError::File { path: dir.join(TABLE), problem: error.to_string() })
 }
 
 fn csv(record: &StudyRecord) -> Result<Vec<u8>, Box<dyn std::error::Error>> {

@@ -1,0 +1,157 @@
+"""Runs an open study on an executor: gives out work, takes in results."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+import time
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
+from typing import Any
+
+from . import _native
+
+#: How often a waiting study looks whether it was interrupted, s.
+LOOK = 0.2
+
+
+def perform(work: bytes) -> bytes:
+    """The unit of work: bytes that a study gave out in, the result for it out.
+
+    Depends on nothing else, so it may be done twice, anywhere; it refuses the work of another
+    version of the program, with the name of this host and process.
+    """
+    return bytes(_native.perform(work, f"{socket.gethostname()}:{os.getpid()}"))
+
+
+def workers_of(executor: Any) -> int:
+    """How many tasks an executor runs at a time, as far as it can be known."""
+    client = getattr(executor, "_client", None)
+    if client is not None and hasattr(client, "ncores"):
+        return max(1, sum(client.ncores().values()))
+    return int(getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
+
+
+class Progress:
+    """A line on standard error (in a notebook: under the cell) that says how far it is."""
+
+    def __init__(self, shown: bool) -> None:
+        self.shown = shown
+        self.live = sys.stderr.isatty() or "ipykernel" in sys.modules
+        self.last = float("-inf") if self.live else time.monotonic()
+
+    def show(self, study: Any, ended: bool = False) -> None:
+        """The line, if it is time for it: twice a second where it can be written over."""
+        now = time.monotonic()
+        if not self.shown or not (ended or now - self.last > (0.5 if self.live else 10.0)):
+            return
+        self.last = now
+        done, evaluations, best = study.progress()
+        line = f"{done}/{evaluations} evaluations, {best}"[:78]
+        sys.stderr.write(f"\r{line:78}" if self.live else line)
+        if ended or not self.live:
+            sys.stderr.write("\n")
+        sys.stderr.flush()
+
+
+def run_open(
+    begin: Callable[[int | None], Any],
+    executor: Any | None,
+    progress: bool,
+    workers: int | None,
+    retries: int,
+) -> tuple[str, str | None]:
+    """Opens a study and runs it to its end; gives what it prints, and why it is of no use, if so."""
+    own: Executor | None = None
+    if executor is None:
+        study = begin(None)
+        executor = own = ThreadPoolExecutor(study.threads() or os.cpu_count())
+    else:
+        study = begin(workers or workers_of(executor))
+    shown = Progress(progress)
+    try:
+        ending = Course(study, executor, retries, shown).run()
+        shown.show(study, ended=True)
+        return study.finish(ending)
+    except KeyboardInterrupt:
+        _native.stop_performing(True)
+        sys.stderr.write(f"\ninterrupted; {study.hint()}\n")
+        raise
+    finally:
+        if own is not None:
+            own.shutdown(wait=True, cancel_futures=True)
+            _native.stop_performing(False)
+        study.close()
+
+
+class Course:
+    """The work that is out, and how often each was lost."""
+
+    def __init__(self, study: Any, executor: Any, retries: int, progress: Progress) -> None:
+        self.study = study
+        self.executor = executor
+        self.retries = retries
+        self.progress = progress
+        self.running: dict[Future[bytes], tuple[int, bytes]] = {}
+        self.lost: dict[int, int] = {}
+
+    def run(self) -> str:
+        """Until there is nothing more to do; gives how the study ended."""
+        try:
+            while True:
+                work, ending = self.study.next()
+                if ending is not None:
+                    return str(ending)
+                for proposal, job in work:
+                    self.submit(proposal, bytes(job))
+                if not work:
+                    self.collect()
+                self.progress.show(self.study)
+        finally:
+            for future in self.running:
+                future.cancel()
+
+    def submit(self, proposal: int, work: bytes) -> None:
+        try:
+            future = self.executor.submit(perform, work)
+        except Exception as error:
+            raise self.stopped(f"the executor takes no more work: {named(error)}") from error
+        self.running[future] = (proposal, work)
+
+    def collect(self) -> None:
+        """Waits for a result at least, and takes in all that have come."""
+        done: set[Future[bytes]] = set()
+        while not done:
+            done, _ = wait(self.running, timeout=LOOK, return_when=FIRST_COMPLETED)
+        # In the order of proposals, so that equal ones arrive in an equal order.
+        for future in sorted(done, key=lambda future: self.running[future][0]):
+            proposal, work = self.running.pop(future)
+            try:
+                result = future.result()
+            except _native.InputError:
+                # Another version, or a design that cannot be: no other worker would do better.
+                raise
+            except (Exception, CancelledError) as error:
+                self.again(proposal, work, error)
+                continue
+            try:
+                self.study.take(proposal, result)
+            except _native.Refused as error:
+                self.again(proposal, work, error)
+
+    def again(self, proposal: int, work: bytes, error: BaseException) -> None:
+        count = self.lost[proposal] = self.lost.get(proposal, 0) + 1
+        if count > self.retries:
+            raise self.stopped(
+                f"evaluation {proposal} was lost {count} times, the last time by {named(error)}"
+            ) from error
+        self.submit(proposal, work)
+
+    def stopped(self, why: str) -> _native.RunError:
+        return _native.RunError(f"{why}\n{self.study.hint()}")
+
+
+def named(error: BaseException) -> str:
+    text = str(error).strip()
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -1,0 +1,139 @@
+"""Studies: seeded runs of one optimizer on one task and space, in a folder."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Iterable
+from concurrent.futures import Executor
+from typing import TYPE_CHECKING, Any
+
+from . import _native, _words
+from ._measure import Record
+from ._run import run_open
+from ._task import Task
+
+if TYPE_CHECKING:
+    import pandas
+
+#: Words that say how a study is run, not what it measures.
+SESSION = ("threads", "cache", "no_cache", "accept_changed")
+
+
+class Study:
+    """A study in a folder. Make one with :meth:`create`, open one with :func:`load_study`."""
+
+    def __init__(
+        self, path: str | os.PathLike[str], words: list[str], files: list[tuple[str, str]] | None
+    ) -> None:
+        #: The folder.
+        self.path = os.fspath(path)
+        self._words = words
+        # None: the study is there, and its folder says what it is.
+        self._files = files
+
+    @classmethod
+    def create(
+        cls,
+        task: str | Task | Iterable[str | Task],
+        *,
+        budget: int,
+        seed: int = 0,
+        out: str | os.PathLike[str] | None = None,
+        **settings: Any,
+    ) -> Study:
+        """A study of this task (or several), which :meth:`run` begins or continues.
+
+        ``settings`` are the words of ``optimize``: ``optimizer="cma-es"``,
+        ``space="codesign"``, ``objective=["range", "peak-force"]``,
+        ``constraint="peak-force<=110"``, ``batch=8``, ``async_=True``, ``threads=2`` and so on.
+        They are checked here; the folder (``out``, else ``results/<task>-<optimizer>-seed<seed>``)
+        is made by :meth:`run`, which knows the number of workers.
+        """
+        word, files = _words.tasks(task)
+        out = None if out is None else os.fspath(out)
+        if "executor" in settings:
+            raise _native.InputError("executor: is given to run()")
+        settings = {"task": word, "budget": budget, "seed": seed, "out": out, **settings}
+        words = _words.words(settings)
+        return cls(_native.study_folder(words, files), words, files)
+
+    def run(
+        self,
+        executor: Executor | Any | None = None,
+        progress: bool = True,
+        *,
+        workers: int | None = None,
+        retries: int = 10,
+    ) -> Study:
+        """Runs the study until its budget is spent, and writes its report.
+
+        ``executor`` is any ``concurrent.futures.Executor`` (or what has its ``submit``); the
+        designs are measured there, ``workers`` at a time (default: as many as it has), and the
+        journal is the same as with any other, or none, for the same batch. Without one they are
+        measured on the threads of this process.
+        ``batch`` is the number of workers unless it was given. A measurement that a worker lost
+        or whose result is refused is done again, up to ``retries`` times.
+        Ctrl-C stops it; what was measured is safe, and ``run`` again goes on.
+        """
+        _, unusable = run_open(self._open, executor, progress, workers, retries)
+        if unusable is not None:
+            raise _native.RunError(unusable)
+        return self
+
+    def _open(self, workers: int | None) -> Any:
+        if self._files is None:
+            return _native.Guided.resume([*self._words, self.path])
+        return _native.Guided.begin(self._words, self._files, workers)
+
+    def _read(self) -> _native.Recorded:
+        return _native.Recorded(self.path)
+
+    @property
+    def config(self) -> Record:
+        """What was asked for, as ``study.toml`` keeps it."""
+        return Record(json.loads(self._read().config()))
+
+    @property
+    def best(self) -> Record | None:
+        """The recommended design, as ``recommended`` of ``--json``: ``values`` by key,
+        ``evaluation`` (its number), ``range_mm``, ``negative_mm``, ``positive_mm``; ``None``
+        while there is none. Of several objectives the first of the front."""
+        found = json.loads(self._read().best())
+        return None if found is None else Record(found)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """A row for each evaluation; the columns of ``evaluations.csv``, with their units."""
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_dataframe needs pandas: pip install 'finger-opt[pandas]'") from None
+        return pandas.read_csv(io.StringIO(self._read().table()))
+
+    def __len__(self) -> int:
+        """Evaluations in the journal."""
+        return self._read().length()
+
+    def __bool__(self) -> bool:
+        return True
+
+    def _repr_html_(self) -> str:
+        if not os.path.exists(os.path.join(self.path, "study.toml")):
+            return f"<p>a study not begun yet: {self.path}</p>"
+        return self._read().card()
+
+    def __repr__(self) -> str:
+        return f"<Study {self.path}>"
+
+
+def load_study(folder: str | os.PathLike[str], **session: Any) -> Study:
+    """The study in a folder; its :meth:`~Study.run` continues it.
+
+    ``session`` says how: ``threads``, ``cache``, ``no_cache``, ``accept_changed``.
+    """
+    unknown = [name for name in session if name not in SESSION]
+    if unknown:
+        raise _native.InputError(f"{unknown[0]}: a study that is loaded takes {', '.join(SESSION)}")
+    _native.Recorded(os.fspath(folder))
+    return Study(folder, _words.words(session), None)

@@ -1,0 +1,298 @@
+"""Studies: the journal is that of the command line, whoever measures."""
+
+from __future__ import annotations
+
+import os
+import random
+import re
+import subprocess
+import sys
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+import finger_opt as fo
+from finger_opt import _native
+
+BUDGET = 22
+
+
+def journal(folder) -> str:
+    """A journal without what differs between two runs."""
+    text = (Path(folder) / "journal.jsonl").read_text()
+    return "".join(re.sub(r',"datetime_start".*', "", line) + "\n" for line in text.splitlines())
+
+
+@pytest.fixture
+def create(tmp_path, fake):
+    def make(name, **settings):
+        settings = {"budget": BUDGET, "seed": 4, "batch": 4, "no_cache": True, **fake, **settings}
+        return fo.Study.create("rj45", out=tmp_path / name, **settings)
+
+    return make
+
+
+@pytest.fixture
+def expected(create, command, tmp_path, fake):
+    """The journal of the command line."""
+    code, _, errors = command(
+        "--task", "rj45", "--budget", str(BUDGET), "--seed", "4", "--engine", "fake", "--quiet",
+        "--batch", "4", "--no-cache", "--out", str(tmp_path / "expected"),
+    )
+    assert code == 0, errors
+    return journal(tmp_path / "expected")
+
+
+class Shuffled(Executor):
+    """Does its work in another order, some of it twice, and loses some."""
+
+    def __init__(self, seed, lose=0.0):
+        self.random = random.Random(seed)
+        self.pool = ThreadPoolExecutor(3)
+        self.lose = lose
+        self._max_workers = 3
+
+    def submit(self, fn, /, *args):
+        return self.pool.submit(self.work, fn, *args)
+
+    def work(self, fn, *args):
+        import time
+
+        time.sleep(self.random.random() * 0.01)
+        if self.random.random() < self.lose:
+            raise ConnectionError("the worker has gone")
+        first = fn(*args)
+        assert without_times(fn(*args)) == without_times(first), "pure: safe to run twice"
+        return first
+
+
+def without_times(result: bytes) -> bytes:
+    return re.sub(rb',"datetime_start".*', b"", result)
+
+
+def test_every_executor_gives_the_journal_of_one_machine(create, expected):
+    create("none").run(progress=False)
+    with ProcessPoolExecutor(2) as processes:
+        create("processes").run(processes, progress=False)
+    create("shuffled").run(Shuffled(1), progress=False)
+    create("lossy").run(Shuffled(2, lose=0.3), progress=False)
+    for name in ("none", "processes", "shuffled", "lossy"):
+        assert journal(create(name).path) == expected, name
+
+
+def test_a_study_as_python_sees_it(create, tmp_path):
+    study = create("seen")
+    assert "not begun" in study._repr_html_()
+    assert study.run(progress=False) is study
+    frame = study.to_dataframe()
+    assert len(frame) == len(study) == BUDGET
+    assert frame["range_mm"].max() == study.best.range_mm
+    row = frame.loc[study.best.evaluation]
+    assert row["infill_density_percent"] == study.best["values"]["infill_density_percent"]
+    assert "rj45 with gp" in study._repr_html_()
+    assert (study.config["batch"], study.config["seed"]) == (4, 4)
+    for file in ("report.html", "evaluations.csv", "study.toml"):
+        assert (tmp_path / "seen" / file).exists()
+    # A home path has no place in what others may see.
+    assert str(tmp_path) not in (tmp_path / "seen" / "journal.jsonl").read_text()
+
+
+def test_a_study_goes_on_and_a_loaded_one_too(create, expected, tmp_path):
+    create("raised", budget=9).run(progress=False)
+    create("raised").run(Shuffled(3), progress=False)
+    assert journal(tmp_path / "raised") == expected
+    loaded = fo.load_study(tmp_path / "raised")
+    assert len(loaded.run(progress=False)) == BUDGET
+    with pytest.raises(fo.InputError, match="not a study"):
+        fo.load_study(tmp_path / "nothing")
+    with pytest.raises(fo.InputError, match="seed: the study has 4"):
+        create("raised", seed=5).run()
+
+
+def test_the_batch_is_the_number_of_workers_and_is_kept(create, tmp_path):
+    study = create("workers", batch=None, budget=5)
+    study.run(Shuffled(1), progress=False)
+    assert study.config["batch"] == 3
+    create("workers", batch=None).run(progress=False)
+    assert fo.load_study(study.path).config["batch"] == 3
+    alone = create("alone", batch=None, budget=3).run(progress=False)
+    assert alone.config["batch"] == 4
+
+
+def test_words_are_checked_before_anything_is_written(create, tmp_path):
+    with pytest.raises(fo.InputError, match="unknown optimizer"):
+        create("wrong", optimizer="bayes")
+    with pytest.raises(fo.InputError, match="--async: cma-es"):
+        create("wrong", optimizer="cma-es", async_=True)
+    with pytest.raises(fo.InputError, match="run()"):
+        create("wrong", executor="slurm")
+    assert not (tmp_path / "wrong").exists()
+
+
+def test_several_tasks_objectives_and_a_task_of_ones_own(tmp_path, fake):
+    mine = fo.Task.from_toml("usb")
+    mine.name = "mine"
+    study = fo.Study.create([mine, "rj45"], budget=8, out=tmp_path / "front", no_cache=True,
+                            objective=["range", "peak-force"], constraint=["success-rate>=0.1"],
+                            **fake)
+    study.run(Shuffled(1), progress=False)
+    assert study.config["tasks"] == ["mine", "rj45"]
+    assert study.best is not None
+
+
+def jobs(study):
+    """A study that is open, and its first batch."""
+    open_study = study._open(None)
+    work, _ = open_study.next()
+    return open_study, work
+
+
+def test_results_that_come_twice_count_once(create, expected):
+    study = create("twice")
+    open_study, work = jobs(study)
+    while work:
+        for proposal, job in reversed(work):
+            result = fo.perform(job)
+            assert open_study.take(proposal, result)
+            assert not open_study.take(proposal, result)
+        work, _ = open_study.next()
+    open_study.close()
+    assert journal(study.path) == expected
+
+
+def resealed(result: bytes, change) -> bytes:
+    """The result with its contents changed and a check that fits again."""
+    import hashlib
+    import json
+
+    content, rest = result.decode().rsplit(',"check":"', 1)
+    fields = change(json.loads(content + "}"))
+    content = json.dumps(fields, separators=(",", ":"), ensure_ascii=False)[:-1]
+    check = hashlib.sha256(content.encode()).hexdigest()[:16]
+    return f'{content},"check":"{check}{rest[16:]}'.encode()
+
+
+def changed(**new):
+    def change(fields):
+        for path, value in new.items():
+            *way, last = path.split("__")
+            at = fields
+            for key in way:
+                at = at[int(key) if key.isdigit() else key]
+            at[last] = value
+        return fields
+
+    return change
+
+
+POISON = {
+    "not a number": (changed(tasks__0__peak_force_n=None), "not finite"),
+    "another range": (changed(tasks__0__range_mm=99.0), "contradicts itself"),
+    "another design": (changed(design__infill_density_percent=11.5), "of the design"),
+    "another source": (changed(source_sha256="0" * 64), "by the sources 000"),
+    "another work": (changed(work_sha256="0" * 64), "of another work"),
+    "another stiffness": (changed(stiffness__compliance_n_per_mm=1.0), "stiffness"),
+    "no tasks": (changed(tasks=[]), "0 tasks"),
+    "too few trials": (changed(tasks__0__trials=1), "add up"),
+    "a field more": (changed(home="/home/me"), "unknown field"),
+}
+
+
+@pytest.mark.parametrize("kind", POISON)
+def test_poisoned_results_are_refused_and_change_nothing(create, kind):
+    change, word = POISON[kind]
+    study = create("poisoned")
+    open_study, work = jobs(study)
+    proposal, job = work[0]
+    good = fo.perform(job)
+    assert resealed(good, lambda fields: fields) == good
+    with pytest.raises(_native.Refused, match=word):
+        open_study.take(proposal, resealed(good, change))
+    with pytest.raises(_native.Refused, match="do not fit its `check`"):
+        open_study.take(proposal, good.replace(b'"trials":', b'"trials":1'))
+    with pytest.raises(_native.Refused):
+        open_study.take(proposal, fo.perform(work[1][1]))
+    assert open_study.take(proposal, good)
+    open_study.close()
+    assert len(study) == 1
+
+
+class Poisoner(Shuffled):
+    def work(self, fn, *args):
+        return super().work(fn, *args).replace(b'"trials":', b'"trials":1')
+
+
+def test_a_study_of_poisoned_results_stops_and_says_by_whom(create):
+    study = create("poisoner")
+    with pytest.raises(fo.RunError, match="(?s)Refused.*continue with: optimize resume"):
+        study.run(Poisoner(1), progress=False, retries=2)
+    assert len(study) == 0
+
+
+def test_a_worker_of_other_sources_refuses_by_name(create):
+    _, work = jobs(create("sources"))
+    job = bytes(work[0][1])
+    foreign = resealed_work(job, _native.source_sha256(), "f" * 64)
+    with pytest.raises(fo.InputError, match=rf"(?s)worker .*:{os.getpid()} .*source_sha256"):
+        fo.perform(foreign)
+    with pytest.raises(fo.InputError, match="not a work"):
+        fo.perform(b"nonsense")
+
+
+def resealed_work(job: bytes, old: str, new: str) -> bytes:
+    import hashlib
+
+    content = job.decode().rsplit(',"check":"', 1)[0].replace(old, new)
+    return f'{content},"check":"{hashlib.sha256(content.encode()).hexdigest()[:16]}"}}\n'.encode()
+
+
+def test_an_asynchronous_study_repeats_from_its_journal(create, command):
+    study = create("async", async_=True, budget=9)
+    study.run(Shuffled(5), progress=False)
+    # Raised twice, by others: asks and tells are repeated from the order of arrival.
+    for budget, seed in ((15, 6), (BUDGET, 7)):
+        create("async", async_=True, budget=budget).run(Shuffled(seed), progress=False)
+    lines = (Path(study.path) / "journal.jsonl").read_text().splitlines()[2:]
+    proposals = [int(re.search(r'"proposal":(\d+)', line)[1]) for line in lines]
+    assert sorted(proposals) == list(range(BUDGET))
+    assert proposals != sorted(proposals)
+    before = journal(study.path)
+    code, _, errors = command("resume", study.path, "--quiet", "--no-cache")
+    assert code == 0, errors
+    assert journal(study.path) == before
+
+
+def test_ctrl_c_leaves_a_journal_that_goes_on(create, expected, tmp_path):
+    code = (
+        "import finger_opt as fo, os, signal, threading, time\n"
+        f"journal = {str(tmp_path / 'stopped' / 'journal.jsonl')!r}\n"
+        "def stop():\n"
+        "    while not os.path.exists(journal) or open(journal).read().count(chr(10)) < 5:\n"
+        "        time.sleep(0.01)\n"
+        "    os.kill(os.getpid(), signal.SIGINT)\n"
+        "threading.Thread(target=stop, daemon=True).start()\n"
+        f"fo.Study.create('rj45', budget={BUDGET}, seed=4, batch=4, engine='fake', no_cache=True,\n"
+        f"                out={str(tmp_path / 'stopped')!r}).run(progress=False)\n"
+    )
+    slow = {**os.environ, "FINGER_OPT_FAKE_DELAY_US": "10000"}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=slow)
+    assert "KeyboardInterrupt" in done.stderr
+    assert "evaluations are safe; continue with: optimize resume" in done.stderr
+    fo.load_study(tmp_path / "stopped").run(progress=False)
+    assert journal(tmp_path / "stopped") == expected
+
+
+def test_the_command_hands_a_study_to_an_executor(command, expected, tmp_path, fake):
+    words = ["--task", "rj45", "--budget", "9", "--seed", "4", "--batch", "4", "--engine", "fake",
+             "--no-cache", "--quiet", "--out", str(tmp_path / "handed"), "--executor"]
+    code, out, errors = command(*words, "processes:2")
+    assert code == 0, errors
+    assert "best design" in out
+    code, out, errors = command("resume", str(tmp_path / "handed"), "--executor", "processes")
+    assert code == 0, errors
+    assert expected.startswith(journal(tmp_path / "handed"))
+    assert command(*words, "cloud")[0] == 2
+    other = {**os.environ, "FINGER_OPT_PYTHON": "/bin/false"}
+    code, _, errors = command(*words, "processes", env=other)
+    assert code == 1 and "pip install './python" in errors

@@ -1,0 +1,43 @@
+//! `--executor WHERE`: hands the command to the installed Python package, which knows the
+//! executors, and runs the study with the same library.
+
+use super::Failure;
+use crate::study::SOURCES;
+use std::ffi::OsString;
+use std::process::{Command, ExitCode, Stdio};
+
+/// Names another interpreter than `python3`.
+const PYTHON: &str = "FINGER_OPT_PYTHON";
+/// Tells the package which sources the program was built from.
+const SOURCES_KEY: &str = "FINGER_OPT_SOURCES";
+
+/// Runs the command of these words, the program's name left out, by the Python package, which
+/// says itself what fails; gives its exit code.
+pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
+    let python = std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
+    let missing = |said: &str| {
+        Failure::running(format!(
+            "--executor {executor} needs the Python package of finger-opt ({} says: {said}); in \
+             the project's folder: pip install './python[dask,slurm]'. {PYTHON} names another \
+             interpreter",
+            python.display()
+        ))
+    };
+    let found =
+        Command::new(&python).args(["-c", "import finger_opt"]).stdin(Stdio::null()).output();
+    let found = found.map_err(|error| missing(&error.to_string()))?;
+    if !found.status.success() {
+        let said = String::from_utf8_lossy(&found.stderr);
+        return Err(missing(said.lines().last().unwrap_or("nothing")));
+    }
+    // Ctrl-C reaches the interpreter, too, and that one ends the study.
+    let watch = ctrlc::set_handler(|| ());
+    watch.map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;
+    let mut command = Command::new(&python);
+    command.args(["-m", "finger_opt.executors"]).args(words).env(SOURCES_KEY, SOURCES);
+    let status = command.status().map_err(|error| missing(&error.to_string()))?;
+    match status.code() {
+        Some(code) => Ok(ExitCode::from(u8::try_from(code).unwrap_or(1))),
+        None => Err(Failure::running(format!("the Python package was ended: {status}"))),
+    }
+}

@@ -1,0 +1,296 @@
+//! The course of a study: what is to be measured next, and what was. Who measures, and where,
+//! is not known here.
+//!
+//! # What is guaranteed
+//!
+//! The journal is a function of the configuration without its budget; the
+//! budget only says where it ends (or where a polish begins, and then it cannot be
+//! raised). It does not depend on who measures or on the
+//! number of threads or workers, nor on how often the study was interrupted or its budget raised:
+//! 20 evaluations and then 20 more are the same as 40 at once. This holds because
+//!
+//! - the optimizer is always asked for whole batches and told whole batches; a
+//!   budget that ends within a batch evaluates its first designs and tells nothing;
+//! - a study that goes on starts its optimizer anew and repeats asks and tells
+//!   with the values of the journal, so its state is what it would have been;
+//!   what it proposes on the way must be what the journal holds;
+//! - evaluations that end out of order wait in memory until all earlier ones are written;
+//! - of results that come twice the first counts.
+//!
+//! An asynchronous study has no batches: `batch` designs are proposed at
+//! first, and one more for each result, which is told at once; designs that are being measured
+//! are known to the optimizer as asked and not told. Its journal has the results in the order
+//! in which they arrived, each with the number of its proposal. So it depends on who was fast,
+//! but repeats: asks and tells follow from that order alone.
+
+use super::error::StudyError;
+use super::fits;
+use super::folder::Study;
+use super::record::{Recorded, Timing};
+use super::runner::Ending;
+use crate::evaluation::evaluator::Measured;
+use crate::evaluation::objective::Goals;
+use crate::input::space::{Design, GridPoint};
+use crate::optimizer::{Observation, Optimizer, StopReason};
+use std::collections::BTreeMap;
+
+/// A design that is to be measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wanted {
+    /// Its number in the order in which designs were proposed, from 0.
+    pub proposal: u64,
+    /// The design.
+    pub design: Design,
+}
+
+/// What is to be done next.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Next {
+    /// Measure these, in any order; they are not given again.
+    Measure(Vec<Wanted>),
+    /// Wait for a result of what is being measured.
+    Wait,
+    /// Nothing.
+    Ended(Ending),
+}
+
+/// What was measured of a design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arrived {
+    /// The number of its proposal.
+    pub proposal: u64,
+    /// What was measured.
+    pub measured: Measured,
+    /// When, and how long it took.
+    pub timing: Timing,
+}
+
+/// How a study goes on, from its beginning or from what its journal holds.
+pub struct Course {
+    goals: Goals,
+    batch: usize,
+    budget: usize,
+    asynchronous: bool,
+    /// Proposed and not told yet, by the number of the proposal.
+    open: BTreeMap<u64, GridPoint>,
+    /// How many were proposed.
+    proposed: u64,
+    /// How many evaluations the optimizer was told.
+    told: usize,
+    /// Given out and not written, by the number of the proposal.
+    measuring: BTreeMap<u64, Design>,
+    /// Measured, and to be written after earlier ones, by the same number.
+    waiting: BTreeMap<u64, Recorded>,
+    ended: Option<Ending>,
+}
+
+impl Course {
+    /// The course of this study, whose optimizer is new.
+    pub fn new(study: &Study) -> Self {
+        let number = |n: u64| usize::try_from(n).unwrap_or(usize::MAX);
+        Course {
+            goals: study.config.goals(),
+            batch: number(study.config.batch),
+            budget: number(study.config.evaluations()),
+            asynchronous: study.config.asynchronous,
+            open: BTreeMap::new(),
+            proposed: 0,
+            told: 0,
+            measuring: BTreeMap::new(),
+            waiting: BTreeMap::new(),
+            ended: None,
+        }
+    }
+
+    /// What is to be done next.
+    ///
+    /// # Errors
+    /// If the journal holds other designs than the optimizer proposes.
+    pub fn next(
+        &mut self,
+        study: &Study,
+        optimizer: &mut dyn Optimizer,
+    ) -> Result<Next, StudyError> {
+        while self.ended.is_none() {
+            let wanted = match self.asynchronous {
+                true => self.next_arrivals(study, optimizer)?,
+                false if self.measuring.is_empty() => self.next_batch(study, optimizer)?,
+                false => Vec::new(),
+            };
+            if !wanted.is_empty() {
+                let given = wanted.iter().map(|w| (w.proposal, w.design.clone()));
+                self.measuring.extend(given);
+                return Ok(Next::Measure(wanted));
+            }
+            if !self.measuring.is_empty() {
+                return Ok(Next::Wait);
+            }
+        }
+        Ok(Next::Ended(self.ended.unwrap_or(Ending::BudgetSpent)))
+    }
+
+    /// Takes in what was measured of a design that was given out, and writes down what is in
+    /// turn. False, and nothing is changed, if its result is not awaited: it came before.
+    ///
+    /// # Errors
+    /// If the journal cannot be written.
+    pub fn take(
+        &mut self,
+        study: &mut Study,
+        result: Arrived,
+        progress: &mut dyn FnMut(&Recorded),
+    ) -> Result<bool, StudyError> {
+        let Arrived { proposal, measured: Measured { stiffness, tasks, .. }, timing } = result;
+        let Some(design) = self.measuring.get(&proposal).cloned() else { return Ok(false) };
+        if self.waiting.contains_key(&proposal) {
+            return Ok(false);
+        }
+        let (index, proposal_written) = match self.asynchronous {
+            true => (study.evaluations.len() as u64, Some(proposal)),
+            false => (proposal, None),
+        };
+        let mut recorded = Recorded {
+            index,
+            proposal: proposal_written,
+            design,
+            score: None,
+            stiffness,
+            tasks,
+            timing,
+        };
+        // What is no number has failed.
+        recorded.score = self.goals.score(&recorded.tasks()).filter(fits::sound);
+        self.waiting.insert(proposal, recorded);
+        while let Some((proposal, recorded)) = self.next_written(study) {
+            let written = study.journal.append(&recorded);
+            if let Err(StudyError::Interfered { .. }) | Ok(()) = written {
+                progress(&recorded);
+                // What is not in the journal is saved with the rest.
+                study.evaluations.push(recorded);
+                self.measuring.remove(&proposal);
+            }
+            written?;
+        }
+        Ok(true)
+    }
+
+    /// The result whose turn it is, if it is here.
+    fn next_written(&mut self, study: &Study) -> Option<(u64, Recorded)> {
+        let next = study.evaluations.len() as u64;
+        let proposal =
+            self.waiting.iter().find(|(_, found)| found.index == next).map(|(n, _)| *n)?;
+        self.waiting.remove_entry(&proposal)
+    }
+
+    /// Tells the batch that was measured and asks for the next; gives what the journal does not
+    /// hold of it.
+    fn next_batch(
+        &mut self,
+        study: &Study,
+        optimizer: &mut dyn Optimizer,
+    ) -> Result<Vec<Wanted>, StudyError> {
+        let end = self.told + self.open.len();
+        // A budget that ends within a batch tells nothing of it.
+        if end <= self.budget && !self.open.is_empty() {
+            let points = std::mem::take(&mut self.open).into_values();
+            let found = study.evaluations.iter().skip(self.told);
+            let told: Vec<Observation> =
+                points.zip(found).map(|(point, found)| self.observation(point, found)).collect();
+            optimizer.tell(&told);
+            self.told = end;
+        }
+        if end >= self.budget {
+            self.ended = Some(Ending::BudgetSpent);
+            return Ok(Vec::new());
+        }
+        self.propose(optimizer, self.batch);
+        if self.open.is_empty() {
+            self.ended = Some(exhausted(optimizer));
+            return Ok(Vec::new());
+        }
+        let mut wanted = self.wanted(study);
+        for wanted in &wanted {
+            match study.evaluations.get(wanted.proposal as usize) {
+                Some(found) if found.design != wanted.design => {
+                    return Err(study.other_design(found, &wanted.design.to_string()));
+                }
+                _ => {}
+            }
+        }
+        wanted.retain(|wanted| wanted.proposal >= study.evaluations.len() as u64);
+        Ok(wanted)
+    }
+
+    /// Tells what has arrived, one by one, asks for one more after each, and gives what is not
+    /// being measured yet.
+    fn next_arrivals(
+        &mut self,
+        study: &Study,
+        optimizer: &mut dyn Optimizer,
+    ) -> Result<Vec<Wanted>, StudyError> {
+        // Whatever the budget is: it may be raised later.
+        if self.proposed == 0 {
+            self.propose(optimizer, self.batch);
+        }
+        while let Some(found) = study.evaluations.get(self.told) {
+            let number = found.proposal;
+            let point = number.and_then(|number| self.open.remove(&number));
+            let Some(point) = point.filter(|p| study.config.space.design(p) == found.design) else {
+                return Err(study.other_design(found, "another in its place"));
+            };
+            optimizer.tell(&[self.observation(point, found)]);
+            self.told += 1;
+            self.propose(optimizer, 1);
+        }
+        let mut wanted = self.wanted(study);
+        wanted.retain(|wanted| !self.measuring.contains_key(&wanted.proposal));
+        if wanted.is_empty() && self.measuring.is_empty() {
+            let spent = self.told >= self.budget;
+            self.ended = Some(if spent { Ending::BudgetSpent } else { exhausted(optimizer) });
+        }
+        Ok(wanted)
+    }
+
+    fn propose(&mut self, optimizer: &mut dyn Optimizer, count: usize) {
+        for point in optimizer.ask(count) {
+            self.open.insert(self.proposed, point);
+            self.proposed += 1;
+        }
+    }
+
+    /// The designs that were proposed within the budget and are not told yet.
+    fn wanted(&self, study: &Study) -> Vec<Wanted> {
+        let within = self.open.iter().filter(|(number, _)| **number < self.budget as u64);
+        let design = |point| study.config.space.design(point);
+        within.map(|(&proposal, point)| Wanted { proposal, design: design(point) }).collect()
+    }
+
+    fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {
+        match recorded.score.as_ref().zip(self.goals.told(&recorded.tasks())) {
+            None => Observation::new(point, None),
+            Some((score, values)) => {
+                Observation { point, values, violations: score.violations.clone() }
+            }
+        }
+    }
+}
+
+/// Why there is nothing more to propose.
+fn exhausted(optimizer: &dyn Optimizer) -> Ending {
+    match optimizer.stop() {
+        Some(StopReason::Converged) => Ending::Converged,
+        Some(StopReason::GridExhausted) | None => Ending::SpaceExhausted,
+    }
+}
+
+impl Study {
+    /// The journal holds this evaluation where another design is proposed now.
+    fn other_design(&self, found: &Recorded, proposed: &str) -> StudyError {
+        StudyError::Replay {
+            path: self.journal.path().to_owned(),
+            index: found.index,
+            found: found.design.to_string(),
+            proposed: proposed.to_owned(),
+        }
+    }
+}

@@ -131,7 +131,9 @@ fn errors(density: f64, direction: f64) -> [f64; 4] {
 fn springs_of_pad_and_roof_answer_a_plug_more_like_the_elastic_finger() {
     for (density, direction) in [(10.0, 0.0), (20.0, 20.0), (30.0, 40.0)] {
         let [pad, both, pad_coupled, both_coupled] = errors(density, direction);
-        println!("{density} {direction}: {pad:.3} {both:.3} {pad_coupled:.3} {both_coupled:.3}");
-        assert!(both < pad && both_coupled < pad_coupled && pad_coupled < both);
+        assert!(
+            both < pad && both_coupled < pad_coupled && pad_coupled < both,
+            "{density} {direction}: {pad:.3} {both:.3} {pad_coupled:.3} {both_coupled:.3}"
+        );
     }
 }

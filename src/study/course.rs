@@ -27,12 +27,24 @@ use super::error::StudyError;
 use super::fits;
 use super::folder::Study;
 use super::record::{Recorded, Timing};
-use super::runner::Ending;
 use crate::evaluation::evaluator::Measured;
 use crate::evaluation::objective::Goals;
 use crate::input::space::{Design, GridPoint};
 use crate::optimizer::{Observation, Optimizer, StopReason};
 use std::collections::BTreeMap;
+
+/// Why a run of a study ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// As many designs were evaluated as the budget allows.
+    BudgetSpent,
+    /// Every design of the space has been evaluated.
+    SpaceExhausted,
+    /// The polish has found what it can find.
+    Converged,
+    /// It was told to stop.
+    Interrupted,
+}
 
 /// A design that is to be measured.
 #[derive(Debug, Clone, PartialEq)]

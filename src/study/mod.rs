@@ -27,7 +27,7 @@ mod work;
 
 pub use cache::{Cache, Key};
 pub use config::{LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
-pub use course::{Arrived, Course, Next, Wanted};
+pub use course::{Arrived, Course, Ending, Next, Wanted};
 pub use error::{LineError, StudyError};
 pub use folder::{
     CONFIG_FILE, FINGER, IfChanged, Inputs, JOURNAL_FILE, Study, read_config, sha256, write_file,
@@ -39,7 +39,7 @@ pub use line::{decode, encode};
 pub use provenance::{Provenance, SOURCES, Segment};
 pub use recommendation::Recommendation;
 pub use record::{Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume};
-pub use runner::{Ending, Runner};
+pub use runner::Runner;
 pub use seal::strip_times;
 pub use simulated::Simulated;
 pub use store::{FileStore, Store};

@@ -1,7 +1,7 @@
 //! Runs a study on the threads of this process; how it goes on is decided by its
 //! [`Course`].
 
-use super::course::{Arrived, Course, Next, Wanted};
+use super::course::{Arrived, Course, Ending, Next, Wanted};
 use super::error::StudyError;
 use super::folder::Study;
 use super::record::{Recorded, Timing};
@@ -12,19 +12,6 @@ use rayon::ThreadPool;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;
-
-/// Why a run of a study ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ending {
-    /// As many designs were evaluated as the budget allows.
-    BudgetSpent,
-    /// Every design of the space has been evaluated.
-    SpaceExhausted,
-    /// The polish has found what it can find.
-    Converged,
-    /// It was told to stop.
-    Interrupted,
-}
 
 /// What a run works with.
 pub struct Runner<'a> {

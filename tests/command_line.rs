@@ -249,7 +249,11 @@ fn a_number_of_task_or_finger_can_be_set() {
     assert_eq!(shown["set"], serde_json::json!({"finger.rcc_mm": 16.0, "task.grip.force_n": 7.0}));
     let trial = ["trial", "--task", "usb", "--density", "20", "--direction", "10"];
     let text = fake(&[&trial[..], &set].concat());
-    assert!(text.succeeds().contains("set           finger.rcc_mm = 16, task"), "{}", text.stdout);
+    assert!(
+        text.succeeds().contains("design        rcc 16 mm, infill density 20 %"),
+        "{}",
+        text.stdout
+    );
     // A key that the space does not name has no bounds but those of the task.
     assert!((range(&["--set", "finger.rcc_mm=1"]).as_f64().unwrap() - as_in_the_paper) > 1.9);
     for (set, parts) in [

@@ -4,7 +4,7 @@
 //! 1. [`simulation`]: windows under drawn friction, preload, robot, finger: [`prior`].
 //! 2. [`emulator`]: a Gaussian process in the simulator's place, its error measured.
 //! 3. [`process`]: what remains between simulation and bench, as a process over the stiffness.
-//! 4. [`bench`], [`sampler`]: the posterior of parameters and process, given measurements.
+//! 4. [`mod@bench`], [`sampler`]: the posterior of parameters and process, given measurements.
 //! 5. [`mod@predict`], [`loo`]: ranges with intervals; each measured finger predicted without it.
 //! 6. [`next`], [`replay`]: which finger to print, and how soon the best is found so.
 

@@ -10,7 +10,7 @@
 //!
 //! Fewer than seven fingers do not carry such a model. Then the models are of measured /
 //! computed stiffness: the ribs give the shape ([`Computed`]), the fingers its scale.
-//! [`mod@compare`] asks how far each carries.
+//! `compare` asks how far each carries.
 //!
 //! Nothing here is random, so equal measurements give bit-identical models.
 

@@ -14,6 +14,8 @@ const NEAR: f64 = 1e-3 * MM;
 const MOST_LAYERS: usize = 120;
 /// More pieces than this are no extruded outline either.
 const MOST_PIECES: usize = 600;
+/// An outline with more levels than this is curved, and triangles do better.
+const MOST_STRIPS: usize = 24;
 /// Turns of less area are straight, m2.
 const STRAIGHT: f64 = 1e-4 * MM * MM;
 
@@ -37,6 +39,17 @@ impl Riser {
         let [low, high] = self.ends;
         (low + (high - low) * share).xy()
     }
+
+    /// The riser at a share of the way to another.
+    fn towards(&self, other: &Riser, share: f64) -> Riser {
+        Riser { ends: [0, 1].map(|i| self.ends[i] + (other.ends[i] - self.ends[i]) * share) }
+    }
+}
+
+/// Without corners that fall on the one before: a trapezoid may be a triangle.
+fn without_doubles(mut outline: Outline) -> Outline {
+    outline.dedup_by(|b, a| (b.at(0.5) - a.at(0.5)).norm() < NEAR);
+    outline
 }
 
 /// Corners of one convex piece.
@@ -173,7 +186,47 @@ impl Layer {
         {
             return Some(vec![piece(outline)]);
         }
-        Some(merged(self.triangles()?).iter().map(|outline| piece(outline)).collect())
+        let parts = self.strips().or_else(|| self.triangles())?;
+        Some(merged(parts).iter().map(|outline| piece(outline)).collect())
+    }
+
+    /// An upright layer cut along x at its corners: trapezoids. Seams then run along walls, as in a
+    /// file written by hand, and none ends askew in a corner of the opening, where plugs catch.
+    fn strips(&self) -> Option<Vec<Outline>> {
+        let risers = || self.outlines.iter().flatten();
+        if risers().any(|riser| (riser.at(1.0) - riser.at(0.0)).norm() > NEAR) {
+            return None;
+        }
+        let mut levels: Vec<f64> = risers().map(|riser| riser.at(0.5).y).collect();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup_by(|b, a| *b - *a < NEAR);
+        if levels.len() > MOST_STRIPS {
+            return None;
+        }
+        Some(levels.windows(2).flat_map(|pair| self.strip([pair[0], pair[1]])).collect())
+    }
+
+    /// What is solid between two neighbouring levels of y.
+    fn strip(&self, [low, high]: [f64; 2]) -> Vec<Outline> {
+        let middle = (low + high) / 2.0;
+        let mut sides: Vec<[Riser; 2]> = Vec::new();
+        for outline in &self.outlines {
+            for i in 0..outline.len() {
+                let (a, b) = (outline[i], outline[(i + 1) % outline.len()]);
+                let (from, to) = (a.at(0.5).y, b.at(0.5).y);
+                if (from > middle) != (to > middle) {
+                    sides.push([low, high].map(|y| a.towards(&b, (y - from) / (to - from))));
+                }
+            }
+        }
+        let x = |side: &[Riser; 2]| side[0].at(0.5).x + side[1].at(0.5).x;
+        sides.sort_by(|a, b| x(a).total_cmp(&x(b)));
+        // From outside the first side enters what is solid, the second leaves it.
+        let between = |pair: &[[Riser; 2]]| {
+            let corners = vec![pair[0][0], pair[1][0], pair[1][1], pair[0][1]];
+            straightened(without_doubles(corners))
+        };
+        sides.chunks_exact(2).map(between).filter(|outline| outline.len() > 2).collect()
     }
 
     /// Triangles of risers, counter-clockwise.

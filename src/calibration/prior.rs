@@ -196,7 +196,7 @@ mod tests {
             ("low = 0.5", "low = -0.5", "above 0"),
             ("sets = \"task.friction.plug_socket\"", "sets = \"friction\"", "sets nothing"),
             ("name = \"friction pad-plug\"", "name = \"friction plug-socket\"", "twice"),
-            ("scale = \"log\"", "scale = \"logg\"", "logg"),
+            ("\nscale = \"log\"", "\nscale = \"logg\"", "logg"),
         ] {
             let text = good.replacen(from, to, 1);
             let error = Priors::parse(&text, "p.toml").unwrap_err().to_string();

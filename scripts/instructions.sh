@@ -2,7 +2,7 @@
 # Counts the instructions of one trial and compares them with the committed count: a number
 # that is the same on a busy machine, unlike a time.
 #
-#     scripts/instructions.sh [PROGRAM]          exit 1 if it is off by more than the margin
+#     scripts/instructions.sh [PROGRAM]          exit 1 if it is above by more than the margin
 #     scripts/instructions.sh [PROGRAM] --renew  writes the count of this compiler
 #
 # PROGRAM is the one that `cargo test` has built; without it, it is built here.
@@ -43,8 +43,13 @@ expected=$(awk '/^instructions/ { print $2 }' "$committed")
 change=$(awk -v a="$count" -v b="$expected" 'BEGIN { printf "%+.2f", 100 * (a / b - 1) }')
 echo "one usb trial: $count instructions, committed $expected, $change % (margin $margin %)"
 echo "compiled by $compiler; the committed count by $(sed -n 's/^compiler //p' "$committed")"
-if awk -v c="$change" -v m="$margin" 'BEGIN { exit !(c > m || c < -m) }'; then
-    echo "the trial costs another number of instructions than committed; if that is meant," \
+# outside SIGN: whether the change lies outside the margin, above (1) or below (-1).
+outside() { awk -v c="$change" -v m="$margin" -v s="$1" 'BEGIN { exit !(s * c > m) }'; }
+if outside -1; then
+    echo "the trial has become cheaper: run scripts/instructions.sh --renew, or the count will not notice its return"
+fi
+if outside 1; then
+    echo "the trial costs more instructions than committed; if that is meant," \
         "run scripts/instructions.sh --renew and say why in the commit" >&2
     exit 1
 fi

@@ -1,7 +1,8 @@
 //! One attempt at an insertion: the phases, step by step, and what is watched on the way.
 
 use super::cell::{self, Hand, WorkCell};
-use super::classify::{Facts, Placement, classify, within};
+use super::classify::{Facts, Placement, classify};
+use super::leading::LeadingEdge;
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder};
 use super::trace::{Sample, Trace};
@@ -18,9 +19,6 @@ use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The leading edge is inside when it is this far below the socket's top, m:
-/// more than contacts sink, less than any preload.
-const ENTERED_DEPTH: f64 = 0.15 * MM;
 /// Rest after a move that has none of its own, s.
 const REST: f64 = 0.03;
 /// First contact, N.
@@ -61,7 +59,7 @@ pub(super) struct Attempt<'a> {
     /// Grasp point in each finger's frame right after the grasp.
     grasp: [Vector3<f64>; 2],
     watch: Watch,
-    corners: Vec<Point3<f64>>,
+    edge: LeadingEdge,
     phases: Vec<PhaseEnd>,
     /// Samples, if they are wanted.
     pub trace: Option<Trace>,
@@ -78,7 +76,7 @@ impl<'a> Attempt<'a> {
         stop: &'a AtomicBool,
     ) -> Self {
         let pose = world.pose(cell.command);
-        let corners = task.plug.parts.iter().flat_map(|part| part.solid.corners()).collect();
+        let edge = LeadingEdge::new(&task);
         Attempt {
             robot,
             stop,
@@ -92,7 +90,7 @@ impl<'a> Attempt<'a> {
             time: 0.0,
             grasp: [Vector3::zeros(); 2],
             watch: Watch::default(),
-            corners,
+            edge,
             phases: Vec::new(),
             trace: None,
             recorder: None,
@@ -107,7 +105,7 @@ impl<'a> Attempt<'a> {
             task: Arc::clone(&self.task),
             cell: self.cell.clone(),
             world: self.world.snapshot(),
-            corners: self.corners.clone(),
+            edge: self.edge.clone(),
             phases: self.phases.clone(),
             trace: self.trace.clone(),
             recorder: self.recorder.clone(),
@@ -238,7 +236,7 @@ impl<'a> Attempt<'a> {
         self.record(dt);
         self.watch_grasp(dt)?;
         if self.stage == Stage::Search {
-            self.watch.entered = self.watch.entered || self.leading_edge_inside();
+            self.watch.entered = self.edge.inside(&self.plug());
         }
         if self.trace.as_ref().is_some_and(|trace| trace.due(self.time, dt)) {
             let sample = self.sample(&contact.net);
@@ -326,13 +324,6 @@ impl<'a> Attempt<'a> {
 
     fn placement(&self) -> Placement {
         Placement::new(&self.plug())
-    }
-
-    fn leading_edge_inside(&self) -> bool {
-        let plug = self.plug();
-        let lowest = self.corners.iter().map(|p| plug * p).min_by(|a, b| a.z.total_cmp(&b.z));
-        let [x, y] = self.task.opening;
-        lowest.is_some_and(|p| p.z < -ENTERED_DEPTH && within(p.x, x) && within(p.y, y))
     }
 
     fn grasp_points(&self) -> [Vector3<f64>; 2] {

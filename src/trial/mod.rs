@@ -14,6 +14,7 @@ pub mod conditions;
 pub mod engine;
 #[cfg(any(test, feature = "fake-engine"))]
 pub mod fake;
+mod leading;
 pub mod motion;
 pub mod picture;
 pub mod record;

@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 pub enum FailureClass {
     /// 1: the part left the grasp before the search began.
     ContactLossBeforeSearch,
-    /// 2: the leading edge never entered the opening before the assembly push.
+    /// 2: when the search ended, the leading edge was not inside the opening.
     PlugMissed,
-    /// 3: entered, not seated, still held.
+    /// 3: it was, but the part is not seated; still held.
     Jammed,
     /// 4: the part left the grasp, or slipped beyond the limit, in search or insertion.
     ContactLossInInsertion,

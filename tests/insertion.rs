@@ -4,19 +4,27 @@ use finger_opt::evaluation::robustness::{self, Plan};
 use finger_opt::evaluation::tolerance::{Search, evaluate};
 use finger_opt::evaluation::uncertainty::Uncertainty;
 use finger_opt::finger::Finger;
+use finger_opt::finger::computed::{AtPad, Touching};
+use finger_opt::finger::model::{ComputedFingers, FingerSource};
+use finger_opt::input::finger_file::FingerFile;
 use finger_opt::input::printed::PrintedFinger;
 use finger_opt::input::robot::Robot;
 use finger_opt::input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
+use finger_opt::input::space::Design;
 use finger_opt::input::stiffness;
 use finger_opt::input::task::Task;
 use finger_opt::outcome::{FailureClass, Outcome};
 use finger_opt::physics::Engine;
 use finger_opt::physics::direct::Direct;
 use finger_opt::physics::rapier::Rapier;
+use finger_opt::scene::{
+    Body, BodyId, Friction, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Springs,
+};
 use finger_opt::surrogate::{self, Estimate, Prediction};
 use finger_opt::trial::run::EngineRig;
 use finger_opt::trial::{Conditions, Rig, Trial, picture};
 use finger_opt::units::{DEG, MM, N_PER_MM};
+use nalgebra::Vector3;
 
 fn task(name: &str) -> Task {
     let file = TASKS.iter().find(|file| file.name == name).unwrap();
@@ -290,43 +298,51 @@ fn a_picture_shows_each_phase_twice() {
     assert!(svg.contains("a &lt;trial&gt;") && svg.contains("10 mm"));
 }
 
-/// Loaded at its pad's middle in the engine, a computed finger is as stiff as it was measured there.
+/// The finger of 20 %, 20 degrees as computed, as stiff at its pad as measured.
+fn computed(touching: Touching, coupling: bool) -> Finger {
+    let printed = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
+    let mut fingers = ComputedFingers::new(printed, touching);
+    fingers.kept.coupling = coupling;
+    let fingers = FingerSource::Computed(Box::new(fingers));
+    let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
+    fingers.make(at_pad, &Design::infill(20.0, 20.0), &direct("rj45").task).unwrap().finger
+}
+
+/// A finger on its springs at a jaw that stands still, the springs at rest with the pad so far inward.
+fn mounted(scene: &mut Scene, finger: &Finger, side: f64, inward: f64, geoms: Vec<Geom>) -> BodyId {
+    let jaw = Body {
+        name: "jaw".into(),
+        motion: Motion::Fixed,
+        pose: Pose::translation(0.0, -side * inward, 0.0),
+        geoms: Vec::new(),
+    };
+    let motion = Motion::Free(finger_opt::finger::inertia(finger, side));
+    let body = Body { motion, geoms, pose: Pose::identity(), name: "finger".into() };
+    let (jaw, body) = (scene.body(jaw), scene.body(body));
+    let centre = Pose::translation(0.0, finger.centre(side).y, finger.centre(side).z);
+    scene.joint(Joint {
+        name: "springs".into(),
+        parent: jaw,
+        child: body,
+        in_parent: centre,
+        in_child: centre,
+        springs: finger.mounted(side),
+    });
+    body
+}
+
+/// Loaded at its pad's middle in the engine, a computed finger is as stiff as it was measured there; with y
+/// and z coupled, pushed up its pad moves towards the part.
 #[test]
 fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
-    use finger_opt::finger::computed::{AtPad, Touching};
-    use finger_opt::finger::model::{ComputedFingers, FingerSource};
-    use finger_opt::input::finger_file::FingerFile;
-    use finger_opt::input::space::Design;
-    use finger_opt::scene::{Body, Joint, Motion, Pose, Scene};
-    use nalgebra::Vector3;
-    let task = direct("rj45").task;
-    let printed = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
-    for touching in [Touching::Pad, Touching::PadAndRoof] {
-        let fingers = ComputedFingers::new(printed.clone(), touching);
-        let fingers = FingerSource::Computed(Box::new(fingers));
-        let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
-        let finger = fingers.make(at_pad, &Design::infill(20.0, 20.0), &task).unwrap().finger;
+    let shoulder = direct("rj45").task.grip.shoulder();
+    let touching = [Touching::Pad, Touching::PadAndRoof];
+    for (touching, coupling) in touching.into_iter().flat_map(|t| [(t, false), (t, true)]) {
+        let finger = computed(touching, coupling);
         for side in [-1.0, 1.0] {
             let mut scene = Scene::default();
-            let jaw = Body {
-                name: "jaw".into(),
-                motion: Motion::Fixed,
-                pose: Pose::identity(),
-                geoms: Vec::new(),
-            };
-            let inertia = finger_opt::finger::inertia(&finger, side);
-            let body = Body { name: "finger".into(), motion: Motion::Free(inertia), ..jaw.clone() };
-            let (jaw, body) = (scene.body(jaw), scene.body(body));
-            let centre = Pose::translation(0.0, finger.centre(side).y, finger.centre(side).z);
-            scene.joint(Joint {
-                name: "springs".into(),
-                parent: jaw,
-                child: body,
-                in_parent: centre,
-                in_child: centre,
-                springs: finger.mounted(side),
-            });
-            let pad = nalgebra::Point3::new(0.0, 0.0, finger.pad.middle(task.grip.shoulder()));
+            let body = mounted(&mut scene, &finger, side, 0.0, Vec::new());
+            let pad = nalgebra::Point3::new(0.0, 0.0, finger.pad.middle(shoulder));
             for (axis, stiffness) in [(1, 2.6e3), (2, 45e3)] {
                 let mut force = Vector3::zeros();
                 force[axis] = 0.1;
@@ -336,10 +352,64 @@ fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
                 for _ in 0..4000 {
                     world.step().unwrap();
                 }
-                let moved = (world.pose(body) * pad - pad)[axis];
-                let found = 0.1 / moved;
+                let moved = world.pose(body) * pad - pad;
+                let found = 0.1 / moved[axis];
                 assert!((found / stiffness - 1.0).abs() < 1e-3, "{side} {axis}: {found}");
+                assert!(axis == 1 || !coupling || moved.y * side < 0.0, "{side}: {moved}");
             }
         }
+    }
+}
+
+/// A part that is pushed up in the grasp is gripped harder, by as much as the springs pull at one another:
+/// the pads would move inward, and the part is in their way.
+#[test]
+fn pushed_up_a_part_is_gripped_harder_by_computed_fingers() {
+    let mut finger = computed(Touching::PadAndRoof, true);
+    // So high that it stays flat on the part.
+    finger.pad.height = 80.0 * MM;
+    let shoulder = finger.pad.height / 2.0;
+    let mut scene = Scene::default();
+    let fingers = [-1.0, 1.0].map(|side| {
+        let pad = finger.pad.geoms(shoulder, side).remove(0);
+        mounted(&mut scene, &finger, side, 2.0 * MM, vec![pad])
+    });
+    // The pads' faces meet in the middle: the part is a thin plate between them.
+    let half = Vector3::new(6.0, 1e-3, 60.0) * MM;
+    let plate = Geom {
+        name: "part".into(),
+        shape: Shape::Box { half },
+        pose: Pose::identity(),
+        friction: None,
+    };
+    let inertia =
+        Inertia { mass: 5e-3, centre: Default::default(), moments: Vector3::repeat(1e-5) };
+    let part = scene.body(Body {
+        name: "part".into(),
+        motion: Motion::Free(inertia),
+        pose: Pose::identity(),
+        geoms: vec![plate],
+    });
+    for body in fingers {
+        scene.contact(body, part, Friction::hard(1.0));
+    }
+    let up = 2.0;
+    let grip = |force: f64| {
+        let mut world = Direct::default().world(&scene);
+        for step in 0..8000 {
+            if step == 4000 {
+                world.push(part, Vector3::z() * force, Vector3::zeros());
+            }
+            world.step().unwrap();
+        }
+        fingers.map(|body| world.contact(body, part).net.y.abs())
+    };
+    let Springs::Coupled(springs) = finger.mounted(-1.0) else { panic!("coupled") };
+    let k = springs.stiffness;
+    let expected = -k[(1, 2)] / k[(2, 2)] * up / 2.0;
+    assert!(expected > 0.05);
+    for (pressed, still) in grip(up).into_iter().zip(grip(0.0)) {
+        let found = pressed - still;
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}, of {still}");
     }
 }

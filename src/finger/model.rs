@@ -1,7 +1,7 @@
 //! Where the springs of a finger come from that were not measured: the paper, or its ribs.
 
 use super::Finger;
-use super::computed::{AtPad, Computed, Given, Touching};
+use super::computed::{AtPad, Computed, Given, Kept, Touching};
 use super::printed::FingerError;
 use super::printed::infill::{self, pitch};
 use super::printed::known::Known;
@@ -55,6 +55,8 @@ pub struct ComputedFingers {
     pub file: FingerFile,
     /// What presses them.
     pub touching: Touching,
+    /// Which of the computed springs they keep.
+    pub kept: Kept,
     /// By how much the first rib is moved against the file's, as a share of the pitch.
     pub phase_share: f64,
     known: Known,
@@ -133,7 +135,13 @@ impl FingerSource {
 impl ComputedFingers {
     /// FingerSource of a file, with its rib phase.
     pub fn new(file: FingerFile, touching: Touching) -> Self {
-        ComputedFingers { file, touching, phase_share: 0.0, known: Known::default() }
+        ComputedFingers {
+            file,
+            touching,
+            kept: Kept::DEFAULT,
+            phase_share: 0.0,
+            known: Known::default(),
+        }
     }
 
     /// The stiffness of a design from its ribs, computed once; NaN of the infill is refused.
@@ -166,8 +174,8 @@ impl ComputedFingers {
             let corrected = plane.corrected(at_pad.compliance, at_pad.assembly);
             *plane = corrected.unwrap_or(*plane);
         }
-        let (printed, touching) = (&self.file.with(design)?, self.touching);
+        let (printed, touching, kept) = (&self.file.with(design)?, self.touching, self.kept);
         let shoulder = task.grip.shoulder();
-        Computed { printed, stiffness: &stiffness, touching, shoulder }.finger(at_pad, given)
+        Computed { printed, stiffness: &stiffness, touching, kept, shoulder }.finger(at_pad, given)
     }
 }

@@ -7,7 +7,8 @@
 //!    limit) before the search began: class 1; later: class 4. So does a part that is
 //!    seated, but that one finger has let go of: pushed aside by more than twice the
 //!    grasp force, it stands where it is driven by the other finger alone.
-//! 3. Its leading edge never entered the opening before the assembly push: class 2.
+//! 3. Its leading edge is not inside the opening when the search ends: class 2, "a failed search
+//!    phase in which the plug is missed" (paper, Sec. "Failure Cases").
 //! 4. Otherwise it entered and is not seated, whether fingers still touch it or not: class 3.
 
 use crate::input::task::{Stage, Task};
@@ -69,7 +70,7 @@ pub struct Facts {
     pub gripped: bool,
     /// The stage in which the part left the grasp.
     pub lost_in: Option<Stage>,
-    /// The leading edge was inside the opening at some time before assembly.
+    /// The leading edge was inside the opening when the search ended.
     pub entered: bool,
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Watch {
     pub peak_force: f64,
     /// Its largest size in the phase, N.
     pub phase_peak: f64,
-    /// Whether the leading edge was inside the opening during the search.
+    /// Whether the leading edge is inside the opening; as it was when the search ended.
     pub entered: bool,
     /// For how long each finger has been off, s.
     loose_for: [f64; 2],

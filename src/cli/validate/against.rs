@@ -5,7 +5,7 @@ use super::{Arguments, search_name};
 use crate::cli::setup;
 use crate::cli::{Failure, print, print_json};
 use crate::evaluation::tolerance::Search;
-use crate::finger::computed::Touching;
+use crate::finger::computed::{Kept, Touching};
 use crate::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
 use crate::input::finger_file::FingerFile;
 use crate::input::robot::Robot;
@@ -18,6 +18,9 @@ use serde_json::json;
 
 /// Models of ours, in the order of the output.
 const OURS: [Model; 3] = [Model::Paper, Model::ComputedPad, Model::ComputedPadAndRoof];
+/// Those that `--variants` adds.
+const VARIANTS: [Model; 4] =
+    [Model::PadInPlane, Model::PadAndRoofInPlane, Model::PadCoupled, Model::PadAndRoofCoupled];
 
 /// Runs the command.
 pub fn run(
@@ -30,7 +33,8 @@ pub fn run(
         let problem = "--against bench compares all finger models; leave out --finger-model";
         return Err(Failure::usage(problem));
     }
-    let measured = OURS.into_iter().map(|model| {
+    let variants = if arguments.variants { &VARIANTS[..] } else { &[] };
+    let measured = OURS.iter().chain(variants).map(|&model| {
         let phases = if model == Model::Paper { 1 } else { arguments.phases };
         let tables = (0..phases).map(|phase| {
             let share = f64::from(phase) / f64::from(phases);
@@ -79,14 +83,20 @@ fn of_task(measured: &[(Model, Phases)], at: usize) -> Vec<ModelTables> {
 
 /// The fingers of a model, their ribs moved by a share of the pitch.
 fn fingers(model: Model, file: &str, phase_share: f64) -> Result<FingerSource, Failure> {
-    let touching = match model {
+    let kept = |coupling, across| Kept { coupling, across };
+    let (touching, kept) = match model {
         Model::Published | Model::Paper => return Ok(FingerSource::Paper),
-        Model::ComputedPad => Touching::Pad,
-        Model::ComputedPadAndRoof => Touching::PadAndRoof,
+        Model::ComputedPad => (Touching::Pad, kept(false, true)),
+        Model::ComputedPadAndRoof => (Touching::PadAndRoof, kept(false, true)),
+        Model::PadInPlane => (Touching::Pad, kept(false, false)),
+        Model::PadAndRoofInPlane => (Touching::PadAndRoof, kept(false, false)),
+        Model::PadCoupled => (Touching::Pad, kept(true, true)),
+        Model::PadAndRoofCoupled => (Touching::PadAndRoof, kept(true, true)),
     };
     let source = setup::find("finger", FINGERS, file)?;
     let file = FingerFile::parse(&source.text, &source.file).map_err(Failure::input)?;
     let mut fingers = ComputedFingers::new(file, touching);
+    fingers.kept = kept;
     fingers.phase_share = phase_share;
     Ok(FingerSource::Computed(Box::new(fingers)))
 }

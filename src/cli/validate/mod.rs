@@ -78,6 +78,9 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1, requires = "against",
           value_parser = clap::value_parser!(u32).range(1..=64))]
     phases: u32,
+    /// Computed fingers also with the paper's springs across the plane, and with y and z coupled
+    #[arg(long, requires = "against")]
+    variants: bool,
     #[command(flatten)]
     finger_model: FingerModelArguments,
     /// What becomes of the nominal start, in place of what the task file says

@@ -16,6 +16,14 @@ pub enum Model {
     ComputedPad,
     /// The same, the part touching pad and roof.
     ComputedPadAndRoof,
+    /// The pad's springs in the plane; across it the paper's.
+    PadInPlane,
+    /// Those of pad and roof in the plane; across it the paper's.
+    PadAndRoofInPlane,
+    /// The pad's springs, y and z pulling at one another.
+    PadCoupled,
+    /// Those of pad and roof, y and z pulling at one another.
+    PadAndRoofCoupled,
 }
 
 impl Model {
@@ -26,6 +34,10 @@ impl Model {
             Model::Paper => "paper",
             Model::ComputedPad => "computed-pad",
             Model::ComputedPadAndRoof => "computed-pad-and-roof",
+            Model::PadInPlane => "pad-in-plane",
+            Model::PadAndRoofInPlane => "pad-and-roof-in-plane",
+            Model::PadCoupled => "pad-coupled",
+            Model::PadAndRoofCoupled => "pad-and-roof-coupled",
         }
     }
 

@@ -1,5 +1,6 @@
 //! `optimize evaluate`: the tolerance window of one finger.
 
+use super::computed_too;
 use super::repeat::{self, RepeatArguments};
 use super::setup::{self, Setup, SetupArguments};
 use super::specimen::{Chosen, FingerArguments};
@@ -49,12 +50,16 @@ pub struct Found {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = find(arguments, &AtomicBool::new(false))?;
+    let computed = computed_too::measure(&arguments.setup, &arguments.finger, arguments.search());
     if arguments.json {
-        return print_json(&found.json(arguments));
+        let mut fields = found.json(arguments);
+        computed.iter().for_each(|computed| merge(&mut fields, computed.json()));
+        return print_json(&fields);
     }
     let bands = found.bands.as_ref().map(repeat::bands_text).unwrap_or_default();
+    let computed = computed.map(|computed| computed.text()).unwrap_or_default();
     let text = text(&found.chosen, &found.setup, &found.evaluation);
-    print(&format!("{text}{bands}time          {:.1} s\n", found.wall_s))
+    print(&format!("{text}{computed}{bands}time          {:.1} s\n", found.wall_s))
 }
 
 /// Measures; ends early, with a failure, once `stop` is set.
@@ -65,7 +70,7 @@ pub fn find(arguments: &Arguments, stop: &AtomicBool) -> Result<Found, Failure> 
     }
     let chosen = arguments.finger.choose(&setup)?;
     let clock = Instant::now();
-    let search = if arguments.walk { Search::Walk } else { Search::Strides };
+    let search = arguments.search();
     let plan = setup.plan(arguments.seed, |_| setup.uncertainty.is_some())?;
     let evaluation =
         setup.evaluator.measure(&chosen.specimen, search, &plan, stop).map_err(Failure::input)?;
@@ -75,6 +80,12 @@ pub fn find(arguments: &Arguments, stop: &AtomicBool) -> Result<Found, Failure> 
     let wall_s = clock.elapsed().as_secs_f64();
     let bands = arguments.repeat.bands(&setup, &chosen, &evaluation.window)?;
     Ok(Found { setup, chosen, evaluation, bands, wall_s })
+}
+
+impl Arguments {
+    fn search(&self) -> Search {
+        if self.walk { Search::Walk } else { Search::Strides }
+    }
 }
 
 impl Found {

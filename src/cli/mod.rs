@@ -9,6 +9,7 @@ mod calibrated;
 pub mod call;
 mod check;
 mod compare;
+mod computed_too;
 mod cross_check;
 mod evaluate;
 mod executor;

@@ -56,6 +56,11 @@ pub struct Chosen {
 }
 
 impl FingerArguments {
+    /// Whether the finger is given by two springs, not by its infill.
+    pub fn springs_are_given(&self) -> bool {
+        self.stiffness_compliance.is_some() || self.stiffness_assembly.is_some()
+    }
+
     /// The finger, checked against the space.
     pub fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
         let template = setup.only_task()?;

@@ -119,3 +119,18 @@ fn the_plate_is_as_stiff_as_the_solid() {
         }
     }
 }
+
+/// Pushed across, a finger bends about its base, which lies above the pad: the pad turns so that its lower
+/// end goes farther.
+#[test]
+fn pushed_across_the_lower_end_of_the_pad_goes_farther() {
+    for (density, direction) in [(10.0, 0.0), (20.0, 20.0), (25.0, 40.0)] {
+        let plate = cross(&infill(density, direction), CROSS_SIZE).unwrap();
+        let compliance = plate.matrix().try_inverse().unwrap();
+        // u_x = x + ry z: at the lower end z is negative.
+        let turn = compliance[(1, 0)] / compliance[(0, 0)];
+        // A cantilever of length L under an end load turns by 3 / 2L.
+        let length = -1.5 / turn;
+        assert!((0.02..0.06).contains(&length), "{density} %, {direction}: {length} m");
+    }
+}

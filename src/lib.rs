@@ -14,6 +14,8 @@
 #![warn(missing_docs)]
 // A stream that has gone makes these panic: `cli::terminal` prints.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
+// A panic is a defect; what input can reach is an error with a message.
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod units;
 

@@ -73,6 +73,7 @@ impl Engine for Rapier {
 
     /// # Panics
     /// On a scene that it does not support.
+    #[allow(clippy::panic)]
     fn world(&self, scene: &Scene) -> Box<dyn World> {
         if let Err(unsupported) = self.supports(scene) {
             panic!("{unsupported}");

@@ -460,3 +460,55 @@ fn a_stiffness_file_in_another_unit_is_asked_about() {
         ran.fails(2, &["stiffness_compliance_n_per_mm", question]);
     }
 }
+
+#[test]
+fn a_number_of_the_finger_is_set_on_the_command_line() {
+    let finger = ["finger", "--density", "20", "--direction", "20", "--json"];
+    let compliance = |more: &[&str]| {
+        optimize(&[&finger[..], more].concat()).json()["pad"]["compliance_n_per_mm"]
+            .as_f64()
+            .unwrap()
+    };
+    // Measured on the paper's finger: 0.80 mm in place of 0.62 make it 26 % stiffer.
+    let thicker = compliance(&["--set", "finger.skin.thickness_mm=0.8"]) / compliance(&[]);
+    assert!((1.15..1.4).contains(&thicker), "{thicker}");
+    let set = ["--set", "task.strategy.tilt_deg=8"];
+    optimize(&[&finger[..], &set].concat()).fails(2, &["finger.skin.thickness_mm"]);
+}
+
+#[test]
+fn a_finger_of_ones_own_has_its_own_measurements() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = include_str!("../fingers/finray9.toml");
+    let own = folder.path().join("own.toml");
+    let evaluate = |more: &[&str]| {
+        let own = own.to_str().unwrap();
+        let words = ["evaluate", "--task", "usb", "--density", "20", "--direction", "10", "--json"];
+        fake(&[&words[..], &["--finger-model", "computed", "--finger", own], more].concat())
+    };
+    let named = "measured = \"data/measured_stiffness.csv\"";
+    fs::write(&own, text.replace(named, "")).unwrap();
+    evaluate(&[]).fails(2, &["own.toml", "measured", "--stiffness-data"]);
+    evaluate(&["--stiffness-data", "measured"]).json();
+    fs::write(&own, text.replace(named, "measured = \"own.csv\"")).unwrap();
+    evaluate(&[]).fails(2, &["own.csv"]);
+    let table = include_str!("../data/measured_stiffness.csv");
+    let one: Vec<&str> = table.lines().take(2).collect();
+    fs::write(folder.path().join("own.csv"), one.join("\n") + "\n").unwrap();
+    assert!(evaluate(&[]).json()["range_mm"].is_number());
+}
+
+#[test]
+fn a_space_of_computed_fingers_without_springs_is_refused_before_the_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let space = folder.path().join("far.toml");
+    let text = include_str!("../spaces/codesign.toml");
+    let far = text.replace("low = 15.0\nhigh = 27.0", "low = 15.0\nhigh = 45.0");
+    assert_ne!(far, text);
+    fs::write(&space, far).unwrap();
+    let study = ["--task", "ket8", "--space", space.to_str().unwrap(), "--budget", "4", "--quiet"];
+    let out = folder.path().join("out");
+    let words = ["--finger-model", "computed", "--out", out.to_str().unwrap()];
+    fake(&[&study[..], &words].concat()).fails(2, &["far.toml", "finger.rcc_mm", "no springs"]);
+    assert!(!out.exists());
+}

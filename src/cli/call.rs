@@ -75,7 +75,7 @@ pub fn stiffness(words: &[String]) -> Result<Value, Failure> {
 /// If the file cannot be used.
 pub fn predict(density: f64, direction: f64, data: Option<&str>) -> Result<Value, Failure> {
     let finger = setup::printed_finger(setup::DEFAULT_FINGER)?;
-    let model = setup::surrogate(&setup::stiffness_data(data)?, &finger)?;
+    let model = setup::surrogate(&setup::stiffness_data(data, &finger)?, &finger)?;
     let predicted: Prediction = model.predict(density, direction).map_err(Failure::input)?;
     Ok(json!(predicted))
 }

@@ -1,13 +1,17 @@
 //! `optimize finger`: what a finger's ribs say of its stiffness.
 
-use super::setup::{DEFAULT_FINGER, printed_finger};
+use super::setup::{DEFAULT_FINGER, find};
+use super::specimen::setting;
 use super::{Failure, print, print_json};
 use crate::finger::printed::geometry::Geometry;
 use crate::finger::printed::infill::Design;
 use crate::finger::printed::mechanics::{self, FingerStiffness};
 use crate::finger::printed::picture;
 use crate::finger::printed::stiffness::PlanarStiffness;
+use crate::input::finger_file::{FingerFile, is_shape};
 use crate::input::printed::PrintedFinger;
+use crate::input::shipped::FINGERS;
+use crate::input::space;
 use crate::study::write_file;
 use crate::units::{GRAM, MM, N_PER_MM};
 use clap::Args;
@@ -37,6 +41,9 @@ pub struct Arguments {
     /// Where the first rib lies, mm [default: the finger file's]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     phase_mm: Option<f64>,
+    /// A number of the finger file, as finger.skin.thickness_mm=0.8; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    set: Vec<(String, f64)>,
     /// Draw the finger, at rest and under a grasp of 5 N
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
@@ -80,7 +87,7 @@ struct AcrossRow {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let finger = printed_finger(&arguments.finger)?;
+    let finger = arguments.printed()?;
     let design = Design {
         density_percent: arguments.density,
         direction_deg: arguments.direction,
@@ -98,6 +105,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return print_json(&value);
     }
     print(&text(&row, &finger))
+}
+
+impl Arguments {
+    /// The finger of the file with what is set.
+    fn printed(&self) -> Result<PrintedFinger, Failure> {
+        if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
+            return Err(Failure::usage(format!(
+                "--set {key}: sets no number of a finger file, as finger.skin.thickness_mm does"
+            )));
+        }
+        let source = find("finger", FINGERS, &self.finger)?;
+        let file = FingerFile::parse(&source.text, &source.file).map_err(Failure::input)?;
+        file.with(&space::Design(self.set.iter().cloned().collect())).map_err(Failure::input)
+    }
 }
 
 impl FingerRow {

@@ -4,6 +4,7 @@ use super::Failure;
 use crate::evaluation::evaluator::Evaluator;
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
+use crate::evaluation::sprung;
 use crate::evaluation::template::{Template, printable};
 use crate::evaluation::uncertainty::Uncertainty;
 use crate::finger::Finger;
@@ -20,6 +21,7 @@ use crate::study::{FINGER, Inputs, Provenance, sha256};
 use crate::surrogate::{self, FitError, Model};
 use crate::trial::Rig;
 use crate::trial::run::RigError;
+use std::path::Path;
 
 pub use crate::trial::engine::EngineKind;
 
@@ -146,9 +148,10 @@ impl Setup {
         };
         let space = find("space", SPACES, &arguments.space)?;
         let robot = find("robot", ROBOTS, &arguments.robot)?;
-        let stiffness = stiffness_data(arguments.stiffness_data.as_deref())?;
         let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
         let finger = arguments.finger_model.source(Some(&parsed))?;
+        let printed = printed_or_shipped(finger.as_ref())?;
+        let stiffness = stiffness_data(arguments.stiffness_data.as_deref(), &printed)?;
         Setup::parse(&tasks, [&space, &robot, &stiffness], finger.as_ref(), arguments.engine)
     }
 
@@ -198,18 +201,10 @@ impl Setup {
         let finger = finger.map(|source| (FINGER.to_owned(), source));
         let sources = roles.chain(others).chain(finger);
         let inputs = sources.map(|(role, source)| (role, source.text.clone()));
-        Ok(Setup {
-            inputs: inputs.collect(),
-            evaluator: Evaluator {
-                surrogate: surrogate(stiffness_source, &printed)?,
-                fingers,
-                templates,
-                robot,
-                engine,
-            },
-            uncertainty: None,
-            space,
-        })
+        let surrogate = surrogate(stiffness_source, &printed)?;
+        let evaluator = Evaluator { surrogate, fingers, templates, robot, engine };
+        sprung::check(&evaluator, &space, file).map_err(Failure::input)?;
+        Ok(Setup { inputs: inputs.collect(), evaluator, uncertainty: None, space })
     }
 
     /// The same with errors under which designs are measured.
@@ -284,9 +279,27 @@ pub fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
     inputs.contains_key(FINGER).then(|| input(inputs, FINGER)).transpose()
 }
 
-/// The measurements the surrogate is fitted to.
-pub fn stiffness_data(path: Option<&str>) -> Result<Source, Failure> {
-    find("stiffness data", STIFFNESS, path.unwrap_or("measured"))
+/// The measurements the surrogate is fitted to: those at `path`, else those that the finger file names.
+///
+/// # Errors
+/// If they cannot be read, or the finger file names none: those of another finger are not its own.
+pub fn stiffness_data(path: Option<&str>, finger: &PrintedFinger) -> Result<Source, Failure> {
+    let find = |name: &str| find("stiffness data", STIFFNESS, name);
+    match (path, &finger.measured) {
+        (Some(path), _) => find(path),
+        (None, Some(named)) => match STIFFNESS.iter().find(|shipped| shipped.file == named) {
+            Some(shipped) => find(shipped.name),
+            None => {
+                let beside = Path::new(&finger.file).parent().unwrap_or(Path::new(""));
+                find(&beside.join(named).to_string_lossy())
+            }
+        },
+        (None, None) => Err(Failure::usage(format!(
+            "{}: no `measured` names a table of its measured fingers; give one there or by \
+             --stiffness-data: one finger is enough",
+            finger.file
+        ))),
+    }
 }
 
 /// The shipped file of that name, or the file at that path.

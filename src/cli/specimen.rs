@@ -206,7 +206,7 @@ fn stiffness(text: &str) -> Result<f64, String> {
     }
 }
 
-fn setting(text: &str) -> Result<(String, f64), String> {
+pub fn setting(text: &str) -> Result<(String, f64), String> {
     let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse()));
     match parts {
         Some((key, Ok(value))) if !key.is_empty() => Ok((key.to_owned(), value)),

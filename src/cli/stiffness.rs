@@ -31,7 +31,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (model, finger) = arguments.model()?;
     if let Some(path) = &arguments.svg {
-        let svg = stiffness::svg(&model).map_err(|error| Failure::running(error.to_string()))?;
+        let svg =
+            stiffness::svg(&model, &finger).map_err(|error| Failure::running(error.to_string()))?;
         write_file(path, &svg)?;
     }
     if arguments.json {
@@ -44,8 +45,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     /// The model of the data that the arguments name, and the finger.
     fn model(&self) -> Result<(Model, PrintedFinger), Failure> {
-        let data = stiffness_data(self.stiffness_data.as_deref())?;
         let finger = printed_finger(&self.finger)?;
+        let data = stiffness_data(self.stiffness_data.as_deref(), &finger)?;
         Ok((surrogate(&data, &finger)?, finger))
     }
 

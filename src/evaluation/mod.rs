@@ -6,6 +6,7 @@ pub mod objective;
 pub mod pareto;
 pub mod robustness;
 mod schema;
+pub mod sprung;
 mod stoppable;
 pub mod taught;
 pub mod template;

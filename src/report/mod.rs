@@ -2,6 +2,7 @@
 //! what was measured. Nothing here simulates, and nothing reads or writes files.
 
 mod best;
+mod centre_plot;
 mod chart;
 pub mod compare;
 mod compare_plot;

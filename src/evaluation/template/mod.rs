@@ -13,7 +13,7 @@
 //! before its checks, so that no design escapes them.
 
 pub mod printable;
-mod space;
+pub(super) mod space;
 
 use crate::finger::Finger;
 use crate::finger::computed::AtPad;
@@ -73,7 +73,7 @@ pub fn finger_keys() -> [&'static str; 8] {
     FINGER.map(|(key, _, _)| key)
 }
 
-fn is_infill(key: &str) -> bool {
+pub(super) fn is_infill(key: &str) -> bool {
     [DENSITY_KEY, DIRECTION_KEY].contains(&key)
 }
 

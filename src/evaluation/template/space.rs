@@ -77,7 +77,7 @@ impl Template {
 }
 
 /// The smallest and the largest value, and the one nearest to zero.
-pub(super) fn extremes(parameter: &Parameter) -> Vec<f64> {
+pub(in crate::evaluation) fn extremes(parameter: &Parameter) -> Vec<f64> {
     let last = parameter.levels() - 1;
     let zero = (-parameter.low / parameter.step).round().clamp(0.0, f64::from(last)) as u32;
     let mut levels = vec![0, zero, last];

@@ -170,6 +170,12 @@
   const player = at("player");
   if (player) {
     at("close").addEventListener("click", () => player.close());
+    // What is pressed in the film is not heard out here.
+    at("film").addEventListener("load", () => {
+      const film = at("film").contentDocument;
+      film?.addEventListener("keydown", (event) => { if (event.key === "Escape") player.close(); });
+      film?.getElementById("play")?.focus();
+    });
     player.addEventListener("close", () => { at("film").srcdoc = ""; });
   }
 })();

@@ -168,13 +168,13 @@ class Page:
             self.call("Input.dispatchKeyEvent", type=kind, key=name, code=name, windowsVirtualKeyCode=code)
         self.rest()
 
-    def picture(self, file, whole=False, clip=None):
+    def picture(self, file, whole=False, clip=None, scale=1):
         """A PNG of what is seen, of the whole page, or of a part [x, y, width, height] of it."""
         if whole:
             clip = [0, 0, *self.js("[innerWidth, document.documentElement.scrollHeight]")]
         more = {}
         if clip:
-            more = {"clip": dict(zip(["x", "y", "width", "height"], clip), scale=1), "captureBeyondViewport": True}
+            more = {"clip": dict(zip(["x", "y", "width", "height"], clip), scale=scale), "captureBeyondViewport": True}
         Path(file).write_bytes(base64.b64decode(self.call("Page.captureScreenshot", **more)["data"]))
 
     def close(self):

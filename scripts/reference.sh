@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-parts="stiffness finger check windows validation validation-ur5e trials studies objectives instructions optimizers"
+parts="stiffness finger check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 reference=results/reference
@@ -80,18 +80,35 @@ trials() {
     record windows "$reference"/trial-*.{svg,txt}
 }
 
+# What a study decides by is kept, so that `report` and `compare` open it; its films are not, which
+# are large: the report is the one that `report` makes without them.
 studies() {
+    local task kept
     for task in usb ket8 ket12 rj45; do
-        mkdir -p "$reference/$task"
+        kept="$reference/$task"
+        rm -rf "$kept"
+        mkdir -p "$kept"
         /usr/bin/env time -f "%e s wall, %U s processor, %M KiB" -o "$reference/$task/time.txt" \
             "$optimize" --task "$task" --budget 200 --no-cache --out "$work/$task" --quiet \
-            > "$reference/$task/summary.txt"
-        sed -i '/^study /d' "$reference/$task/summary.txt"
-        for file in report.html finger.stl finger-sheet.html convergence.svg evaluations.csv study.toml; do
-            cp "$work/$task/$file" "$reference/$task/"
-        done
-        record studies "$reference/$task"/*
+            > "$kept/summary.txt"
+        sed -i '/^study /d' "$kept/summary.txt"
+        cp -r "$work/$task"/{study.toml,inputs,journal.jsonl,walk.json} "$kept/"
+        "$optimize" report "$kept" > /dev/null
+        record studies "$kept"/* "$kept"/inputs/*
     done
+}
+
+# The pictures of docs/: a task, and a report with a film on a desktop and on a phone.
+pictures() {
+    "$optimize" task check usb --svg docs/task-usb.svg > /dev/null
+    if ! command -v chromium > /dev/null; then
+        echo "left out: the pictures of pages need Chromium (scripts/tools.sh chromium)" >&2
+        return
+    fi
+    if [ ! -d "$work/usb/replay" ]; then
+        "$optimize" --task usb --budget 60 --no-cache --out "$work/usb" --quiet > /dev/null
+    fi
+    python3 scripts/pictures.py "$work"/usb/{report.html,replay/1-positive.html} docs
 }
 
 # Objectives, constraints and tasks of docs/objectives.md.

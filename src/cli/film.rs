@@ -90,6 +90,9 @@ fn recordable(text: &str) -> Result<PathBuf, String> {
 }
 
 fn shifted(offset_mm: f64) -> String {
+    if offset_mm == 0.0 {
+        return "nominal start".to_owned();
+    }
     format!("start shifted by {offset_mm:+.1} mm")
 }
 

@@ -43,7 +43,7 @@ pub fn lines(record: &StudyRecord, found: &Recommendation) -> Vec<String> {
 fn firm_range(record: &StudyRecord, found: &Recommendation) -> Option<String> {
     let range = record.aggregated(Measure::Range, &found.firm_ranges_mm()?);
     Some(format!(
-        "firm range    {range:.1} mm: inserts {REPEATS} times of {REPEATS} with friction, start and step varied"
+        "firm range    {range:.1} mm: inserts in {REPEATS} of {REPEATS} repeats, friction, start, step varied"
     ))
 }
 

@@ -18,7 +18,7 @@ pub fn window(evaluation: &Evaluation) -> String {
         );
     }
     format!(
-        "window        {:.1} to {:+.1} mm; ends: {} below, {} above",
+        "window        {:.1} to {:+.1} mm\nends          {} below, {} above",
         window.negative_mm(),
         window.positive_mm(),
         end(window.end_negative),
@@ -70,8 +70,8 @@ pub fn drawn_text(evaluation: &Evaluation) -> Vec<String> {
         let [low, high] = success.interval();
         let [c1, c2, c3, c4] = success.failure_counts;
         lines.push(format!(
-            "success rate  {rate}, {} % interval {low:.3} to {high:.3}: {} of {} trials; failures \
-             {c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged",
+            "success rate  {rate}, {} % interval {low:.3} to {high:.3}: {} of {} trials\n\
+             \x20             failures {c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged",
             100.0 * success.confidence,
             success.inserted,
             success.counted(),
@@ -81,7 +81,7 @@ pub fn drawn_text(evaluation: &Evaluation) -> Vec<String> {
     if let Some(robust) = &evaluation.robust {
         let value = robust.value_mm.map_or("none".to_owned(), |value| format!("{value:.2} mm"));
         lines.push(format!(
-            "robust range  {value}: {} windows of mean {}, standard deviation {}, {} diverged",
+            "robust range  {value}: {} windows of mean {}, deviation {}, {} diverged",
             robust.ranges_mm.len(),
             number(robust.mean_mm(), 2, "mm"),
             number(robust.sd_mm(), 2, "mm"),

@@ -1,9 +1,9 @@
 //! The best design in words.
 
 use super::elements::definitions;
-use super::text::{design, infill, is_infill, outcome, stiffness, values};
+use super::text::{design, outcome, stiffness, values};
+use super::{again, answer};
 use crate::evaluation::objective::Measure;
-use crate::evaluation::robustness::firm::REPEATS;
 use crate::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
 use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Recorded, StudyRecord, nearest};
@@ -15,8 +15,8 @@ pub(super) fn section(record: &StudyRecord) -> Markup {
     let objectives = &record.config.objective;
     let found = best.feasible().unwrap_or_default();
     html! {
-        p.big { (infill(&best.design)) }
-        (firm(record))
+        p.big { (best.design.labelled()) }
+        (answer::card(record, best))
         @if objectives.single().is_none() {
             p {
                 "has the best " (objectives.first().name()) ": " (objectives.show(found))
@@ -24,11 +24,9 @@ pub(super) fn section(record: &StudyRecord) -> Markup {
             }
         }
         @for (task, evaluation) in record.config.tasks().zip(best.tasks()) {
-            (tolerated(record, task, &evaluation.window))
+            (unusable(record, task, &evaluation.window))
         }
-        @if best.stiffness.inside_hull() {
-            p { "Inside the hull of the measured designs: the stiffness is interpolated." }
-        } @else {
+        @if !best.stiffness.inside_hull() {
             p.warn {
                 "Outside the hull of the measured designs, by "
                 (format!("{:.2}", best.stiffness.hull_distance)) " of the measured span: the \
@@ -36,65 +34,12 @@ pub(super) fn section(record: &StudyRecord) -> Markup {
                 result."
             }
         }
-        (definitions(&facts(record, best, found)))
-    }
-}
-
-/// How firm the recommendation is, what is as good, how much it matters, and the command again.
-fn firm(record: &StudyRecord) -> Markup {
-    let found = record.recommendation();
-    let ranges = found.as_ref().and_then(|found| found.firm_ranges_mm());
-    let equivalent = found.as_ref().map_or(0, |found| found.equivalent.len());
-    let count = record.current().len();
-    html! {
-        div.card {
-            @if let Some(ranges) = ranges {
-                p {
-                    "Firm range: " b { (format!("{:.1} mm", record.aggregated(Measure::Range, &ranges))) }
-                    " inserts in all of " (REPEATS) " repeats with friction, start and step varied."
-                }
-            }
-            @if equivalent > 1 {
-                p { (equivalent) " of " (count) " designs are equivalent: choose by other needs." }
-            } @else if equivalent == 1 {
-                p { "No other of " (count) " designs is as good." }
-            }
-            @if let Some([low, high]) = record.spread_mm() {
-                p { (format!("Over all designs the range goes from {low:.1} to {high:.1} mm.")) }
-            }
-            p { "Again: " code { (command(record)) } }
-            p {
-                a href="evaluations.csv" { "table of all evaluations" } ", "
-                a href="journal.jsonl" { "journal" } ", "
-                a href="convergence.svg" { "convergence" }
-            }
+        details { summary { "All its numbers" } (definitions(&facts(record, best, found))) }
+        p {
+            "The same study again, in its folder: "
+            code { @for word in again::words(record) { span { (word) } " " } }
         }
     }
-}
-
-/// The command that repeats the study with shipped files of these names.
-fn command(record: &StudyRecord) -> String {
-    let config = &record.config;
-    let mut command = format!(
-        "optimize --task {} --space {} --robot {} --optimizer {} --objective {} --seed {} --budget {}",
-        config.tasks.join(","),
-        config.space.name(),
-        config.robot,
-        config.optimizer,
-        config.objective,
-        config.seed,
-        config.budget
-    );
-    for constraint in &config.constraints {
-        command += &format!(" --constraint '{constraint}'");
-    }
-    if let Some(errors) = &config.uncertainty {
-        command += &format!(" --uncertainty {errors}");
-    }
-    if config.polish > 0 {
-        command += &format!(" --polish {}", config.polish);
-    }
-    command + &format!(" --batch {}", config.batch)
 }
 
 fn none(record: &StudyRecord) -> Markup {
@@ -119,18 +64,14 @@ fn none(record: &StudyRecord) -> Markup {
     }
 }
 
-/// What the best design tolerates on one task, and whether that is of any use.
-fn tolerated(record: &StudyRecord, task: &str, window: &Window) -> Markup {
+/// That the best design is of no use on a task.
+fn unusable(record: &StudyRecord, task: &str, window: &Window) -> Markup {
     let on = if record.config.several_tasks() { format!(" on {task}") } else { String::new() };
     html! {
-        p {
-            "tolerates a start shifted by " b { (format!("{:.1} mm", window.range_mm())) }
-            " in all" (on)
-        }
         @if window.nominal != Outcome::Inserted {
             p.warn {
-                "Even the best design fails at the nominal start" (on) " ("
-                (outcome(window.nominal)) "), so its range is 0 mm. No design of this study is \
+                "Even the best design fails at the nominal start" (on) ": "
+                (outcome(window.nominal)) ", so its range is 0 mm. No design of this study is \
                 usable as it is."
             }
         }
@@ -145,8 +86,7 @@ fn fact(name: &str, value: String) -> (String, String) {
 
 fn facts(record: &StudyRecord, best: &Recorded, found: &[f64]) -> Facts {
     let config = &record.config;
-    let others = best.design.0.iter().filter(|(key, _)| !is_infill(key));
-    let mut facts: Facts = others.map(|(key, value)| fact(key, value.to_string())).collect();
+    let mut facts = Facts::new();
     let name = config.objective.single().map_or(String::new(), |measure| format!("{measure} = "));
     facts.push(fact("objective", name + &values(&config.objective, found)));
     facts.extend(walked(record, best));

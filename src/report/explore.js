@@ -11,7 +11,9 @@
     return element;
   };
   const number = (v, digits = 1) => (v === null || v === undefined ? "none" : v.toFixed(digits));
-  const words = (e) => [`evaluation ${e.index}`, ...data.parameters.map((p, k) => `${p.label} ${e.x[k]}${p.unit}`), `${data.measure.label} ${number(e.value, 2)}`, e.window ? `window ${number(e.window[0])} to ${number(e.window[1])} mm: ${e.ends[0]} below, ${e.ends[1]} above` : `nominal start: ${e.ends[0]}`, e.force === null ? "" : `peak force ${number(e.force)} N`, e.feasible ? "" : "breaks a constraint"].filter(Boolean);
+  const signed = (v) => (v > 0 ? "+" : "") + number(v);
+  const value = (e) => `${data.measure.name} ${number(e.value, data.measure.unit ? 1 : 3)} ${e.value === null ? "" : data.measure.unit}`.trim();
+  const words = (e) => [`evaluation ${e.index}`, ...data.parameters.map((p, k) => `${p.label} ${e.x[k]}${p.unit}`), value(e), e.window ? `window ${signed(e.window[0])} to ${signed(e.window[1])} mm: ${e.ends[0]} below, ${e.ends[1]} above` : `nominal start: ${e.ends[0]}`, e.force === null ? "" : `peak force ${number(e.force)} N`, e.feasible ? "" : "breaks a constraint"].filter(Boolean);
   const hover = (element, text) => {
     const show = (event) => {
       tip.textContent = typeof text === "function" ? text() : text;
@@ -29,7 +31,7 @@
   const select = (index) => {
     for (const element of marks.get(chosen) || []) element.classList.remove("chosen");
     chosen = index;
-    for (const element of marks.get(chosen) || []) { element.classList.add("chosen"); element.parentNode.append(element); }
+    for (const element of marks.get(chosen) || []) element.classList.add("chosen");
     const found = data.evaluations.find((e) => e.index === chosen);
     if (found) at("selected").textContent = words(found).join("; ") + (chosen === data.best ? " (recommended)" : "");
   };
@@ -42,6 +44,13 @@
     hover(element, words(e).join("\n"));
     return element;
   };
+  // A dot in a light ring, seen on every colour; about the recommended one a black ring in a white one.
+  const spot = (svg, cx, cy, e, fill) => {
+    const group = make("g", {}, svg), best = e.index === data.best;
+    for (const [r, name] of best ? [[11, "halo"], [9, "ring"], [6, "halo"]] : fill ? [[5.4, "halo"]] : []) make("circle", { cx, cy, r, class: name }, group);
+    make("circle", { cx, cy, r: best ? 5 : 4, class: "core", ...(fill ? { style: `fill:${fill}` } : {}) }, group);
+    return mark(group, e);
+  };
   const values = data.evaluations.map((e) => e.value).filter((v) => v !== null);
   const sorted = [...values].filter((v) => v !== 0).sort((a, b) => a - b);
   const low = sorted.length ? sorted[Math.floor(0.05 * (sorted.length - 1))] : 0, high = sorted.length ? sorted[sorted.length - 1] : 1;
@@ -52,10 +61,11 @@
     const k = Math.min(STOPS.length - 2, Math.floor(share)), part = share - k;
     return `rgb(${STOPS[k].map((c, i) => Math.round(c + part * (STOPS[k + 1][i] - c))).join()})`;
   };
-  const W = 560, H = 400, LEFT = 58, RIGHT = 14, TOP = 12, FOOT = 46;
+  // Drawn about as large as shown, so that text stays text on a phone.
+  const narrow = innerWidth < 600, W = narrow ? 370 : 560, H = narrow ? 330 : 400, LEFT = 58, RIGHT = 14, TOP = 12, FOOT = 46;
   const scale = (from, to, a, b) => (v) => a + (b - a) * (to !== from ? (v - from) / (to - from) : 0.5);
   const nice = (a, b) => {
-    const raw = (b - a) / 5 || 1, power = 10 ** Math.floor(Math.log10(raw)), step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= raw) || raw;
+    const raw = (b - a) / (narrow ? 4 : 5) || 1, power = 10 ** Math.floor(Math.log10(raw)), step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= raw) || raw;
     const out = [];
     for (let v = Math.ceil(a / step) * step; v <= b + 1e-9; v += step) out.push(+v.toPrecision(6));
     return out;
@@ -87,7 +97,7 @@
         const cell = make("rect", { x: x(vx - hx), y: y(vy + hy), width: x(vx + hx) - x(vx - hx) + 0.4, height: y(vy - hy) - y(vy + hy) + 0.4, fill: colour(mean) }, svg);
         hover(cell, `${p.label} ${vx}${p.unit}, ${q.label} ${vy}${q.unit}\nmodel: ${number(mean, 2)} ± ${number(model.sd[n], 2)} ${data.measure.unit}`);
       });
-      for (const e of data.evaluations) mark(make("circle", { cx: x(e.x[i]), cy: y(e.x[j]), r: e.index === data.best ? 8 : 4, style: `fill:${colour(e.value)}` }, svg), e);
+      for (const e of data.evaluations) spot(svg, x(e.x[i]), y(e.x[j]), e, colour(e.value));
       const bar = at("scale");
       bar.setAttribute("viewBox", `0 0 ${W} 40`);
       for (let k = 0; k < 60; k++) make("rect", { x: LEFT + k * (W - LEFT - RIGHT) / 60, y: 2, width: (W - LEFT - RIGHT) / 60 + 0.5, height: 14, fill: colour(low + (high - low) * k / 59) }, bar);
@@ -95,10 +105,14 @@
       make("text", { x: W - RIGHT, y: 34, "text-anchor": "end" }, bar, `${number(high, 2)} ${data.measure.unit}`);
     },
     windows() {
-      const svg = at("bars"), shown = data.evaluations.filter((e) => e.window).sort((a, b) => b.window[1] - b.window[0] - a.window[1] + a.window[0]).slice(0, 60);
+      const svg = at("bars"), shown = data.evaluations.filter((e) => e.window).sort((a, b) => b.window[1] - b.window[0] - a.window[1] + a.window[0]).slice(0, 40);
       if (!shown.length) { svg.closest("figure").hidden = true; return; }
       const [x, y] = axes(svg, span(shown.flatMap((e) => e.window).concat(0)), [shown.length, 0], "offset of the start (mm)", "place by range");
-      shown.forEach((e, n) => mark(make("rect", { x: x(e.window[0]), width: Math.max(1, x(e.window[1]) - x(e.window[0])), y: y(n + 0.9), height: Math.max(1, y(n + 0.1) - y(n + 0.9)), style: `fill:${colour(e.value)}` }, svg), e));
+      shown.forEach((e, n) => {
+        const at = { x: x(e.window[0]), width: Math.max(1, x(e.window[1]) - x(e.window[0])) }, [top, foot] = [y(n + 0.12), y(n + 0.88)];
+        mark(make("rect", { ...at, y: top, height: foot - top, style: `fill:${colour(e.value)}` }, svg), e);
+        if (e.index === data.best) make("path", { class: "pointer", d: `M${at.x - 4} ${(top + foot) / 2}l-9 -6v12z` }, svg);
+      });
       make("line", { x1: x(0), x2: x(0), y1: TOP, y2: H - FOOT, class: "zero" }, svg);
     },
     course() {
@@ -112,14 +126,14 @@
       }
       if (best !== null) path.push([known[known.length - 1].index, best]);
       make("polyline", { class: "line", points: path.map(([a, b]) => `${x(a)},${y(b)}`).join(" ") }, svg);
-      for (const e of known) mark(make("circle", { cx: x(e.index), cy: y(e.value), r: 4 }, svg), e);
+      for (const e of known) spot(svg, x(e.index), y(e.value), e);
     },
     force() {
       const svg = at("force"), known = data.evaluations.filter((e) => e.window && e.force !== null);
       if (!known.length) { svg.closest("figure").hidden = true; return; }
       const range = (e) => e.window[1] - e.window[0];
       const [x, y] = axes(svg, span(known.map(range)), span(known.map((e) => e.force)), "range (mm)", "peak force (N)");
-      for (const e of known) mark(make("circle", { cx: x(range(e)), cy: y(e.force), r: 4 }, svg), e);
+      for (const e of known) spot(svg, x(range(e)), y(e.force), e);
     },
     parallel() {
       const svg = at("parallel");
@@ -137,6 +151,7 @@
     },
   };
   for (const one of Object.values(draw)) one();
+  for (const element of marks.get(data.best) || []) element.parentNode.append(element);
   select(data.best);
   root.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
@@ -155,6 +170,12 @@
   const player = at("player");
   if (player) {
     at("close").addEventListener("click", () => player.close());
+    // What is pressed in the film is not heard out here.
+    at("film").addEventListener("load", () => {
+      const film = at("film").contentDocument;
+      film?.addEventListener("keydown", (event) => { if (event.key === "Escape") player.close(); });
+      film?.getElementById("play")?.focus();
+    });
     player.addEventListener("close", () => { at("film").srcdoc = ""; });
   }
 })();

@@ -19,8 +19,8 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let importance = surface::importance(record);
     Some(html! {
         p.muted {
-            "Click a mark to choose an evaluation in all views; the arrow keys go to the next. The \
-            recommended one has a black ring in white."
+            "Click a mark to choose an evaluation in all views; it turns red. The arrow keys go to the \
+            next. The recommended one has a black ring in a white one."
         }
         div #explore tabindex="0" {
             p #selected aria-live="polite" {}
@@ -34,7 +34,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
                         that failures do not flatten it; the other parameters are the recommended one's."
                     }
                 }
-                (view("bars", "windows as bars", "Windows of the 60 widest, the widest on top."))
+                (view("bars", "windows as bars", "Windows of the 40 widest, the widest on top; the triangle points at the recommended one."))
                 (view("course", "value against evaluation", "Value of each evaluation, and the best so far."))
                 (view("force", "peak force against range", "Peak force against range."))
                 (view("parallel", "all parameters", "All parameters and the value."))
@@ -86,7 +86,7 @@ fn to_json(record: &StudyRecord) -> Value {
     };
     json!({
         "parameters": named,
-        "measure": {"label": measure.label(), "unit": measure.unit(), "sense": measure.sense()},
+        "measure": {"label": measure.label(), "name": measure.name(), "unit": measure.unit(), "sense": measure.sense()},
         "evaluations": record.current().iter().map(evaluation).collect::<Vec<_>>(),
         "best": record.recommended().map(|best| best.index),
         "model": surface::to_json(record),

@@ -1,6 +1,8 @@
 //! Plots and pages of a study and of the stiffness model: pure functions of
 //! what was measured. Nothing here simulates, and nothing reads or writes files.
 
+mod again;
+mod answer;
 mod best;
 mod centre_plot;
 mod chart;

@@ -103,18 +103,18 @@ fn sections(
             .and_then(|films| section("replay", "Both ends of its window, played", films)),
         explore::section(record).and_then(|views| section("explore-views", "All designs", views)),
         printer::section(record).and_then(|printer| section("printer", "To the printer", printer)),
+        section("windows", "Tolerance windows of the best designs", windows),
         shape::section(record).and_then(|shape| section("shape", "Beyond the infill alone", shape)),
-        section("convergence", "Convergence", convergence::section(record, PLOT)?),
         front::section(record, PLOT)?
             .and_then(|front| section("front", "Between the objectives", front)),
-        section("map", &format!("{first} over density and direction"), map),
         others::section(record, PLOT.0)?.and_then(|others| {
             section("others", &format!("{first} over the other parameters"), others)
         }),
-        section("windows", "Tolerance windows of the best designs", windows),
         section("published", "Published ranges beside ours", published),
-        section("failures", "How the trials ended", provenance::outcomes(record)),
         section("limits", "What this does not say", limits::section(record, model)),
+        section("failures", "How the trials ended", provenance::outcomes(record)),
+        section("map", &format!("{first} of the measured and the evaluated designs"), map),
+        section("convergence", "Convergence", convergence::section(record, PLOT)?),
         section("provenance", "Provenance", provenance::provenance(record)),
     ];
     Ok(sections.into_iter().flatten().collect())

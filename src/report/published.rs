@@ -70,7 +70,7 @@ fn ranges(record: &StudyRecord, task: usize, published: &[Vec<Published>; 2]) ->
 /// Range and failure classes at both ends, as in the published columns.
 fn ours(window: &Window) -> String {
     if window.nominal != Outcome::Inserted {
-        return format!("0.0 mm ({} at the nominal start)", outcome(window.nominal));
+        return format!("0.0 mm; at the nominal start {}", outcome(window.nominal));
     }
     let class = |end: Option<Outcome>| {
         let end = end.filter(|end| *end != Outcome::Inserted);

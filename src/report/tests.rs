@@ -151,8 +151,8 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
         text::stiffness(best.stiffness.compliance),
         text::stiffness(best.stiffness.assembly),
         text::design(&best.design),
-        "3 jammed".to_owned(),
-        "2 plug missed".to_owned(),
+        "jammed (class 3)".to_owned(),
+        "plug missed (class 2)".to_owned(),
         "9f86d081884c7d65".repeat(4),
     ] {
         assert!(html.contains(&number), "{number}");
@@ -196,10 +196,10 @@ fn empty_failed_and_diverged_studies_still_have_a_page() {
     for (evaluations, words) in [
         (vec![], "of 0 evaluations none gave one"),
         (vec![at_nominal(0, [10.0, 0.0], Outcome::Diverged)], "of 1 evaluations none gave one"),
-        (vec![at_nominal(0, [10.0, 0.0], jammed)], "fails at the nominal start (3 jammed)"),
+        (vec![at_nominal(0, [10.0, 0.0], jammed)], "fails at the nominal start: jammed (class 3)"),
         (
             (0..5).map(|i| at_nominal(i, [10.0 + i as f64, 5.0], jammed)).collect(),
-            "fails at the nominal start (3 jammed)",
+            "fails at the nominal start: jammed (class 3)",
         ),
     ] {
         let study = record("usb", evaluations);
@@ -391,4 +391,31 @@ fn everything_can_be_drawn() {
     write("convergence.svg", convergence_svg(&study()).unwrap());
     write("stiffness.svg", stiffness::svg(model(), &finray9()).unwrap());
     write("stiffness.txt", stiffness::table(model()));
+}
+
+/// What is as shipped goes by its name, the rest by its copy; nothing that decides is left out.
+#[test]
+fn the_command_that_repeats_a_study_names_all_that_decides() {
+    let mut study = study();
+    let text = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+    let inputs = crate::study::Inputs::from([
+        text("task_1", crate::input::shipped::TASKS[3].text),
+        text("task_2", "mine"),
+        text("space", crate::input::shipped::SPACES[0].text),
+        text("robot", crate::input::shipped::ROBOTS[1].text),
+        text("stiffness", "my measurements"),
+        text("finger", FINGERS[0].text),
+    ]);
+    let provenance = Provenance::new(EngineKind::Rapier, crate::study::sha256(&inputs));
+    study.segments[0].provenance = provenance;
+    study.config.tasks.push("mine".to_owned());
+    study.config.aggregate = Some(Aggregate::weighted(vec![2.0, 1.0], 2).unwrap());
+    study.config.finger_model = crate::finger::model::FingerModelKind::Computed;
+    let command = again::words(&study).join(" ");
+    assert_eq!(
+        command,
+        "optimize --task usb,inputs/task_2.toml --space infill --robot rigid --stiffness-data \
+         inputs/stiffness.csv --finger-model computed --finger finray9 --engine rapier --optimizer \
+         gp --objective range --aggregate weighted --weights 2,1 --seed 7 --budget 200 --batch 4"
+    );
 }

@@ -13,18 +13,15 @@ pub(super) fn stiffness(estimate: Estimate) -> String {
     format!("{mean:.digits$} ± {sd:.digits$} N/mm")
 }
 
-/// An outcome in words, a failure with its class number: `3 jammed`.
+/// An outcome in words, a failure with its class: `jammed (class 3)`.
 pub(super) fn outcome(outcome: Outcome) -> String {
-    numbered(outcome, outcome.label())
+    let class = outcome.failure().map_or(String::new(), |number| format!(" (class {number})"));
+    format!("{}{class}", outcome.label())
 }
 
 /// What ended a window at one side, short enough for a plot.
 pub(super) fn end_short(end: Option<Outcome>) -> String {
-    end.map_or("no failure".to_owned(), |outcome| numbered(outcome, outcome.short()))
-}
-
-fn numbered(outcome: Outcome, words: &str) -> String {
-    outcome.failure().map_or(words.to_owned(), |number| format!("{number} {words}"))
+    end.map_or("no failure", Outcome::short).to_owned()
 }
 
 /// A design in words: infill first, then whatever else the space names.

@@ -43,11 +43,13 @@ pub(super) fn section(
     width: u32,
 ) -> Result<Markup, ReportError> {
     let best = best(record);
+    let chosen = record.recommended().map(|best| best.index);
     let bars: Vec<Bar<'_>> = (1..)
         .zip(&best)
         .filter_map(|(place, (recorded, values))| {
             let value = text::values(&record.config.objective, values);
-            let title = format!("{place}.  {}   {value}", name(recorded));
+            let recommended = if chosen == Some(recorded.index) { ", recommended" } else { "" };
+            let title = format!("{place}.  {}:  {value}{recommended}", name(recorded));
             Some(Bar { title, window: &recorded.on(task)?.window })
         })
         .collect();
@@ -56,11 +58,11 @@ pub(super) fn section(
     }
     let height = 64 + 44 * bars.len() as u32;
     let svg = sheet("the windows", (width, height), |area| draw(area, &bars))?;
-    let classes = FailureClass::ALL.map(|class| format!("{} {}", class.number(), class.label()));
+    let classes = FailureClass::ALL.map(|class| format!("{}: {}", class.short(), class.label()));
     let caption = format!(
-        "Offsets that insert, about the nominal start (line at 0 mm), on the 0.1 mm grid. At \
-         each end the failure met there: {}.",
-        classes.join(", ")
+        "Offsets that insert, about the nominal start (stroke at 0 mm), on the 0.1 mm grid, by the \
+         first search. At each end the failure met there ({}).",
+        classes.join("; ")
     );
     Ok(html! {
         (figure(&svg, "tolerance windows of the best designs", &caption))
@@ -130,6 +132,9 @@ fn draw(area: &Area<'_>, bars: &[Bar<'_>]) -> Drawn {
             chart.draw_series([bar]).map_err(message)?;
         }
         let above = words(15, INK, HPos::Center, VPos::Center);
+        let nominal =
+            PathElement::new([(0.0, y - 0.24), (0.0, y + 0.24)], INK.rgb().stroke_width(2));
+        chart.draw_series([nominal]).map_err(message)?;
         labels.push(Text::new(title.clone(), ((low + high) / 2.0, top), above));
         let end = |end, x, side| {
             Text::new(text::end_short(end), (x, y), words(14, RED, side, VPos::Center))
@@ -137,7 +142,5 @@ fn draw(area: &Area<'_>, bars: &[Bar<'_>]) -> Drawn {
         labels.push(end(window.end_negative, left - gap, HPos::Right));
         labels.push(end(window.end_positive, right + gap, HPos::Left));
     }
-    let nominal = PathElement::new([(0.0, 0.0), (0.0, rows)], INK.rgb().stroke_width(1));
-    chart.draw_series([nominal]).map_err(message)?;
     chart.draw_series(labels).map(|_| ()).map_err(message)
 }

@@ -302,7 +302,8 @@ fn write_inputs(dir: &Path, segment: usize, inputs: &Inputs) -> Result<(), Study
     Ok(())
 }
 
-fn input_path(dir: &Path, segment: usize, role: &str) -> PathBuf {
+/// Where the copy of an input of the segment with this number, counted from 1, is kept.
+pub fn input_path(dir: &Path, segment: usize, role: &str) -> PathBuf {
     let extension = if role == "stiffness" { "csv" } else { "toml" };
     let folder = if segment == 1 { INPUTS.to_owned() } else { format!("{INPUTS}-{segment}") };
     dir.join(folder).join(format!("{role}.{extension}"))

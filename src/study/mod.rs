@@ -30,8 +30,8 @@ pub use config::{LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
 pub use course::{Arrived, Course, Ending, Next, Wanted};
 pub use error::{LineError, StudyError};
 pub use folder::{
-    CONFIG_FILE, FINGER, IfChanged, Inputs, JOURNAL_FILE, Study, read_config, sha256, write_file,
-    write_own_file,
+    CONFIG_FILE, FINGER, IfChanged, Inputs, JOURNAL_FILE, Study, input_path, read_config, sha256,
+    write_file, write_own_file,
 };
 pub use header::SCHEMA_VERSION;
 pub use journal::Journal;

@@ -81,7 +81,9 @@ impl Recording {
     pub(super) fn new(trial: Trial, frames: Vec<Frame>) -> Self {
         let push = frames.iter().find(|frame| frame.stage == Stage::Assembly);
         let missed = trial.outcome == Outcome::Failed(FailureClass::PlugMissed);
-        let decided_s = push.filter(|_| missed).map_or(trial.simulated_s, |frame| frame.time_s);
+        // Not after the last frame, which may lie before the last step: nobody would see it.
+        let end = frames.last().map_or(trial.simulated_s, |frame| frame.time_s);
+        let decided_s = push.filter(|_| missed).map_or(end, |frame| frame.time_s);
         Recording { trial, frames, decided_s }
     }
 }

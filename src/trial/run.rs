@@ -319,6 +319,7 @@ mod tests {
         assert_eq!(recording.trial, rig.grasp(&finger).trial(5e-4));
         let frames = &recording.frames;
         let last = frames.last().unwrap();
+        assert!(recording.decided_s <= last.time_s, "an outcome that no frame shows");
         assert!((last.depth_mm() - recording.trial.depth_mm).abs() < 0.01);
         // The socket is pushed the way the plug goes, and the points carry the whole force.
         let pushed = frames.iter().map(|frame| frame.force.norm()).fold(0.0, f64::max);

@@ -55,9 +55,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let checked = check(&source, &arguments.robot, arguments.engine, arguments.svg.as_ref())?;
     match arguments.json {
         true => print_json(&checked.json())?,
-        false => print(&checked.text())?,
+        false => print(&(checked.text() + &drawn(arguments, &source)))?,
     }
     checked.verdict(&source.file)
+}
+
+/// That the picture was written, as it is of every file that can be read.
+fn drawn(arguments: &Arguments, source: &Source) -> String {
+    let file = arguments.svg.as_ref().filter(|_| Task::parse(&source.text, &source.file).is_ok());
+    file.map_or(String::new(), |file| format!("wrote         {}\n", file.display()))
 }
 
 /// Checks a task file; draws it if it can be read.

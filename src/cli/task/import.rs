@@ -3,7 +3,9 @@
 use super::super::setup::{DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, find};
 use super::super::{Failure, print, print_json};
 use super::check::{self, Checked};
-use crate::connector::mesh::import::{ALLOWED, Along, Imported, Mesh, Request, import};
+use crate::connector::mesh::import::{
+    ALLOWED, Along, CORNER, FINEST, Imported, Mesh, Request, import,
+};
 use crate::connector::mesh::{Surface, read};
 use crate::connector::write::{self, Notes};
 use crate::input::shipped::{Source, TASKS};
@@ -43,7 +45,7 @@ pub struct Arguments {
     like: Option<String>,
     /// Voxels along the longest side, where a mesh is approximated
     #[arg(long, value_name = "N", default_value_t = 64,
-          value_parser = clap::value_parser!(u32).range(8..=1000))]
+          value_parser = clap::value_parser!(u32).range(8..=i64::from(FINEST)))]
     resolution: u32,
     /// File to write
     #[arg(long, value_name = "FILE")]
@@ -160,7 +162,8 @@ fn report(
              --resolution {finer} would do"
         ),
         None => format!(
-            "parts reach {depth:.3} mm into the clearance of {clearance_mm:.3} mm, more than a tenth"
+            "parts reach {depth:.3} mm into the clearance of {clearance_mm:.3} mm, more than a tenth{}",
+            imported.voxels.map_or(String::new(), bridged)
         ),
     });
     if arguments.json {
@@ -203,4 +206,18 @@ fn report(
     }
     text.extend(warning.map(|warning| format!("warning       {warning}\n")));
     print(&(text + &checked.text()))
+}
+
+/// What does where finer voxels do not.
+fn bridged(voxels: f64) -> String {
+    let why = match voxels > CORNER {
+        true => {
+            "a hull bridges a hollow there, which a higher --resolution does not mend".to_owned()
+        }
+        false => format!("a --resolution above {FINEST} would be needed"),
+    };
+    format!(
+        ", by {voxels:.1} voxels: {why}; export the mesh with fewer, flat faces (what makes up to 100 \
+         convex pieces is cut exactly), or write the parts about it by hand (docs/tasks.md)"
+    )
 }

@@ -55,9 +55,10 @@ pub fn run(
         phases => format!("; median (smallest .. largest) of {phases} rib phases"),
     };
     let text = format!(
-        "our ranges and the published simulation's beside the published experiments; robot {robot}, \
-         engine\n{engine}, {}{phases}. taught: starts moved to where the finger inserts, since the \
-         task's own does not;\nnothing is fitted to the experiments\n\n{table}",
+        "our ranges and the published simulation's beside the published experiments\n\
+         robot {robot}, engine {engine}, {}{phases}\n\
+         taught: starts moved to where the finger inserts, since the task's own does not\n\
+         nothing is fitted to the experiments\n\n{table}",
         search_name(search),
     );
     write_file(&arguments.out.join("against_bench.txt"), &text)?;

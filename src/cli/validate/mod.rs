@@ -119,14 +119,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let texts: Vec<String> = tables.iter().map(beside::text).collect();
     print(&format!(
-        "robot {}, engine {engine}, {}; ends: failure class (1 lost early, 2 missed, 3 jammed, 4 lost)\n\n\
-         {}\nmean error of the range, rank correlation (Spearman), failure classes matched; starts: \
-         nominal ones\nthat insert; bench: the published experiments\n\n{}\n\
+        "robot {}, engine {engine}, {}; y: compliance, z: assembly, of one finger\n\
+         ends: failure class (1 lost early, 2 missed, 3 jammed, 4 lost)\n\n\
+         {}\nmean error of the range, mm; rank correlation (Spearman); failures matched, %\n\
+         starts: nominal ones that insert; bench: the published experiments\n\n{}\n\
          tables and figures are in {}\n",
         robot.name,
         search_name(search),
         texts.join("\n"),
-        beside::accuracy(&tables),
+        // The units stand above.
+        beside::accuracy(&tables).replace(" mm", "").replace(" %", "").replace(" of ", "/"),
         arguments.out.display(),
     ))
 }

@@ -22,6 +22,11 @@ const ABOUT: f64 = 0.5 * MM;
 /// Share of the clearance that may be filled.
 pub const ALLOWED: f64 = 0.1;
 
+/// Farthest that the corner of a voxel reaches, in voxels: its diagonal, rounded up.
+pub const CORNER: f64 = 2.0;
+/// Finest resolution there is.
+pub const FINEST: u32 = 1000;
+
 /// The direction, in the files, in which the plug goes in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Along {
@@ -94,6 +99,8 @@ pub struct Imported {
     pub intrusion: Option<(Intrusion, &'static str)>,
     /// The resolution that would do, where this one does not.
     pub resolution: Option<u32>,
+    /// The intrusion in voxels; nothing where the mesh is not approximated.
+    pub voxels: Option<f64>,
 }
 
 /// Brings two meshes in.
@@ -128,12 +135,22 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     let depth = intrusion.map_or(0.0, |(intrusion, _)| intrusion.depth);
     let finer = f64::from(request.resolution) * depth / allowed.max(f64::MIN_POSITIVE);
     let exact = [inner.exact, outer.exact];
+    let voxels = intrusion.and_then(|(found, of)| {
+        let (surface, exact) = match of {
+            "plug" => (&plug_surface, inner.exact),
+            _ => (&socket_surface, outer.exact),
+        };
+        let voxel = surface.longest_side() / f64::from(request.resolution);
+        (!exact).then_some(found.depth / voxel)
+    });
+    // More than the corner of a voxel: a hull that bridges a hollow, which finer voxels do not mend.
+    let helps = voxels.is_some_and(|voxels| voxels <= CORNER) && finer <= f64::from(FINEST);
     Ok(Imported {
         exact,
         clearance,
         intrusion,
-        // What is left of an approximation goes with the size of a voxel.
-        resolution: (depth > allowed && exact != [true; 2]).then(|| finer.ceil().min(1e6) as u32),
+        resolution: (depth > allowed && helps).then(|| finer.ceil() as u32),
+        voxels,
         task,
     })
 }

@@ -48,6 +48,15 @@ impl Surface {
         self
     }
 
+    /// The longest side of the box about it, m.
+    pub fn longest_side(&self) -> f64 {
+        let side = |axis: usize| {
+            let [low, high] = crate::connector::body::span(self.points.iter().map(|p| p[axis]));
+            high - low
+        };
+        (0..3).map(side).fold(0.0, f64::max)
+    }
+
     /// Volume, m3.
     pub fn volume(&self) -> f64 {
         surface_moments(&self.points, &self.faces).0

@@ -89,9 +89,6 @@ impl Engine for Rapier {
     fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
         let substeps = 2 * self.settings.substeps;
         let settings = RapierSettings { substeps, ..self.settings };
-        vec![
-            ("half the step", self.halved()),
-            ("twice the substeps", Box::new(Rapier { settings })),
-        ]
+        vec![("half the step", self.halved()), ("2 x substeps", Box::new(Rapier { settings }))]
     }
 }

@@ -49,7 +49,8 @@ pub(super) fn to_json(film: &Film) -> Value {
     json!({
         "outcome": outcome,
         "kind": trial.outcome.word(),
-        "decided_s": film.recording.decided_s,
+        // Rounded as the times are, so that the last frame has its outcome.
+        "decided_s": round(film.recording.decided_s, 4),
         "phases": phases,
         "bodies": bodies(film).iter().flat_map(shapes).collect::<Vec<_>>(),
         "beam": beam(film),

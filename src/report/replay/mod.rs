@@ -111,7 +111,7 @@ fn controls() -> maud::Markup {
     html! {
         div.controls {
             button #play type="button" { "Play" }
-            input #time type="range" min="0" step="0.001" value="0" aria-label="time";
+            input #time type="range" min="0" step="any" value="0" aria-label="time";
             output #clock {}
             label {
                 "speed"

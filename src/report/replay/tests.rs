@@ -69,6 +69,18 @@ fn a_page_holds_the_film_and_fetches_nothing() {
     assert!(page.len() < 600_000, "{} bytes", page.len());
 }
 
+/// Times are rounded; at the last frame, which is where the slider ends, the outcome still stands.
+#[test]
+fn a_film_ends_decided() {
+    let (task, mut recording) = (task(), recording());
+    recording.decided_s = 1.000_04;
+    recording.frames.last_mut().unwrap().time_s = recording.decided_s;
+    let film = Film { label: "a", task: &task, pad: &Pad::PAPER, recording: &recording };
+    let json = film::to_json(&film);
+    let times = json["time"].as_array().unwrap();
+    assert!(times[times.len() - 1].as_f64() >= json["decided_s"].as_f64(), "{json}");
+}
+
 #[test]
 fn the_table_has_a_line_a_millisecond_and_units() {
     let table = csv(&recording());

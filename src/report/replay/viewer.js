@@ -111,7 +111,9 @@
       this.place = Object.fromEntries(["model", "view", "colour"].map((name) => [name, gl.getUniformLocation(program, name)]));
       this.slot = ["point", "normal"].map((name) => gl.getAttribLocation(program, name));
       this.slot.forEach((slot) => gl.enableVertexAttribArray(slot));
-      gl.enable(gl.DEPTH_TEST); gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+      gl.enable(gl.DEPTH_TEST); gl.depthFunc(gl.LEQUAL);
+      // Faces a little behind, so that the edges on them are whole.
+      gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 2); gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
       this.buffer = gl.createBuffer();
       this.bodies = film.bodies.map((body) => {
         const mesh = flat(body.points, body.triangles);

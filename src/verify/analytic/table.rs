@@ -4,7 +4,7 @@ use super::{CheckRow, Tolerance};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The rows as an aligned table, at most 100 columns wide.
+/// The rows as an aligned table, at most 100 columns wide, and whether all pass.
 pub fn table(rows: &[CheckRow]) -> String {
     let mut text = format!(
         "{:<6}{:<44}{:>9} {:>9} {:<5}{:>9}  {:<8}\n",
@@ -27,6 +27,11 @@ pub fn table(rows: &[CheckRow]) -> String {
             row.unit,
         );
     }
+    let failed = rows.iter().filter(|row| !row.passed).count();
+    let _ = match failed {
+        0 => writeln!(text, "pass: all {} checks", rows.len()),
+        failed => writeln!(text, "fail: {failed} of {} checks", rows.len()),
+    };
     text
 }
 
@@ -95,6 +100,7 @@ mod tests {
         let text = table(&rows());
         assert!(text.lines().all(|line| line.len() <= 100), "{text}");
         assert_eq!(text.matches("FAIL").count(), 2, "{text}");
+        assert!(text.ends_with("\nfail: 2 of 3 checks\n"), "{text}");
     }
 
     #[test]

@@ -4,7 +4,6 @@ use super::statistics::mean;
 use super::{Subject, TaskWays, Way, each, merged, subject_json, window_json, window_words};
 use crate::evaluation::{OffsetStep, Window, grid_mm};
 use crate::input::stiffness::Measurement;
-use crate::units::N_PER_MM;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -64,42 +63,30 @@ pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
     mean(&ends.collect::<Vec<_>>())
 }
 
-/// An aligned table at most 100 columns wide, and a line about all pairs; with a verdict on
+/// An aligned table at most 80 columns wide, and a line about all pairs; with a verdict on
 /// each if the ends may move by so many grid steps only.
 pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     let first = pairs.first().map_or("", |pair| &pair.ways[0]);
     let mut text = format!(
-        "{:<6}{:>6} {:>12}{:>6}  {:<19}{:>14}{:>15}{:>13}\n{:>31}{:35}{:>15}{:>13}\n",
-        "task",
-        "design",
-        "infill",
-        "N/mm",
-        "compared with",
-        first,
-        "its window",
-        "ends move",
-        "",
-        "mm",
-        "mm",
-        "mm"
+        "{:<5}{:>4} {:>11}  {:<14}{:>14}{:>14}{:>10}\n{:36}{:>14}{:>14}{:>10}\n",
+        "task", "no.", "infill", "compared", first, "its window", "ends move", "", "mm", "mm", "mm"
     );
     for pair in pairs {
         let [below, above] = pair.moved_mm();
         let [a, b] = pair.windows.each_ref().map(window_words);
         let verdict = match allowed.map(|allowed| pair.agrees(allowed)) {
             None => "",
-            Some(true) => "  ok",
-            Some(false) => "  FAIL",
+            Some(true) => " ok",
+            Some(false) => " FAIL",
         };
         let design = &pair.subject.design;
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{:<6}{:>6} {:>12}{:>6.2}  {:<19}{a:>14}{b:>15}{below:>+7.1}{above:>+6.1}{verdict}",
+            "{:<5}{:>4} {:>11}  {:<14}{a:>14}{b:>14}{below:>+5.1}{above:>+5.1}{verdict}",
             pair.subject.task,
             design.design,
             pair.subject.infill(),
-            design.compliance / N_PER_MM,
             pair.ways[1],
         );
     }

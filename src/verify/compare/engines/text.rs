@@ -34,7 +34,7 @@ fn counts(text: &mut String, check: &CrossCheck) {
     let verdict = if check.agreement() >= AGREEMENT { "met" } else { "MISSED" };
     let _ = writeln!(
         text,
-        "inserted or failed alike in {agreed} of {total} trials, {:.1} %; target {:.0} %: {verdict}",
+        "alike in {agreed} of {total} trials, {:.1} %; target {:.0} %: {verdict}",
         100.0 * check.agreement(),
         100.0 * AGREEMENT,
     );
@@ -43,7 +43,7 @@ fn counts(text: &mut String, check: &CrossCheck) {
     if let (Some(median), Some(largest)) = (tips.get(tips.len() / 2), tips.last()) {
         let _ = writeln!(
             text,
-            "tips of the {} plugs inserted by both: apart by {median:.3} mm (median), {largest:.3} mm (largest)",
+            "tips of the {} plugs that both insert: {median:.3} mm apart (median), {largest:.3} mm at most",
             tips.len()
         );
     }

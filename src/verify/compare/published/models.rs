@@ -130,7 +130,7 @@ impl ModelTables {
         row
     }
 
-    /// A line of the table; within 100 columns unless there are phases.
+    /// A line of the table; within 80 columns unless there are phases.
     fn text(&self) -> String {
         let several = self.tables.len() > 1;
         let cell = |of: &dyn Fn(&Agreement) -> Option<f64>, digits: usize, width: usize| {
@@ -143,14 +143,14 @@ impl ModelTables {
             format!("{words:>wide$}")
         };
         format!(
-            "{:<6} {:<22}{:>7}{}{}{}{}{:>8}\n",
+            "{:<5} {:<21}{:>8}{}{}{}{}{:>8}\n",
             self.task(),
             self.model.name(),
             self.designs(),
-            cell(&|found| found.spearman, 2, 10),
-            cell(&|found| found.mean_absolute_error_mm, 2, 10),
-            cell(&|found| found.mean_deviation_percent, 0, 11),
-            cell(&Agreement::match_percent, 0, 10),
+            cell(&|found| found.spearman, 2, 9),
+            cell(&|found| found.mean_absolute_error_mm, 2, 9),
+            cell(&|found| found.mean_deviation_percent, 0, 9),
+            cell(&Agreement::match_percent, 0, 8),
             self.taught,
         )
     }
@@ -165,20 +165,24 @@ pub fn models_json(models: &[ModelTables]) -> Value {
 pub fn models_text(models: &[ModelTables]) -> String {
     let phases = models.iter().map(|model| model.tables.len()).max().unwrap_or(1);
     let more = if phases > 1 { 16 } else { 0 };
-    let head = ["Spearman", "error, mm", "deviation, %", "match, %"];
-    let widths = [10, 10, 11, 10];
-    let mut text = format!("{:<6} {:<22}{:>7}", "task", "model", "designs");
+    let head = ["Spearman", "error mm", "off by %", "match %"];
+    let widths = [9, 9, 9, 8];
+    let mut text = format!("{:<5} {:<21}{:>8}", "task", "model", "designs");
     for (head, width) in head.into_iter().zip(widths) {
         text.push_str(&format!("{head:>width$}", width = width + more));
     }
     text.push_str(&format!("{:>8}\n", "taught"));
     text.extend(models.iter().map(ModelTables::text));
     text.push_str("\nranges, mm, of designs 1, 2 ..\n");
+    let mut last = "";
     for model in models {
-        let range = |mm: Option<f64>| mm.map_or("   -".to_owned(), |mm| format!("{mm:4.1}"));
+        let range = |mm: Option<f64>| mm.map_or("    -".to_owned(), |mm| format!("{mm:5.1}"));
         let ranges: Vec<String> = model.ranges_mm().into_iter().map(range).collect();
-        let (task, name) = (model.task(), model.model.name());
-        text.push_str(&format!("{task:<6} {name:<22} {}\n", ranges.join(" ")));
+        if last != model.task() {
+            last = model.task();
+            text.push_str(&format!("{last}\n"));
+        }
+        text.push_str(&format!("  {:<22}{}\n", model.model.name(), ranges.concat()));
     }
     text
 }

@@ -1,4 +1,4 @@
-//! The tables and the summary of a task as text, within 100 columns.
+//! The tables and the summary of a task as text, within 80 columns.
 
 use super::{DesignRow, Reading, TaskTable, targets};
 use crate::evaluation::Window;
@@ -9,30 +9,36 @@ use std::fmt::Write;
 /// A task's designs, the agreement of the sources, and the targets.
 pub fn text(table: &TaskTable) -> String {
     let mut text = format!(
-        "{}\n{:>6} {:>8} {:>10} {:>11}   {:<27} {:<15} {}\n",
+        "{}\n{:>3} {:>9}{:>7}{:>7}  {:<23} {:<14} {}\n{:>13}{:>7}{:>7}  {:<23} {:<14} {}\n",
         table.task,
-        "design",
+        "no.",
         "infill",
-        "compliance",
-        "assembly",
-        "ours: window, range, ends",
+        "y",
+        "z",
+        "ours: window range ends",
         "published sim.",
-        "bench"
+        "bench",
+        "",
+        "N/mm",
+        "N/mm",
+        "mm",
+        "mm",
+        "mm"
     );
     for row in &table.rows {
         text.push_str(&design(row));
     }
     let _ = writeln!(
         text,
-        "\n  {:<42}{:>8}{:>11}{:>10}{:>11}{:>10}",
-        "compared", "designs", "mean |e|", "mean e", "deviation", "Spearman"
+        "\n{:<41}{:>3}{:>9}{:>9}{:>9}{:>9}",
+        "compared", "of", "mean |e|", "mean e", "off by", "Spearman"
     );
     for found in table.agreements() {
         let compared = format!("{} - {}", found.source.label(), found.reference.label());
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "  {compared:<42}{:>8}{:>11}{:>10}{:>11}{:>10}",
+            "{compared:<41}{:>3}{:>9}{:>9}{:>9}{:>9}",
             found.designs,
             value(found.mean_absolute_error_mm, |v| format!("{v:.2} mm")),
             value(found.mean_error_mm, |v| format!("{v:+.2} mm")),
@@ -41,7 +47,7 @@ pub fn text(table: &TaskTable) -> String {
         );
         let percent = value(found.match_percent(), |v| format!("{v:.1} %"));
         let (matched, ends) = (found.matched_ends, found.ends);
-        let _ = writeln!(text, "    failures matched at {matched} of {ends} ends: {percent}");
+        let _ = writeln!(text, "  failures matched at {matched} of {ends} ends: {percent}");
     }
     text.push('\n');
     for target in targets(table) {
@@ -58,7 +64,7 @@ pub fn text(table: &TaskTable) -> String {
 fn design(row: &DesignRow) -> String {
     let m = &row.design;
     format!(
-        "{:>6} {:>4} % {:>2}° {:>5} N/mm {:>6} N/mm   {:<27} {:<15} {}\n",
+        "{:>3} {:>4} % {:>2}°{:>7}{:>7}  {:<23} {:<14} {}\n",
         m.design,
         m.density_percent,
         m.direction_deg,
@@ -70,14 +76,14 @@ fn design(row: &DesignRow) -> String {
     )
 }
 
-/// `-4.2 +3.1  7.3 mm  4 | 3`.
+/// `-4.2 +3.1  7.3  4 | 3`.
 fn ours(window: &Window) -> String {
     if window.nominal != Outcome::Inserted {
         return format!("none: nominal start {}", end(Some(window.nominal)));
     }
     let ends = format!("{} | {}", end(window.end_negative), end(window.end_positive));
     let (negative, positive) = (window.negative_mm(), window.positive_mm());
-    format!("{negative:>5.1} {positive:>+5.1} {:>4.1} mm {ends}", window.range_mm())
+    format!("{negative:>5.1} {positive:>+5.1} {:>4.1}  {ends}", window.range_mm())
 }
 
 /// The class; `x` for a divergence, `-` for no failure.
@@ -90,10 +96,10 @@ fn end(outcome: Option<Outcome>) -> String {
 }
 
 fn reading(reading: Reading) -> String {
-    let range = value(reading.range_mm, |v| format!("{v:.1} mm"));
+    let range = value(reading.range_mm, |v| format!("{v:.1}"));
     let [negative, positive] =
         reading.failures.map(|class| class.map_or("-".to_owned(), |c| c.number().to_string()));
-    format!("{range:>6} {negative} | {positive}")
+    format!("{range:>4}  {negative} | {positive}")
 }
 
 fn value(value: Option<f64>, format: impl Fn(f64) -> String) -> String {

@@ -1,0 +1,33 @@
+#!/usr/bin/env python3
+"""The pictures of docs/: a report on a desktop and on a phone, and a film.
+
+    scripts/pictures.py STUDY/report.html STUDY/replay/1-positive.html docs
+"""
+import sys
+from pathlib import Path
+
+from browser import Browser
+
+# Seconds into the film: the plug that will insert has fallen in, the other one jams.
+MOMENT = 1.17
+
+
+def main(report, film, folder):
+    folder = Path(folder)
+    with Browser() as browser:
+        page = browser.open(report, 1280, 800)
+        page.picture(folder / "report.png")
+        box = page.js("""(() => { const box = document.querySelector(".views").getBoundingClientRect();
+            return [box.x, box.y + scrollY, box.width, box.height]; })()""")
+        page.picture(folder / "report-designs.png", clip=box, scale=0.7)
+        page = browser.open(report, 390, 844)
+        page.picture(folder / "report-phone.png")
+        page = browser.open(film, 1280, 760)
+        page.js(f"""(() => {{ const time = document.querySelector("#time"); time.value = {MOMENT};
+            time.dispatchEvent(new Event("input")); }})()""")
+        page.rest()
+        page.picture(folder / "replay.png")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -10,6 +10,7 @@ pub mod call;
 mod check;
 mod compare;
 mod cross_check;
+pub mod driven;
 mod evaluate;
 mod executor;
 mod export;

@@ -121,7 +121,8 @@ def test_a_killed_scheduler_stops_the_study_which_goes_on_elsewhere(tmp_path, fa
         stderr=subprocess.DEVNULL, env=slow,
     )
     try:
-        with distributed.Client(f"tcp://127.0.0.1:{port}", timeout=30) as client:
+        # Also how long it looks for a scheduler that has gone, s.
+        with distributed.Client(f"tcp://127.0.0.1:{port}", timeout=20) as client:
             client.wait_for_workers(1)
             study = create(tmp_path / "stopped", fake)
 

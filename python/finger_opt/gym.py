@@ -106,9 +106,10 @@ class InsertionEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """Commands a velocity (3), mm/s, for 1 ms."""
         if self._ended:
             raise _native.InputError("step: the episode has ended, or was not begun; call reset()")
-        limit = self._speed
-        x, y, z = (max(-limit, min(limit, float(speed))) for speed in action)
-        observation, info = self._seen(self._insertion.step((x, y, z)))
+        velocity = np.clip(np.asarray(action, dtype=np.float64), -self._speed, self._speed)
+        if velocity.shape != (3,):
+            raise _native.InputError(f"step: an action has the shape (3,), not {velocity.shape}")
+        observation, info = self._seen(self._insertion.step(velocity.tolist()))
         outcome, distance = info["outcome"], info["distance_mm"]
         terminated = outcome is not None
         truncated = not terminated and info["time_s"] > self._limit_s - 0.5 * CONTROL_S

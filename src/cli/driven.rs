@@ -41,7 +41,9 @@ impl Insertion {
         let taught = setup.evaluator.taught(&specimen).map_err(Failure::input)?;
         let rig = setup.evaluator.rig_from(&specimen, None, 1.0).map_err(Failure::input)?;
         let driven = rig.driven(&specimen.finger).ok_or_else(|| {
-            Failure::usage("this engine simulates nothing that could be driven; use --engine direct")
+            Failure::usage(
+                "this engine simulates nothing that could be driven; use --engine direct",
+            )
         })?;
         Ok(Insertion { driven, taught: taught.map_or(0.0, offset) })
     }

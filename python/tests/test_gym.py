@@ -6,6 +6,7 @@ import statistics
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -114,3 +115,9 @@ def test_without_gymnasium_the_package_says_what_to_install():
     code = "import sys; sys.modules['gymnasium'] = None; import finger_opt as fo; fo.gym"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert "pip install 'finger-opt[gym]'" in done.stderr
+
+
+def test_the_example_learns():
+    example = Path(__file__).parents[2] / "examples" / "learn_search.py"
+    done = subprocess.run([sys.executable, example, "1", "2"], capture_output=True, text=True)
+    assert "the learned one" in done.stdout, done.stderr

@@ -11,6 +11,8 @@ raise :class:`InputError` (a ``ValueError``), what fails while it runs :class:`R
 ``RuntimeError``), both with the text of the command line.
 """
 
+from typing import Any
+
 from ._measure import Evaluation, Trial, evaluate, stiffness, trial
 from ._native import InputError, RunError, __version__
 from ._optimizer import Optimizer, Point
@@ -34,3 +36,12 @@ __all__ = [
     "stiffness",
     "trial",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # It needs gymnasium, which most do without.
+    if name == "gym":
+        import importlib
+
+        return importlib.import_module(".gym", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

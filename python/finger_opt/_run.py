@@ -33,6 +33,12 @@ def workers_of(executor: Any) -> int:
     return int(getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
 
 
+def lost(executor: Any) -> bool:
+    """Whether Dask has given its scheduler up: what was submitted then waits for ever."""
+    client = getattr(executor, "_client", None)
+    return getattr(client, "status", None) in ("closing", "closed")
+
+
 class Progress:
     """A line on standard error (in a notebook: under the cell) that says how far it is."""
 
@@ -124,6 +130,8 @@ class Course:
         done: set[Future[bytes]] = set()
         while not done:
             done, _ = wait(self.running, timeout=LOOK, return_when=FIRST_COMPLETED)
+            if not done and lost(self.executor):
+                raise self.stopped("the scheduler does not answer any more")
         # In the order of proposals, so that equal ones arrive in an equal order.
         for future in sorted(done, key=lambda future: self.running[future][0]):
             proposal, work = self.running.pop(future)

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod errors;
+mod insertion;
 mod measure;
 mod optimizer;
 mod study;
@@ -35,6 +36,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(measure::task_fields, module)?)?;
     module.add_function(wrap_pyfunction!(measure::task_text, module)?)?;
     module.add_class::<optimizer::Session>()?;
+    module.add_class::<insertion::Insertion>()?;
     module.add("Refused", py.get_type::<errors::Refused>())?;
     module.add_function(wrap_pyfunction!(study::perform, module)?)?;
     module.add_function(wrap_pyfunction!(study::stop_performing, module)?)?;

@@ -11,6 +11,7 @@ mod check;
 mod compare;
 mod computed_too;
 mod cross_check;
+pub mod driven;
 mod evaluate;
 mod executor;
 mod export;

@@ -19,6 +19,8 @@ use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+pub mod driven;
+
 /// Rest after a move that has none of its own, s.
 const REST: f64 = 0.03;
 /// First contact, N.
@@ -42,7 +44,7 @@ impl From<Diverged> for Stop {
 
 /// An attempt as it goes on.
 pub(super) struct Attempt<'a> {
-    robot: &'a Mounted,
+    robot: Arc<Mounted>,
     /// Set when it is to end at once.
     stop: &'a AtomicBool,
     /// The task under the conditions of this attempt.
@@ -69,7 +71,7 @@ pub(super) struct Attempt<'a> {
 
 impl<'a> Attempt<'a> {
     pub fn new(
-        robot: &'a Mounted,
+        robot: Arc<Mounted>,
         task: Arc<Task>,
         cell: WorkCell,
         world: Box<dyn World>,
@@ -100,7 +102,7 @@ impl<'a> Attempt<'a> {
     /// An independent copy that goes on bit for bit alike.
     pub fn copy(&self) -> Attempt<'a> {
         Attempt {
-            robot: self.robot,
+            robot: Arc::clone(&self.robot),
             stop: self.stop,
             task: Arc::clone(&self.task),
             cell: self.cell.clone(),
@@ -111,6 +113,17 @@ impl<'a> Attempt<'a> {
             recorder: self.recorder.clone(),
             ..*self
         }
+    }
+
+    /// The same, beginning with the start shifted by `offset` metres along y.
+    pub fn shifted(&self, offset: f64) -> Attempt<'a> {
+        let mut shifted = self.copy();
+        // Shifting the start by y is shifting the socket by -y: the part has
+        // touched nothing of it yet. So all offsets share grasp and approach.
+        let socket = Pose::translation(0.0, -offset, 0.0) * turned(self.yaw);
+        shifted.socket = turned(-self.yaw) * Pose::translation(0.0, offset, 0.0);
+        shifted.world.place(shifted.cell.socket, socket);
+        shifted
     }
 
     /// Grasp, lift, tilt, carry to the start, and the approach through the air.
@@ -391,6 +404,6 @@ impl<'a> Attempt<'a> {
 }
 
 /// A turn about z, rad.
-pub(super) fn turned(angle: f64) -> Pose {
+fn turned(angle: f64) -> Pose {
     Pose::rotation(Vector3::z() * angle)
 }

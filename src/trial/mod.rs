@@ -22,6 +22,7 @@ pub mod run;
 mod trace;
 mod watch;
 
+pub use attempt::driven::{Driven, State};
 pub use conditions::Conditions;
 pub use record::Recording;
 pub use trace::Sample;
@@ -107,6 +108,12 @@ pub trait Rig: Send + Sync {
     /// The trial of such a pair of fingers with the start shifted by `offset` metres along y, filmed
     /// from the grasp on; `None` if there is nothing to be seen.
     fn record(&self, _finger: &Finger, _offset: f64) -> Option<Recording> {
+        None
+    }
+
+    /// The trial of such a pair of fingers whose moves the caller commands; `None` where nothing
+    /// is simulated.
+    fn driven(&self, _finger: &Finger) -> Option<Driven> {
         None
     }
 }

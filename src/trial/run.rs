@@ -1,6 +1,7 @@
 //! A trial in a contact engine: where it is run, and what happens if it diverges.
 
-use super::attempt::{Attempt, Stop, turned};
+use super::attempt::driven::Driven;
+use super::attempt::{Attempt, Stop};
 use super::record::{Frame, Recorder};
 use super::trace::{Sample, Trace};
 use super::{Conditions, Grasped, Recording, Rig, Trial, cell};
@@ -10,7 +11,6 @@ use crate::input::robot::{Mounted, Robot};
 use crate::input::task::{Phase, Stage, Task};
 use crate::outcome::Outcome;
 use crate::physics::{Engine, Unsupported};
-use crate::scene::Pose;
 use crate::units::N_PER_MM;
 use nalgebra::Vector3;
 use std::sync::atomic::AtomicBool;
@@ -23,7 +23,7 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 pub struct EngineRig {
     /// The task.
     pub task: Task,
-    robot: Mounted,
+    robot: Arc<Mounted>,
     engine: Box<dyn Engine>,
 }
 
@@ -83,12 +83,12 @@ impl EngineRig {
             return Err(RigError::TooLong { robot, task, problem });
         }
         engine.supports(&cell::build(&task, &mounted, finger).scene)?;
-        Ok(EngineRig { task, robot: mounted, engine })
+        Ok(EngineRig { task, robot: Arc::new(mounted), engine })
     }
 
     /// Grasps, carries and approaches.
     fn prepare<'a>(
-        &'a self,
+        &self,
         engine: &dyn Engine,
         finger: &Finger,
         conditions: &Conditions,
@@ -99,7 +99,7 @@ impl EngineRig {
         let mut cell = cell::build(&task, &self.robot, finger);
         conditions.displace(&mut cell);
         let world = engine.world(&cell.scene);
-        let mut attempt = Attempt::new(&self.robot, task, cell, world, stop);
+        let mut attempt = Attempt::new(Arc::clone(&self.robot), task, cell, world, stop);
         attempt.yaw = conditions.yaw;
         attempt.recorder = recorder;
         let end = attempt.prepare();
@@ -141,6 +141,11 @@ impl Rig for EngineRig {
         }
         let again = by(&*self.engine.halved());
         Some(Recording { trial: Trial { retried: true, ..again.trial }, ..again })
+    }
+
+    fn driven(&self, finger: &Finger) -> Option<Driven> {
+        let ready = self.prepare(&*self.engine, finger, &Conditions::NOMINAL, None, &NEVER);
+        Some(Driven::new(ready.attempt, ready.end))
     }
 }
 
@@ -197,13 +202,8 @@ impl Prepared<'_> {
     /// The trial, and what was asked for on the way: samples from the search on, frames from the
     /// grasp on if it is filmed.
     fn watched(&self, offset: f64, trace: Option<Trace>) -> (Trial, Vec<Sample>, Vec<Frame>) {
-        let mut attempt = self.attempt.copy();
+        let mut attempt = self.attempt.shifted(offset);
         attempt.trace = trace;
-        // Shifting the start by y is shifting the socket by -y: the part has
-        // touched nothing of it yet. So all offsets share grasp and approach.
-        let socket = Pose::translation(0.0, -offset, 0.0) * turned(attempt.yaw);
-        attempt.socket = turned(-attempt.yaw) * Pose::translation(0.0, offset, 0.0);
-        attempt.world.place(attempt.cell.socket, socket);
         if let Some(recorder) = &mut attempt.recorder {
             recorder.seen(&attempt.socket);
         }

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""Learns a quicker and safer search for `usb` in `fo.gym.InsertionEnv`, with numpy alone.
+
+    pip install './python[gym]'
+    python examples/learn_search.py               # about a minute
+    python examples/learn_search.py 2 4           # generations, candidates in each
+
+The search is the task's own, of four numbers: how far it presses, how far it moves back and to the
+side, and how fast. The cross-entropy method draws candidates from a normal distribution, tries each
+from several shifted starts, and fits the distribution to the best quarter.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+
+import finger_opt as fo
+
+#: Preload mm, back mm, side mm, speed mm/s: the task's, and how far to look at first.
+FIRST = np.array([0.3, 5.0, 10.0, 80.0])
+SPREAD = np.array([0.1, 1.0, 2.0, 10.0])
+LOWEST = np.array([0.0, 0.5, 1.0, 20.0])
+SHIFTS_MM = (-2.0, 0.0, 2.0)
+
+
+def moves(numbers):
+    """Velocities, mm/s, each for 1 ms; takes observations."""
+    preload, back, side, speed = numbers
+    observation = yield np.array([0.0, 0.0, -20.0])
+    while np.linalg.norm(observation[6:]) < 0.05:
+        observation = yield np.array([0.0, 0.0, -20.0])
+    for way in ([0, 0, -preload], [back, 0, 0], [-back, 0, 0], [0, -side, 0], [0, 0, -20]):
+        way = np.array(way, dtype=float)
+        length = max(np.linalg.norm(way), 1e-9)
+        for _ in range(round(1000 * length / speed)):
+            yield way / length * speed
+        for _ in range(30):
+            yield np.zeros(3)
+
+
+def episode(env, numbers, shift_mm):
+    """Sum of the rewards, and how it ended."""
+    env.reset(options={"offset_mm": shift_mm})
+    plan, total = moves(numbers), 0.0
+    action = next(plan)
+    while True:
+        observation, reward, terminated, truncated, info = env.step(action)
+        total += reward
+        if terminated or truncated:
+            return total, info["outcome"]
+        try:
+            action = plan.send(observation)
+        except StopIteration:
+            # It waits in vain for what does not come any more.
+            return total - 10.0, info["outcome"]
+
+
+def score(env, numbers):
+    """Mean reward over the shifts, and how many of them insert."""
+    found = [episode(env, numbers, shift) for shift in SHIFTS_MM]
+    return np.mean([total for total, _ in found]), sum(end == "inserted" for _, end in found)
+
+
+def learn(env, generations, candidates, seed=0):
+    """The best numbers found; says on the way how good they are."""
+    draw = np.random.default_rng(seed)
+    mean, spread = FIRST.copy(), SPREAD.copy()
+    best = (score(env, FIRST)[0], FIRST)
+    for generation in range(generations):
+        tried = np.maximum(draw.normal(mean, spread, (candidates, 4)), LOWEST)
+        scores = [score(env, numbers)[0] for numbers in tried]
+        elite = tried[np.argsort(scores)[::-1][: max(2, candidates // 4)]]
+        mean, spread = elite.mean(axis=0), elite.std(axis=0) + 0.05 * SPREAD
+        best = max([best, *zip(scores, tried)], key=lambda pair: pair[0])
+        print(f"generation {generation}: best reward {best[0]:.3f}")
+    return best[1]
+
+
+def main(generations=8, candidates=16):
+    env = fo.gym.InsertionEnv("usb", density=20, direction=10)
+    learned = learn(env, generations, candidates)
+    for name, numbers in (("the task's search", FIRST), ("the learned one", learned)):
+        reward, inserted = score(env, numbers)
+        print(f"{name}: reward {reward:.3f}, {inserted} of {len(SHIFTS_MM)} shifts insert;"
+              f" preload, back, side, speed {np.round(numbers, 2).tolist()}")
+
+
+if __name__ == "__main__":
+    main(*(int(word) for word in sys.argv[1:]))

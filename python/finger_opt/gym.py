@@ -1,0 +1,139 @@
+"""An insertion as an environment in Gymnasium's interface: for learning a search.
+
+>>> from finger_opt.gym import InsertionEnv                             # doctest: +SKIP
+>>> env = InsertionEnv("usb", density=20, direction=10)                 # doctest: +SKIP
+>>> observation, info = env.reset(seed=1)                               # doctest: +SKIP
+>>> observation, reward, terminated, truncated, info = env.step([0, 0, -20])  # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from . import _native, _words
+from ._task import Task
+
+try:
+    import gymnasium
+except ImportError:
+    raise ImportError("finger_opt.gym needs gymnasium: pip install 'finger-opt[gym]'") from None
+
+#: How long an action holds, s of simulated time.
+CONTROL_S = 0.001
+#: What a second of simulated time costs.
+TIME_COST = 1.0
+#: What an insertion brings, and what a failure costs.
+END = 10.0
+
+#: Where the numbers of a state are.
+OBSERVED, TIP, TILT, SLIP, DISTANCE = slice(1, 10), slice(10, 13), 13, 14, 15
+
+
+class InsertionEnv(gymnasium.Env[np.ndarray, np.ndarray]):
+    """Insert a part that the gripper holds in front of its socket, whose place is not quite known.
+
+    An episode begins where the search of a trial begins: the part is grasped, tilted and brought
+    to the start. What :func:`finger_opt.trial` does with the task's strategy, actions do here.
+
+    **Action**: velocity of the commanded TCP along x, y, z, mm/s, each within ``speed_mm_per_s``;
+    shape (3,). It holds for 1 ms (two steps of the engine ``direct``). The robot follows as its
+    model says.
+
+    **Observation**, shape (9,), what a robot with a wrist sensor knows: position of the TCP, mm,
+    from the middle of where the opening would be without the shift; turn of the flange, degrees;
+    force of the socket on the plug, N, filtered by 5 ms; each along x, y, z.
+
+    **Shift**: each episode draws the shift of the start along y from ``offset_mm`` (from, to), or
+    takes ``reset(options={"offset_mm": 0.5})``. The observation does not show it.
+
+    **Reward**: millimetres by which the plug's tip came nearer to its seat (the tip's place where
+    the part counts as inserted), less 1 per second of simulated time; 10 for an insertion, -10 for
+    a part that is lost, a force beyond the robot's limit or a simulation that diverged.
+
+    **End**: terminated when the part has been seated and held for 30 ms, or on such a failure;
+    truncated after ``time_limit_s`` of simulated time.
+
+    ``info`` says what a robot does not know: ``tip_mm``, ``tilt_deg``, ``slip_mm``,
+    ``distance_mm`` to the seat, ``offset_mm``, ``time_s``, and ``outcome`` and ``failure`` (class
+    1 to 4) as of a trial, ``None`` while it goes on.
+
+    Task, finger and ``settings`` are those of :func:`finger_opt.trial`.
+    """
+
+    metadata = {"render_modes": []}
+
+    def __init__(
+        self,
+        task: str | Task = "usb",
+        density: float | None = None,
+        direction: float | None = None,
+        *,
+        offset_mm: tuple[float, float] = (-1.0, 1.0),
+        speed_mm_per_s: float = 100.0,
+        time_limit_s: float = 2.0,
+        **settings: Any,
+    ) -> None:
+        if not -1000.0 <= offset_mm[0] <= offset_mm[1] <= 1000.0:
+            raise _native.InputError("offset_mm: is (from, to), mm, within 1000 of 0")
+        if not (0.0 < speed_mm_per_s < float("inf") and 0.0 < time_limit_s < float("inf")):
+            raise _native.InputError("speed_mm_per_s, time_limit_s: have to be above 0 and finite")
+        word, files = _words.tasks(task)
+        settings = {"task": word, "density": density, "direction": direction, **settings}
+        self._insertion = _native.Insertion(_words.words(settings), files)
+        self._offsets, self._limit_s = offset_mm, time_limit_s
+        self._offset, self._distance, self._ended = 0.0, 0.0, True
+        self._speed = float(speed_mm_per_s)
+        bound = np.full(3, speed_mm_per_s, dtype=np.float32)
+        self.action_space = gymnasium.spaces.Box(-bound, bound)
+        self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (9,), dtype=np.float32)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """The part at the start, with a shift drawn or given as ``options["offset_mm"]``."""
+        super().reset(seed=seed)
+        drawn = self.np_random.uniform(*self._offsets)
+        self._offset = float((options or {}).get("offset_mm", drawn))
+        observation, info = self._seen(self._insertion.start(self._offset))
+        self._distance, self._ended = info["distance_mm"], info["outcome"] is not None
+        return observation, info
+
+    def step(
+        self, action: np.ndarray
+    ) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Commands a velocity (3), mm/s, for 1 ms."""
+        if self._ended:
+            raise _native.InputError("step: the episode has ended, or was not begun; call reset()")
+        velocity = np.clip(np.asarray(action, dtype=np.float64), -self._speed, self._speed)
+        if velocity.shape != (3,):
+            raise _native.InputError(f"step: an action has the shape (3,), not {velocity.shape}")
+        observation, info = self._seen(self._insertion.step(velocity.tolist()))
+        outcome, distance = info["outcome"], info["distance_mm"]
+        terminated = outcome is not None
+        truncated = not terminated and info["time_s"] > self._limit_s - 0.5 * CONTROL_S
+        reward = self._distance - distance - TIME_COST * CONTROL_S
+        if outcome == "diverged":
+            # Where it is then says nothing.
+            reward = -TIME_COST * CONTROL_S
+        if terminated:
+            reward += END if outcome == "inserted" else -END
+        self._distance, self._ended = distance, terminated or truncated
+        return observation, reward, terminated, truncated, info
+
+    def _seen(
+        self, state: tuple[list[float], str | None, int | None]
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        numbers, outcome, failure = state
+        info = {
+            "time_s": numbers[0],
+            "tip_mm": numbers[TIP],
+            "tilt_deg": numbers[TILT],
+            "slip_mm": numbers[SLIP],
+            "distance_mm": numbers[DISTANCE],
+            "offset_mm": self._offset,
+            "outcome": outcome,
+            "failure": failure,
+        }
+        return np.array(numbers[OBSERVED], dtype=np.float32), info

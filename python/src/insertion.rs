@@ -1,0 +1,58 @@
+//! A trial that Python drives.
+
+use crate::errors::{InputError, raise};
+use crate::measure::{Files, sources};
+use finger_opt::cli::driven;
+use finger_opt::trial::State;
+use pyo3::prelude::*;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A grasped part in front of its socket.
+#[pyclass(frozen)]
+pub struct Insertion(Mutex<driven::Insertion>);
+
+/// The numbers of a state in the order of its fields, how it ended, and the failure class.
+type Stand = (Vec<f64>, Option<&'static str>, Option<u8>);
+
+impl Insertion {
+    fn open(&self) -> MutexGuard<'_, driven::Insertion> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl Insertion {
+    #[new]
+    fn new(py: Python<'_>, words: Vec<String>, files: Files) -> PyResult<Self> {
+        let tasks = sources(files);
+        let made = py.allow_threads(|| driven::Insertion::new(&words, &tasks)).map_err(raise)?;
+        Ok(Insertion(Mutex::new(made)))
+    }
+
+    /// Begins anew.
+    fn start(&self, py: Python<'_>, offset_mm: f64) -> PyResult<Stand> {
+        finite("offset_mm", &[offset_mm])?;
+        Ok(stand(&py.allow_threads(|| self.open().start(offset_mm))))
+    }
+
+    /// A control step.
+    fn step(&self, py: Python<'_>, velocity_mm_per_s: [f64; 3]) -> PyResult<Stand> {
+        finite("velocity", &velocity_mm_per_s)?;
+        Ok(stand(&py.allow_threads(|| self.open().step(velocity_mm_per_s))))
+    }
+}
+
+fn finite(what: &str, numbers: &[f64]) -> PyResult<()> {
+    match numbers.iter().all(|number| number.is_finite()) {
+        true => Ok(()),
+        false => Err(InputError::new_err(format!("{what}: has to be finite"))),
+    }
+}
+
+fn stand(state: &State) -> Stand {
+    let mut numbers = vec![state.time_s];
+    numbers.extend(state.tcp_mm.iter().chain(&state.turn_deg).chain(&state.force_n));
+    numbers.extend(state.tip_mm);
+    numbers.extend([state.tilt_deg, state.slip_mm, state.distance_mm]);
+    (numbers, state.outcome.map(|o| o.word()), state.outcome.and_then(|o| o.failure()))
+}

@@ -20,6 +20,7 @@ pub mod guided;
 mod manual;
 mod measure;
 mod next;
+mod on_bench;
 mod progress;
 mod recommended;
 mod repeat;

@@ -1,6 +1,8 @@
 //! From names on the command line to what a command works with.
 
-use super::Failure;
+use super::{Failure, calibrated, measure};
+use crate::calibration::prior::Priors;
+use crate::calibration::subject::whole;
 use crate::evaluation::evaluator::Evaluator;
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
@@ -9,6 +11,7 @@ use crate::evaluation::uncertainty::Uncertainty;
 use crate::finger::Finger;
 use crate::finger::computed::Touching;
 use crate::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
+use crate::input::experiments::{Experiment, Extent};
 use crate::input::finger_file::{FingerFile, is_shape};
 use crate::input::printed::PrintedFinger;
 use crate::input::robot::Robot;
@@ -16,7 +19,7 @@ use crate::input::shipped::{self, FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, S
 use crate::input::space::{Parameter, Space};
 use crate::input::stiffness;
 use crate::input::task::{StartRule, Task};
-use crate::study::{FINGER, Inputs, Provenance, sha256};
+use crate::study::{BENCH_ROLES, FINGER, Inputs, Provenance, sha256};
 use crate::surrogate::{self, FitError, Model};
 use crate::trial::Rig;
 use crate::trial::run::RigError;
@@ -117,8 +120,20 @@ pub struct Setup {
     pub space: Space,
     /// The errors under which designs are measured, if they are.
     pub uncertainty: Option<Uncertainty>,
+    /// What was measured on the bench, if a study asks for its fingers there.
+    pub measured: Option<Measured>,
     /// The texts all this was read from.
     pub inputs: Inputs,
+}
+
+/// Measurements from the bench, and the bounds of what nobody measured.
+pub struct Measured {
+    /// The measurements' file.
+    pub file: String,
+    /// Its lines.
+    pub experiments: Vec<Experiment>,
+    /// The bounds.
+    pub priors: Priors,
 }
 
 /// Roles of the input files beside the tasks and the errors.
@@ -162,9 +177,13 @@ impl Setup {
             [SPACE, ROBOT, STIFFNESS_DATA].map(|role| input(inputs, role));
         let finger = finger_input(inputs)?;
         let others = [&space?, &robot?, &stiffness?];
-        let setup = Setup::parse(&tasks, others, finger.as_ref(), engine)?;
-        match inputs.contains_key(UNCERTAINTY) {
-            true => setup.under(input(inputs, UNCERTAINTY)?),
+        let mut setup = Setup::parse(&tasks, others, finger.as_ref(), engine)?;
+        if inputs.contains_key(UNCERTAINTY) {
+            setup = setup.under(input(inputs, UNCERTAINTY)?)?;
+        }
+        let [measurements, priors] = BENCH_ROLES;
+        match inputs.contains_key(measurements) {
+            true => setup.with_measurements(input(inputs, measurements)?, input(inputs, priors)?),
             false => Ok(setup),
         }
     }
@@ -208,6 +227,7 @@ impl Setup {
                 engine,
             },
             uncertainty: None,
+            measured: None,
             space,
         })
     }
@@ -218,6 +238,36 @@ impl Setup {
         self.uncertainty = Some(uncertainty);
         self.inputs.insert(UNCERTAINTY.to_owned(), errors.text);
         Ok(self)
+    }
+
+    /// The same with measurements of its one task from the bench.
+    pub fn with_measurements(mut self, lines: Source, priors: Source) -> Result<Self, Failure> {
+        let experiments = measure::parse(&lines, &self.task_names())?;
+        let file = lines.file;
+        let problem = |problem: String| Failure::usage(format!("{file}: {problem}"));
+        if let [template] = self.evaluator.templates.as_slice() {
+            let task = &template.task().name;
+            let own = || experiments.iter().filter(|line| line.task == *task);
+            if !own().any(|line| line.extent() != Extent::Unknown) {
+                return Err(problem(format!(
+                    "no line has a range of the task `{task}`; measure one finger at least \
+                     (`optimize next` says which), or leave out --measurements"
+                )));
+            }
+            for line in own() {
+                whole(&self.space, template, line).map_err(|error| problem(error.to_string()))?;
+            }
+        }
+        let [role, priors_role] = BENCH_ROLES.map(str::to_owned);
+        let measured = Measured { priors: calibrated::priors(&priors)?, experiments, file };
+        self.inputs.extend([(role, lines.text), (priors_role, priors.text)]);
+        self.measured = Some(measured);
+        Ok(self)
+    }
+
+    /// The names of its tasks.
+    pub fn task_names(&self) -> Vec<&str> {
+        self.evaluator.templates.iter().map(|template| template.task().name.as_str()).collect()
     }
 
     /// What a study records of all this.

@@ -1,6 +1,7 @@
 //! Plots and pages of a study and of the stiffness model: pure functions of
 //! what was measured. Nothing here simulates, and nothing reads or writes files.
 
+mod bench;
 mod best;
 mod chart;
 pub mod compare;

@@ -40,7 +40,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The measurements of that name or at that path, checked; their tasks are shipped ones or
 /// those in `more`.
 pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
-    let source = find(name)?;
+    parse(&find(name)?, more)
+}
+
+/// The same of a text.
+pub fn parse(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
     let found = experiments::parse(&source.text, &source.file).map_err(Failure::input)?;
     let shipped = TASKS.iter().map(|task| task.name);
     let known: Vec<&str> = shipped.chain(more.iter().copied()).collect();
@@ -49,7 +53,7 @@ pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
 }
 
 /// A shipped name, or else a path, whatever it looks like.
-fn find(name: &str) -> Result<Source, Failure> {
+pub fn find(name: &str) -> Result<Source, Failure> {
     if std::path::Path::new(name).is_file() {
         let text = std::fs::read_to_string(name);
         let unreadable = |error| Failure::usage(format!("{name}: cannot read it: {error}"));

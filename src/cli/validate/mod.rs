@@ -1,6 +1,7 @@
 //! `optimize validate`: our windows beside the published ones.
 
 mod against;
+mod calibrated;
 
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, FingerModelArguments};
 use super::{Failure, print, print_json};
@@ -78,6 +79,10 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1, requires = "against",
           value_parser = clap::value_parser!(u32).range(1..=64))]
     phases: u32,
+    /// With --against: folder of leave_one_out*.csv of `optimize calibrate --out`, the measured
+    /// fingers predicted each without itself, as a further model
+    #[arg(long, value_name = "DIR", requires = "against")]
+    calibrated: Option<PathBuf>,
     #[command(flatten)]
     finger_model: FingerModelArguments,
     /// What becomes of the nominal start, in place of what the task file says

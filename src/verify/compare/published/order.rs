@@ -9,9 +9,6 @@ use serde::Deserialize;
 
 /// The last committed comparison of `optimize validate`.
 const VALIDATION: &str = include_str!("../../../../results/reference/validation/validation.csv");
-/// Fewest measured fingers in a study that tell an order.
-const FEWEST: usize = 6;
-
 /// A rank correlation of simulated and measured ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Order {
@@ -30,8 +27,9 @@ struct Validated {
     bench_range_mm: Option<f64>,
 }
 
-/// The order on a task of a study, by its place: of the study's own ranges where it simulated enough
-/// of the measured fingers. `None` if nothing was measured of the task.
+/// The order on a task of a study, by its place: of the study's own ranges where it simulated all
+/// measured fingers; some alone would be those that its search liked. `None` if nothing was measured
+/// of the task.
 pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
     let name = record.config.tasks().nth(task)?;
     let bench = of_task(name, Origin::Bench);
@@ -41,7 +39,8 @@ pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
         Some((simulated(record, task, design)?, bench.tolerable_range_mm?))
     };
     let own: Vec<(f64, f64)> = bench.iter().filter_map(pair).collect();
-    match own.len() >= FEWEST {
+    let all = bench.iter().filter(|bench| bench.tolerable_range_mm.is_some()).count();
+    match own.len() == all {
         true => order(&own, true),
         false => order(&validated(name), false),
     }

@@ -1,17 +1,17 @@
 //! What the commands that calibrate have in common.
 
 use super::setup::{Setup, SetupArguments, find};
-use super::{Failure, measure, say};
+use super::{Failure, measure, measured, say};
 use crate::calibration::calibrate::Layout;
 use crate::calibration::emulator::{Emulator, EmulatorError};
-use crate::calibration::prior::{Parameter, Priors};
+use crate::calibration::prior::Parameter;
 use crate::calibration::sampler::{Effort, Settings};
 use crate::calibration::simulation::Simulation;
 use crate::calibration::subject::{Subject, SubjectError};
 use crate::evaluation::template::Impossible;
 use crate::evaluation::template::Template;
 use crate::input::experiments::Experiment;
-use crate::input::shipped::{PRIORS, Source};
+use crate::input::shipped::PRIORS;
 use crate::input::space::Design;
 use crate::study::BenchEffort;
 use clap::Args;
@@ -125,7 +125,7 @@ impl CalibrationArguments {
     ) -> Result<Prepared, Failure> {
         let setup = Setup::from_arguments(setup)?;
         let experiments = measure::read(measurements, &setup.task_names())?;
-        let priors = priors(&find("file of priors", PRIORS, &self.priors)?)?;
+        let priors = measured::priors(&find("file of priors", PRIORS, &self.priors)?)?;
         let cache = self.cache(&setup);
         let ground = Ground {
             setup: &setup,
@@ -138,11 +138,6 @@ impl CalibrationArguments {
         let (subjects, layout) = ground.subjects(measurements, &experiments, more)?;
         Ok(Prepared { setup, subjects, layout, cache })
     }
-}
-
-/// The priors of a file.
-pub fn priors(source: &Source) -> Result<Priors, Failure> {
-    Priors::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
 /// What a calibration simulates with.

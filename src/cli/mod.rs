@@ -19,6 +19,7 @@ mod finger;
 pub mod guided;
 mod manual;
 mod measure;
+mod measured;
 mod next;
 mod on_bench;
 mod progress;

@@ -2,7 +2,8 @@
 
 use super::Failure;
 use super::calibrated::{EFFORT, EffortArguments, Ground, settings};
-use super::setup::{Measured, Setup};
+use super::measured::Measured;
+use super::setup::Setup;
 use super::words;
 use crate::calibration::calibrate::Calibration;
 use crate::calibration::on_bench::{by_range, on_bench};

@@ -1,8 +1,7 @@
 //! From names on the command line to what a command works with.
 
-use super::{Failure, calibrated, measure};
-use crate::calibration::prior::Priors;
-use crate::calibration::subject::whole;
+use super::Failure;
+use super::measured::{self, Measured};
 use crate::evaluation::evaluator::Evaluator;
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
@@ -11,7 +10,6 @@ use crate::evaluation::uncertainty::Uncertainty;
 use crate::finger::Finger;
 use crate::finger::computed::Touching;
 use crate::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
-use crate::input::experiments::{Experiment, Extent};
 use crate::input::finger_file::{FingerFile, is_shape};
 use crate::input::printed::PrintedFinger;
 use crate::input::robot::Robot;
@@ -126,16 +124,6 @@ pub struct Setup {
     pub inputs: Inputs,
 }
 
-/// Measurements from the bench, and the bounds of what nobody measured.
-pub struct Measured {
-    /// The measurements' file.
-    pub file: String,
-    /// Its lines.
-    pub experiments: Vec<Experiment>,
-    /// The bounds.
-    pub priors: Priors,
-}
-
 /// Roles of the input files beside the tasks and the errors.
 const SPACE: &str = "space";
 const ROBOT: &str = "robot";
@@ -242,24 +230,13 @@ impl Setup {
 
     /// The same with measurements of its one task from the bench.
     pub fn with_measurements(mut self, lines: Source, priors: Source) -> Result<Self, Failure> {
-        let experiments = measure::parse(&lines, &self.task_names())?;
+        let experiments = measured::lines(&lines, &self.task_names())?;
         let file = lines.file;
-        let problem = |problem: String| Failure::usage(format!("{file}: {problem}"));
         if let [template] = self.evaluator.templates.as_slice() {
-            let task = &template.task().name;
-            let own = || experiments.iter().filter(|line| line.task == *task);
-            if !own().any(|line| line.extent() != Extent::Unknown) {
-                return Err(problem(format!(
-                    "no line has a range of the task `{task}`; measure one finger at least \
-                     (`optimize next` says which), or leave out --measurements"
-                )));
-            }
-            for line in own() {
-                whole(&self.space, template, line).map_err(|error| problem(error.to_string()))?;
-            }
+            measured::check(&file, &experiments, template, &self.space)?;
         }
         let [role, priors_role] = BENCH_ROLES.map(str::to_owned);
-        let measured = Measured { priors: calibrated::priors(&priors)?, experiments, file };
+        let measured = Measured { priors: measured::priors(&priors)?, experiments, file };
         self.inputs.extend([(role, lines.text), (priors_role, priors.text)]);
         self.measured = Some(measured);
         Ok(self)

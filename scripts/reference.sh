@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-parts="stiffness finger check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
+parts="stiffness finger bench check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 reference=results/reference
@@ -44,6 +44,24 @@ finger() {
     "$optimize" validate --against bench --strides --out "$work/bench" > /dev/null
     cp "$work/bench/against_bench.txt" "$folder/"
     record windows "$folder"/*
+}
+
+# What the published experiments say of every finger, each measured one predicted without it; the
+# choice of prints replayed; all models beside the experiments.
+bench() {
+    local folder="$reference/bench" task
+    mkdir -p "$folder"
+    for task in ket8 ket12 rj45 usb; do
+        "$optimize" calibrate --task "$task" --measurements published --quiet --out "$work/$task" |
+            sed '/^tables are in/d' > "$folder/$task.txt"
+        for table in leave_one_out parameters; do
+            cp "$work/$task/$table.csv" "$folder/${table}_$task.csv"
+        done
+    done
+    "$optimize" bench next --json > "$folder/replay.json"
+    "$optimize" validate --against bench --strides --calibrated "$folder" --out "$work/against" > /dev/null
+    cp "$work/against/"{against_bench.txt,calibrated_against_bench.svg} "$folder/"
+    record bench "$folder"/*.{txt,csv,json,svg}
 }
 
 check() {

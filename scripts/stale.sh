@@ -23,6 +23,7 @@ sources() {
         windows) rooms=$simulation; folders="data tasks robots" ;;
         studies) rooms="$simulation optimizer study"; folders="data tasks robots spaces uncertainties" ;;
         checks) rooms="$simulation verify"; folders="robots" ;;
+        bench) rooms="$simulation optimizer calibration"; folders="data tasks robots spaces priors" ;;
         optimizers) rooms="stream optimizer verify/problems"; folders="results/reference/landscapes" ;;
         *) echo "scripts/stale.sh: no scope is called $1" >&2; exit 2 ;;
     esac

@@ -51,3 +51,85 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     assert!(next["next"][0]["reason"].as_str().is_some_and(|reason| !reason.is_empty()));
     assert!(next["next"][0]["expected_gain_mm"].as_f64().is_some_and(|gain| gain > 0.0));
 }
+
+/// What makes a prediction quick.
+const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
+
+#[test]
+fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
+    let folder = Studies::new();
+    let json = [&FEW[..], &["--json", "--measurements", "published"]].concat();
+    let found = folder.study("a", 12, &json).json();
+    let best = &found["recommended"];
+    for key in ["range_mm", "low_mm", "high_mm", "probability_best"] {
+        assert!(best["bench"][key].is_number(), "{key}: {best}");
+    }
+    assert!(best["range_mm"].is_number() && found["bench"]["loo_spearman"].is_number(), "{found}");
+    // The best of the table is the one that is named.
+    let table = read(&folder.dir("a").join("bench_predictions.csv"));
+    let rows = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+    let number = |cell: &str| cell.parse::<f64>().expect("a number");
+    let first = rows.max_by(|a, b| number(a[3]).total_cmp(&number(b[3]))).expect("a line");
+    assert!((number(first[3]) - best["bench"]["range_mm"].as_f64().unwrap()).abs() < 1e-3);
+    // The search did not know of it.
+    let plain = folder.study("b", 12, &["--task", "ket8", "--json"]).json();
+    assert_eq!(found["recommended_by_simulation"], plain["recommended"]);
+    let evaluations = |name| folder.journal(name).lines().skip(2).collect::<Vec<_>>().join("\n");
+    assert_eq!(evaluations("a"), evaluations("b"));
+    let page = read(&folder.dir("a").join("report.html"));
+    let places = ["Best on the bench", "Best by simulation alone"].map(|words| page.find(words));
+    assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
+    assert!(!read(&folder.dir("b").join("report.html")).contains("on the bench</h2>"));
+    let plain = folder.study("b", 12, &["--task", "ket8"]);
+    assert!(
+        plain.succeeds().contains("our validation ranked 11 printed fingers -0.57"),
+        "{}",
+        plain.stdout
+    );
+}
+
+#[test]
+fn measurements_are_kept_with_a_study_and_new_ones_leave_its_evaluations() {
+    let folder = Studies::new();
+    let path = folder.dir("bench.csv");
+    let file = path.to_str().expect("a path in UTF-8");
+    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
+    let lines = format!("{head}ket8,10,0,7.6\nket8,20,0,5.7\nusb,20,0,5.7\n");
+    std::fs::write(&path, &lines).expect("the file is written");
+    let with = |more: &[&str]| {
+        folder.study("a", 12, &[&FEW[..], &["--json", "--measurements", file], more].concat())
+    };
+    let before = with(&[]).json();
+    assert_eq!(before["bench"]["measured"], 2);
+    std::fs::remove_file(&path).expect("the file is removed");
+    folder.resume("a").succeeds();
+    std::fs::write(&path, lines + "ket8,25,20,9.9\n").expect("the file is written");
+    with(&[]).fails(2, &["input_sha256.measurements", "--accept-changed"]);
+    let after = with(&["--accept-changed"]).json();
+    assert_eq!(after["bench"]["measured"], 3);
+    assert_eq!(after["recommended_by_simulation"], before["recommended_by_simulation"]);
+    assert_ne!(after["recommended"]["bench"], before["recommended"]["bench"]);
+    assert_eq!(after["evaluations"], 12);
+}
+
+#[test]
+fn measurements_that_a_study_cannot_use_are_refused_before_it_begins() {
+    let folder = Studies::new();
+    let path = folder.dir("bench.csv");
+    let file = path.to_str().expect("a path in UTF-8");
+    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
+    let refused = |lines: &str, more: &[&str], parts: &[&str]| {
+        std::fs::write(&path, format!("{head}{lines}")).expect("the file is written");
+        folder.study("a", 12, &[more, &["--measurements", file]].concat()).fails(2, parts);
+        assert!(!folder.dir("a").exists());
+    };
+    let line = "ket8,10,0,7.6\n";
+    refused("usb,20,0,5.7\n", &["--task", "ket8"], &["no line has a range of the task `ket8`"]);
+    refused("ket8,20,0,not measurable\n", &["--task", "ket8"], &["no line has a range"]);
+    refused("ket8,50,0,5.7\n", &["--task", "ket8"], &["line 2", "infill_density_percent: 50"]);
+    refused(line, &["--task", "ket8,rj45"], &["--measurements", "give one --task"]);
+    let objective = ["--task", "ket8", "--objective", "centred-range"];
+    refused(line, &objective, &["centred-range is not known on the bench"]);
+    let constraint = ["--task", "ket8", "--constraint", "peak-force<=30"];
+    refused(line, &constraint, &["a --constraint is not known on the bench"]);
+}

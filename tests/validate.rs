@@ -78,6 +78,31 @@ fn a_task_that_is_not_published_is_refused() {
     validate(&["--task", mine], &folder.dir("b")).fails(2, &["mine.toml", "nothing is published"]);
 }
 
+/// The calibration beside the models: read from what was committed, and refused where it is none.
+#[test]
+fn a_calibration_is_a_further_model_beside_the_bench() {
+    let folder = Studies::new();
+    let dir = folder.dir("a");
+    let against = |calibrated: &str| {
+        let words = ["--task", "ket8", "--against", "bench", "--strides", "--json"];
+        validate(&[&words[..], &["--calibrated", calibrated]].concat(), &dir)
+    };
+    let found = against("results/reference/bench").json();
+    let rows = found["agreement"].as_array().expect("a list");
+    let last = rows.last().expect("a row");
+    assert_eq!((&last["model"], &last["designs"]), (&"calibrated".into(), &11.into()));
+    assert!(last["mean_deviation_percent"].as_f64().is_some_and(|d| d > 0.0 && d < 10.0), "{last}");
+    assert!(read(&dir.join("against_bench.txt")).contains("of 11 inside"));
+    assert!(read(&dir.join("calibrated_against_bench.svg")).contains("rank correlation"));
+    let empty = folder.dir("empty");
+    std::fs::create_dir(&empty).expect("the folder is made");
+    let file = empty.join("leave_one_out.csv");
+    let empty = empty.to_str().expect("a path in UTF-8").to_owned();
+    against(&empty).fails(2, &["no leave_one_out*.csv", "optimize calibrate"]);
+    std::fs::write(&file, "task,range_mm\nket8,3\n").expect("the file is written");
+    against(&empty).fails(2, &["leave_one_out.csv: ", "line: 2"]);
+}
+
 #[test]
 fn the_walk_stays_a_word_and_strides_are_another_search() {
     let folder = Studies::new();

@@ -7,12 +7,14 @@
 //! 4. [`mod@bench`], [`sampler`]: the posterior of parameters and process, given measurements.
 //! 5. [`mod@predict`], [`loo`]: ranges with intervals; each measured finger predicted without it.
 //! 6. [`next`], [`replay`]: which finger to print, and how soon the best is found so.
+//! 7. [`mod@on_bench`]: what a study keeps of it.
 
 pub mod bench;
 pub mod calibrate;
 pub mod emulator;
 pub mod loo;
 pub mod next;
+pub mod on_bench;
 pub mod predict;
 pub mod prior;
 pub mod process;

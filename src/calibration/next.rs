@@ -136,7 +136,10 @@ fn reason(places: &Places<'_>, expected_mm: f64, high_mm: f64, best_mm: Option<f
         }
         (gain, None) if gain > 0.0 => format!("expected {gain:.1} mm wider than the best measured"),
         (_, Some(news)) => format!("{news}; may reach {high_mm:.1} mm"),
-        (_, None) => format!("may reach {high_mm:.1} mm, more than the best measured"),
+        (_, None) if high_mm > best_mm => {
+            format!("may reach {high_mm:.1} mm, more than the best measured")
+        }
+        (_, None) => "near those measured, and hardly wider than the best of them".to_owned(),
     }
 }
 
@@ -147,14 +150,39 @@ impl Places<'_> {
             let by = self.tried.iter().map(|&finger| self.own[axis] - self.all[finger][axis]);
             by.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
         };
-        // The first axis is 1 / ky: more of it is softer.
-        let compliance = -difference(0);
-        let assembly = difference(1);
-        let (by, axis) = match compliance.abs() > assembly.abs() {
-            true => (compliance, "compliance"),
-            false => (assembly, "assembly"),
+        let (axis, name) = match difference(0).abs() > difference(1).abs() {
+            true => (0, "compliance"),
+            false => (1, "assembly"),
         };
-        let way = if by > 0.0 { "stiffer" } else { "softer" };
-        (by.abs() > FAR).then(|| format!("tells soft from stiff in {axis} ({way} than any tried)"))
+        let more = |finger: &usize| self.own[axis] > self.all[*finger][axis];
+        // The first axis is 1 / ky: more of it is softer.
+        let way = match (self.tried.iter().all(more), self.tried.iter().any(more), axis) {
+            (true, _, 0) | (_, false, 1) => "softer than any tried",
+            (true, ..) | (_, false, _) => "stiffer than any tried",
+            _ => "between those tried",
+        };
+        (difference(axis).abs() > FAR).then(|| format!("tells soft from stiff in {name} ({way})"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reason_says_on_which_side_of_the_tried_fingers_one_lies() {
+        let all = [[-1.0, 0.0], [1.0, 0.0], [2.0, 0.0], [-2.0, 0.0], [0.0, 0.1], [1.1, 0.0]];
+        let news = |finger: usize| {
+            let places = Places { own: all[finger], tried: &[0, 1], all: &all };
+            places.news().unwrap_or_default()
+        };
+        // More of 1 / ky is softer.
+        for (finger, words) in [(2, "(softer than"), (3, "(stiffer than"), (4, "(between those")] {
+            assert!(news(finger).contains(words), "{finger}: {}", news(finger));
+        }
+        assert_eq!(news(5), "");
+        let places = || Places { own: all[5], tried: &[0, 1], all: &all };
+        assert!(reason(&places(), 7.0, 7.5, Some(7.9)).contains("hardly wider"));
+        assert!(reason(&places(), 7.0, 8.5, Some(7.9)).contains("may reach 8.5 mm"));
     }
 }

@@ -211,7 +211,14 @@ fn fingers(space: &Space) -> Vec<Design> {
 
 /// A measured design with all parameters of the space: what its line does not set is as in the
 /// task file.
-fn whole(space: &Space, template: &Template, line: &Experiment) -> Result<Design, SubjectError> {
+///
+/// # Errors
+/// If the line sets what the space does not have, or a value beyond it.
+pub fn whole(
+    space: &Space,
+    template: &Template,
+    line: &Experiment,
+) -> Result<Design, SubjectError> {
     let name = || space.name().to_owned();
     let known = |key: &String| space.parameters().iter().any(|parameter| parameter.key == *key);
     if let Some(key) = line.design.0.keys().find(|key| !known(key)) {

@@ -1,11 +1,12 @@
 //! The recommendation of a study, in lines and as JSON: what it leads with.
 
+use super::on_bench;
 use super::words::{self, merge};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::firm::{Firm, REPEATS};
 use crate::study::{Recommendation, Recorded, StudyRecord};
 use crate::units::N_PER_MM;
-use crate::verify::compare::published::rank_correlation;
+use crate::verify::compare::published::{Order, order_on_bench};
 use serde_json::{Value, json};
 
 /// The recommended finger, what it tolerates and how firm that is, what is as good, and whether
@@ -107,13 +108,14 @@ fn matters(record: &StudyRecord) -> Option<String> {
 
 /// What is known of how the robot orders the designs.
 fn robot(record: &StudyRecord) -> Vec<String> {
-    let known = |task: &str| {
-        let (r, n) = rank_correlation(task)?;
+    let known = |(at, task): (usize, &str)| {
+        let Order { spearman, fingers, own } = order_on_bench(record, at)?;
+        let whose = if own { "this study" } else { "our validation" };
         Some(format!(
-            "robot         on {task} published simulation and bench rank {n} designs {r:+.2} alike"
+            "robot         on {task} {whose} ranked {fingers} printed fingers {spearman:+.2} like the bench (1: alike)"
         ))
     };
-    let mut lines: Vec<String> = record.config.tasks().filter_map(known).collect();
+    let mut lines: Vec<String> = record.config.tasks().enumerate().filter_map(known).collect();
     if lines.is_empty() {
         lines.push(
             "robot         no bench experiment is known: print and measure the best few".into(),
@@ -126,8 +128,19 @@ fn robot(record: &StudyRecord) -> Vec<String> {
 pub fn to_json(record: &StudyRecord) -> Value {
     let found = record.recommendation();
     let spread = record.spread_mm();
+    let simulated = found.as_ref().filter(|_| record.unusable().is_none());
+    let simulated = simulated.map(|found| recommended(record, found));
+    if let Some(bench) = &record.on_bench {
+        return json!({
+            "recommended": on_bench::recommended(record, bench),
+            "recommended_by_simulation": simulated,
+            "bench": on_bench::to_json(bench),
+            "equivalent_designs": found.as_ref().map(|found| found.equivalent.len()),
+            "spread_mm": spread.map(|[low, high]| words::rounded(high - low)),
+        });
+    }
     json!({
-        "recommended": found.as_ref().filter(|_| record.unusable().is_none()).map(|found| recommended(record, found)),
+        "recommended": simulated,
         "equivalent_designs": found.as_ref().map(|found| found.equivalent.len()),
         "spread_mm": spread.map(|[low, high]| words::rounded(high - low)),
     })

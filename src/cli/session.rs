@@ -1,8 +1,9 @@
 //! Runs an open study to its end: threads, Ctrl-C, progress, summary.
 
+use super::calibrated::EffortArguments;
 use super::progress::Progress;
 use super::setup::Setup;
-use super::{Failure, film, report, say, summary, unusable};
+use super::{Failure, film, on_bench, report, say, summary, unusable};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
 use crate::evaluation::tolerance::Search;
@@ -49,6 +50,8 @@ pub struct SessionArguments {
     /// slurm:JOBS, processes or processes:N [default: on the threads of this process]
     #[arg(long, value_name = "WHERE")]
     pub executor: Option<String>,
+    #[command(flatten)]
+    effort: EffortArguments,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
@@ -105,6 +108,10 @@ pub fn conclude(
         confirmer.confirm(study).map_err(|error| hint(error, study))?;
     }
     study.check_journal()?;
+    if ending != Ending::Interrupted && !stop.load(Ordering::SeqCst) {
+        let (cache, quiet) = (arguments.cache_folder(setup), arguments.quiet || arguments.json);
+        on_bench::predict(study, setup, arguments.effort, cache, pool, quiet)?;
+    }
     let record = study.record();
     if ending != Ending::Interrupted && !stop.load(Ordering::SeqCst) {
         film::boundary(study.dir(), &record, setup, pool)?;
@@ -210,11 +217,14 @@ impl SessionArguments {
 
     /// Where evaluations are kept for other studies, if they are.
     pub fn cache(&self, setup: &Setup) -> Option<Cache> {
-        let engine = setup.evaluator.engine;
+        let dir = self.cache_folder(setup)?;
+        Some(Cache::new(&dir, &setup.evaluator.robot, &setup.evaluator.engine.record()))
+    }
+
+    fn cache_folder(&self, setup: &Setup) -> Option<PathBuf> {
         // A closed formula is faster than a file.
-        let default = engine.simulates().then(|| PathBuf::from(CACHE));
-        let dir = self.cache.clone().or(default).filter(|_| !self.no_cache)?;
-        Some(Cache::new(&dir, &setup.evaluator.robot, &engine.record()))
+        let default = setup.evaluator.engine.simulates().then(|| PathBuf::from(CACHE));
+        self.cache.clone().or(default).filter(|_| !self.no_cache)
     }
 }
 

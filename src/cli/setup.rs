@@ -1,6 +1,7 @@
 //! From names on the command line to what a command works with.
 
 use super::Failure;
+use super::measured::{self, Measured};
 use crate::evaluation::evaluator::Evaluator;
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
@@ -17,7 +18,7 @@ use crate::input::shipped::{self, FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, S
 use crate::input::space::{Parameter, Space};
 use crate::input::stiffness;
 use crate::input::task::{StartRule, Task};
-use crate::study::{FINGER, Inputs, Provenance, sha256};
+use crate::study::{BENCH_ROLES, FINGER, Inputs, Provenance, sha256};
 use crate::surrogate::{self, FitError, Model};
 use crate::trial::Rig;
 use crate::trial::run::RigError;
@@ -119,6 +120,8 @@ pub struct Setup {
     pub space: Space,
     /// The errors under which designs are measured, if they are.
     pub uncertainty: Option<Uncertainty>,
+    /// What was measured on the bench, if a study asks for its fingers there.
+    pub measured: Option<Measured>,
     /// The texts all this was read from.
     pub inputs: Inputs,
 }
@@ -165,9 +168,13 @@ impl Setup {
             [SPACE, ROBOT, STIFFNESS_DATA].map(|role| input(inputs, role));
         let finger = finger_input(inputs)?;
         let others = [&space?, &robot?, &stiffness?];
-        let setup = Setup::parse(&tasks, others, finger.as_ref(), engine)?;
-        match inputs.contains_key(UNCERTAINTY) {
-            true => setup.under(input(inputs, UNCERTAINTY)?),
+        let mut setup = Setup::parse(&tasks, others, finger.as_ref(), engine)?;
+        if inputs.contains_key(UNCERTAINTY) {
+            setup = setup.under(input(inputs, UNCERTAINTY)?)?;
+        }
+        let [measurements, priors] = BENCH_ROLES;
+        match inputs.contains_key(measurements) {
+            true => setup.with_measurements(input(inputs, measurements)?, input(inputs, priors)?),
             false => Ok(setup),
         }
     }
@@ -204,7 +211,7 @@ impl Setup {
         let surrogate = surrogate(stiffness_source, &printed)?;
         let evaluator = Evaluator { surrogate, fingers, templates, robot, engine };
         sprung::check(&evaluator, &space, file).map_err(Failure::input)?;
-        Ok(Setup { inputs: inputs.collect(), evaluator, uncertainty: None, space })
+        Ok(Setup { inputs: inputs.collect(), evaluator, uncertainty: None, measured: None, space })
     }
 
     /// The same with errors under which designs are measured.
@@ -213,6 +220,25 @@ impl Setup {
         self.uncertainty = Some(uncertainty);
         self.inputs.insert(UNCERTAINTY.to_owned(), errors.text);
         Ok(self)
+    }
+
+    /// The same with measurements of its one task from the bench.
+    pub fn with_measurements(mut self, lines: Source, priors: Source) -> Result<Self, Failure> {
+        let experiments = measured::lines(&lines, &self.task_names())?;
+        let file = lines.file;
+        if let [template] = self.evaluator.templates.as_slice() {
+            measured::check(&file, &experiments, template, &self.space)?;
+        }
+        let [role, priors_role] = BENCH_ROLES.map(str::to_owned);
+        let measured = Measured { priors: measured::priors(&priors)?, experiments, file };
+        self.inputs.extend([(role, lines.text), (priors_role, priors.text)]);
+        self.measured = Some(measured);
+        Ok(self)
+    }
+
+    /// The names of its tasks.
+    pub fn task_names(&self) -> Vec<&str> {
+        self.evaluator.templates.iter().map(|template| template.task().name.as_str()).collect()
     }
 
     /// What a study records of all this.

@@ -1,10 +1,11 @@
 //! `optimize --task T --budget N`: begins or continues a study.
 
-use super::Failure;
+use super::calibrated::DEFAULT_PRIORS;
 use super::session::{self, SessionArguments};
 use super::setup::{self, Setup, SetupArguments};
+use super::{Failure, measure, on_bench};
 use crate::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
-use crate::input::shipped::UNCERTAINTIES;
+use crate::input::shipped::{PRIORS, UNCERTAINTIES};
 use crate::optimizer::OptimizerKind;
 use crate::study::{LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, read_config, study_name};
 use clap::{Args, ValueEnum};
@@ -57,6 +58,10 @@ pub struct Arguments {
     /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
     #[arg(long, value_name = "NAME")]
     uncertainty: Option<String>,
+    /// What was measured on the bench, published or the path of a file: the study then ends with
+    /// the finger that is best there, predicted from all simulations and these measurements
+    #[arg(long, value_name = "FILE")]
+    measurements: Option<String>,
     /// What is made of the values of several tasks [default: min]
     #[arg(long, value_enum)]
     aggregate: Option<AggregateKind>,
@@ -110,8 +115,12 @@ impl Arguments {
     /// What the words name, checked: nothing is written.
     pub fn look(&self) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
         let setup = self.under_errors(Setup::from_arguments(&self.setup)?)?;
+        let setup = self.measured(setup)?;
         let config = self.config(&setup)?;
         check(self.optimizer, &config)?;
+        if setup.measured.is_some() {
+            on_bench::check(&config)?;
+        }
         let dir = self.out.clone().unwrap_or_else(|| default_folder(&config));
         Ok((setup, config, dir))
     }
@@ -131,6 +140,13 @@ impl Arguments {
                 setup.under(setup::find("uncertainty", UNCERTAINTIES, name)?)
             }
         }
+    }
+
+    /// With what was measured on the bench.
+    fn measured(&self, setup: Setup) -> Result<Setup, Failure> {
+        let Some(name) = &self.measurements else { return Ok(setup) };
+        let priors = setup::find("file of priors", PRIORS, DEFAULT_PRIORS)?;
+        setup.with_measurements(measure::find(name)?, priors)
     }
 
     /// How the values of several tasks become one; `None` for one task.

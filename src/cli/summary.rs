@@ -1,7 +1,7 @@
 //! What is printed of a whole study.
 
 use super::words::merge;
-use super::{Failure, print, recommended};
+use super::{Failure, on_bench, print, recommended};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::firm::Firm;
 use crate::report::volume_unit;
@@ -46,12 +46,16 @@ fn text(dir: &Path, record: &StudyRecord, ending: Ending, known: u64) -> String 
     };
     let (task, method) = (config.task_name(), config.method());
     let mut lines = vec![format!("{task} with {method}: {done} evaluations{end}")];
-    if let Some(segment) = record.segments.last().filter(|segment| segment.first > 0) {
+    let first = record.first_current();
+    if first > 0 {
         lines.push(format!(
-            "segment       {}, from evaluation {}: the settings changed, and only these count",
+            "segment       {}, from evaluation {first}: the settings changed, and only these count",
             record.segments.len(),
-            segment.first
         ));
+    }
+    if let Some(bench) = &record.on_bench {
+        lines.extend(on_bench::lines(bench));
+        lines.push("by simulation alone:".to_owned());
     }
     if let Some((task, nearest)) = record.unusable() {
         lines.push(unusable(record, task, nearest));

@@ -4,7 +4,7 @@ use crate::evaluation::objective::Measure;
 use crate::input::stiffness::Axis;
 use crate::study::StudyRecord;
 use crate::surrogate::Model;
-use crate::verify::compare::published::rank_correlation;
+use crate::verify::compare::published::{Order, order_on_bench, rank_correlation};
 use maud::{Markup, html};
 
 /// Key of the remote centre, where a space has it among its parameters.
@@ -16,7 +16,15 @@ pub(super) fn section(record: &StudyRecord, model: &Model) -> Markup {
     html! {
         ul {
             li {
-                "These are results of a contact simulation. No finger was printed for this study."
+                @match &record.on_bench {
+                    None => {
+                        "These are results of a contact simulation. No finger was printed for this study."
+                    }
+                    Some(found) => {
+                        "These are results of a contact simulation, but for the bench range: that rests \
+                        on " (found.measured) " measured fingers, and far from them on its priors."
+                    }
+                }
             }
             li { (published_order(record)) }
             li {
@@ -51,14 +59,17 @@ fn gaps(record: &StudyRecord) -> String {
 }
 
 fn published_order(record: &StudyRecord) -> String {
-    let here = |task: &str| {
-        let (r, n) = rank_correlation(task)?;
+    let here = |(at, task): (usize, &str)| {
+        let Order { spearman, fingers, own } = order_on_bench(record, at)?;
+        let whose = if own { "this study's" } else { "our validated" };
+        let published = rank_correlation(task)
+            .map_or(String::new(), |(r, n)| format!("; of the published ones {r:+.2} over {n}"));
         Some(format!(
-            " On {task} the rank correlation between published simulated and bench \
-             ranges is {r:+.2} over {n} designs (+1: same order, −1: opposite order)."
+            " On {task} the rank correlation between {whose} simulated ranges and those of the bench \
+             is {spearman:+.2} over {fingers} fingers (+1: same order, −1: opposite order){published}."
         ))
     };
-    let here: String = record.config.tasks().filter_map(here).collect();
+    let here: String = record.config.tasks().enumerate().filter_map(here).collect();
     format!(
         "In the published simulation of these tasks, ranges rank the designs in the opposite \
          order to the robot on two of four tasks.{here} Confirm the best design, and a very \

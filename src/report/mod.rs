@@ -3,6 +3,7 @@
 
 mod again;
 mod answer;
+mod bench;
 mod best;
 mod centre_plot;
 mod chart;

@@ -2,8 +2,8 @@
 
 use super::theme::variables;
 use super::{
-    ReportError, best, convergence, explore, front, limits, map, others, printer, provenance,
-    published, shape, windows,
+    ReportError, bench, best, convergence, explore, front, limits, map, others, printer,
+    provenance, published, shape, windows,
 };
 use crate::study::StudyRecord;
 use crate::surrogate::Model;
@@ -77,6 +77,10 @@ pub fn card(record: &StudyRecord) -> String {
         div.finger-opt {
             h3 { (title) }
             p { (record.evaluations.len()) " of " (config.evaluations()) " evaluations" }
+            @if let Some(bench) = bench::section(record) {
+                (bench)
+                h4 { "By simulation alone" }
+            }
             (best::section(record))
         }
     };
@@ -97,10 +101,14 @@ fn sections(
     let windows = each_task(record, |task| windows::section(record, task, PLOT.0))?;
     let published = each_task(record, |task| published::section(record, task, PLOT))?;
     let section = |id, title: &str, body| Some((id, title.to_owned(), body));
+    let (best, played) = match record.on_bench {
+        None => ("Best design", "Both ends of its window, played"),
+        Some(_) => ("Best by simulation alone", "Both ends of its simulated window, played"),
+    };
     let sections = [
-        section("best", "Best design", best::section(record)),
-        films(replays)
-            .and_then(|films| section("replay", "Both ends of its window, played", films)),
+        bench::section(record).and_then(|bench| section("bench", "Best on the bench", bench)),
+        section("best", best, best::section(record)),
+        films(replays).and_then(|films| section("replay", played, films)),
         explore::section(record).and_then(|views| section("explore-views", "All designs", views)),
         printer::section(record).and_then(|printer| section("printer", "To the printer", printer)),
         section("windows", "Tolerance windows of the best designs", windows),

@@ -47,7 +47,7 @@ pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
 }
 
 fn recommended(record: &StudyRecord) -> Option<Geometry> {
-    let best = record.recommended()?;
-    let finger = finger_file(record)?.with(&best.design).ok()?;
-    Geometry::new(&finger, &Design::of(&best.design, None)).ok()
+    let design = record.to_print()?;
+    let finger = finger_file(record)?.with(design).ok()?;
+    Geometry::new(&finger, &Design::of(design, None)).ok()
 }

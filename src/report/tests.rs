@@ -61,6 +61,7 @@ fn record(task: &str, evaluations: Vec<Recorded>) -> StudyRecord {
         walked: Vec::new(),
         finger: None,
         firm_values: Default::default(),
+        on_bench: None,
     }
 }
 

@@ -56,7 +56,7 @@ pub fn sound(score: &Score) -> bool {
         && score.violations.iter().all(|share| share.abs() <= LARGEST_VIOLATION)
 }
 
-fn off_the_space(design: &Design, space: &Space) -> Option<String> {
+pub(super) fn off_the_space(design: &Design, space: &Space) -> Option<String> {
     if design.0.len() != space.parameters().len() {
         return Some(format!("{design} has not the parameters of the space"));
     }

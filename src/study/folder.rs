@@ -8,6 +8,7 @@
 //! journal.jsonl    what was measured
 //! replay/          films of the trials at both ends of the recommended window
 //! walk.json        what the walk and the repeats found of the best designs
+//! bench.json       what measurements say of the fingers on the bench
 //! evaluations.csv  the same as a table; convergence.svg and report.html beside it
 //! .lock            held by the process that writes
 //! ```
@@ -15,6 +16,7 @@
 use super::config::StudyConfig;
 use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
+use super::on_bench::OnBench;
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
@@ -189,6 +191,14 @@ impl Study {
         &self.dir
     }
 
+    /// Keeps what measurements say of its fingers.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn keep_on_bench(&self, found: &OnBench) -> Result<(), StudyError> {
+        found.write(&self.dir)
+    }
+
     /// A copy that needs no open study.
     pub fn record(&self) -> StudyRecord {
         let (config, segments) = (self.config.clone(), self.segments.clone());
@@ -215,7 +225,11 @@ impl StudyRecord {
         let finger = read_inputs(dir, &segments)
             .ok()
             .and_then(|inputs| FingerFile::parse(inputs.get(FINGER)?, "inputs/finger").ok());
-        let mut record = StudyRecord { config, segments, evaluations, walked, finger, firm_values };
+        let on_bench = segments
+            .last()
+            .and_then(|segment| OnBench::read(dir, &segment.provenance, &config.space));
+        let mut record =
+            StudyRecord { config, segments, evaluations, walked, finger, firm_values, on_bench };
         let provenance = record.segments.last().map(|segment| &segment.provenance);
         let goals = record.config.goals();
         let rule = Rule { goals: &goals, space: &record.config.space };
@@ -304,7 +318,7 @@ fn write_inputs(dir: &Path, segment: usize, inputs: &Inputs) -> Result<(), Study
 
 /// Where the copy of an input of the segment with this number, counted from 1, is kept.
 pub fn input_path(dir: &Path, segment: usize, role: &str) -> PathBuf {
-    let extension = if role == "stiffness" { "csv" } else { "toml" };
+    let extension = if ["stiffness", "measurements"].contains(&role) { "csv" } else { "toml" };
     let folder = if segment == 1 { INPUTS.to_owned() } else { format!("{INPUTS}-{segment}") };
     dir.join(folder).join(format!("{role}.{extension}"))
 }

@@ -11,6 +11,7 @@ mod folder;
 mod header;
 mod journal;
 mod line;
+mod on_bench;
 mod provenance;
 mod recommendation;
 mod record;
@@ -36,7 +37,8 @@ pub use folder::{
 pub use header::SCHEMA_VERSION;
 pub use journal::Journal;
 pub use line::{decode, encode};
-pub use provenance::{Provenance, SOURCES, Segment};
+pub use on_bench::{BenchEffort, BenchFinger, OnBench, Trust};
+pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
 pub use recommendation::Recommendation;
 pub use record::{Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume};
 pub use runner::Runner;

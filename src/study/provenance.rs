@@ -18,11 +18,16 @@ pub struct Provenance {
     /// SHA-256 of the program's sources, in hexadecimal.
     pub source_sha256: String,
     /// SHA-256 of each input file by its role (`task_1` and so on, `space`, `robot`,
-    /// `stiffness`; `uncertainty` and the `finger` of computed ones where there is one), in hexadecimal.
+    /// `stiffness`; `uncertainty`, the `finger` of computed ones, `measurements` and `priors` where
+    /// there is one), in hexadecimal.
     pub input_sha256: BTreeMap<String, String>,
     /// The contact engine.
     pub engine: EngineRecord,
 }
+
+/// Roles of the inputs that no simulation reads: what was measured on a bench, and the bounds of what
+/// nobody measured.
+pub const BENCH_ROLES: [&str; 2] = ["measurements", "priors"];
 
 /// Evaluations of one provenance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -43,6 +48,16 @@ impl Provenance {
             input_sha256,
             engine: engine.record(),
         }
+    }
+
+    /// Whether another simulates the same: measurements on a bench change no simulated value.
+    pub fn simulates_like(&self, other: &Provenance) -> bool {
+        let simulated = |provenance: &Provenance| {
+            let mut provenance = provenance.clone();
+            provenance.input_sha256.retain(|role, _| !BENCH_ROLES.contains(&&**role));
+            provenance
+        };
+        simulated(self) == simulated(other)
     }
 
     /// Whether the roles, which become names of files, can be ours.

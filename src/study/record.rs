@@ -1,6 +1,7 @@
 //! A study as it can be read back: its configuration and what it measured.
 
 use super::StudyConfig;
+use super::on_bench::OnBench;
 use super::provenance::Segment;
 use crate::evaluation::Evaluation;
 use crate::evaluation::objective::{Goals, Measure, Score};
@@ -26,6 +27,8 @@ pub struct StudyRecord {
     pub finger: Option<FingerFile>,
     /// The firm value of the first objective of the designs whose ends were repeated, by evaluation.
     pub firm_values: BTreeMap<u64, f64>,
+    /// What measurements say of its fingers on the bench, if there are any.
+    pub on_bench: Option<OnBench>,
 }
 
 /// A design that was measured again.
@@ -92,10 +95,25 @@ impl Recorded {
 }
 
 impl StudyRecord {
-    /// The evaluations of the last segment: only they are of the present model.
+    /// The evaluations of the last segment, and of those before it that simulate the same: only they
+    /// are of the present model.
     pub fn current(&self) -> &[Recorded] {
-        let first = self.segments.last().map_or(0, |segment| segment.first as usize);
-        self.evaluations.get(first..).unwrap_or_default()
+        self.evaluations.get(self.first_current() as usize..).unwrap_or_default()
+    }
+
+    /// Index of the first of the [`current`](Self::current) evaluations.
+    pub fn first_current(&self) -> u64 {
+        let Some(last) = self.segments.last() else { return 0 };
+        let alike = |segment: &&Segment| segment.provenance.simulates_like(&last.provenance);
+        self.segments.iter().rev().take_while(alike).last().map_or(0, |segment| segment.first)
+    }
+
+    /// The finger to print: the best on the bench as far as that is known, else the recommended one.
+    pub fn to_print(&self) -> Option<&Design> {
+        let on_bench = self.on_bench.as_ref().and_then(|found| found.best.first());
+        on_bench
+            .map(|best| &best.design)
+            .or_else(|| self.recommended().map(|recorded| &recorded.design))
     }
 
     /// The [`best`] of the [`current`](Self::current) evaluations.

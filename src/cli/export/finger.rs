@@ -110,13 +110,13 @@ fn geometry(arguments: &Arguments) -> Result<Geometry, Failure> {
 /// The design that a study recommends, and the finger file of its fingers.
 fn best(dir: &Path) -> Result<(Design, Option<FingerFile>), Failure> {
     let record = StudyRecord::load(dir)?;
-    let Some(best) = record.recommended() else {
+    let Some(best) = record.to_print() else {
         return Err(Failure::usage(format!(
             "{}: the study recommends no design; give --density and --direction",
             dir.display()
         )));
     };
-    Ok((best.design.clone(), record.finger.clone()))
+    Ok((best.clone(), record.finger.clone()))
 }
 
 fn finger(geometry: &Geometry) -> Result<Prism, Failure> {

@@ -4,8 +4,8 @@ mod add;
 mod check;
 
 use super::Failure;
-use super::setup;
-use crate::input::experiments::{self, Experiment};
+use super::{measured, setup};
+use crate::input::experiments::Experiment;
 use crate::input::shipped::{self, MEASUREMENTS, Source, TASKS};
 use crate::input::task::Task;
 use clap::{Args, Subcommand};
@@ -40,16 +40,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The measurements of that name or at that path, checked; their tasks are shipped ones or
 /// those in `more`.
 pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
-    let source = find(name)?;
-    let found = experiments::parse(&source.text, &source.file).map_err(Failure::input)?;
-    let shipped = TASKS.iter().map(|task| task.name);
-    let known: Vec<&str> = shipped.chain(more.iter().copied()).collect();
-    experiments::check_tasks(&found, &known, &source.file).map_err(Failure::input)?;
-    Ok(found)
+    measured::lines(&find(name)?, more)
 }
 
 /// A shipped name, or else a path, whatever it looks like.
-fn find(name: &str) -> Result<Source, Failure> {
+pub fn find(name: &str) -> Result<Source, Failure> {
     if std::path::Path::new(name).is_file() {
         let text = std::fs::read_to_string(name);
         let unreadable = |error| Failure::usage(format!("{name}: cannot read it: {error}"));

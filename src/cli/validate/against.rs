@@ -1,7 +1,7 @@
 //! `optimize validate --against bench`: our ranges with several finger models, and the
 //! published simulation's, beside the experiments.
 
-use super::{Arguments, search_name};
+use super::{Arguments, calibrated, search_name};
 use crate::cli::setup;
 use crate::cli::{Failure, print, print_json};
 use crate::evaluation::tolerance::Search;
@@ -11,6 +11,7 @@ use crate::input::finger_file::FingerFile;
 use crate::input::robot::Robot;
 use crate::input::shipped::FINGERS;
 use crate::input::task::Task;
+use crate::report::validation::calibrated_svg;
 use crate::study::write_file;
 use crate::verify::compare::fingers::Windows;
 use crate::verify::compare::published::{Model, ModelTables, TaskTable, models_json, models_text};
@@ -33,6 +34,10 @@ pub fn run(
         let problem = "--against bench compares all finger models; leave out --finger-model";
         return Err(Failure::usage(problem));
     }
+    let calibrated = match &arguments.calibrated {
+        Some(dir) => calibrated::read(dir, tasks)?,
+        None => Vec::new(),
+    };
     let variants = if arguments.variants { &VARIANTS[..] } else { &[] };
     let measured = OURS.iter().chain(variants).map(|&model| {
         let phases = if model == Model::Paper { 1 } else { arguments.phases };
@@ -48,21 +53,31 @@ pub fn run(
     });
     let measured = measured.collect::<Result<Vec<_>, Failure>>()?;
     let models: Vec<ModelTables> = (0..tasks.len()).flat_map(|at| of_task(&measured, at)).collect();
-    let table = models_text(&models);
+    let table = models_text(&models, &calibrated);
     let (robot, engine) = (&robot.name, arguments.engine.name());
     let phases = match arguments.phases {
         1 => String::new(),
         phases => format!("; median (smallest .. largest) of {phases} rib phases"),
     };
+    let fitted = match calibrated.is_empty() {
+        true => "nothing is fitted to the experiments",
+        false => "only calibrated is fitted to experiments, each finger's own left out",
+    };
     let text = format!(
         "our ranges and the published simulation's beside the published experiments\n\
          robot {robot}, engine {engine}, {}{phases}\n\
          taught: starts moved to where the finger inserts, since the task's own does not\n\
-         nothing is fitted to the experiments\n\n{table}",
+         {fitted}\n\n{table}",
         search_name(search),
     );
     write_file(&arguments.out.join("against_bench.txt"), &text)?;
-    let json = json!({ "robot": robot, "engine": engine, "agreement": models_json(&models) });
+    if !calibrated.is_empty() {
+        let svg = calibrated_svg(&calibrated);
+        let svg = svg.map_err(|error| Failure::running(error.to_string()))?;
+        write_file(&arguments.out.join("calibrated_against_bench.svg"), &svg)?;
+    }
+    let agreement = models_json(&models, &calibrated);
+    let json = json!({ "robot": robot, "engine": engine, "agreement": agreement });
     if arguments.json { print_json(&json) } else { print(&text) }
 }
 

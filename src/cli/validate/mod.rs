@@ -1,6 +1,7 @@
 //! `optimize validate`: our windows beside the published ones.
 
 mod against;
+mod calibrated;
 
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, FingerModelArguments};
 use super::{Failure, print, print_json};
@@ -81,6 +82,10 @@ pub struct Arguments {
     /// Computed fingers also with the paper's springs across the plane, and with y and z coupled
     #[arg(long, requires = "against")]
     variants: bool,
+    /// With --against: folder of leave_one_out*.csv of `optimize calibrate --out`, the measured
+    /// fingers predicted each without itself, as a further model
+    #[arg(long, value_name = "DIR", requires = "against")]
+    calibrated: Option<PathBuf>,
     #[command(flatten)]
     finger_model: FingerModelArguments,
     /// What becomes of the nominal start, in place of what the task file says

@@ -1,11 +1,14 @@
 //! Figures of `optimize validate`, after those of the publication.
 
+mod bench;
 mod direction;
 mod failures;
 mod scatter;
 mod stiffness;
 #[cfg(test)]
 mod tests;
+
+pub use bench::calibrated_svg;
 
 use super::ReportError;
 use super::chart::{Area, Drawn, message, words};

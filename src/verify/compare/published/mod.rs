@@ -3,7 +3,9 @@
 
 mod accuracy;
 mod agreement;
+mod calibrated;
 mod models;
+mod order;
 mod table;
 mod targets;
 #[cfg(test)]
@@ -12,7 +14,9 @@ mod text;
 
 pub use accuracy::{accuracy, accuracy_json};
 pub use agreement::{Agreement, rank_correlation};
+pub use calibrated::{Calibrated, LeftOutFinger};
 pub use models::{Model, ModelTables, Spread, models_json, models_text};
+pub use order::{Order, order_on_bench};
 pub use table::{CSV_HEADER, SUMMARY_HEADER, csv, json, summary_csv};
 pub use targets::{Target, targets};
 pub use text::text;

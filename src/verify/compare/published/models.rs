@@ -1,7 +1,7 @@
 //! Finger models beside the published experiments: how far the ranges of each agree with the
 //! robot's. Nothing is fitted to the experiments here.
 
-use super::{Agreement, RangeSource, TaskTable};
+use super::{Agreement, Calibrated, RangeSource, TaskTable};
 use crate::verify::compare::statistics::median;
 use serde_json::{Value, json};
 
@@ -156,13 +156,27 @@ impl ModelTables {
     }
 }
 
-/// The list `agreement`.
-pub fn models_json(models: &[ModelTables]) -> Value {
-    models.iter().map(ModelTables::json).collect()
+/// The list `agreement`; on each task what was calibrated comes last.
+pub fn models_json(models: &[ModelTables], calibrated: &[Calibrated]) -> Value {
+    each(models, calibrated, ModelTables::json, Calibrated::json).collect()
+}
+
+/// Something of each model, and at the end of each task's of what was calibrated on it.
+fn each<'a, T>(
+    models: &'a [ModelTables],
+    calibrated: &'a [Calibrated],
+    of: impl Fn(&ModelTables) -> T,
+    of_calibrated: impl Fn(&Calibrated) -> T,
+) -> impl Iterator<Item = T> {
+    models.chunk_by(|a, b| a.task() == b.task()).flat_map(move |models| {
+        let task = models.first().map_or("", ModelTables::task);
+        let last = calibrated.iter().filter(|one| one.task == task).map(&of_calibrated);
+        models.iter().map(&of).chain(last).collect::<Vec<T>>()
+    })
 }
 
 /// A table of the agreements, a line each, and of the ranges.
-pub fn models_text(models: &[ModelTables]) -> String {
+pub fn models_text(models: &[ModelTables], calibrated: &[Calibrated]) -> String {
     let phases = models.iter().map(|model| model.tables.len()).max().unwrap_or(1);
     let more = if phases > 1 { 16 } else { 0 };
     let head = ["Spearman", "error mm", "off by %", "match %"];
@@ -172,17 +186,20 @@ pub fn models_text(models: &[ModelTables]) -> String {
         text.push_str(&format!("{head:>width$}", width = width + more));
     }
     text.push_str(&format!("{:>8}\n", "taught"));
-    text.extend(models.iter().map(ModelTables::text));
+    text.extend(each(models, calibrated, ModelTables::text, Calibrated::text));
     text.push_str("\nranges, mm, of designs 1, 2 ..\n");
-    let mut last = "";
-    for model in models {
+    let mut last = String::new();
+    let mut line = |task: &str, name: &str, ranges: Vec<Option<f64>>| {
         let range = |mm: Option<f64>| mm.map_or("    -".to_owned(), |mm| format!("{mm:5.1}"));
-        let ranges: Vec<String> = model.ranges_mm().into_iter().map(range).collect();
-        if last != model.task() {
-            last = model.task();
-            text.push_str(&format!("{last}\n"));
-        }
-        text.push_str(&format!("  {:<22}{}\n", model.model.name(), ranges.concat()));
-    }
+        let ranges: Vec<String> = ranges.into_iter().map(range).collect();
+        let head = if last == task { String::new() } else { format!("{task}\n") };
+        task.clone_into(&mut last);
+        format!("{head}  {name:<22}{}\n", ranges.concat())
+    };
+    let of_model =
+        |model: &ModelTables| (model.task().to_owned(), model.model.name(), model.ranges_mm());
+    let of_calibrated = |one: &Calibrated| (one.task.clone(), "calibrated", one.ranges_mm());
+    let rows = each(models, calibrated, of_model, of_calibrated);
+    text.extend(rows.into_iter().map(|(task, name, ranges)| line(&task, name, ranges)));
     text
 }

@@ -1,0 +1,54 @@
+//! What was measured on the bench, and the bounds of what nobody measured, as commands read it.
+
+use super::Failure;
+use crate::calibration::prior::Priors;
+use crate::calibration::subject::whole;
+use crate::evaluation::template::Template;
+use crate::input::experiments::{self, Experiment, Extent};
+use crate::input::shipped::{Source, TASKS};
+use crate::input::space::Space;
+
+/// Measurements from the bench, and the bounds of what nobody measured.
+pub struct Measured {
+    /// The measurements' file.
+    pub file: String,
+    /// Its lines.
+    pub experiments: Vec<Experiment>,
+    /// The bounds.
+    pub priors: Priors,
+}
+
+/// The lines of a file; their tasks are shipped ones or those in `more`.
+pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
+    let found = experiments::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let shipped = TASKS.iter().map(|task| task.name);
+    let known: Vec<&str> = shipped.chain(more.iter().copied()).collect();
+    experiments::check_tasks(&found, &known, &source.file).map_err(Failure::input)?;
+    Ok(found)
+}
+
+/// The priors of a file.
+pub fn priors(source: &Source) -> Result<Priors, Failure> {
+    Priors::parse(&source.text, &source.file).map_err(Failure::input)
+}
+
+/// Whether lines say something of the ranges of a task's fingers, and all of fingers in the space.
+pub fn check(
+    file: &str,
+    lines: &[Experiment],
+    template: &Template,
+    space: &Space,
+) -> Result<(), Failure> {
+    let task = &template.task().name;
+    let own = || lines.iter().filter(|line| line.task == *task);
+    if !own().any(|line| line.extent() != Extent::Unknown) {
+        return Err(Failure::usage(format!(
+            "{file}: no line has a range of the task `{task}`; measure one finger at least \
+             (`optimize next` says which), or leave out --measurements"
+        )));
+    }
+    for line in own() {
+        whole(space, template, line).map_err(|error| Failure::usage(format!("{file}: {error}")))?;
+    }
+    Ok(())
+}

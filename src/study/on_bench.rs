@@ -1,0 +1,101 @@
+//! What measurements say of a study's fingers on the bench, kept beside the journal in
+//! `bench.json`. It is found after the search, which does not know of it, and can be found again.
+
+use super::error::StudyError;
+use super::fits;
+use super::folder::write_own_file;
+use super::provenance::Provenance;
+use crate::evaluation::Evaluation;
+use crate::files::{self, LARGEST_OWN};
+use crate::input::space::{Design, Space};
+use crate::outcome::FailureClass;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+const FILE: &str = "bench.json";
+
+/// The prediction of a calibration for the fingers of a study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnBench {
+    /// What predicted: of another provenance it says nothing.
+    pub provenance: Provenance,
+    /// How much was computed.
+    pub effort: BenchEffort,
+    /// Fingers that were measured.
+    pub measured: usize,
+    /// Fingers of the space that were predicted.
+    pub fingers: usize,
+    /// How far it is to be trusted.
+    pub trust: Trust,
+    /// What a reader should know before trusting it, a line each.
+    pub warnings: Vec<String>,
+    /// The fingers of largest predicted range, best first; at least one.
+    pub best: Vec<BenchFinger>,
+    /// The first of them as simulated, with all as the task file says.
+    pub simulated: Evaluation,
+}
+
+/// How much a prediction computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BenchEffort {
+    /// Simulations, those that measure the error of the simulator's stand-in with them.
+    pub simulations: u16,
+    /// Samples of the posterior.
+    pub samples: u16,
+}
+
+/// The measured fingers, each predicted without it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Trust {
+    /// How many there are.
+    pub fingers: usize,
+    /// Mean of `|predicted - measured| / measured`, percent.
+    pub mean_deviation_percent: Option<f64>,
+    /// Rank correlation.
+    pub spearman: Option<f64>,
+    /// How many lie in their 80 % intervals.
+    pub inside: usize,
+    /// Root mean square error of the simulator's stand-in, mm.
+    pub emulator_error_mm: f64,
+}
+
+/// A finger's predicted bench range.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BenchFinger {
+    /// The finger.
+    pub design: Design,
+    /// Mean of its range, mm.
+    pub range_mm: f64,
+    /// Lower end of the 80 % interval.
+    pub low_mm: f64,
+    /// Upper end.
+    pub high_mm: f64,
+    /// Probability of its being the best of the space, 0 to 1.
+    pub probability_best: f64,
+    /// How it fails below and above its window.
+    pub failures: [Option<FailureClass>; 2],
+}
+
+impl OnBench {
+    /// The file in `dir`; `None` where it is missing, damaged or of another provenance: it can be
+    /// made again.
+    pub(super) fn read(dir: &Path, provenance: &Provenance, space: &Space) -> Option<Self> {
+        let text = files::read_own(&dir.join(FILE), LARGEST_OWN).ok()?;
+        let found: OnBench = serde_json::from_str(&text).ok()?;
+        let fits = |finger: &BenchFinger| fits::off_the_space(&finger.design, space).is_none();
+        let sound = !found.best.is_empty() && found.best.iter().all(fits);
+        (found.provenance == *provenance && sound && fits::plausible(&found.simulated))
+            .then_some(found)
+    }
+
+    pub(super) fn write(&self, dir: &Path) -> Result<(), StudyError> {
+        let path = dir.join(FILE);
+        let text = serde_json::to_string(self)
+            .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
+        write_own_file(&path, &(text + "\n"))
+    }
+}

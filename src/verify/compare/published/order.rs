@@ -1,0 +1,82 @@
+//! How far our simulation ranks the fingers of a task as the bench does.
+
+use crate::evaluation::objective::Measure;
+use crate::input::published::{Origin, Published, designs, of_task};
+use crate::input::stiffness::Measurement;
+use crate::study::StudyRecord;
+use crate::verify::compare::statistics::spearman;
+use serde::Deserialize;
+
+/// The last committed comparison of `optimize validate`.
+const VALIDATION: &str = include_str!("../../../../results/reference/validation/validation.csv");
+/// A rank correlation of simulated and measured ranges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Order {
+    /// Spearman's, +1 for the same order, -1 for the opposite one.
+    pub spearman: f64,
+    /// Fingers it rests on.
+    pub fingers: usize,
+    /// Whether the ranges are the study's own; else those of the committed validation.
+    pub own: bool,
+}
+
+#[derive(Deserialize)]
+struct Validated {
+    task: String,
+    range_mm: Option<f64>,
+    bench_range_mm: Option<f64>,
+}
+
+/// The order on a task of a study, by its place: of the study's own ranges where it simulated all
+/// measured fingers; some alone would be those that its search liked. `None` if nothing was measured
+/// of the task.
+pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
+    let name = record.config.tasks().nth(task)?;
+    let bench = of_task(name, Origin::Bench);
+    let measured = designs();
+    let pair = |bench: &Published| {
+        let design = measured.iter().find(|m| m.design == bench.design)?;
+        Some((simulated(record, task, design)?, bench.tolerable_range_mm?))
+    };
+    let own: Vec<(f64, f64)> = bench.iter().filter_map(pair).collect();
+    let all = bench.iter().filter(|bench| bench.tolerable_range_mm.is_some()).count();
+    match own.len() == all {
+        true => order(&own, true),
+        false => order(&validated(name), false),
+    }
+}
+
+fn order(pairs: &[(f64, f64)], own: bool) -> Option<Order> {
+    Some(Order { spearman: spearman(pairs)?, fingers: pairs.len(), own })
+}
+
+/// What a study simulated of a measured finger, mm.
+fn simulated(record: &StudyRecord, task: usize, m: &Measurement) -> Option<f64> {
+    let infill = crate::input::space::Design::infill(m.density_percent, m.direction_deg);
+    let found = record.current().iter().find(|recorded| recorded.design == infill)?;
+    Measure::Range.value(found.on(task)?)
+}
+
+fn validated(task: &str) -> Vec<(f64, f64)> {
+    let rows = csv::Reader::from_reader(VALIDATION.as_bytes()).into_deserialize();
+    let own = rows.flatten().filter(|row: &Validated| row.task == task);
+    own.filter_map(|row| row.range_mm.zip(row.bench_range_mm)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The table of the README, computed from the committed ranges.
+    #[test]
+    fn the_committed_validation_tells_the_order() {
+        for (task, pairs, rank) in
+            [("ket8", 11, -0.57), ("ket12", 7, 0.85), ("rj45", 11, 0.52), ("usb", 11, -0.03)]
+        {
+            let found = order(&validated(task), false).unwrap();
+            assert_eq!(found.fingers, pairs, "{task}");
+            assert!((found.spearman - rank).abs() < 0.005, "{task}: {}", found.spearman);
+        }
+        assert!(validated("mine").is_empty());
+    }
+}

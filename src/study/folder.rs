@@ -13,6 +13,7 @@
 //! .lock            held by the process that writes
 //! ```
 
+use super::bench_file::{self, BENCH_FILE};
 use super::config::StudyConfig;
 use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
@@ -196,7 +197,10 @@ impl Study {
     /// # Errors
     /// If the file cannot be written.
     pub fn keep_on_bench(&self, found: &OnBench) -> Result<(), StudyError> {
-        found.write(&self.dir)
+        let path = self.dir.join(BENCH_FILE);
+        let text = serde_json::to_string(found)
+            .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
+        write_own_file(&path, &(text + "\n"))
     }
 
     /// A copy that needs no open study.
@@ -227,7 +231,7 @@ impl StudyRecord {
             .and_then(|inputs| FingerFile::parse(inputs.get(FINGER)?, "inputs/finger").ok());
         let on_bench = segments
             .last()
-            .and_then(|segment| OnBench::read(dir, &segment.provenance, &config.space));
+            .and_then(|segment| bench_file::read(dir, &segment.provenance, &config.space));
         let mut record =
             StudyRecord { config, segments, evaluations, walked, finger, firm_values, on_bench };
         let provenance = record.segments.last().map(|segment| &segment.provenance);

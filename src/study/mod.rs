@@ -1,6 +1,7 @@
 //! Studies: seeded runs of one optimizer on one task and space, in a folder
 //! that survives whatever happens to the process.
 
+mod bench_file;
 mod cache;
 mod config;
 mod course;

@@ -1,18 +1,11 @@
 //! What measurements say of a study's fingers on the bench, kept beside the journal in
 //! `bench.json`. It is found after the search, which does not know of it, and can be found again.
 
-use super::error::StudyError;
-use super::fits;
-use super::folder::write_own_file;
 use super::provenance::Provenance;
 use crate::evaluation::Evaluation;
-use crate::files::{self, LARGEST_OWN};
-use crate::input::space::{Design, Space};
+use crate::input::space::Design;
 use crate::outcome::FailureClass;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
-
-const FILE: &str = "bench.json";
 
 /// The prediction of a calibration for the fingers of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -78,24 +71,4 @@ pub struct BenchFinger {
     pub probability_best: f64,
     /// How it fails below and above its window.
     pub failures: [Option<FailureClass>; 2],
-}
-
-impl OnBench {
-    /// The file in `dir`; `None` where it is missing, damaged or of another provenance: it can be
-    /// made again.
-    pub(super) fn read(dir: &Path, provenance: &Provenance, space: &Space) -> Option<Self> {
-        let text = files::read_own(&dir.join(FILE), LARGEST_OWN).ok()?;
-        let found: OnBench = serde_json::from_str(&text).ok()?;
-        let fits = |finger: &BenchFinger| fits::off_the_space(&finger.design, space).is_none();
-        let sound = !found.best.is_empty() && found.best.iter().all(fits);
-        (found.provenance == *provenance && sound && fits::plausible(&found.simulated))
-            .then_some(found)
-    }
-
-    pub(super) fn write(&self, dir: &Path) -> Result<(), StudyError> {
-        let path = dir.join(FILE);
-        let text = serde_json::to_string(self)
-            .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
-        write_own_file(&path, &(text + "\n"))
-    }
 }

@@ -101,7 +101,7 @@ fn summary(pairs: &[WindowPair]) -> String {
         .collect();
     let trials = |way: usize| pairs.iter().map(|pair| pair.trials[way]).sum::<u32>();
     format!(
-        "both ends the same in {} of {}; ranges differ by {:.2} mm in the mean, {:.1} mm at most\n\
+        "same ends in {} of {}; ranges differ by {:.2} mm in the mean, {:.1} mm at most\n\
          trials: {} against {}\n",
         pairs.iter().filter(|pair| pair.agrees(0)).count(),
         pairs.len(),

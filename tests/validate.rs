@@ -92,7 +92,7 @@ fn a_calibration_is_a_further_model_beside_the_bench() {
     let last = rows.last().expect("a row");
     assert_eq!((&last["model"], &last["designs"]), (&"calibrated".into(), &11.into()));
     assert!(last["mean_deviation_percent"].as_f64().is_some_and(|d| d > 0.0 && d < 10.0), "{last}");
-    assert!(read(&dir.join("against_bench.txt")).contains("of 11 inside"));
+    assert!(read(&dir.join("against_bench.txt")).contains("of 11 measured ranges"));
     assert!(read(&dir.join("calibrated_against_bench.svg")).contains("rank correlation"));
     let empty = folder.dir("empty");
     std::fs::create_dir(&empty).expect("the folder is made");

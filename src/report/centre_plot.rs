@@ -3,6 +3,7 @@
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message};
 use super::marks::{dashed, line};
 use super::theme::{BLUE, GREEN, ORANGE};
+use crate::finger::printed::FingerError;
 use crate::finger::printed::phases::over_phases;
 use crate::finger::printed::stiffness::PlanarStiffness;
 use crate::input::printed::PrintedFinger;
@@ -10,7 +11,7 @@ use crate::units::MM;
 use plotters::prelude::*;
 
 /// Directions at which the mechanics is asked, degrees.
-const DIRECTIONS: [f64; 5] = [0.0, 10.0, 20.0, 30.0, 40.0];
+const DIRECTIONS: [f64; 3] = [0.0, 20.0, 40.0];
 
 /// One density: at each direction the smallest, middle and largest value over the rib phases.
 struct Curve {
@@ -26,8 +27,9 @@ pub(super) fn draw(
     finger: &PrintedFinger,
     densities: &[f64],
 ) -> Drawn {
+    // A density whose ribs merge has no curve.
     let curves: Vec<Curve> =
-        densities.iter().map(|&density| curve(finger, density)).collect::<Result<_, String>>()?;
+        densities.iter().filter_map(|&density| curve(finger, density).ok()).collect();
     let below = "remote centre below the pad's middle (mm)";
     panel(centre, below, 21.0, &curves, |curve| &curve.centre_mm, SeriesLabelPosition::LowerRight)?;
     let stiffness = "tilting stiffness (N m/rad)";
@@ -35,10 +37,10 @@ pub(super) fn draw(
     panel(tilting, stiffness, 2.0, &curves, |curve| &curve.tilting, corner)
 }
 
-fn curve(finger: &PrintedFinger, density: f64) -> Result<Curve, String> {
+fn curve(finger: &PrintedFinger, density: f64) -> Result<Curve, FingerError> {
     let (mut centre_mm, mut tilting) = (Vec::new(), Vec::new());
     for direction in DIRECTIONS {
-        let found = over_phases(finger, density, direction).map_err(message)?;
+        let found = over_phases(finger, density, direction)?;
         let spread = |of: &dyn Fn(&PlanarStiffness) -> f64| {
             let mut values: Vec<f64> = found.iter().map(|[_, both]| of(both)).collect();
             values.sort_by(f64::total_cmp);

@@ -164,7 +164,8 @@ mod tests {
         let rest = (0..100).map(|_| driven.step(Vector3::zeros())).last().unwrap();
         assert_eq!((rest.force_n, rest.outcome), ([0.0; 3], None));
         let moved = [0, 1, 2].map(|axis| (rest.tip_mm[axis] - start.tip_mm[axis]).abs());
-        assert!(moved.iter().all(|&mm| mm < 0.01), "{moved:?}");
+        // The flange, soft, still comes to rest.
+        assert!(moved.iter().all(|&mm| mm < 0.1), "{moved:?}");
     }
 
     #[test]

@@ -41,8 +41,10 @@ finger() {
             done
     } > "$folder/table.txt"
     "$optimize" finger --density 20 --direction 20 --svg "$folder/finray9.svg" > "$folder/finray9.txt"
-    "$optimize" validate --against bench --strides --out "$work/bench" > /dev/null
+    "$optimize" validate --against bench --strides --variants --out "$work/bench" > /dev/null
     cp "$work/bench/against_bench.txt" "$folder/"
+    "$optimize" validate --against bench --strides --phases 8 --out "$work/phases" > /dev/null
+    cp "$work/phases/against_bench.txt" "$folder/against_bench_phases.txt"
     record windows "$folder"/*
 }
 

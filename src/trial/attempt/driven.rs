@@ -67,7 +67,7 @@ impl Driven {
         self.state()
     }
 
-    /// Commands a velocity of the TCP, m/s, for [`CONTROL_S`]. Nothing moves once it has ended.
+    /// Commands a velocity of the TCP, m/s, for `CONTROL_S`. Nothing moves once it has ended.
     pub fn step(&mut self, velocity: Vector3<f64>) -> State {
         let dt = self.attempt.world.step_s();
         for _ in 0..self.attempt.steps(CONTROL_S) {

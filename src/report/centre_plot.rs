@@ -3,6 +3,7 @@
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message};
 use super::marks::{dashed, line};
 use super::theme::{BLUE, GREEN, ORANGE};
+use crate::finger::Finger;
 use crate::finger::printed::FingerError;
 use crate::finger::printed::phases::over_phases;
 use crate::finger::printed::stiffness::PlanarStiffness;
@@ -30,11 +31,14 @@ pub(super) fn draw(
     // A density whose ribs merge has no curve.
     let curves: Vec<Curve> =
         densities.iter().filter_map(|&density| curve(finger, density).ok()).collect();
-    let below = "remote centre below the pad's middle (mm)";
-    panel(centre, below, 21.0, &curves, |curve| &curve.centre_mm, SeriesLabelPosition::LowerRight)?;
+    let paper = Finger::new(1.0, 1.0);
+    // The grasp point, from which the paper counts, lies 1 to 2 mm above the pad's middle.
+    let below = "remote centre below the pad (mm); dashed: below the grasp point";
+    let (value, corner) = (paper.rcc / MM, SeriesLabelPosition::LowerRight);
+    panel(centre, below, value, &curves, |curve| &curve.centre_mm, corner)?;
     let stiffness = "tilting stiffness (N m/rad)";
     let corner = SeriesLabelPosition::UpperRight;
-    panel(tilting, stiffness, 2.0, &curves, |curve| &curve.tilting, corner)
+    panel(tilting, stiffness, paper.rotation[0], &curves, |curve| &curve.tilting, corner)
 }
 
 fn curve(finger: &PrintedFinger, density: f64) -> Result<Curve, FingerError> {

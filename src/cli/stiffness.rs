@@ -2,7 +2,6 @@
 
 use super::setup::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
 use super::{Failure, print, print_json};
-use crate::input::printed::PrintedFinger;
 use crate::report::{stiffness, stiffness_means};
 use crate::study::write_file;
 use crate::surrogate::{Model, means};
@@ -29,35 +28,37 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (model, finger) = arguments.model()?;
+    let model = arguments.model()?;
     if let Some(path) = &arguments.svg {
-        let svg =
-            stiffness::svg(&model, &finger).map_err(|error| Failure::running(error.to_string()))?;
+        let svg = stiffness::svg(&model).map_err(|error| Failure::running(error.to_string()))?;
         write_file(path, &svg)?;
     }
     if arguments.json {
-        return print_json(&arguments.json()?);
+        return print_json(&json(&model)?);
     }
-    let means = means(model.measurements(), &finger).map_err(Failure::input)?;
+    let means = means(&model).map_err(Failure::input)?;
     print(&(stiffness::table(&model) + &stiffness_means::text(&means)))
 }
 
 impl Arguments {
-    /// The model of the data that the arguments name, and the finger.
-    fn model(&self) -> Result<(Model, PrintedFinger), Failure> {
+    /// The model of the data that the arguments name.
+    fn model(&self) -> Result<Model, Failure> {
         let finger = printed_finger(&self.finger)?;
         let data = stiffness_data(self.stiffness_data.as_deref(), &finger)?;
-        Ok((surrogate(&data, &finger)?, finger))
+        surrogate(&data, &finger)
     }
 
     /// What `--json` prints.
     pub fn json(&self) -> Result<Value, Failure> {
-        let (model, finger) = self.model()?;
-        let means = means(model.measurements(), &finger).map_err(Failure::input)?;
-        let mut json = stiffness::json(&model);
-        if let Some(keys) = json.as_object_mut() {
-            keys.extend(stiffness_means::json(&means));
-        }
-        Ok(json)
+        json(&self.model()?)
     }
+}
+
+fn json(model: &Model) -> Result<Value, Failure> {
+    let means = means(model).map_err(Failure::input)?;
+    let mut json = stiffness::json(model);
+    if let Some(keys) = json.as_object_mut() {
+        keys.extend(stiffness_means::json(&means));
+    }
+    Ok(json)
 }

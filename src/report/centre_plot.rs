@@ -5,9 +5,8 @@ use super::marks::{dashed, line};
 use super::theme::{BLUE, GREEN, ORANGE};
 use crate::finger::Finger;
 use crate::finger::printed::FingerError;
-use crate::finger::printed::phases::over_phases;
 use crate::finger::printed::stiffness::PlanarStiffness;
-use crate::input::printed::PrintedFinger;
+use crate::surrogate::Computed;
 use crate::units::MM;
 use plotters::prelude::*;
 
@@ -21,16 +20,16 @@ struct Curve {
     tilting: Vec<[f64; 3]>,
 }
 
-/// Two panels, pad and roof touching: curves with a band over the places where the first rib may lie; dashed
-/// what the paper has for all designs.
+/// Two panels, pad and roof touching: curves with a band over the places where the first rib may
+/// lie; dashed what the paper has for all designs.
 pub(super) fn draw(
     [centre, tilting]: [&Area<'_>; 2],
-    finger: &PrintedFinger,
+    fingers: &Computed,
     densities: &[f64],
 ) -> Drawn {
     // A density whose ribs merge has no curve.
     let curves: Vec<Curve> =
-        densities.iter().filter_map(|&density| curve(finger, density).ok()).collect();
+        densities.iter().filter_map(|&density| curve(fingers, density).ok()).collect();
     let paper = Finger::new(1.0, 1.0);
     // The grasp point, from which the paper counts, lies 1 to 2 mm above the pad's middle.
     let below = "remote centre below the pad (mm); dashed: below the grasp point";
@@ -41,10 +40,10 @@ pub(super) fn draw(
     panel(tilting, stiffness, paper.rotation[0], &curves, |curve| &curve.tilting, corner)
 }
 
-fn curve(finger: &PrintedFinger, density: f64) -> Result<Curve, FingerError> {
+fn curve(fingers: &Computed, density: f64) -> Result<Curve, FingerError> {
     let (mut centre_mm, mut tilting) = (Vec::new(), Vec::new());
     for direction in DIRECTIONS {
-        let found = over_phases(finger, density, direction)?;
+        let found = fingers.phases([density, direction])?;
         let spread = |of: &dyn Fn(&PlanarStiffness) -> f64| {
             let mut values: Vec<f64> = found.iter().map(|[_, both]| of(both)).collect();
             values.sort_by(f64::total_cmp);

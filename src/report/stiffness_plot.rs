@@ -4,7 +4,6 @@ use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet, wo
 use super::marks::{PointMark, dashed, line, points};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
 use super::{ReportError, centre_plot};
-use crate::input::printed::PrintedFinger;
 use crate::input::stiffness::{Axis, Measurement};
 use crate::surrogate::{Estimate, Model};
 use crate::units::N_PER_MM;
@@ -17,7 +16,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 ///
 /// # Errors
 /// If the drawing library refuses.
-pub fn svg(model: &Model, finger: &PrintedFinger) -> Result<String, ReportError> {
+pub fn svg(model: &Model) -> Result<String, ReportError> {
     sheet("the stiffness model", (1160, 1290), |area| {
         let (head, body) = area.split_vertically(58);
         let style = |size, colour| words(size, colour, HPos::Left, VPos::Top);
@@ -32,7 +31,7 @@ pub fn svg(model: &Model, finger: &PrintedFinger) -> Result<String, ReportError>
             draw(panel, model, axis, by)?;
         }
         let densities = levels(model.measurements().iter().map(|m| m.density_percent));
-        centre_plot::draw([&panels[4], &panels[5]], finger, &densities)
+        centre_plot::draw([&panels[4], &panels[5]], model.computed(), &densities)
     })
 }
 

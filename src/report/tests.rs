@@ -282,7 +282,7 @@ fn the_stiffness_report_has_every_model_and_both_axes() {
     assert_eq!(json["models"].as_array().map(Vec::len), Some(8));
     let percent = json["models"][0]["loo_mean_absolute_percent"].as_f64().unwrap();
     assert!((percent - 1.64).abs() < 0.01);
-    let svg = stiffness::svg(model, &finray9()).unwrap();
+    let svg = stiffness::svg(model).unwrap();
     for word in ["stiffness in compliance (y) (N/mm)", "density 20 %", "direction 40°"] {
         assert!(svg.contains(word), "{word}");
     }
@@ -390,7 +390,7 @@ fn everything_can_be_drawn() {
     write("report.html", page(&study(), model(), &[]).unwrap());
     write("failed.html", page(&failed, model(), &[]).unwrap());
     write("convergence.svg", convergence_svg(&study()).unwrap());
-    write("stiffness.svg", stiffness::svg(model(), &finray9()).unwrap());
+    write("stiffness.svg", stiffness::svg(model()).unwrap());
     write("stiffness.txt", stiffness::table(model()));
 }
 

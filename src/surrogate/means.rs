@@ -2,11 +2,10 @@
 //! rib phase, the width of a printed line and the modulus leave open.
 
 use super::compare::{Comparison, Verdict, compare};
-use super::{Computed, scale};
+use super::{Model, scale};
 use crate::finger::printed::FingerError;
 use crate::finger::printed::phases::{Planar, over_line_widths};
 use crate::finger::printed::stiffness::PlanarStiffness;
-use crate::input::printed::PrintedFinger;
 use crate::input::stiffness::{Axis, Measurement};
 
 /// What is computed of measured fingers.
@@ -62,22 +61,22 @@ impl ComputedFinger {
     }
 }
 
-/// Computes measured fingers of a file and compares the means.
+/// Computes the fingers that a model was fitted to and compares the means.
 ///
 /// # Errors
 /// If one of them cannot be computed.
-pub fn means(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Means, FingerError> {
-    let computed = Computed::new(finger);
+pub fn means(model: &Model) -> Result<Means, FingerError> {
+    let (measurements, computed) = (model.measurements(), model.computed());
     let of = |measurement: &Measurement| {
         let [density, direction] = measurement.infill();
         Ok(ComputedFinger {
             measurement: *measurement,
             phases: computed.phases([density, direction])?,
-            line_widths: over_line_widths(finger, density, direction)?,
+            line_widths: over_line_widths(computed.finger(), density, direction)?,
         })
     };
     let fingers = measurements.iter().map(of).collect::<Result<Vec<_>, FingerError>>()?;
-    let (comparisons, verdicts) = compare(measurements, &computed)?;
+    let (comparisons, verdicts) = compare(measurements, computed)?;
     let ratio =
         |m: &Measurement| Ok(m.compliance / computed.stiffness(Axis::Compliance, m.infill())?);
     let ratios = measurements.iter().map(ratio).collect::<Result<Vec<f64>, FingerError>>()?;

@@ -22,8 +22,10 @@ pub struct Model {
     assembly: Chosen,
     compliance: Chosen,
     loo: Vec<Loo>,
-    /// What the models multiply, where they are of ratios.
-    computed: Option<Computed>,
+    /// The fingers as their ribs have them.
+    computed: Computed,
+    /// Whether the models are of ratios to the computed stiffness.
+    ratios: bool,
 }
 
 /// The model of one axis and the factor on its standard deviation.
@@ -60,18 +62,17 @@ pub enum FitError {
 pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, FitError> {
     check_all(measurements)?;
     let infills: Vec<Infill> = measurements.iter().map(Measurement::infill).collect();
-    let (computed, kinds) = match measurements.len() {
-        ENOUGH.. => (None, &ModelKind::MEASURED[..]),
-        SEVERAL.. => (
-            Some(Computed::new(finger)),
-            &[ModelKind::ComputedScale, ModelKind::ComputedProcess][..],
-        ),
-        _ => (Some(Computed::new(finger)), &[ModelKind::ComputedScale][..]),
+    let (ratios, kinds) = match measurements.len() {
+        ENOUGH.. => (false, &ModelKind::MEASURED[..]),
+        SEVERAL.. => (true, &[ModelKind::ComputedScale, ModelKind::ComputedProcess][..]),
+        _ => (true, &[ModelKind::ComputedScale][..]),
     };
+    let computed = Computed::new(finger);
     let choose = |axis| {
-        let data = match &computed {
-            None => Data::measured(axis, measurements),
-            Some(computed) => Data::ratios(axis, measurements, computed)?,
+        let data = if ratios {
+            Data::ratios(axis, measurements, &computed)?
+        } else {
+            Data::measured(axis, measurements)
         };
         Ok::<_, FitError>(choose(axis, &data, kinds)?)
     };
@@ -79,7 +80,8 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     let (compliance, rest) = choose(Axis::Compliance)?;
     loo.extend(rest);
     let hull = Hull::new(&infills);
-    Ok(Model { measurements: measurements.to_vec(), hull, assembly, compliance, loo, computed })
+    let measurements = measurements.to_vec();
+    Ok(Model { measurements, hull, assembly, compliance, loo, computed, ratios })
 }
 
 fn choose(
@@ -121,7 +123,7 @@ impl Model {
     ) -> Result<Prediction, FingerError> {
         let infill = [density_percent, direction_deg];
         let axis = |axis, chosen: &Chosen| {
-            let unit = self.computed.as_ref().map(|computed| computed.stiffness(axis, infill));
+            let unit = self.ratios.then(|| self.computed.stiffness(axis, infill));
             Ok::<_, FingerError>(chosen.predict(infill).times(unit.transpose()?.unwrap_or(1.0)))
         };
         Ok(Prediction {
@@ -141,7 +143,12 @@ impl Model {
 
     /// Whether a prediction takes the mechanics of a finger, some 0.2 s.
     pub fn computes(&self) -> bool {
-        self.computed.is_some()
+        self.ratios
+    }
+
+    /// The fingers as their ribs have them, each computed once.
+    pub fn computed(&self) -> &Computed {
+        &self.computed
     }
 
     /// Leave-one-out errors: one row per axis and model, assembly first.

@@ -8,7 +8,7 @@
 //! 4). 1001 levels per axis, one point at a time. Regret is the median over the seeds (the worst).
 //! Times are of the processor, as Linux tells it.
 
-use finger_opt::optimizer::{Grid, Observation, Optimizer, OptimizerKind, build};
+use finger_opt::optimizer::{Grid, Observation, OptimizerKind, build};
 use finger_opt::verify::problems::Function;
 use std::f64::consts::{E, PI};
 use std::process::ExitCode;

@@ -150,7 +150,8 @@ fn main() -> ExitCode {
         .filter(|step| **step as u64 <= evaluations)
         .map(|step| format!(" {step} |"))
         .collect();
-    println!("| function | regret at{steps} a run, s | 64 points more, s |");
+    println!("| function, regret at |{steps} a run, s | 64 points more, s |");
+    println!("|{}", " --- |".repeat(steps.matches('|').count() + 3));
     for word in &words[2..] {
         let letters = word.trim_end_matches(|c: char| c.is_ascii_digit());
         let dimension =

@@ -12,15 +12,16 @@ use finger_opt::input::robot::Robot;
 use finger_opt::input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
 use finger_opt::input::space::Design;
 use finger_opt::input::stiffness;
-use finger_opt::input::task::Task;
+use finger_opt::input::task::{PadTorsion, Task};
 use finger_opt::outcome::{FailureClass, Outcome};
-use finger_opt::physics::Engine;
 use finger_opt::physics::direct::Direct;
 use finger_opt::physics::rapier::Rapier;
+use finger_opt::physics::{Engine, World};
 use finger_opt::scene::{
     Body, BodyId, Friction, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Springs,
 };
 use finger_opt::surrogate::{self, Estimate, Prediction};
+use finger_opt::trial::cell;
 use finger_opt::trial::run::EngineRig;
 use finger_opt::trial::{Conditions, Rig, Trial, picture};
 use finger_opt::units::{DEG, MM, N_PER_MM};
@@ -412,4 +413,53 @@ fn pushed_up_a_part_is_gripped_harder_by_computed_fingers() {
         let found = pressed - still;
         assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}, of {still}");
     }
+}
+
+/// The moment about the pads' normal, N m, at which a key held by two pads begins to turn.
+fn moment_that_turns(task: &Task) -> f64 {
+    let file = ROBOTS.iter().find(|file| file.name == "rigid").unwrap();
+    let robot = Robot::parse(file.text, file.file).unwrap().mount(0.0, 0.0).unwrap();
+    let mut cell = cell::build(task, &robot, &finger(2.6, 45.0));
+    cell.scene.gravity = Vector3::zeros();
+    let mut world = Direct::default().world(&cell.scene);
+    let close = |world: &mut dyn World, time: f64| {
+        for (side, hand) in cell.hands.iter().enumerate() {
+            world.set_spring(hand.slide, 1, cell::closing(side, task.grip.force, time));
+        }
+        world.step().unwrap();
+    };
+    let step = world.step_s();
+    (1..=1000).for_each(|k| close(world.as_mut(), k as f64 * step));
+    world.place(cell.stand, Pose::translation(0.0, 0.0, -1.0));
+    let turned = |world: &dyn World| {
+        let finger = world.pose(cell.hands[0].finger);
+        (finger.inverse() * world.pose(cell.plug)).rotation.scaled_axis().y
+    };
+    // 20 N mm each second; the key is taken to turn at 0.2 degrees against its pad.
+    let from = turned(world.as_ref());
+    for k in 1.. {
+        let moment = 0.02 * f64::from(k) * step;
+        world.push(cell.plug, Vector3::zeros(), Vector3::y() * moment);
+        close(world.as_mut(), 1.0);
+        if (turned(world.as_ref()) - from).abs() > 0.2 * DEG {
+            return moment;
+        }
+    }
+    unreachable!("a moment that grows turns it in the end")
+}
+
+/// Two pads press a key of 7 mm over 8.4 mm with 5 N each. The mean lever of that patch is 2.94 mm; its
+/// corners, at which the contacts are, are 5.5 mm from its middle, and the published radius is 30 mm.
+#[test]
+fn a_held_key_turns_at_the_moment_of_its_pressed_patch() {
+    let mut task = task("ket8");
+    let [a, b] = [3.5f64, 4.2];
+    let part = |a: f64, b: f64| a * a / (6.0 * b) * (b / a).asinh();
+    let lever = a.hypot(b) / 3.0 + part(a, b) + part(b, a);
+    let limit = 2.0 * task.friction.finger_plug * task.grip.force;
+    let radius = moment_that_turns(&task) / limit / MM;
+    assert!((radius / 30f64.hypot(a.hypot(b)) - 1.0).abs() < 0.03, "{radius} mm");
+    task.friction.finger_torsion = PadTorsion::Patch;
+    let patch = moment_that_turns(&task) / limit / MM;
+    assert!((patch / lever - 1.0).abs() < 0.03, "{patch} mm, not {lever}");
 }

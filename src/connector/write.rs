@@ -1,7 +1,7 @@
 //! A task as a commented TOML file.
 
 use super::hold;
-use crate::input::task::{Ending, Hold, Part, Phase, Solid, Stage, StartRule, Task};
+use crate::input::task::{Ending, Hold, PadTorsion, Part, Phase, Solid, Stage, StartRule, Task};
 use crate::units::{DEG, GRAM, MM};
 use nalgebra::Point3;
 use std::fmt::Write;
@@ -121,7 +121,10 @@ fn grip(out: &mut String, task: &Task) {
         },
         mm(grip.slip_limit),
         friction.finger_plug,
-        mm(friction.finger_torsion),
+        match friction.finger_torsion {
+            PadTorsion::Points(moment) => mm(moment),
+            PadTorsion::Patch => "\"patch\"".to_owned(),
+        },
         friction.plug_socket,
     );
 }

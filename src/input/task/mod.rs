@@ -88,11 +88,19 @@ pub enum Hold {
 pub struct Friction {
     /// Finger on plug.
     pub finger_plug: f64,
-    /// Torsional friction of finger on plug, m: moment about the normal per
-    /// normal force, of the soft pad's pressed patch.
-    pub finger_torsion: f64,
+    /// How a pad resists a turn of the plug about the pad's normal.
+    pub finger_torsion: PadTorsion,
     /// Plug on socket, unless a socket part has its own.
     pub plug_socket: f64,
+}
+
+/// Friction of a pad against a turn about its normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PadTorsion {
+    /// So much moment per normal force at each contact point, m, beside the points' own levers.
+    Points(f64),
+    /// That of the pressed patch, and no more.
+    Patch,
 }
 
 /// The search strategy: the start, and the moves from there.

@@ -9,7 +9,7 @@ use finger_opt::finger::model::{ComputedFingers, FingerSource};
 use finger_opt::input::finger_file::FingerFile;
 use finger_opt::input::printed::PrintedFinger;
 use finger_opt::input::robot::Robot;
-use finger_opt::input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
+use finger_opt::input::shipped::{AS_SOLD, FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
 use finger_opt::input::space::Design;
 use finger_opt::input::stiffness;
 use finger_opt::input::task::{PadTorsion, Task};
@@ -462,4 +462,47 @@ fn a_held_key_turns_at_the_moment_of_its_pressed_patch() {
     task.friction.finger_torsion = PadTorsion::Patch;
     let patch = moment_that_turns(&task) / limit / MM;
     assert!((patch / lever - 1.0).abs() < 0.03, "{patch} mm, not {lever}");
+}
+
+/// A touch that is felt late presses harder: at a threshold of force, and after some latency more so.
+#[test]
+fn a_touch_felt_at_a_force_and_late_presses_harder() {
+    let file = TASKS.iter().find(|file| file.name == "ket12").unwrap();
+    let with = |keys: &str, motion: &str| {
+        let from = format!("motion = \"{motion}\"\n");
+        Task::parse(&file.text.replacen(&from, &format!("{from}{keys}\n"), 1), file.file)
+    };
+    let peak = |keys: &str| {
+        let task = with(keys, "touch").unwrap();
+        let robot = ROBOTS.iter().find(|file| file.name == "rigid").unwrap();
+        let robot = Robot::parse(robot.text, robot.file).unwrap();
+        let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
+        let trial = trial(&rig, &finger(2.6, 45.0), 0.0);
+        trial.phases.iter().find(|phase| phase.name == "touch").unwrap().peak_force_n
+    };
+    let at = ["", "touch_force_n = 5.0", "touch_force_n = 5.0\nlatency_s = 0.01"].map(peak);
+    assert!(at[0] + 2.0 < at[1] && at[1] + 2.0 < at[2], "{at:?} N");
+    for (keys, motion, problem) in [
+        ("touch_force_n = 5.0", "duration", "goes only with motion = \"touch\""),
+        ("latency_s = 0.1", "tolerance", "goes only with motion = \"touch\""),
+        ("latency_s = -0.1", "touch", "latency_s"),
+        ("latency_s = 60.0", "touch", "it may take 60 s"),
+    ] {
+        let error = with(keys, motion).unwrap_err().to_string();
+        assert!(error.contains(problem), "{error}");
+    }
+}
+
+/// A USB-A plug finds its receptacle and goes on over the tongue from the task file's own start.
+#[test]
+fn a_usb_a_plug_goes_over_its_tongue() {
+    let sold = AS_SOLD.iter().find(|sold| sold.name == "usb").unwrap();
+    let task = Task::parse(sold.text, sold.file).unwrap();
+    for robot in ["servo", "ur5e_position"] {
+        let file = ROBOTS.iter().find(|file| file.name == robot).unwrap();
+        let robot = Robot::parse(file.text, file.file).unwrap();
+        let rig = EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap();
+        let trial = trial(&rig, &finger(2.6, 45.0), 0.0);
+        assert_eq!(trial.outcome, Outcome::Inserted, "{trial:?}");
+    }
 }

@@ -148,9 +148,25 @@ pub enum Ending {
     /// When the plug touches the socket: the command then goes on by this
     /// distance along the move (the preload), m.
     Touch {
-        /// Distance beyond first contact, m.
+        /// Distance beyond where the move was stopped, m.
         preload: f64,
+        /// What tells the touch.
+        sensed: Sensed,
     },
+}
+
+/// How a touch is felt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensed {
+    /// Sum of the normal forces from which on it is one, N.
+    pub force: f64,
+    /// How long the move goes on then, s.
+    pub latency: f64,
+}
+
+impl Sensed {
+    /// At first contact, at once.
+    pub const FIRST: Sensed = Sensed { force: 0.05, latency: 0.0 };
 }
 
 /// One move of the TCP.

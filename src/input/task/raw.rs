@@ -3,8 +3,8 @@
 use super::geometry::{self, Part, Solid};
 use super::raw_finger::RawFinger;
 use super::{
-    Ending, Friction, Grip, Hold, PadTorsion, Phase, Plug, Stage, StartRule, Strategy, Success,
-    Task,
+    Ending, Friction, Grip, Hold, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
+    Success, Task,
 };
 use crate::input::{Check, InputError, read, shown};
 use crate::units::{DEG, GRAM, MM};
@@ -135,6 +135,8 @@ struct RawPhase {
     tolerance_mm: Option<f64>,
     settle_s: Option<f64>,
     preload_mm: Option<f64>,
+    touch_force_n: Option<f64>,
+    latency_s: Option<f64>,
 }
 
 #[derive(Deserialize, Clone, Copy)]
@@ -434,6 +436,7 @@ impl Check<'_> {
         }
         let (field, value, _) = given[wanted];
         let value = self.positive(&at(field), value.unwrap_or(f64::NAN))?;
+        let sensed = self.sensed(raw)?;
         Ok(Phase {
             name: raw.name.clone(),
             stage: match raw.stage {
@@ -446,8 +449,24 @@ impl Check<'_> {
             ending: match raw.motion {
                 RawMotion::Tolerance => Ending::Tolerance(value * MM),
                 RawMotion::Duration => Ending::Duration(value),
-                RawMotion::Touch => Ending::Touch { preload: value * MM },
+                RawMotion::Touch => Ending::Touch { preload: value * MM, sensed },
             },
+        })
+    }
+
+    /// How a touch is felt.
+    fn sensed(&self, raw: &RawPhase) -> Result<Sensed, InputError> {
+        let at = |field: &str| format!("strategy.phase \"{}\" {field}", raw.name);
+        for (field, value) in [("touch_force_n", raw.touch_force_n), ("latency_s", raw.latency_s)] {
+            if value.is_some() && !matches!(raw.motion, RawMotion::Touch) {
+                return self.fail(&at(field), "goes only with motion = \"touch\"");
+            }
+        }
+        let force = raw.touch_force_n.unwrap_or(Sensed::FIRST.force);
+        let latency = raw.latency_s.unwrap_or(Sensed::FIRST.latency);
+        Ok(Sensed {
+            force: self.positive(&at("touch_force_n"), force)?,
+            latency: self.not_negative(&at("latency_s"), latency)?,
         })
     }
 }

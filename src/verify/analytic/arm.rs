@@ -1,4 +1,5 @@
-//! T11: the UR5e's joint servos, loaded at the TCP.
+//! T11: the UR5e, loaded at the TCP: soft in its published servos, and in its gears under position
+//! control.
 //!
 //! At rest a force F displaces the TCP by `J K^-1 J^T F`, with the Jacobian J of
 //! the six joints and their gains K (Salisbury 1980, 19th IEEE Conf. Decision and
@@ -24,8 +25,14 @@ const REST: f64 = 2.4;
 /// Deflections of the TCP along a force, T11 rows; none on an engine that refuses
 /// this robot, since it has no coupled springs.
 pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
-    // The shipped file is an arm within its reach: tests see to it.
-    let Some((arm, mounted)) = ur5e() else { return Vec::new() };
+    // The shipped files are arms within their reach: tests see to it.
+    let arms = [("UR5e", "ur5e"), ("UR5e held", "ur5e_position")];
+    arms.into_iter().flat_map(|(words, file)| of_robot(engine, words, file)).collect()
+}
+
+/// The same of one shipped robot.
+fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
+    let Some((arm, mounted)) = shipped(file) else { return Vec::new() };
     let reduced = flange(&mounted);
     if engine.supports(&reduced.scene).is_err() {
         return Vec::new();
@@ -35,7 +42,7 @@ pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
         for (axis, along) in ["x", "y", "z"].into_iter().enumerate() {
             let expected = compliance(&arm)[(axis, axis)] * FORCE / MM;
             let measured = loaded.deflection(engine, axis).map(|by| by / MM);
-            let quantity = format!("UR5e, {name}, TCP along {along}");
+            let quantity = format!("{words}, {name}, TCP along {along}");
             let close = Tolerance::Relative(0.01);
             rows.push(CheckRow::new(("T11", quantity), expected, measured, "mm", close));
         }
@@ -43,9 +50,14 @@ pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
     rows
 }
 
-/// The shipped arm, and as a task that is not turned has it, upright.
+/// The shipped arm with the published servos, and as a task that is not turned has it, upright.
 pub fn ur5e() -> Option<(Arm, Mounted)> {
-    let file = ROBOTS.iter().find(|file| file.name == "ur5e")?;
+    shipped("ur5e")
+}
+
+/// A shipped arm of that name.
+fn shipped(name: &str) -> Option<(Arm, Mounted)> {
+    let file = ROBOTS.iter().find(|file| file.name == name)?;
     let robot = Robot::parse(file.text, file.file).ok()?;
     let mounted = robot.mount(0.0, 0.0).ok()?;
     match robot.drive {

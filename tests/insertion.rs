@@ -415,11 +415,11 @@ fn pushed_up_a_part_is_gripped_harder_by_computed_fingers() {
     }
 }
 
-/// The moment about the pads' normal, N m, at which a key held by two pads begins to turn.
-fn moment_that_turns(task: &Task) -> f64 {
+/// The moment about the pads' normal, N m, at which a key held by two such fingers begins to turn.
+fn moment_that_turns(task: &Task, finger: &Finger) -> f64 {
     let file = ROBOTS.iter().find(|file| file.name == "rigid").unwrap();
     let robot = Robot::parse(file.text, file.file).unwrap().mount(0.0, 0.0).unwrap();
-    let mut cell = cell::build(task, &robot, &finger(2.6, 45.0));
+    let mut cell = cell::build(task, &robot, finger);
     cell.scene.gravity = Vector3::zeros();
     let mut world = Direct::default().world(&cell.scene);
     let close = |world: &mut dyn World, time: f64| {
@@ -448,8 +448,10 @@ fn moment_that_turns(task: &Task) -> f64 {
     unreachable!("a moment that grows turns it in the end")
 }
 
-/// Two pads press a key of 7 mm over 8.4 mm with 5 N each. The mean lever of that patch is 2.94 mm; its
-/// corners, at which the contacts are, are 5.5 mm from its middle, and the published radius is 30 mm.
+/// Two pads press a key of 7 mm over 8.4 mm with 5 N each. Flush, on springs that sit behind the pad's
+/// middle, the mean lever of that patch is 2.95 mm; its corners, at which the contacts are, lie 5.5 mm
+/// from its middle, and the published radius is 30 mm. Springs that sit 21 mm below tip the pad, which
+/// then presses along its lower edge, 7 mm long: a quarter of that.
 #[test]
 fn a_held_key_turns_at_the_moment_of_its_pressed_patch() {
     let mut task = task("ket8");
@@ -457,11 +459,15 @@ fn a_held_key_turns_at_the_moment_of_its_pressed_patch() {
     let part = |a: f64, b: f64| a * a / (6.0 * b) * (b / a).asinh();
     let lever = a.hypot(b) / 3.0 + part(a, b) + part(b, a);
     let limit = 2.0 * task.friction.finger_plug * task.grip.force;
-    let radius = moment_that_turns(&task) / limit / MM;
+    let tipped = finger(2.6, 45.0);
+    let flush = Finger { rcc: -tipped.pad.middle(task.grip.shoulder()), ..tipped };
+    let radius = moment_that_turns(&task, &flush) / limit / MM;
     assert!((radius / 30f64.hypot(a.hypot(b)) - 1.0).abs() < 0.03, "{radius} mm");
     task.friction.finger_torsion = PadTorsion::Patch;
-    let patch = moment_that_turns(&task) / limit / MM;
-    assert!((patch / lever - 1.0).abs() < 0.03, "{patch} mm, not {lever}");
+    for (finger, lever) in [(flush, lever), (tipped, 7.0 / 4.0)] {
+        let found = moment_that_turns(&task, &finger) / limit / MM;
+        assert!((found / lever - 1.0).abs() < 0.03, "{found} mm, not {lever}");
+    }
 }
 
 /// A touch that is felt late presses harder: at a threshold of force, and after some latency more so.

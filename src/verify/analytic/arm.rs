@@ -4,7 +4,8 @@
 //! At rest a force F displaces the TCP by `J K^-1 J^T F`, with the Jacobian J of
 //! the six joints and their gains K (Salisbury 1980, 19th IEEE Conf. Decision and
 //! Control). Once as the trials have the arm, one body on a coupled 6x6 spring; and
-//! once as what that stands for, a chain of six links with a sprung joint each.
+//! once as what that stands for, a chain of six links with a sprung joint each (of the soft arm alone: the hinges
+//! of a chain give 0.8 um/N across their axes, which is nothing beside servos and 3 % beside gears).
 
 use super::build::{self, Wrench};
 use super::{CheckRow, Tolerance};
@@ -17,6 +18,8 @@ use crate::trial::cell;
 use crate::units::MM;
 use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
+/// The arm on its published servos.
+const SOFT: &str = "ur5e";
 /// Force at the TCP, N.
 pub const FORCE: f64 = 5.0;
 /// Until the servos rest, s: twelve times their damping over their gain.
@@ -26,7 +29,7 @@ const REST: f64 = 2.4;
 /// this robot, since it has no coupled springs.
 pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
     // The shipped files are arms within their reach: tests see to it.
-    let arms = [("UR5e", "ur5e"), ("UR5e held", "ur5e_position")];
+    let arms = [("UR5e", SOFT), ("UR5e held", "ur5e_position")];
     arms.into_iter().flat_map(|(words, file)| of_robot(engine, words, file)).collect()
 }
 
@@ -37,8 +40,12 @@ fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
     if engine.supports(&reduced.scene).is_err() {
         return Vec::new();
     }
+    let mut models = vec![("coupled spring", reduced)];
+    if file == SOFT {
+        models.push(("joint chain", chain(&arm)));
+    }
     let mut rows = Vec::new();
-    for (name, loaded) in [("coupled spring", reduced), ("joint chain", chain(&arm))] {
+    for (name, loaded) in models {
         for (axis, along) in ["x", "y", "z"].into_iter().enumerate() {
             let expected = compliance(&arm)[(axis, axis)] * FORCE / MM;
             let measured = loaded.deflection(engine, axis).map(|by| by / MM);
@@ -52,7 +59,7 @@ fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
 
 /// The shipped arm with the published servos, and as a task that is not turned has it, upright.
 pub fn ur5e() -> Option<(Arm, Mounted)> {
-    shipped("ur5e")
+    shipped(SOFT)
 }
 
 /// A shipped arm of that name.

@@ -23,6 +23,7 @@ mod model;
 mod neighbours;
 mod optimizer;
 mod search;
+mod spread;
 mod trained;
 mod training;
 mod warp;

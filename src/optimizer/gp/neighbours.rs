@@ -3,6 +3,7 @@
 use super::data::Standardised;
 use super::kernel::Hyperparameters;
 use super::model::{Gp, distances2};
+use super::spread::spread;
 use super::trained::{Goal, Margin, Trained};
 
 /// Neighbours of a place of which a rough answer will do.
@@ -114,12 +115,6 @@ impl Neighbours {
     }
 }
 
-/// `count` of `n` places, evenly; all if there are no more.
-pub(super) fn spread(n: usize, count: usize) -> impl Iterator<Item = usize> {
-    let count = count.min(n);
-    (0..count).map(move |k| k * n / count)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,11 +163,5 @@ mod tests {
         known.believe(&place);
         let after = at(&known);
         assert!((before.0 - after.0).abs() < 0.05 && after.1 < 0.1 * before.1);
-    }
-
-    #[test]
-    fn places_are_spread_evenly_and_come_once() {
-        assert_eq!(spread(10, 3).collect::<Vec<_>>(), [0, 3, 6]);
-        assert_eq!(spread(3, 10).collect::<Vec<_>>(), [0, 1, 2]);
     }
 }

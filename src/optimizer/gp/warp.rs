@@ -5,7 +5,7 @@
 //! normal is chosen by maximum likelihood. The transformation rises strictly, so
 //! the order of the values is kept.
 
-use super::neighbours::spread;
+use super::spread::spread;
 use libm::{exp, log, log1p, pow};
 
 /// Values in the warped scale, again with mean 0 and variance 1.

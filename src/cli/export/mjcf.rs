@@ -34,9 +34,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mounted =
         setup.evaluator.robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
     let scene = cell::build(task, &mounted, finger).scene;
-    let text = mjcf::write(&scene, &task.name, &MjcfSettings::default()).map_err(|error| {
-        Failure::usage(format!("{error}; --robot servo and --robot rigid need none of it"))
-    })?;
+    let instead = match scene.patched() {
+        Some(_) => "give finger_plug_torsion_mm in mm",
+        None => "--robot servo and --robot rigid need none of it",
+    };
+    let text = mjcf::write(&scene, &task.name, &MjcfSettings::default())
+        .map_err(|error| Failure::usage(format!("{error}; {instead}")))?;
     write_file(&arguments.out, &text)?;
     print(&format!("wrote {}: the scene of {}, for MuJoCo\n", arguments.out.display(), task.name))
 }

@@ -4,7 +4,7 @@ use super::setup::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
 use super::{Failure, print, print_json};
 use crate::report::{stiffness, stiffness_means};
 use crate::study::write_file;
-use crate::surrogate::{Model, means};
+use crate::surrogate::{Means, Model, means};
 use clap::Args;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -36,8 +36,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         return print_json(&json(&model)?);
     }
-    let means = means(&model).map_err(Failure::input)?;
-    print(&(stiffness::table(&model) + &stiffness_means::text(&means)))
+    let means = compared(&model)?;
+    let text = means.as_ref().map_or(format!("\n{}.\n", left_out()), stiffness_means::text);
+    print(&(stiffness::table(&model) + &text))
+}
+
+/// Most fingers that are computed from their ribs and whose means are compared: that takes a third of a
+/// second of processor each, and more than that where there are many.
+const MOST_COMPUTED: usize = 25;
+
+fn left_out() -> String {
+    format!("Left out: fingers by their ribs and means compared, above {MOST_COMPUTED} designs")
+}
+
+/// What is computed of the fingers, if they are few enough.
+fn compared(model: &Model) -> Result<Option<Means>, Failure> {
+    let few = model.measurements().len() <= MOST_COMPUTED;
+    few.then(|| means(model).map_err(Failure::input)).transpose()
 }
 
 impl Arguments {
@@ -55,10 +70,13 @@ impl Arguments {
 }
 
 fn json(model: &Model) -> Result<Value, Failure> {
-    let means = means(model).map_err(Failure::input)?;
+    let means = compared(model)?;
     let mut json = stiffness::json(model);
     if let Some(keys) = json.as_object_mut() {
-        keys.extend(stiffness_means::json(&means));
+        match means {
+            Some(means) => keys.extend(stiffness_means::json(&means)),
+            None => keys.extend([("left_out".to_owned(), left_out().into())]),
+        }
     }
     Ok(json)
 }

@@ -6,7 +6,7 @@ use crate::report::{stiffness, stiffness_means};
 use crate::study::write_file;
 use crate::surrogate::{Means, Model, means};
 use clap::Args;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// Show the stiffness model.
@@ -34,7 +34,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         write_file(path, &svg)?;
     }
     if arguments.json {
-        return print_json(&json(&model)?);
+        return print_json(&as_json(&model)?);
     }
     let means = compared(&model)?;
     let text = means.as_ref().map_or(format!("\n{}.\n", left_out()), stiffness_means::text);
@@ -65,18 +65,22 @@ impl Arguments {
 
     /// What `--json` prints.
     pub fn json(&self) -> Result<Value, Failure> {
-        json(&self.model()?)
+        as_json(&self.model()?)
     }
 }
 
-fn json(model: &Model) -> Result<Value, Failure> {
+fn as_json(model: &Model) -> Result<Value, Failure> {
     let means = compared(model)?;
-    let mut json = stiffness::json(model);
-    if let Some(keys) = json.as_object_mut() {
+    let mut value = stiffness::json(model);
+    if let Some(keys) = value.as_object_mut() {
         match means {
             Some(means) => keys.extend(stiffness_means::json(&means)),
-            None => keys.extend([("left_out".to_owned(), left_out().into())]),
+            None => {
+                let none = ["means", "preferred", "fingers"].map(|key| (key.to_owned(), json!([])));
+                keys.extend(none);
+                keys.extend([("left_out".to_owned(), left_out().into())]);
+            }
         }
     }
-    Ok(json)
+    Ok(value)
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Hard tests of studies, with their figures: scripts/matrix.sh [kills] [threads] [disks] [cache]
 # Everything if nothing is named. KILLS (443 unless set) is how often a study is killed;
-# ENGINE=direct kills studies that simulate (20 kills take a quarter of an hour). OPTIMIZE names a program
+# ENGINE=direct kills studies that simulate. OPTIMIZE names a program
 # that is built already; it needs the feature `fake-engine`.
 set -euo pipefail
 cd "$(dirname "$0")/.."

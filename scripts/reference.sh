@@ -41,6 +41,7 @@ finger() {
             done
     } > "$folder/table.txt"
     "$optimize" finger --density 20 --direction 20 --svg "$folder/finray9.svg" > "$folder/finray9.txt"
+    "$optimize" finger --density 20 --direction 20 --load-n 0,20 --svg "$folder/coupling.svg" > /dev/null
     "$optimize" validate --against bench --strides --variants --out "$work/bench" > /dev/null
     cp "$work/bench/against_bench.txt" "$folder/"
     "$optimize" validate --against bench --strides --phases 8 --out "$work/phases" > /dev/null

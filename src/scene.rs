@@ -79,17 +79,27 @@ pub struct GeomPair {
 pub struct Friction {
     /// Coefficient of friction.
     pub coefficient: f64,
-    /// Radius of the soft patch that a contact point stands for, m: friction also
-    /// resists a turn about the normal, with at most that times the friction force,
-    /// and force and moment share an ellipsoid (Howe and Cutkosky 1996, Int. J. Robot.
-    /// Res. 15:557). At 0 a point turns freely. Engines without it ignore it.
-    pub patch: f64,
+    /// How it resists a turn about the contact's normal.
+    pub torsion: Torsion,
+}
+
+/// What resists a turn of two faces about their normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Torsion {
+    /// Each contact point stands for a soft patch of this radius, m: friction resists a turn with
+    /// at most that times the friction force, and force and moment share an ellipsoid (Howe
+    /// and Cutkosky 1996, Int. J. Robot. Res. 15:557), beside the moment that the points have by
+    /// their distances. At 0 a point turns freely. Engines without it ignore it.
+    Radius(f64),
+    /// The points of a contact together have the moment of the patch between them, evenly pressed,
+    /// and no other.
+    Patch,
 }
 
 impl Friction {
     /// Friction of hard surfaces, which resists no turn.
     pub fn hard(coefficient: f64) -> Self {
-        Friction { coefficient, patch: 0.0 }
+        Friction { coefficient, torsion: Torsion::Radius(0.0) }
     }
 }
 
@@ -254,6 +264,11 @@ impl Scene {
         self.contacts.push(ContactPair { first, second, friction });
     }
 
+    /// The first pair of bodies whose friction has the moment of a pressed patch.
+    pub fn patched(&self) -> Option<&ContactPair> {
+        self.contacts.iter().find(|pair| pair.friction.torsion == Torsion::Patch)
+    }
+
     /// Each two geoms that may touch, in the order of the contacts.
     pub fn geom_pairs(&self) -> Vec<GeomPair> {
         let mut next = 0;
@@ -326,13 +341,15 @@ mod tests {
         scene.body(body([None; 2]));
         let first = scene.body(body([None, Some(0.3)]));
         let second = scene.body(body([None, Some(0.02)]));
-        scene.contact(first, second, Friction { coefficient: 1.0, patch: 0.03 });
+        scene.contact(first, second, Friction { coefficient: 1.0, torsion: Torsion::Radius(0.03) });
         let found: Vec<_> = scene
             .geom_pairs()
             .iter()
             .map(|p| (p.first, p.second, p.friction.coefficient))
             .collect();
         assert_eq!(found, [(2, 4, 1.0), (2, 5, 0.02), (3, 4, 0.3), (3, 5, 0.02)]);
-        assert!(scene.geom_pairs().iter().all(|pair| pair.friction.patch == 0.03));
+        assert!(
+            scene.geom_pairs().iter().all(|pair| pair.friction.torsion == Torsion::Radius(0.03))
+        );
     }
 }

@@ -434,6 +434,9 @@ fn a_finger_is_computed_from_its_ribs() {
         assert_eq!(matrix[0][2], matrix[2][0]);
     }
     assert!(common::read(std::path::Path::new(&svg)).contains("</svg>"));
+    optimize(&[&infill[..], &["--svg", &svg, "--load-n", "0,20"]].concat()).succeeds();
+    assert!(common::read(std::path::Path::new(&svg)).contains("20.0 N in z"));
+    optimize(&[&infill[..], &["--load-n", "5"]].concat()).fails(2, &["--load-n", "as -5,0"]);
     assert!(optimize(&infill).succeeds().contains("pad and roof"));
     let dense = ["finger", "--density", "120", "--direction", "0"];
     optimize(&dense).fails(2, &["finray9.toml", "density"]);

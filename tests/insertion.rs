@@ -9,18 +9,19 @@ use finger_opt::finger::model::{ComputedFingers, FingerSource};
 use finger_opt::input::finger_file::FingerFile;
 use finger_opt::input::printed::PrintedFinger;
 use finger_opt::input::robot::Robot;
-use finger_opt::input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
+use finger_opt::input::shipped::{AS_SOLD, FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
 use finger_opt::input::space::Design;
 use finger_opt::input::stiffness;
-use finger_opt::input::task::Task;
+use finger_opt::input::task::{PadTorsion, Task};
 use finger_opt::outcome::{FailureClass, Outcome};
-use finger_opt::physics::Engine;
 use finger_opt::physics::direct::Direct;
 use finger_opt::physics::rapier::Rapier;
+use finger_opt::physics::{Engine, World};
 use finger_opt::scene::{
     Body, BodyId, Friction, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Springs,
 };
 use finger_opt::surrogate::{self, Estimate, Prediction};
+use finger_opt::trial::cell;
 use finger_opt::trial::run::EngineRig;
 use finger_opt::trial::{Conditions, Rig, Trial, picture};
 use finger_opt::units::{DEG, MM, N_PER_MM};
@@ -411,5 +412,103 @@ fn pushed_up_a_part_is_gripped_harder_by_computed_fingers() {
     for (pressed, still) in grip(up).into_iter().zip(grip(0.0)) {
         let found = pressed - still;
         assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}, of {still}");
+    }
+}
+
+/// The moment about the pads' normal, N m, at which a key held by two such fingers begins to turn.
+fn moment_that_turns(task: &Task, finger: &Finger) -> f64 {
+    let file = ROBOTS.iter().find(|file| file.name == "rigid").unwrap();
+    let robot = Robot::parse(file.text, file.file).unwrap().mount(0.0, 0.0).unwrap();
+    let mut cell = cell::build(task, &robot, finger);
+    cell.scene.gravity = Vector3::zeros();
+    let mut world = Direct::default().world(&cell.scene);
+    let close = |world: &mut dyn World, time: f64| {
+        for (side, hand) in cell.hands.iter().enumerate() {
+            world.set_spring(hand.slide, 1, cell::closing(side, task.grip.force, time));
+        }
+        world.step().unwrap();
+    };
+    let step = world.step_s();
+    (1..=1000).for_each(|k| close(world.as_mut(), k as f64 * step));
+    world.place(cell.stand, Pose::translation(0.0, 0.0, -1.0));
+    let turned = |world: &dyn World| {
+        let finger = world.pose(cell.hands[0].finger);
+        (finger.inverse() * world.pose(cell.plug)).rotation.scaled_axis().y
+    };
+    // 20 N mm each second; the key is taken to turn at 0.2 degrees against its pad.
+    let from = turned(world.as_ref());
+    for k in 1.. {
+        let moment = 0.02 * f64::from(k) * step;
+        world.push(cell.plug, Vector3::zeros(), Vector3::y() * moment);
+        close(world.as_mut(), 1.0);
+        if (turned(world.as_ref()) - from).abs() > 0.2 * DEG {
+            return moment;
+        }
+    }
+    unreachable!("a moment that grows turns it in the end")
+}
+
+/// Two pads press a key of 7 mm over 8.4 mm with 5 N each. Flush, on springs that sit behind the pad's
+/// middle, the mean lever of that patch is 2.95 mm; its corners, at which the contacts are, lie 5.5 mm
+/// from its middle, and the published radius is 30 mm. Springs that sit 21 mm below tip the pad, which
+/// then presses along its lower edge, 7 mm long: a quarter of that.
+#[test]
+fn a_held_key_turns_at_the_moment_of_its_pressed_patch() {
+    let mut task = task("ket8");
+    let [a, b] = [3.5f64, 4.2];
+    let part = |a: f64, b: f64| a * a / (6.0 * b) * (b / a).asinh();
+    let lever = a.hypot(b) / 3.0 + part(a, b) + part(b, a);
+    let limit = 2.0 * task.friction.finger_plug * task.grip.force;
+    let tipped = finger(2.6, 45.0);
+    let flush = Finger { rcc: -tipped.pad.middle(task.grip.shoulder()), ..tipped };
+    let radius = moment_that_turns(&task, &flush) / limit / MM;
+    assert!((radius / 30f64.hypot(a.hypot(b)) - 1.0).abs() < 0.03, "{radius} mm");
+    task.friction.finger_torsion = PadTorsion::Patch;
+    for (finger, lever) in [(flush, lever), (tipped, 7.0 / 4.0)] {
+        let found = moment_that_turns(&task, &finger) / limit / MM;
+        assert!((found / lever - 1.0).abs() < 0.03, "{found} mm, not {lever}");
+    }
+}
+
+/// A touch that is felt late presses harder: at a threshold of force, and after some latency more so.
+#[test]
+fn a_touch_felt_at_a_force_and_late_presses_harder() {
+    let file = TASKS.iter().find(|file| file.name == "ket12").unwrap();
+    let with = |keys: &str, motion: &str| {
+        let from = format!("motion = \"{motion}\"\n");
+        Task::parse(&file.text.replacen(&from, &format!("{from}{keys}\n"), 1), file.file)
+    };
+    let peak = |keys: &str| {
+        let task = with(keys, "touch").unwrap();
+        let robot = ROBOTS.iter().find(|file| file.name == "rigid").unwrap();
+        let robot = Robot::parse(robot.text, robot.file).unwrap();
+        let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
+        let trial = trial(&rig, &finger(2.6, 45.0), 0.0);
+        trial.phases.iter().find(|phase| phase.name == "touch").unwrap().peak_force_n
+    };
+    let at = ["", "touch_force_n = 5.0", "touch_force_n = 5.0\nlatency_s = 0.01"].map(peak);
+    assert!(at[0] + 2.0 < at[1] && at[1] + 2.0 < at[2], "{at:?} N");
+    for (keys, motion, problem) in [
+        ("touch_force_n = 5.0", "duration", "goes only with motion = \"touch\""),
+        ("latency_s = 0.1", "tolerance", "goes only with motion = \"touch\""),
+        ("latency_s = -0.1", "touch", "latency_s"),
+        ("latency_s = 60.0", "touch", "it may take 60 s"),
+    ] {
+        let error = with(keys, motion).unwrap_err().to_string();
+        assert!(error.contains(problem), "{error}");
+    }
+}
+
+/// A USB-A plug finds its receptacle and goes on over the tongue from the task file's own start.
+#[test]
+fn a_usb_a_plug_goes_over_its_tongue() {
+    let sold = AS_SOLD.iter().find(|sold| sold.name == "usb").unwrap();
+    let task = Task::parse(sold.text, sold.file).unwrap();
+    for robot in ["servo", "ur5e_position"] {
+        let file = ROBOTS.iter().find(|file| file.name == robot).unwrap();
+        let robot = Robot::parse(file.text, file.file).unwrap();
+        let rig = EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap();
+        let trial = trial(&rig, &finger(2.6, 45.0), 0.0);
+        assert_eq!(trial.outcome, Outcome::Inserted, "{trial:?}");
     }
 }

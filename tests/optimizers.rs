@@ -250,6 +250,39 @@ fn told(
     told
 }
 
+/// Beyond 250 points the process is made of neighbours.
+#[test]
+fn a_process_that_knows_much_keeps_the_contract_and_still_climbs() {
+    let grid = Grid::new(vec![1001, 301, 1, 51]);
+    let unconstrained = |point: &GridPoint| Observation::new(point.clone(), hill(&grid, point, 0));
+    let constrained = |point: &GridPoint| Observation {
+        values: two_peaks(&grid, point),
+        violations: vec![grid.unit(point)[3] - 0.5],
+        point: point.clone(),
+    };
+    let problems: [&dyn Fn(&GridPoint) -> Observation; 2] = [&unconstrained, &constrained];
+    for problem in problems {
+        let run = || {
+            let mut optimizer = build(OptimizerKind::Gp, grid.clone(), 3);
+            let spread = build(OptimizerKind::Sobol, grid.clone(), 1).ask(280);
+            let known: Vec<Observation> = spread.iter().map(problem).collect();
+            optimizer.tell(&known);
+            let told = told(&mut *optimizer, problem, 20);
+            (known, told, optimizer.ask(30))
+        };
+        let (known, told, batch) = run();
+        assert_eq!((&told, &batch), (&run().1, &run().2));
+        let points: Vec<GridPoint> =
+            known.iter().chain(&told).map(|o| o.point.clone()).chain(batch).collect();
+        assert!(distinct(&points) && points.len() == 330);
+        assert!(points.iter().all(|point| grid.contains(point)));
+        let best = |told: &[Observation]| {
+            told.iter().filter(|o| o.feasible()).filter_map(Observation::value).fold(-9.0, f64::max)
+        };
+        assert!(best(&told) > 0.5 * best(&known), "{} after {}", best(&told), best(&known));
+    }
+}
+
 /// `x + y` is to be large and `x^2 + y^2` at most 1/2: best at (1/2, 1/2), where the
 /// constraint binds. Most of the square violates it.
 #[test]

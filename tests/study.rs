@@ -406,6 +406,12 @@ fn the_best_designs_are_walked_beside_the_journal() {
     for key in ["range_mm", "negative_mm", "positive_mm", "peak_force_n"] {
         assert_eq!(recommended[key], walked[0][key], "{key}");
     }
+    let by_ribs = recommended["computed"]["tasks"][0]["range_mm"].as_f64().expect("both ranges");
+    assert!(by_ribs > 0.0 && walked[0]["range_mm"].as_f64() != Some(by_ribs), "other springs");
+    let report = read(&studies.dir("s").join("report.html"));
+    assert!(
+        report.contains(&format!("range with springs from its ribs</dt><dd><b>{by_ribs:.1} mm"))
+    );
     // The lower end of the closed form moves with friction.
     assert!(firm(recommended) < recommended["range_mm"].as_f64().unwrap());
     assert!(
@@ -421,6 +427,7 @@ fn the_best_designs_are_walked_beside_the_journal() {
     assert_eq!(read(&file), kept);
     let text = studies.study("s", 8, &[]);
     assert!(text.succeeds().contains("walked        step by step"), "{}", text.stdout);
+    assert!(text.stdout.contains(&format!("from its ribs {by_ribs:.1} mm (")), "{}", text.stdout);
     // What a kill left is gone on from.
     let mut begun: serde_json::Value = serde_json::from_str(&kept).unwrap();
     begun["complete"] = false.into();
@@ -447,6 +454,7 @@ fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
         if let Some(walked) = design.get("walked") {
             trials += walked["firm"][0]["trials"].as_u64().unwrap();
             trials += walked["tasks"][0]["trials"].as_u64().unwrap();
+            trials += walked["computed"][0]["trials"].as_u64().unwrap();
         }
     }
     let table = read(&studies.dir("s").join("evaluations.csv"));

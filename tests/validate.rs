@@ -89,6 +89,7 @@ fn a_calibration_is_a_further_model_beside_the_bench() {
     };
     let found = against("results/reference/bench").json();
     let rows = found["agreement"].as_array().expect("a list");
+    assert!(rows.iter().any(|row| row["model"] == "mechanisms"), "{rows:?}");
     let last = rows.last().expect("a row");
     assert_eq!((&last["model"], &last["designs"]), (&"calibrated".into(), &11.into()));
     assert!(last["mean_deviation_percent"].as_f64().is_some_and(|d| d > 0.0 && d < 10.0), "{last}");

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     import pandas
 
 #: Words that say how a study is run, not what it measures.
-SESSION = ("threads", "cache", "no_cache", "accept_changed")
+SESSION = (
+    "threads", "cache", "no_cache", "no_confirm", "accept_changed", "simulations", "samples",
+)
 
 
 class Study:
@@ -130,7 +132,8 @@ class Study:
 def load_study(folder: str | os.PathLike[str], **session: Any) -> Study:
     """The study in a folder; its :meth:`~Study.run` continues it.
 
-    ``session`` says how: ``threads``, ``cache``, ``no_cache``, ``accept_changed``.
+    ``session`` says how: ``threads``, ``cache``, ``no_cache``, ``no_confirm``,
+    ``accept_changed``, and for a study with measurements ``simulations`` and ``samples``.
     """
     unknown = [name for name in session if name not in SESSION]
     if unknown:

@@ -120,6 +120,38 @@ def test_the_batch_is_the_number_of_workers_and_is_kept(create, tmp_path):
     assert alone.config["batch"] == 4
 
 
+class Nobody(Executor):
+    """Is not to be asked for anything."""
+
+    def submit(self, fn, /, *args):
+        raise AssertionError("work was given out")
+
+
+def test_what_the_cache_knows_is_not_given_out(create, expected, tmp_path):
+    kept = {"no_cache": None, "cache": tmp_path / "cache"}
+    first = create("first", **kept).run(Shuffled(1), progress=False)
+    second = create("second", **kept).run(Nobody(), progress=False)
+    assert journal(first.path) == journal(second.path) == expected
+    assert '"cached":[true]' in (tmp_path / "second" / "journal.jsonl").read_text()
+    with pytest.raises(fo.RunError, match="work was given out"):
+        create("anew").run(Nobody(), progress=False)
+
+
+def test_a_loaded_study_takes_every_word_of_resume_that_suits_it(command, create):
+    from finger_opt._study import SESSION
+
+    code, text, _ = command("resume", "--help")
+    assert code == 0
+    words = set(re.findall(r"^ +(?:-\w, )?--([a-z-]+)", text, re.MULTILINE))
+    # run() says where and how loudly, and what it gives is no text.
+    words -= {"executor", "quiet", "json", "help"}
+    assert {word.replace("_", "-") for word in SESSION} == words
+    study = create("words", budget=3).run(progress=False)
+    fo.load_study(study.path, no_confirm=True, simulations=50, samples=50)
+    with pytest.raises(fo.InputError, match="budget: a study that is loaded takes"):
+        fo.load_study(study.path, budget=4)
+
+
 def test_words_are_checked_before_anything_is_written(create, tmp_path):
     with pytest.raises(fo.InputError, match="unknown optimizer"):
         create("wrong", optimizer="bayes")

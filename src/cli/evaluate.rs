@@ -53,11 +53,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let computed = computed_too::measure(&arguments.setup, &arguments.finger, arguments.search());
     if arguments.json {
         let mut fields = found.json(arguments);
-        computed.iter().for_each(|computed| merge(&mut fields, computed.json()));
+        computed.iter().for_each(|found| merge(&mut fields, computed_too::json(found)));
         return print_json(&fields);
     }
     let bands = found.bands.as_ref().map(repeat::bands_text).unwrap_or_default();
-    let computed = computed.map(|computed| computed.text()).unwrap_or_default();
+    let computed = computed.iter().flat_map(words::by_ribs).collect::<String>();
     let text = text(&found.chosen, &found.setup, &found.evaluation);
     print(&format!("{text}{computed}{bands}time          {:.1} s\n", found.wall_s))
 }

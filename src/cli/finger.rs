@@ -19,8 +19,8 @@ use nalgebra::Matrix3;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Load of the picture: a grasp of 5 N, which presses the pad back, N in y and z.
-const PICTURE_LOAD: [f64; 2] = [-5.0, 0.0];
+/// Largest force on the pad that is drawn, N: bends are those of small displacements.
+const LARGEST_LOAD_N: f64 = 1000.0;
 
 /// Compute the stiffness of a printed finger from its ribs.
 ///
@@ -44,12 +44,25 @@ pub struct Arguments {
     /// A number of the finger file, as finger.skin.thickness_mm=0.8; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     set: Vec<(String, f64)>,
-    /// Draw the finger, at rest and under a grasp of 5 N
+    /// Draw the finger, at rest and under a force on its pad
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
+    /// That force, N: y towards the part, z up; as -5,0 is a grasp, 0,10 a part that pulls up
+    #[arg(long, value_name = "Y,Z", default_value = "-5,0", value_parser = load,
+        allow_hyphen_values = true)]
+    load_n: [f64; 2],
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
+}
+
+fn load(text: &str) -> Result<[f64; 2], String> {
+    let number = |part: &str| part.trim().parse::<f64>().ok();
+    let force = text.split_once(',').and_then(|(y, z)| Some([number(y)?, number(z)?]));
+    let fits = |[y, z]: &[f64; 2]| (1e-3..=LARGEST_LOAD_N).contains(&y.hypot(*z));
+    force
+        .filter(fits)
+        .ok_or_else(|| format!("is no force y,z of 0.001 to {LARGEST_LOAD_N} N; as -5,0"))
 }
 
 /// The result as it is printed.
@@ -96,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let geometry = Geometry::new(&finger, &design).map_err(Failure::input)?;
     let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
     if let Some(file) = &arguments.svg {
-        write_file(file, &picture::svg(&geometry, PICTURE_LOAD).map_err(Failure::input)?)?;
+        write_file(file, &picture::svg(&geometry, arguments.load_n).map_err(Failure::input)?)?;
     }
     let row = FingerRow::new(&geometry, &computed);
     if arguments.json {

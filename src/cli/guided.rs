@@ -7,11 +7,13 @@ use super::setup::Setup;
 use super::{Failure, call, resume, study, summary, unusable};
 use crate::evaluation::evaluator::Evaluate;
 use crate::evaluation::objective::Measure;
+use crate::evaluation::robustness::Plan;
 use crate::evaluation::tolerance::Search;
 use crate::input::shipped::Source;
 use crate::optimizer::Optimizer;
 use crate::study::{
-    Course, Ending, Next, Simulated, Study, StudyError, Timing, Wanted, Work, WorkError, now,
+    Arrived, Cache, Course, Ending, Next, Simulated, Study, StudyError, Timing, Wanted, Work,
+    WorkError, now,
 };
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -24,12 +26,17 @@ pub struct Guided {
     study: Study,
     setup: Setup,
     session: SessionArguments,
+    plan: Plan,
+    cache: Option<Cache>,
     optimizer: Box<dyn Optimizer + Send>,
     course: Course,
     /// What is being measured, by the number of its proposal.
     measuring: BTreeMap<u64, Work>,
     progress: Progress,
 }
+
+/// Looking into the cache is not stopped.
+static NEVER: AtomicBool = AtomicBool::new(false);
 
 /// What is to be done next.
 pub enum Order {
@@ -81,29 +88,61 @@ impl Guided {
         session::check(&study.config, &setup)?;
         let optimizer = session::optimizer(&setup, &study.config)?;
         let (course, progress) = (Course::new(&study), Progress::new(&study, true));
-        let measuring = BTreeMap::new();
-        Ok(Guided { study, setup, session, optimizer, course, measuring, progress })
+        let goals = study.config.goals();
+        let plan = setup.plan(study.config.seed, |measure| goals.need(measure))?;
+        let (cache, measuring) = (session.cache(&setup), BTreeMap::new());
+        Ok(Guided { study, setup, session, plan, cache, optimizer, course, measuring, progress })
     }
 
-    /// What is to be done next.
+    /// What is to be done next. What the cache knows is taken from there.
     ///
     /// # Errors
-    /// If the journal holds other designs than are proposed.
+    /// If the journal holds other designs than are proposed, or cannot be written.
     pub fn order(&mut self) -> Result<Order, Failure> {
-        match self.course.next(&self.study, &mut *self.optimizer)? {
-            Next::Wait => Ok(Order::Wait),
-            Next::Ended(ending) => Ok(Order::Finish(ending)),
-            Next::Measure(wanted) => {
-                let bytes = |wanted| {
-                    let work = self.work(wanted);
-                    let bytes =
-                        work.encode().map_err(|error| Failure::running(error.to_string()))?;
-                    self.measuring.insert(work.proposal, work.clone());
-                    Ok((work.proposal, bytes))
-                };
-                wanted.into_iter().map(bytes).collect::<Result<_, Failure>>().map(Order::Measure)
+        loop {
+            let wanted = match self.course.next(&self.study, &mut *self.optimizer)? {
+                Next::Wait => return Ok(Order::Wait),
+                Next::Ended(ending) => return Ok(Order::Finish(ending)),
+                Next::Measure(wanted) => wanted,
+            };
+            let mut unknown = Vec::new();
+            for wanted in wanted {
+                if !self.recall(&wanted)? {
+                    unknown.push(self.give(wanted)?);
+                }
+            }
+            if !unknown.is_empty() {
+                return Ok(Order::Measure(unknown));
             }
         }
+    }
+
+    /// Takes a design's evaluation from the cache; false if it is not there.
+    fn recall(&mut self, wanted: &Wanted) -> Result<bool, Failure> {
+        let (datetime_start, clock) = (now(), Instant::now());
+        let Some(measured) = self.simulated(&NEVER).known(&wanted.design) else {
+            return Ok(false);
+        };
+        let timing = Timing {
+            datetime_start,
+            datetime_complete: now(),
+            wall_s: clock.elapsed().as_secs_f64(),
+            cached: measured.cached.clone(),
+        };
+        self.accept(Arrived { proposal: wanted.proposal, measured, timing })
+    }
+
+    fn give(&mut self, wanted: Wanted) -> Result<(u64, Vec<u8>), Failure> {
+        let work = self.work(wanted);
+        let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
+        let proposal = work.proposal;
+        self.measuring.insert(proposal, work);
+        Ok((proposal, bytes))
+    }
+
+    fn simulated<'a>(&'a self, stop: &'a AtomicBool) -> Simulated<'a> {
+        let (evaluator, plan, cache) = (&self.setup.evaluator, &self.plan, self.cache.as_ref());
+        Simulated { evaluator, search: Search::default(), plan, cache, stop }
     }
 
     fn work(&self, Wanted { proposal, design }: Wanted) -> Work {
@@ -129,13 +168,17 @@ impl Guided {
         let impossible = |error| NotTaken::Failed(Failure::input(error));
         let stiffness = self.setup.evaluator.predict(&work.design).map_err(impossible)?;
         let arrived = work.check(result, &stiffness).map_err(NotTaken::Refused)?;
+        self.simulated(&NEVER).keep(&work.design, &arrived.measured);
+        let taken = self.accept(arrived).map_err(NotTaken::Failed)?;
+        self.measuring.remove(&proposal);
+        Ok(taken)
+    }
+
+    fn accept(&mut self, arrived: Arrived) -> Result<bool, Failure> {
         let progress = &mut self.progress;
         let mut see = |recorded: &_| progress.measured(recorded);
         let taken = self.course.take(&mut self.study, arrived, &mut see);
-        let failed = |error| session::hint(self.study.rescue(error), &self.study);
-        let taken = taken.map_err(|error| NotTaken::Failed(failed(error)))?;
-        self.measuring.remove(&proposal);
-        Ok(taken)
+        taken.map_err(|error| session::hint(self.study.rescue(error), &self.study))
     }
 
     /// Evaluations written, evaluations in all, and the best so far in words.
@@ -159,11 +202,11 @@ impl Guided {
         ending: Ending,
         stop: &AtomicBool,
     ) -> Result<(String, Option<Failure>), Failure> {
-        let Guided { study, setup, session, .. } = self;
-        let (pool, cache) = (session.pool()?, session.cache(setup));
-        let ended = (ending, cache.as_ref());
+        let Guided { study, setup, session, cache, .. } = self;
+        let known = cache.as_ref().map_or(0, Cache::found);
+        let (pool, ended) = (session.pool()?, (ending, cache.as_ref()));
         let record = session::conclude(study, setup, session, ended, &pool, stop)?;
-        let text = summary::words(study.dir(), &record, ending, 0, session.json);
+        let text = summary::words(study.dir(), &record, ending, known, session.json);
         Ok((text, unusable::check(study.dir(), &record, setup).err()))
     }
 

@@ -4,7 +4,7 @@ use super::on_bench;
 use super::words::{self, merge};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::firm::{Firm, REPEATS};
-use crate::study::{Recommendation, Recorded, StudyRecord};
+use crate::study::{ByRibs, Recommendation, Recorded, StudyRecord};
 use crate::units::N_PER_MM;
 use crate::verify::compare::published::{Order, order_on_bench};
 use serde_json::{Value, json};
@@ -33,6 +33,8 @@ pub fn lines(record: &StudyRecord, found: &Recommendation) -> Vec<String> {
         lines.extend(words::force(evaluation));
         lines.extend(words::drawn_text(evaluation));
     }
+    let by_ribs = found.by_ribs.iter().flat_map(|found| words::by_ribs(found));
+    lines.extend(by_ribs.map(|line| line.trim_end().to_owned()));
     lines.push(words::stiffness(&best.stiffness));
     lines.extend(walked(record, best));
     lines.extend(as_good(record, found));
@@ -169,10 +171,21 @@ fn recommended(record: &StudyRecord, found: &Recommendation) -> Value {
         "firm_positive_mm": firm_window.map(|[_, positive]| positive),
         "peak_force_n": record.measure(best, Measure::PeakForce),
     });
+    if let Some(by_ribs) = found.by_ribs {
+        merge(&mut fields, json!({"computed": computed(by_ribs)}));
+    }
     if record.config.several_tasks() {
         merge(&mut fields, json!({"tasks": record.config.tasks}));
     }
     fields
+}
+
+/// What springs computed from its ribs make of the design, task by task.
+fn computed(by_ribs: &ByRibs) -> Value {
+    match by_ribs {
+        ByRibs::Measured(tasks) => json!({ "tasks": tasks }),
+        ByRibs::Refused(why) => json!({ "refused": why }),
+    }
 }
 
 fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {

@@ -104,7 +104,9 @@ pub fn conclude(
     if ending != Ending::Interrupted && !arguments.no_confirm {
         let (evaluator, search, plan) = (&setup.evaluator, Search::Walk, &Plan::WINDOW);
         let walker = Simulated { evaluator, search, plan, cache, stop };
-        let confirmer = Confirmer { walker: &walker, evaluator, pool, stop };
+        let by_ribs = setup.by_ribs();
+        let by_ribs = by_ribs.as_ref().map(|setup| &setup.evaluator);
+        let confirmer = Confirmer { walker: &walker, by_ribs, evaluator, pool, stop };
         confirmer.confirm(study).map_err(|error| hint(error, study))?;
     }
     study.check_journal()?;

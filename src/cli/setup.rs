@@ -214,6 +214,17 @@ impl Setup {
         Ok(Setup { inputs: inputs.collect(), evaluator, uncertainty: None, measured: None, space })
     }
 
+    /// The same with springs computed from the ribs, if they are the paper's and the design space,
+    /// the tasks and the engine have a place for others.
+    pub fn by_ribs(&self) -> Option<Self> {
+        if self.evaluator.fingers.kind() != FingerModelKind::Paper {
+            return None;
+        }
+        let mut inputs = self.inputs.clone();
+        inputs.insert(FINGER.to_owned(), FINGERS.first()?.text.to_owned());
+        Setup::from_inputs(&inputs, self.evaluator.engine.name()).ok()
+    }
+
     /// The same with errors under which designs are measured.
     pub fn under(mut self, errors: Source) -> Result<Self, Failure> {
         let uncertainty = Uncertainty::parse(&errors.text, &errors.file).map_err(Failure::input)?;

@@ -3,6 +3,7 @@
 use crate::evaluation::objective::Measure;
 use crate::evaluation::{Evaluation, OffsetStep, grid_mm};
 use crate::outcome::Outcome;
+use crate::study::ByRibs;
 use crate::surrogate::Prediction;
 use crate::units::N_PER_MM;
 use serde_json::Value;
@@ -106,6 +107,26 @@ pub fn merge(fields: &mut Value, more: Value) {
     if let (Value::Object(fields), Value::Object(more)) = (fields, more) {
         fields.extend(more);
     }
+}
+
+/// What the finger tolerates with springs computed from its ribs, a line a task, each ended.
+pub fn by_ribs(found: &ByRibs) -> Vec<String> {
+    let line = |said: String| format!("from its ribs {said}\n");
+    let tasks = match found {
+        ByRibs::Refused(why) => return vec![line(why.clone())],
+        ByRibs::Measured(tasks) => tasks,
+    };
+    tasks.iter().map(|evaluation| line(tolerated(evaluation))).collect()
+}
+
+/// Range and window in one line, and from where they count.
+fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
+    if window.nominal != Outcome::Inserted {
+        return format!("none: its nominal start ends with {}", window.nominal.label());
+    }
+    let (range, low, high) = (window.range_mm(), window.negative_mm(), window.positive_mm());
+    let start = taught.map_or(String::new(), |by| format!(", start taught {:+.1}", grid_mm(by)));
+    format!("{range:.1} mm ({low:.1} to {high:+.1}{start}); --finger-model computed")
 }
 
 /// Where a taught start came to lie; `None` if it was not taught.

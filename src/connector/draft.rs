@@ -5,7 +5,8 @@ use super::round::{self, Hole};
 use crate::finger::Pad;
 use crate::input::finger::FingerModel;
 use crate::input::task::{
-    Friction, Grip, Hold, Part, Plug, Solid, StartRule, Strategy, Success, Task, geometry,
+    Friction, Grip, Hold, PadTorsion, Part, Plug, Solid, StartRule, Strategy, Success, Task,
+    geometry,
 };
 use crate::units::MM;
 use nalgebra::Vector3;
@@ -113,7 +114,8 @@ pub enum DraftError {
 /// What every drafted or imported task has in common, before its shapes are known: friction,
 /// grasp force and fingers as in the shipped tasks, or as in another task.
 pub fn blank(name: &str, like: Option<&Task>) -> Task {
-    let friction = Friction { finger_plug: 1.0, finger_torsion: 30.0 * MM, plug_socket: 0.2 };
+    let finger_torsion = PadTorsion::Points(30.0 * MM);
+    let friction = Friction { finger_plug: 1.0, finger_torsion, plug_socket: 0.2 };
     let grip = Grip {
         tcp_z: 0.0,
         shoulder_z: 0.0,

@@ -44,7 +44,7 @@ pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     for phase in &task.strategy.phases {
         let mut by = Vector3::from(phase.displacement);
         let mut short_by = None;
-        if let Ending::Touch { preload } = phase.ending {
+        if let Ending::Touch { preload, .. } = phase.ending {
             let end = at.edge.z + by.z;
             if end > 0.0 || by.z >= 0.0 {
                 short_by = Some(end);

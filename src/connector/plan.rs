@@ -11,7 +11,7 @@ use super::path;
 use super::round::stands_on_cylinder;
 use super::seat::{Seat, Seating, section};
 use crate::finger::Pad;
-use crate::input::task::{Ending, Phase, Stage, Task};
+use crate::input::task::{Ending, Phase, Sensed, Stage, Task};
 use crate::units::{DEG, MM};
 
 /// The TCP lies this far below the shoulder, m, as in the shipped tasks.
@@ -196,7 +196,13 @@ fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
             150.0,
             Ending::Tolerance(0.1 * MM),
         ),
-        phase("touch", Search, [0.0, 0.0, -TOUCH], 20.0, Ending::Touch { preload }),
+        phase(
+            "touch",
+            Search,
+            [0.0, 0.0, -TOUCH],
+            20.0,
+            Ending::Touch { preload, sensed: Sensed::FIRST },
+        ),
         phase("back", Search, [back, 0.0, 0.0], 80.0, Duration(0.02)),
         phase("front", Search, [front, 0.0, -down], 80.0, Duration(0.03)),
         phase("side", Search, [aside, -side, 0.0], 100.0, Duration(0.03)),

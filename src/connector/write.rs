@@ -1,7 +1,9 @@
 //! A task as a commented TOML file.
 
 use super::hold;
-use crate::input::task::{Ending, Hold, Part, Phase, Solid, Stage, StartRule, Task};
+use crate::input::task::{
+    Ending, Hold, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
+};
 use crate::units::{DEG, GRAM, MM};
 use nalgebra::Point3;
 use std::fmt::Write;
@@ -121,7 +123,10 @@ fn grip(out: &mut String, task: &Task) {
         },
         mm(grip.slip_limit),
         friction.finger_plug,
-        mm(friction.finger_torsion),
+        match friction.finger_torsion {
+            PadTorsion::Points(moment) => mm(moment),
+            PadTorsion::Patch => "\"patch\"".to_owned(),
+        },
         friction.plug_socket,
     );
 }
@@ -154,16 +159,23 @@ fn phase(out: &mut String, phase: &Phase) {
     let (motion, key, value) = match phase.ending {
         Ending::Tolerance(within) => ("tolerance", "tolerance_mm", mm(within)),
         Ending::Duration(rest) => ("duration", "settle_s", round(rest, 1e4)),
-        Ending::Touch { preload } => ("touch", "preload_mm", mm(preload)),
+        Ending::Touch { preload, .. } => ("touch", "preload_mm", mm(preload)),
     };
     let _ = write!(
         out,
         "[[strategy.phase]]\nname = {}\nstage = \"{stage}\"\nmove_mm = {}\nspeed_mm_per_s = {}\n\
-         motion = \"{motion}\"\n{key} = {value}\n\n",
+         motion = \"{motion}\"\n{key} = {value}\n",
         text(&phase.name),
         list(phase.displacement.iter().map(|&v| mm(v))),
         mm(phase.speed),
     );
+    if let Ending::Touch { sensed, .. } = phase.ending
+        && sensed != Sensed::FIRST
+    {
+        let _ =
+            writeln!(out, "touch_force_n = {:?}\nlatency_s = {:?}", sensed.force, sensed.latency);
+    }
+    out.push('\n');
 }
 
 /// A length in mm, to a tenth of a micrometre.

@@ -192,6 +192,26 @@ impl Evaluator {
         Ok(Evaluation { taught, ..evaluation })
     }
 
+    /// The same; if the nominal start does not insert, once more with the start taught.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn measure_or_teach(
+        &self,
+        specimen: &Specimen,
+        search: Search,
+        plan: &Plan,
+        stop: &AtomicBool,
+    ) -> Result<Evaluation, RigError> {
+        let found = self.measure(specimen, search, plan, stop)?;
+        if found.window.nominal == Outcome::Inserted {
+            return Ok(found);
+        }
+        let mut taught = specimen.clone();
+        taught.task.strategy.rule = StartRule::Taught;
+        self.measure(&taught, search, plan, stop)
+    }
+
     /// The firm part of a specimen's window, by [`firm::REPEATS`] repeats that this seed names;
     /// ends early, with a worthless result, once `stop` is set.
     ///

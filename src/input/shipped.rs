@@ -33,6 +33,9 @@ pub const TASKS: &[Shipped] = shipped! {
     "usb": "tasks/usb.toml",
 };
 
+/// Connectors as they are sold, in place of a task's published model of the same name.
+pub const AS_SOLD: &[Shipped] = shipped! { "usb": "tasks/usb_a.toml" };
+
 /// Search spaces.
 pub const SPACES: &[Shipped] = shipped! {
     "infill": "spaces/infill.toml",
@@ -45,6 +48,7 @@ pub const ROBOTS: &[Shipped] = shipped! {
     "servo": "robots/servo.toml",
     "rigid": "robots/rigid.toml",
     "ur5e": "robots/ur5e.toml",
+    "ur5e_position": "robots/ur5e_position.toml",
 };
 
 /// Printed fingers.

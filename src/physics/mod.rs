@@ -23,7 +23,7 @@ pub trait Engine: Send + Sync {
         Ok(())
     }
 
-    /// Whether a face contact resists a turn about its normal by [`crate::scene::Friction::patch`].
+    /// Whether a face contact resists a turn about its normal by [`crate::scene::Friction::torsion`].
     fn turns_with_friction(&self) -> bool {
         true
     }
@@ -52,7 +52,10 @@ pub struct Unsupported {
     pub lacking: &'static str,
 }
 
-/// Refuses springs that couple axes, and masses that depend on the direction.
+/// What an engine without [`crate::scene::Torsion::Patch`] lacks.
+const PRESSED_PATCH: &str = "torsional friction of a pressed patch";
+
+/// Refuses springs that couple axes, masses that depend on the direction, and pressed patches.
 fn refuse_coupling(engine: &dyn Engine, scene: &Scene) -> Result<(), Unsupported> {
     let refuse = |part: &str, lacking| {
         Err(Unsupported { engine: engine.version(), part: part.to_owned(), lacking })
@@ -60,6 +63,9 @@ fn refuse_coupling(engine: &dyn Engine, scene: &Scene) -> Result<(), Unsupported
     let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled(_));
     if let Some(joint) = scene.joints.iter().find(coupled) {
         return refuse(&joint.name, "springs that couple the axes of a joint");
+    }
+    if let Some(pair) = scene.patched() {
+        return refuse(&scene.bodies[pair.first.0].name, PRESSED_PATCH);
     }
     let mechanism = |body: &&Body| matches!(body.motion, Motion::Mechanism(_));
     match scene.bodies.iter().find(mechanism) {

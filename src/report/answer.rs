@@ -2,11 +2,11 @@
 //! ends it, what is as good, and how much the choice matters.
 
 use super::text::outcome;
-use crate::evaluation::Window;
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::firm::{Firm, REPEATS};
+use crate::evaluation::{Evaluation, Window, grid_mm};
 use crate::outcome::Outcome;
-use crate::study::{Recommendation, Recorded, StudyRecord};
+use crate::study::{ByRibs, Recommendation, Recorded, StudyRecord};
 use crate::units::N_PER_MM;
 use maud::{Markup, html};
 
@@ -79,6 +79,7 @@ fn figures(record: &StudyRecord, best: &Recorded, found: Option<&Recommendation>
             });
         }
     }
+    figures.extend(found.and_then(|found| found.by_ribs).map(|found| by_ribs(record, found)));
     let stiffness = &best.stiffness;
     let source = if stiffness.inside_hull() { "interpolated between" } else { "extrapolated from" };
     figures.push(Figure {
@@ -90,6 +91,34 @@ fn figures(record: &StudyRecord, best: &Recorded, found: Option<&Recommendation>
         ),
     });
     figures
+}
+
+/// What springs computed from its ribs make of the finger, beside those of the paper.
+fn by_ribs(record: &StudyRecord, found: &ByRibs) -> Figure {
+    let name = "range with springs from its ribs".to_owned();
+    let tasks = match found {
+        ByRibs::Refused(why) => {
+            return Figure { name, value: "none".to_owned(), note: why.clone() };
+        }
+        ByRibs::Measured(tasks) => tasks,
+    };
+    let ranges: Vec<f64> = tasks.iter().map(|task| task.window.range_mm()).collect();
+    let window = |task: &Evaluation| {
+        let (low, high) = (task.window.negative_mm(), task.window.positive_mm());
+        let start = task
+            .taught
+            .map_or(String::new(), |by| format!(", start taught {:+.1} mm", grid_mm(by)));
+        format!("{low:+.1} to {high:+.1} mm{start}: {}", ends(&task.window))
+    };
+    let windows: Vec<String> = tasks.iter().map(window).collect();
+    Figure {
+        name,
+        value: format!("{:.1} mm", record.aggregated(Measure::Range, &ranges)),
+        note: format!(
+            "{}; the ranges beside it have the paper's one remote centre",
+            windows.join("; ")
+        ),
+    }
 }
 
 /// Why a wider window than the recommended one's is not recommended.

@@ -41,7 +41,9 @@ pub use line::{decode, encode};
 pub use on_bench::{BenchEffort, BenchFinger, OnBench, Trust};
 pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
 pub use recommendation::Recommendation;
-pub use record::{Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume};
+pub use record::{
+    ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume,
+};
 pub use runner::Runner;
 pub use seal::strip_times;
 pub use simulated::Simulated;

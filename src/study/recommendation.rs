@@ -1,6 +1,6 @@
 //! Which design of a study is recommended, how firm that is, and how much it matters.
 
-use super::record::{Recorded, StudyRecord};
+use super::record::{ByRibs, Recorded, StudyRecord};
 use super::rule::Rule;
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::firm::Firm;
@@ -13,6 +13,8 @@ pub struct Recommendation<'a> {
     pub recorded: &'a Recorded,
     /// What is firm of its windows, by task; nothing if the study did not repeat them.
     pub firm: Option<&'a [Firm]>,
+    /// What it does with springs computed from its ribs, if that was measured.
+    pub by_ribs: Option<&'a ByRibs>,
     /// The designs whose search found as much as that of the recommended one, with it, but for those
     /// whose repeats found less; by evaluation.
     pub equivalent: Vec<&'a Recorded>,
@@ -27,7 +29,9 @@ impl StudyRecord {
             Some(walked) => (&walked.recorded, Some(&walked.firm[..])),
             None => (self.best_searched()?, None),
         };
-        Some(Recommendation { recorded, firm, equivalent: self.equivalent(recorded.index) })
+        let by_ribs = self.walked.first().and_then(|walked| walked.by_ribs.as_ref());
+        let equivalent = self.equivalent(recorded.index);
+        Some(Recommendation { recorded, firm, by_ribs, equivalent })
     }
 
     /// The recommended design, or of a front its first.

@@ -10,6 +10,7 @@ use crate::evaluation::robustness::firm::Firm;
 use crate::input::finger_file::FingerFile;
 use crate::input::space::Design;
 use crate::surrogate::Prediction;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A study read from its folder: all that a report may know of it.
@@ -38,6 +39,18 @@ pub struct Walked {
     pub recorded: Recorded,
     /// What is left of each window when friction, start and step vary a little.
     pub firm: Vec<Firm>,
+    /// What the same finger does with springs computed from its ribs, where those were others.
+    pub by_ribs: Option<ByRibs>,
+}
+
+/// A design of the paper's springs, measured once more with those that its ribs give it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ByRibs {
+    /// What the search found on each task.
+    Measured(Vec<Evaluation>),
+    /// Why it cannot be measured.
+    Refused(String),
 }
 
 /// One evaluation of a study.

@@ -1,6 +1,6 @@
 //! What a study measures a design with: the evaluator, a cache, and a flag that stops it.
 
-use super::cache::Cache;
+use super::cache::{Cache, Key};
 use crate::evaluation::Evaluation;
 use crate::evaluation::evaluator::{Evaluate, Evaluator, Measured, Specimen};
 use crate::evaluation::robustness::Plan;
@@ -39,9 +39,36 @@ impl Evaluate for Simulated<'_> {
 }
 
 impl Simulated<'_> {
+    /// What the cache knows of a design; `None` unless that is all. Nothing is simulated.
+    pub fn known(&self, design: &Design) -> Option<Measured> {
+        let cache = self.cache?;
+        let stiffness = self.evaluator.predict(design).ok()?;
+        let on = |template| {
+            let specimen = self.evaluator.specimen(template, design, stiffness).ok()?;
+            cache.get(&self.key(cache, &specimen))
+        };
+        let tasks: Vec<_> = self.evaluator.templates.iter().map(on).collect::<Option<_>>()?;
+        let cached = vec![true; tasks.len()];
+        Some(Measured { stiffness, tasks, cached })
+    }
+
+    /// Keeps in the cache what was measured of a design elsewhere.
+    pub fn keep(&self, design: &Design, measured: &Measured) {
+        let Some(cache) = self.cache else { return };
+        for (template, evaluation) in self.evaluator.templates.iter().zip(&measured.tasks) {
+            if let Ok(specimen) = self.evaluator.specimen(template, design, measured.stiffness) {
+                cache.put(&self.key(cache, &specimen), evaluation);
+            }
+        }
+    }
+
+    fn key(&self, cache: &Cache, specimen: &Specimen) -> Key {
+        cache.key(&(specimen, self.search, self.plan))
+    }
+
     /// The evaluation, and whether it was in the cache.
     fn measure(&self, specimen: &Specimen) -> Result<(Evaluation, bool), RigError> {
-        let keep = self.cache.map(|cache| (cache, cache.key(&(specimen, self.search, self.plan))));
+        let keep = self.cache.map(|cache| (cache, self.key(cache, specimen)));
         if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
             return Ok((found, true));
         }

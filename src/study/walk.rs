@@ -3,13 +3,16 @@
 use super::error::StudyError;
 use super::folder::{Study, write_own_file};
 use super::provenance::Provenance;
-use super::record::Recorded;
+use super::record::{ByRibs, Recorded};
 use super::rule::Rule;
 use super::walked::{REPEATED, Row, WALK_FILE, WALKED, WalkFile, WalkedRow};
 use crate::evaluation::Evaluation;
 use crate::evaluation::evaluator::{Evaluate, Evaluator};
+use crate::evaluation::robustness::Plan;
 use crate::evaluation::robustness::firm::Firm;
 use crate::evaluation::template::{Impossible, Template};
+use crate::evaluation::tolerance::Search;
+use crate::input::space::Design;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -20,6 +23,8 @@ use std::sync::{Mutex, PoisonError};
 pub struct Confirmer<'a> {
     /// Walks a design.
     pub walker: &'a dyn Evaluate,
+    /// Measures the computed finger of a design, where the study's fingers are the paper's.
+    pub by_ribs: Option<&'a Evaluator>,
     /// Repeats its ends.
     pub evaluator: &'a Evaluator,
     /// Does the measuring.
@@ -85,7 +90,19 @@ impl Confirmer<'_> {
             windows.map(|(windows, firm)| same(windows).then_some(*firm)).collect();
         walked.tasks.clone_from(&tasks);
         let firm = self.firm(&walked, &as_before, seed)?;
-        Ok(Row { walked: Some(WalkedRow { tasks, firm }), ..row })
+        let computed = self.by_ribs.map(|evaluator| self.computed(evaluator, &searched.design));
+        Ok(Row { walked: Some(WalkedRow { tasks, firm, computed }), ..row })
+    }
+
+    /// The windows of a design with springs computed from its ribs.
+    fn computed(&self, evaluator: &Evaluator, design: &Design) -> ByRibs {
+        let measured = evaluator.evaluate_by(design, |specimen| {
+            evaluator.measure_or_teach(specimen, Search::default(), &Plan::WINDOW, self.stop)
+        });
+        match measured {
+            Ok(found) => ByRibs::Measured(found.tasks),
+            Err(why) => ByRibs::Refused(why.to_string()),
+        }
     }
 
     /// The firm windows of a design on all tasks, those that are known left out.

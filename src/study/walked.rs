@@ -9,12 +9,15 @@
 //! 2. the first three of these, by the rule on their firm windows, are walked; where that gives
 //!    another window, its ends are repeated, too.
 //!
-//! The first of the three, by the rule on the firm windows that are left, is recommended. What
+//! The first of the three, by the rule on the firm windows that are left, is recommended. Each of
+//! them is also measured once with the springs that its ribs give it, if the study has the paper's:
+//! that decides nothing, it is said beside.
+//! What
 //! this finds is kept beside the journal, in `walk.json`, and is no part of the budget.
 
 use super::fits;
 use super::provenance::Provenance;
-use super::record::{Recorded, Walked};
+use super::record::{ByRibs, Recorded, Walked};
 use super::rule::{Rule, Standing};
 use crate::evaluation::robustness::firm::Firm;
 use crate::evaluation::{Evaluation, Window};
@@ -57,6 +60,9 @@ pub(super) struct WalkedRow {
     pub tasks: Vec<Evaluation>,
     /// What the repeats found on each task at the ends of the walk.
     pub firm: Vec<Firm>,
+    /// What the computed finger does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub computed: Option<ByRibs>,
 }
 
 impl WalkFile {
@@ -66,9 +72,19 @@ impl WalkFile {
         let text = files::read_own(&dir.join(WALK_FILE), LARGEST_OWN).ok()?;
         let file: WalkFile = serde_json::from_str(&text).ok()?;
         let walked = file.designs.iter().filter_map(|row| row.walked.as_ref());
-        let plausible = walked.flat_map(|walked| &walked.tasks).all(fits::plausible);
+        let plausible = walked.flat_map(WalkedRow::evaluations).all(fits::plausible);
         let same = provenance.is_some_and(|own| own.simulates_like(&file.provenance));
         (same && plausible).then_some(file)
+    }
+}
+
+impl WalkedRow {
+    fn evaluations(&self) -> impl Iterator<Item = &Evaluation> {
+        let by_ribs = match &self.computed {
+            Some(ByRibs::Measured(tasks)) => tasks.as_slice(),
+            Some(ByRibs::Refused(_)) | None => &[],
+        };
+        self.tasks.iter().chain(by_ribs)
     }
 }
 
@@ -127,7 +143,8 @@ fn ranked(rule: &Rule, current: &[Recorded], rows: &[Row]) -> Confirmed {
             Some(found) => {
                 let recorded = with_windows(rule, before, &found.tasks);
                 let standing = rule.firmly(&recorded, &found.firm);
-                walked.push((standing.clone(), Walked { recorded, firm: found.firm.clone() }));
+                let (firm, by_ribs) = (found.firm.clone(), found.computed.clone());
+                walked.push((standing.clone(), Walked { recorded, firm, by_ribs }));
                 standing
             }
         };

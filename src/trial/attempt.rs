@@ -10,7 +10,7 @@ use super::watch::Watch;
 use super::{PhaseEnd, Poses, Trial};
 use crate::input::robot::Mounted;
 use crate::input::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
-use crate::input::task::{Ending, Hold, Phase, Stage, Task};
+use crate::input::task::{Ending, Hold, Phase, Sensed, Stage, Task};
 use crate::outcome::Outcome;
 use crate::physics::{ContactPoint, Diverged, World};
 use crate::scene::{BodyId, Pose};
@@ -23,8 +23,6 @@ pub mod driven;
 
 /// Rest after a move that has none of its own, s.
 const REST: f64 = 0.03;
-/// First contact, N.
-const TOUCH_FORCE: f64 = 0.05;
 
 /// Why an attempt ends early.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -178,7 +176,7 @@ impl<'a> Attempt<'a> {
         let end = match phase.ending {
             Ending::Duration(rest) => self.follow(motion, rest.max(self.rest_time())),
             Ending::Tolerance(within) => self.reach(motion, within),
-            Ending::Touch { preload } => self.touch(motion, preload, phase.speed),
+            Ending::Touch { preload, sensed } => self.touch(motion, preload, sensed, phase.speed),
         };
         self.end_phase(&phase.name);
         end
@@ -215,17 +213,27 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Moves until the plug touches the socket, then on by the preload at this speed, m/s.
-    fn touch(&mut self, motion: Move, preload: f64, speed: f64) -> Result<(), Stop> {
+    /// Moves until the plug is felt to touch the socket, then on by the preload at this speed, m/s.
+    fn touch(
+        &mut self,
+        motion: Move,
+        preload: f64,
+        sensed: Sensed,
+        speed: f64,
+    ) -> Result<(), Stop> {
         let (start, end) = (motion.at(0.0), motion.at(f64::INFINITY));
         // A robot that trails its command touches after it has ended.
         let steps = self.steps(motion.duration() + self.robot.settling());
+        let mut left = self.steps(sensed.latency);
+        let mut felt = false;
         for i in 1..=steps {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
-            if self.contact_force() > TOUCH_FORCE {
+            felt = felt || self.contact_force() > sensed.force;
+            if felt && left == 0 {
                 break;
             }
+            left -= usize::from(felt);
         }
         let along = (end.position - start.position).normalize();
         // From where the TCP is, not from its command: a soft flange lags behind,

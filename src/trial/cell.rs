@@ -6,10 +6,10 @@
 use crate::finger::{self, Finger};
 use crate::input::arm::Reduced;
 use crate::input::robot::{Flange, Mounted, Servo};
-use crate::input::task::{Part, Task, geometry};
+use crate::input::task::{PadTorsion, Part, Task, geometry};
 use crate::scene::{
     Body, BodyId, Friction, Geom, Inertia, Joint, JointAxis, JointId, Motion, Pose, Scene, Shape,
-    Spring, Springs,
+    Spring, Springs, Torsion,
 };
 use crate::units::MM;
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
@@ -173,10 +173,13 @@ fn servo_flange(servo: &Servo) -> (Motion, Springs) {
 /// Friction of a finger's soft pad on the plug.
 fn pad_friction(task: &Task) -> Friction {
     let coefficient = task.friction.finger_plug;
-    let patch = task.friction.finger_torsion / coefficient.max(f64::MIN_POSITIVE);
-    // Without friction there is no torsional friction, whatever its radius.
-    let patch = if coefficient > 0.0 { patch } else { 0.0 };
-    Friction { coefficient, patch }
+    let torsion = match task.friction.finger_torsion {
+        PadTorsion::Patch => Torsion::Patch,
+        PadTorsion::Points(moment) if coefficient > 0.0 => Torsion::Radius(moment / coefficient),
+        // Without friction there is no torsional friction, whatever its radius.
+        PadTorsion::Points(_) => Torsion::Radius(0.0),
+    };
+    Friction { coefficient, torsion }
 }
 
 fn plug_body(task: &Task, pose: Pose) -> Body {

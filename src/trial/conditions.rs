@@ -1,7 +1,7 @@
 //! What may differ between two trials of the same finger at the same offset.
 
 use super::cell::WorkCell;
-use crate::input::task::{Part, Solid, Task};
+use crate::input::task::{PadTorsion, Part, Solid, Task};
 use crate::scene::Pose;
 
 /// Deviations of the world from the task file; SI units.
@@ -37,7 +37,9 @@ impl Conditions {
     pub fn task(&self, nominal: &Task) -> Task {
         let mut task = nominal.clone();
         task.friction.finger_plug *= self.friction_finger;
-        task.friction.finger_torsion *= self.friction_finger;
+        if let PadTorsion::Points(moment) = &mut task.friction.finger_torsion {
+            *moment *= self.friction_finger;
+        }
         task.friction.plug_socket *= self.friction_socket;
         let half = self.clearance / 2.0;
         for part in &mut task.socket {

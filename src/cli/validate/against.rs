@@ -9,8 +9,8 @@ use crate::finger::computed::{Kept, Touching};
 use crate::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
 use crate::input::finger_file::FingerFile;
 use crate::input::robot::Robot;
-use crate::input::shipped::FINGERS;
-use crate::input::task::Task;
+use crate::input::shipped::{AS_SOLD, FINGERS};
+use crate::input::task::{PadTorsion, Task};
 use crate::report::validation::calibrated_svg;
 use crate::study::write_file;
 use crate::verify::compare::fingers::Windows;
@@ -18,7 +18,10 @@ use crate::verify::compare::published::{Model, ModelTables, TaskTable, models_js
 use serde_json::json;
 
 /// Models of ours, in the order of the output.
-const OURS: [Model; 3] = [Model::Paper, Model::ComputedPad, Model::ComputedPadAndRoof];
+const OURS: [Model; 4] =
+    [Model::Paper, Model::ComputedPad, Model::ComputedPadAndRoof, Model::Mechanisms];
+/// The robot of `mechanisms`.
+const UNDER_POSITION_CONTROL: &str = "ur5e_position";
 /// Those that `--variants` adds.
 const VARIANTS: [Model; 4] =
     [Model::PadInPlane, Model::PadAndRoofInPlane, Model::PadCoupled, Model::PadAndRoofCoupled];
@@ -39,7 +42,13 @@ pub fn run(
         None => Vec::new(),
     };
     let variants = if arguments.variants { &VARIANTS[..] } else { &[] };
+    let real = setup::robot(UNDER_POSITION_CONTROL)?;
+    let bench = tasks.iter().map(on_the_bench).collect::<Result<Vec<_>, _>>()?;
     let measured = OURS.iter().chain(variants).map(|&model| {
+        let (tasks, robot) = match model {
+            Model::Mechanisms => (&bench[..], &real),
+            _ => (tasks, robot),
+        };
         let phases = if model == Model::Paper { 1 } else { arguments.phases };
         let tables = (0..phases).map(|phase| {
             let share = f64::from(phase) / f64::from(phases);
@@ -66,6 +75,7 @@ pub fn run(
     let text = format!(
         "our ranges and the published simulation's beside the published experiments\n\
          robot {robot}, engine {engine}, {}{phases}\n\
+         mechanisms: robot {UNDER_POSITION_CONTROL}, pads by their pressed patch, usb as sold\n\
          taught: starts moved to where the finger inserts, since the task's own does not\n\
          {fitted}\n\n{table}",
         search_name(search),
@@ -79,6 +89,18 @@ pub fn run(
     let agreement = models_json(&models, &calibrated);
     let json = json!({ "robot": robot, "engine": engine, "agreement": agreement });
     if arguments.json { print_json(&json) } else { print(&text) }
+}
+
+/// A task as `mechanisms` has it, under the name by which its experiments are published.
+fn on_the_bench(task: &Task) -> Result<Task, Failure> {
+    let mut real = match AS_SOLD.iter().find(|sold| sold.name == task.name) {
+        Some(sold) => Task::parse(sold.text, sold.file).map_err(Failure::input)?,
+        None => task.clone(),
+    };
+    real.name.clone_from(&task.name);
+    real.strategy.rule = task.strategy.rule;
+    real.friction.finger_torsion = PadTorsion::Patch;
+    Ok(real)
 }
 
 /// One entry for each rib phase: the tables of the tasks, and the starts taught for them.
@@ -103,7 +125,7 @@ fn fingers(model: Model, file: &str, phase_share: f64) -> Result<FingerSource, F
     let (touching, kept) = match model {
         Model::Published | Model::Paper => return Ok(FingerSource::Paper),
         Model::ComputedPad => (Touching::Pad, kept(false, true)),
-        Model::ComputedPadAndRoof => (Touching::PadAndRoof, kept(false, true)),
+        Model::ComputedPadAndRoof | Model::Mechanisms => (Touching::PadAndRoof, kept(false, true)),
         Model::PadInPlane => (Touching::Pad, kept(false, false)),
         Model::PadAndRoofInPlane => (Touching::PadAndRoof, kept(false, false)),
         Model::PadCoupled => (Touching::Pad, kept(true, true)),

@@ -61,7 +61,7 @@ fn lengths(case: &Case) -> Vec<Length> {
             Ending::Tolerance(value) => {
                 all.push(length(&key("tolerance_mm"), value, [0.005, 10.0]));
             }
-            Ending::Touch { preload } => {
+            Ending::Touch { preload, .. } => {
                 all.push(length(&key("preload_mm"), preload, [0.01, 10.0]));
             }
             Ending::Duration(_) => {}

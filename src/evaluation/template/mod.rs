@@ -184,7 +184,7 @@ fn checked(key: &str, value: f64) -> Result<f64, InputError> {
 mod tests {
     use super::*;
     use crate::input::shipped::TASKS;
-    use crate::input::task::Ending;
+    use crate::input::task::{Ending, Sensed};
     use crate::units::DEG;
     use std::collections::BTreeMap;
 
@@ -219,7 +219,8 @@ mod tests {
         .unwrap();
         let mut expected = usb().task().clone();
         expected.strategy.tilt = 8.0 * DEG;
-        expected.strategy.phases[1].ending = Ending::Touch { preload: 0.5 * MM };
+        expected.strategy.phases[1].ending =
+            Ending::Touch { preload: 0.5 * MM, sensed: Sensed::FIRST };
         expected.strategy.phases[4].displacement[1] = -9.0 * MM;
         expected.grip.force = 7.0;
         let crate::input::task::Solid::Box { min, .. } = &mut expected.plug.parts[0].solid else {

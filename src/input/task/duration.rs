@@ -22,8 +22,8 @@ impl Phase {
         let after = match self.ending {
             Ending::Duration(rest) => rest.max(settling),
             Ending::Tolerance(_) => TOLERANCE_TIMEOUT_S,
-            Ending::Touch { preload } => {
-                (preload / self.speed).max(SHORTEST_MOVE_S) + 2.0 * settling
+            Ending::Touch { preload, sensed } => {
+                (preload / self.speed).max(SHORTEST_MOVE_S) + sensed.latency + 2.0 * settling
             }
         };
         (length / self.speed).max(SHORTEST_MOVE_S) + after

@@ -88,11 +88,19 @@ pub enum Hold {
 pub struct Friction {
     /// Finger on plug.
     pub finger_plug: f64,
-    /// Torsional friction of finger on plug, m: moment about the normal per
-    /// normal force, of the soft pad's pressed patch.
-    pub finger_torsion: f64,
+    /// How a pad resists a turn of the plug about the pad's normal.
+    pub finger_torsion: PadTorsion,
     /// Plug on socket, unless a socket part has its own.
     pub plug_socket: f64,
+}
+
+/// Friction of a pad against a turn about its normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PadTorsion {
+    /// So much moment per normal force at each contact point, m, beside the points' own levers.
+    Points(f64),
+    /// That of the pressed patch, and no more.
+    Patch,
 }
 
 /// The search strategy: the start, and the moves from there.
@@ -140,9 +148,25 @@ pub enum Ending {
     /// When the plug touches the socket: the command then goes on by this
     /// distance along the move (the preload), m.
     Touch {
-        /// Distance beyond first contact, m.
+        /// Distance beyond where the move was stopped, m.
         preload: f64,
+        /// What tells the touch.
+        sensed: Sensed,
     },
+}
+
+/// How a touch is felt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensed {
+    /// Sum of the normal forces from which on it is one, N.
+    pub force: f64,
+    /// How long the move goes on then, s.
+    pub latency: f64,
+}
+
+impl Sensed {
+    /// At first contact, at once.
+    pub const FIRST: Sensed = Sensed { force: 0.05, latency: 0.0 };
 }
 
 /// One move of the TCP.

@@ -2,7 +2,10 @@
 
 use super::geometry::{self, Part, Solid};
 use super::raw_finger::RawFinger;
-use super::{Ending, Friction, Grip, Hold, Phase, Plug, Stage, StartRule, Strategy, Success, Task};
+use super::{
+    Ending, Friction, Grip, Hold, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
+    Success, Task,
+};
 use crate::input::{Check, InputError, read, shown};
 use crate::units::{DEG, GRAM, MM};
 use nalgebra::{Point3, Vector3};
@@ -94,8 +97,21 @@ struct RawGrip {
 #[serde(deny_unknown_fields)]
 struct RawFriction {
     finger_plug: f64,
-    finger_plug_torsion_mm: f64,
+    finger_plug_torsion_mm: RawTorsion,
     plug_socket: f64,
+}
+
+#[derive(Deserialize, Clone, Copy)]
+#[serde(untagged, expecting = "a number of mm, or \"patch\"")]
+enum RawTorsion {
+    Points(f64),
+    Word(RawTorsionWord),
+}
+
+#[derive(Deserialize, Clone, Copy)]
+#[serde(rename_all = "kebab-case")]
+enum RawTorsionWord {
+    Patch,
 }
 
 #[derive(Deserialize)]
@@ -119,6 +135,8 @@ struct RawPhase {
     tolerance_mm: Option<f64>,
     settle_s: Option<f64>,
     preload_mm: Option<f64>,
+    touch_force_n: Option<f64>,
+    latency_s: Option<f64>,
 }
 
 #[derive(Deserialize, Clone, Copy)]
@@ -224,9 +242,19 @@ impl Check<'_> {
     }
 
     fn frictions(&self, raw: &RawFriction) -> Result<Friction, InputError> {
-        let key = "friction.finger_plug_torsion_mm";
-        let torsion = self.not_negative(key, raw.finger_plug_torsion_mm)?;
         let finger_plug = self.friction("friction.finger_plug", raw.finger_plug)?;
+        let finger_torsion = match raw.finger_plug_torsion_mm {
+            RawTorsion::Points(mm) => PadTorsion::Points(self.torsion(mm, finger_plug)?),
+            RawTorsion::Word(RawTorsionWord::Patch) => PadTorsion::Patch,
+        };
+        let plug_socket = self.friction("friction.plug_socket", raw.plug_socket)?;
+        Ok(Friction { finger_plug, finger_torsion, plug_socket })
+    }
+
+    /// Moment of a contact point per normal force, m.
+    fn torsion(&self, mm: f64, finger_plug: f64) -> Result<f64, InputError> {
+        let key = "friction.finger_plug_torsion_mm";
+        let torsion = self.not_negative(key, mm)?;
         // The moment is that of the friction at the edge of the pressed patch.
         if torsion > LARGEST_PATCH_MM * finger_plug {
             let problem = format!(
@@ -238,8 +266,7 @@ impl Check<'_> {
             );
             return self.fail(key, problem);
         }
-        let plug_socket = self.friction("friction.plug_socket", raw.plug_socket)?;
-        Ok(Friction { finger_plug, finger_torsion: torsion * MM, plug_socket })
+        Ok(torsion * MM)
     }
 
     fn span(&self, key: &str, span: [f64; 2]) -> Result<[f64; 2], InputError> {
@@ -409,6 +436,7 @@ impl Check<'_> {
         }
         let (field, value, _) = given[wanted];
         let value = self.positive(&at(field), value.unwrap_or(f64::NAN))?;
+        let sensed = self.sensed(raw)?;
         Ok(Phase {
             name: raw.name.clone(),
             stage: match raw.stage {
@@ -421,8 +449,24 @@ impl Check<'_> {
             ending: match raw.motion {
                 RawMotion::Tolerance => Ending::Tolerance(value * MM),
                 RawMotion::Duration => Ending::Duration(value),
-                RawMotion::Touch => Ending::Touch { preload: value * MM },
+                RawMotion::Touch => Ending::Touch { preload: value * MM, sensed },
             },
+        })
+    }
+
+    /// How a touch is felt.
+    fn sensed(&self, raw: &RawPhase) -> Result<Sensed, InputError> {
+        let at = |field: &str| format!("strategy.phase \"{}\" {field}", raw.name);
+        for (field, value) in [("touch_force_n", raw.touch_force_n), ("latency_s", raw.latency_s)] {
+            if value.is_some() && !matches!(raw.motion, RawMotion::Touch) {
+                return self.fail(&at(field), "goes only with motion = \"touch\"");
+            }
+        }
+        let force = raw.touch_force_n.unwrap_or(Sensed::FIRST.force);
+        let latency = raw.latency_s.unwrap_or(Sensed::FIRST.latency);
+        Ok(Sensed {
+            force: self.positive(&at("touch_force_n"), force)?,
+            latency: self.not_negative(&at("latency_s"), latency)?,
         })
     }
 }

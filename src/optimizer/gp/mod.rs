@@ -18,10 +18,13 @@ mod fit;
 mod kernel;
 mod lbfgs;
 mod likelihood;
+mod local_search;
 mod model;
+mod neighbours;
 mod optimizer;
 mod search;
 mod trained;
+mod training;
 mod warp;
 
 pub use acquisition::{log_expected_improvement, log_expected_volume, log_h, log_normal_cdf};

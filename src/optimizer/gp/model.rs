@@ -43,14 +43,10 @@ impl Gp {
         theta: Hyperparameters,
     ) -> Option<Self> {
         let signal = libm::exp(theta.log_signal);
-        let scaled: Vec<Vec<f64>> = x.iter().map(|p| theta.scale(p)).collect();
-        let axes = theta.log_length.len();
-        let columns: Vec<Vec<f64>> =
-            (0..axes).map(|a| scaled.iter().map(|p| p[a]).collect()).collect();
-        let mut covariance = DMatrix::zeros(y.len(), y.len());
-        for (mut column, point) in covariance.column_iter_mut().zip(&scaled) {
-            column.copy_from(&covariances(&distances2(&columns, point), signal));
-        }
+        let inverse_length: Vec<f64> = theta.log_length.iter().map(|l| libm::exp(-l)).collect();
+        let scaled = |(a, i): (usize, &f64)| x.iter().map(|p| p[a] * i).collect();
+        let columns: Vec<Vec<f64>> = inverse_length.iter().enumerate().map(scaled).collect();
+        let covariance = lower_covariance(&columns, signal, y.len());
         let mut noise = noise_floor + libm::exp(theta.log_noise);
         let y = DVector::from_column_slice(y);
         for _ in 0..8 {
@@ -60,7 +56,6 @@ impl Gp {
                 let constant = ConstantMean::new(&factor);
                 let (mean, alpha) = constant.residual(&factor, &y);
                 let finite = mean.is_finite() && alpha.iter().all(|a| a.is_finite());
-                let inverse_length = theta.log_length.iter().map(|l| libm::exp(-l)).collect();
                 return finite.then_some(Gp {
                     theta,
                     inverse_length,
@@ -174,8 +169,22 @@ impl Gp {
     }
 }
 
+/// The lower triangle of the covariances of scaled points, zeros above.
+fn lower_covariance(columns: &[Vec<f64>], signal: f64, n: usize) -> DMatrix<f64> {
+    let mut covariance = DMatrix::zeros(n, n);
+    for (j, column) in covariance.as_mut_slice().chunks_exact_mut(n.max(1)).enumerate() {
+        let lower = &mut column[j..];
+        for axis in columns {
+            let x = axis[j];
+            lower.iter_mut().zip(&axis[j..]).for_each(|(r2, c)| *r2 += (c - x) * (c - x));
+        }
+        lower.iter_mut().for_each(|r2| *r2 = signal * matern52(*r2));
+    }
+    covariance
+}
+
 /// Squared distances of a scaled point from the observations.
-fn distances2(columns: &[Vec<f64>], scaled: &[f64]) -> Vec<f64> {
+pub(super) fn distances2(columns: &[Vec<f64>], scaled: &[f64]) -> Vec<f64> {
     let mut r2 = vec![0.0; columns.first().map_or(0, Vec::len)];
     for (column, x) in columns.iter().zip(scaled) {
         r2.iter_mut().zip(column).for_each(|(r2, c)| *r2 += (c - x) * (c - x));

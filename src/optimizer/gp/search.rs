@@ -21,9 +21,9 @@ const COST_OF_SLOPE: usize = 3;
 /// Most of them from one start.
 const MOST_SLOPES: usize = 40;
 
-/// One search for the best unseen point.
-pub(super) struct Search<'a> {
-    pub trained: &'a Trained,
+/// Where to search.
+#[derive(Clone, Copy)]
+pub(super) struct Room<'a> {
     pub proposed: &'a Proposed,
     /// Axes with more than one level: the model's axes.
     pub free: &'a [usize],
@@ -33,41 +33,33 @@ pub(super) struct Search<'a> {
     pub seed: u64,
 }
 
+/// One search for the best unseen point.
+pub(super) struct Search<'a> {
+    pub trained: &'a Trained,
+    pub room: Room<'a>,
+}
+
+/// The values that were computed.
+pub(super) type Memory = BTreeMap<GridPoint, f64>;
+
 impl Search<'_> {
     /// The unseen grid point found with the largest acquisition; `None` if no unseen point
     /// was met or none has a finite one.
     pub fn maximise(&self) -> Option<GridPoint> {
-        let (size, known) = (self.grid().size(), self.trained.len() * self.trained.models());
+        let (size, known) = (self.room.grid().size(), self.trained.len() * self.trained.models());
         if size <= EXHAUSTIVE && size.saturating_mul(known as u64) <= EXHAUSTIVE_WORK {
             return self.exhaustive();
         }
         self.sampled()
     }
 
-    fn grid(&self) -> &Grid {
-        self.proposed.grid()
-    }
-
-    /// The model's coordinates of a point.
-    fn unit(&self, point: &GridPoint) -> Vec<f64> {
-        let unit = self.grid().unit(point);
-        self.free.iter().map(|&a| unit[a]).collect()
-    }
-
     /// Every unseen point, exactly: log expected improvement grows with the variance, so a bound
     /// of the variance bounds it, and constraints only take away from it. Points are taken by falling bound until the bound is
     /// below the best found, and few need the triangular solve.
     fn exhaustive(&self) -> Option<GridPoint> {
-        let mut bounds: Vec<(f64, GridPoint)> = Vec::new();
-        let mut point = GridPoint(vec![0; self.grid().dimension()]);
-        loop {
-            if !self.proposed.contains(&point) {
-                bounds.push((self.trained.bound(&self.unit(&point)), point.clone()));
-            }
-            if !advance(&mut point, self.grid().levels()) {
-                break;
-            }
-        }
+        let unseen = self.room.every_point().filter(|point| !self.room.proposed.contains(point));
+        let bound = |point: GridPoint| (self.trained.bound(&self.room.unit(&point)), point);
+        let mut bounds: Vec<(f64, GridPoint)> = unseen.map(bound).collect();
         // Equal bounds stay in lexicographic order: the sort is stable.
         bounds.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut best: Option<(f64, GridPoint)> = None;
@@ -76,7 +68,7 @@ impl Search<'_> {
             if bound <= record {
                 break;
             }
-            let value = self.trained.acquisition(&self.unit(&point));
+            let value = self.trained.acquisition(&self.room.unit(&point));
             if value > record {
                 best = Some((value, point));
             }
@@ -90,10 +82,8 @@ impl Search<'_> {
         let (n, models) = (self.trained.len(), self.trained.models().max(1));
         // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
         let budget = (6_000_000 / models / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
-        let mut memory: BTreeMap<GridPoint, f64> = BTreeMap::new();
-        let mut candidates = self.candidates(budget / 3);
-        candidates.sort();
-        candidates.dedup();
+        let mut memory = Memory::new();
+        let candidates = self.room.candidates(budget / 3);
         let value = |point| (self.value(&point, &mut memory), point);
         let mut ranked: Vec<(f64, GridPoint)> = candidates.into_iter().map(value).collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -103,26 +93,101 @@ impl Search<'_> {
             let top = self.ascend(&point, (share / 2 / COST_OF_SLOPE).min(MOST_SLOPES));
             self.step_uphill(top, share / 2, &mut memory);
         }
-        let unseen = memory.into_iter().filter(|(p, _)| !self.proposed.contains(p));
-        let best = unseen.filter(|(_, v)| *v > f64::NEG_INFINITY);
-        best.reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(point, _)| point)
+        self.room.best_unseen(memory).map(|(point, _)| point)
     }
 
-    /// The grid point nearest to where L-BFGS ends.
+    /// The grid point nearest to where L-BFGS ends within the cube.
     fn ascend(&self, from: &GridPoint, evaluations: usize) -> GridPoint {
-        let axes = self.free.len();
+        let axes = self.room.free.len();
         let limits = Limits { low: &vec![0.0; axes], high: &vec![1.0; axes], evaluations };
+        self.ascend_within(from, &limits)
+    }
+
+    /// The grid point nearest to where L-BFGS ends within a box.
+    pub(super) fn ascend_within(&self, from: &GridPoint, limits: &Limits) -> GridPoint {
         let negated = |x: &[f64]| {
             let (value, slope) = self.trained.sloped_acquisition(x)?;
             Some((-value, slope.into_iter().map(|g| -g).collect()))
         };
-        let Some((top, _)) = minimise(negated, &self.unit(from), &limits) else {
+        let Some((top, _)) = minimise(negated, &self.room.unit(from), limits) else {
             return from.clone();
         };
-        self.grid().folded(&top)
+        self.room.grid().folded(&top)
     }
 
-    fn candidates(&self, count: usize) -> Vec<GridPoint> {
+    pub fn value(&self, point: &GridPoint, memory: &mut Memory) -> f64 {
+        if let Some(&value) = memory.get(point) {
+            return value;
+        }
+        let value = self.trained.acquisition(&self.room.unit(point));
+        memory.insert(point.clone(), value);
+        value
+    }
+
+    /// Single levels along each axis while they improve and `budget` lasts. Leaves every point
+    /// it tried in `memory`.
+    pub fn step_uphill(&self, mut at: GridPoint, mut budget: usize, memory: &mut Memory) {
+        let mut value = self.value(&at, memory);
+        let mut axes_left = self.room.free.len();
+        for &axis in self.room.free.iter().cycle() {
+            let beside = [at.0[axis].checked_add(1), at.0[axis].checked_sub(1)];
+            let mut improved = false;
+            for level in
+                beside.into_iter().flatten().filter(|&k| k < self.room.grid().levels()[axis])
+            {
+                if budget == 0 {
+                    return;
+                }
+                budget -= 1;
+                let mut next = at.clone();
+                next.0[axis] = level;
+                let there = self.value(&next, memory);
+                if there > value {
+                    (at, value, improved) = (next, there, true);
+                    break;
+                }
+            }
+            axes_left = if improved { self.room.free.len() } else { axes_left - 1 };
+            if axes_left == 0 {
+                return;
+            }
+        }
+    }
+}
+
+impl Room<'_> {
+    pub fn grid(&self) -> &Grid {
+        self.proposed.grid()
+    }
+
+    /// The model's coordinates of a point.
+    pub fn unit(&self, point: &GridPoint) -> Vec<f64> {
+        let unit = self.grid().unit(point);
+        self.free.iter().map(|&a| unit[a]).collect()
+    }
+
+    /// The unseen point of the largest finite value.
+    pub fn best_unseen(&self, memory: Memory) -> Option<(GridPoint, f64)> {
+        let unseen = memory.into_iter().filter(|(p, _)| !self.proposed.contains(p));
+        let finite = unseen.filter(|(_, v)| *v > f64::NEG_INFINITY);
+        finite.reduce(|a, b| if b.1 > a.1 { b } else { a })
+    }
+
+    /// Every point in lexicographic order.
+    pub fn every_point(&self) -> impl Iterator<Item = GridPoint> {
+        let mut next = Some(GridPoint(vec![0; self.grid().dimension()]));
+        std::iter::from_fn(move || {
+            let point = next.take()?;
+            let mut after = point.clone();
+            if advance(&mut after, self.grid().levels()) {
+                next = Some(after);
+            }
+            Some(point)
+        })
+    }
+
+    /// Sobol points and perturbations of the incumbents, half and half; ascending.
+    pub fn candidates(&self, count: usize) -> Vec<GridPoint> {
         let (grid, call) = (self.grid(), self.proposed.len());
         let half = count / 2;
         let sobol = SobolSequence::new(grid.dimension(), self.seed, call, "gp candidates");
@@ -137,49 +202,9 @@ impl Search<'_> {
             }
             points.push(grid.snap(&unit));
         }
+        points.sort();
+        points.dedup();
         points
-    }
-
-    fn value(&self, point: &GridPoint, memory: &mut BTreeMap<GridPoint, f64>) -> f64 {
-        if let Some(&value) = memory.get(point) {
-            return value;
-        }
-        let value = self.trained.acquisition(&self.unit(point));
-        memory.insert(point.clone(), value);
-        value
-    }
-
-    /// Single levels along each axis while they improve and `budget` lasts. Leaves every point
-    /// it tried in `memory`.
-    fn step_uphill(
-        &self,
-        mut at: GridPoint,
-        mut budget: usize,
-        memory: &mut BTreeMap<GridPoint, f64>,
-    ) {
-        let mut value = self.value(&at, memory);
-        let mut axes_left = self.free.len();
-        for &axis in self.free.iter().cycle() {
-            let beside = [at.0[axis].checked_add(1), at.0[axis].checked_sub(1)];
-            let mut improved = false;
-            for level in beside.into_iter().flatten().filter(|&k| k < self.grid().levels()[axis]) {
-                if budget == 0 {
-                    return;
-                }
-                budget -= 1;
-                let mut next = at.clone();
-                next.0[axis] = level;
-                let there = self.value(&next, memory);
-                if there > value {
-                    (at, value, improved) = (next, there, true);
-                    break;
-                }
-            }
-            axes_left = if improved { self.free.len() } else { axes_left - 1 };
-            if axes_left == 0 {
-                return;
-            }
-        }
     }
 }
 
@@ -220,7 +245,8 @@ mod tests {
         let trained =
             Trained { objectives: vec![gp], margins: Vec::new(), goal: Goal::Improve(best) };
         let (proposed, free) = (&proposed, &free);
-        let search = Search { trained: &trained, proposed, free, incumbents: &[], seed: 0 };
+        let room = Room { proposed, free, incumbents: &[], seed: 0 };
+        let search = Search { trained: &trained, room };
         let found = search.exhaustive().unwrap();
         let mut memory = BTreeMap::new();
         let value = search.value(&found, &mut memory);

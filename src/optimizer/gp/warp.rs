@@ -5,6 +5,7 @@
 //! normal is chosen by maximum likelihood. The transformation rises strictly, so
 //! the order of the values is kept.
 
+use super::neighbours::spread;
 use libm::{exp, log, log1p, pow};
 
 /// Values in the warped scale, again with mean 0 and variance 1.
@@ -15,28 +16,39 @@ pub(super) struct Warped {
     pub slope: f64,
 }
 
+/// Values by which the exponent is chosen, at most.
+const CHOOSING: usize = 250;
+
 /// Warps standardised values with the best of the exponents -1, -0.9 .. 3 (1 changes nothing).
 /// `None` if no exponent gives finite values that differ.
 pub(super) fn warp(values: &[f64]) -> Option<Warped> {
+    let sample: Vec<f64> = spread(values.len(), CHOOSING).map(|i| values[i]).collect();
+    let mut best: Option<(f64, f64)> = None;
+    for step in 0..=40 {
+        let lambda = f64::from(step - 10) / 10.0;
+        let (likelihood, _) = warped(&sample, lambda);
+        let better = best.is_none_or(|(record, _)| likelihood > record);
+        if likelihood.is_finite() && better {
+            best = Some((likelihood, lambda));
+        }
+    }
+    let (likelihood, warped) = warped(values, best?.1);
+    likelihood.is_finite().then_some(warped)
+}
+
+/// The values under one exponent, and the log likelihood of it.
+fn warped(values: &[f64], lambda: f64) -> (f64, Warped) {
     let n = values.len() as f64;
     // log of the transformation's slope is (lambda - 1) times this, summed over the values.
     let log_slope: f64 = values.iter().map(|y| y.signum() * log1p(y.abs())).sum();
-    let mut best: Option<(f64, Warped)> = None;
-    for step in 0..=40 {
-        let lambda = f64::from(step - 10) / 10.0;
-        let bent: Vec<f64> = values.iter().map(|&y| yeo_johnson(y, lambda)).collect();
-        let mean = bent.iter().sum::<f64>() / n;
-        let variance = bent.iter().map(|t| (t - mean) * (t - mean)).sum::<f64>() / n;
-        let likelihood = -0.5 * n * log(variance) + (lambda - 1.0) * log_slope;
-        let better = best.as_ref().is_none_or(|(record, _)| likelihood > *record);
-        if likelihood.is_finite() && better {
-            let deviation = variance.sqrt();
-            let values = bent.iter().map(|t| (t - mean) / deviation).collect();
-            let slope = exp((lambda - 1.0) * log_slope / n) / deviation;
-            best = Some((likelihood, Warped { values, slope }));
-        }
-    }
-    best.map(|(_, warped)| warped)
+    let bent: Vec<f64> = values.iter().map(|&y| yeo_johnson(y, lambda)).collect();
+    let mean = bent.iter().sum::<f64>() / n;
+    let variance = bent.iter().map(|t| (t - mean) * (t - mean)).sum::<f64>() / n;
+    let likelihood = -0.5 * n * log(variance) + (lambda - 1.0) * log_slope;
+    let deviation = variance.sqrt();
+    let values = bent.iter().map(|t| (t - mean) / deviation).collect();
+    let slope = exp((lambda - 1.0) * log_slope / n) / deviation;
+    (likelihood, Warped { values, slope })
 }
 
 fn yeo_johnson(y: f64, lambda: f64) -> f64 {

@@ -26,6 +26,8 @@ const SEAM: f64 = 2e-6;
 pub(super) struct Touch {
     /// Which of the scene's pairs of bodies.
     pub pair: usize,
+    /// Which of its pairs of geoms; their points follow one another.
+    pub geoms: usize,
     /// Midway between the two surfaces, world, m.
     pub point: Point3<f64>,
     /// Unit normal from the first body to the second, world.
@@ -89,13 +91,18 @@ impl Detector {
         Detector { solids, candidates, prediction }
     }
 
+    /// How many pairs of geoms there are.
+    pub fn pairs(&self) -> usize {
+        self.candidates.len()
+    }
+
     /// Finds the contacts at the bodies' poses.
     pub fn detect(&mut self, bodies: &[MovingBody], found: &mut Vec<Touch>) {
         found.clear();
         for solid in &mut self.solids {
             solid.enclose(&bodies[solid.body].pose);
         }
-        for candidate in &mut self.candidates {
+        for (geoms, candidate) in self.candidates.iter_mut().enumerate() {
             let (first, second) =
                 (&self.solids[candidate.pair.first], &self.solids[candidate.pair.second]);
             if first.apart(second, self.prediction) {
@@ -105,7 +112,7 @@ impl Detector {
             let other = bodies[second.body].pose * second.pose;
             candidate.compute(&pose, &other, (first, second), self.prediction);
             candidate.drop_covered(&self.solids);
-            candidate.report(&pose, self.prediction, found);
+            candidate.report(geoms, &pose, self.prediction, found);
         }
     }
 }
@@ -186,7 +193,7 @@ impl Candidate {
     }
 
     /// Adds the manifold's extreme points to the list.
-    fn report(&mut self, first: &Pose, prediction: f64, found: &mut Vec<Touch>) {
+    fn report(&mut self, geoms: usize, first: &Pose, prediction: f64, found: &mut Vec<Touch>) {
         let limit = prediction * MILLIMETRES;
         self.manifold.points.retain(|point| point.dist <= limit);
         let normal = first.rotation * shapes::from_vector(self.manifold.local_n1);
@@ -198,6 +205,7 @@ impl Candidate {
         let mut add = |i: usize| {
             found.push(Touch {
                 pair: self.pair.bodies,
+                geoms,
                 point: first * Point3::from(middle(i)),
                 normal,
                 gap: self.manifold.points[i].dist / MILLIMETRES,

@@ -15,6 +15,7 @@ mod cone;
 mod contacts;
 mod dense;
 mod joints;
+mod patch;
 mod solver;
 mod world;
 

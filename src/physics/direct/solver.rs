@@ -36,6 +36,18 @@ pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> 
     lever
 }
 
+/// The same where friction acts `aside` of the point, m: it feels the turn about the normal there.
+pub(super) fn moved_aside(
+    lever: &Matrix4x3<f64>,
+    aside: &Vector3<f64>,
+    normal: &Vector3<f64>,
+) -> Matrix4x3<f64> {
+    let mut moved = *lever;
+    let mut linear = moved.fixed_view_mut::<3, 3>(0, 0);
+    linear += normal.cross(aside) * normal.transpose();
+    moved
+}
+
 /// Velocity of a contact point of a body of this velocity, m/s.
 pub(super) fn relative(lever: &Matrix4x3<f64>, v: &Vector6) -> Vector4<f64> {
     Vector4::new(v[0], v[1], v[2], 0.0) + lever * Vector3::new(v[3], v[4], v[5])

@@ -6,9 +6,10 @@ use super::body::{Kind, MovingBody};
 use super::cone::{Compliance, Cone};
 use super::contacts::{Detector, Touch};
 use super::joints::SprungJoint;
-use super::solver::{Contact, Solver, lever, relative};
+use super::patch::Patch;
+use super::solver::{Contact, Solver, lever, moved_aside, relative};
 use crate::physics::{ContactForce, ContactPoint, Diverged, World};
-use crate::scene::{BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring};
+use crate::scene::{BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Torsion};
 use nalgebra::Vector3;
 
 /// Tries at finding which servos are at their limits.
@@ -36,6 +37,8 @@ pub(super) struct DirectWorld {
     solver: Solver,
     touches: Vec<Touch>,
     contacts: Vec<Contact>,
+    /// The pressed patch of each pair of geoms that touch, if friction knows any.
+    patches: Vec<Option<Patch>>,
 }
 
 impl DirectWorld {
@@ -46,6 +49,7 @@ impl DirectWorld {
             dynamic.map(|(body, &place)| MovingBody::new(body, place)).collect();
         let ends =
             |joint: &Joint| Some((bodies[joint.parent.0].place()?, bodies[joint.child.0].place()?));
+        let detector = Detector::new(scene, settings.prediction);
         let coupled: Vec<_> = scene.joints.iter().filter_map(ends).collect();
         DirectWorld {
             settings: *settings,
@@ -53,7 +57,8 @@ impl DirectWorld {
             joints: scene.joints.iter().map(SprungJoint::new).collect(),
             pairs: scene.contacts.clone(),
             forces: vec![ContactForce::default(); scene.contacts.len()],
-            detector: Detector::new(scene, settings.prediction),
+            patches: vec![None; if scene.patched().is_some() { detector.pairs() } else { 0 }],
+            detector,
             system: Blocks::new(size, eliminated, &coupled),
             values: vec![Vector6::zeros(); size],
             pushes: vec![Vector6::zeros(); scene.bodies.len()],
@@ -78,14 +83,21 @@ impl DirectWorld {
             normal: share / (spring * step),
             tangent: 1.0 / (self.settings.stick_damping * step),
         };
+        self.press(None);
         for touch in &self.touches {
             let pair = &self.pairs[touch.pair];
             let ends = [&self.bodies[pair.first.0], &self.bodies[pair.second.0]];
             let place = ends.map(|body| body.place().map(|place| place - self.eliminated));
             let arm = ends.map(|body| touch.point - body.centre);
             let cone = Cone { mu: touch.friction.coefficient, compliance };
-            let patch = touch.normal * touch.friction.patch;
-            let lever = arm.map(|arm| lever(&arm, &patch));
+            let lever = match touch.friction.torsion {
+                Torsion::Radius(radius) => arm.map(|arm| lever(&arm, &(touch.normal * radius))),
+                Torsion::Patch => {
+                    let aside = self.aside(touch, ends[0]);
+                    arm.map(|arm| lever(&arm, &Vector3::zeros()))
+                        .map(|lever| moved_aside(&lever, &aside, &touch.normal))
+                }
+            };
             let mut contact = Contact::new(place, lever, touch.normal, cone);
             for (body, lever, sign) in [(ends[0], &lever[0], -1.0), (ends[1], &lever[1], 1.0)] {
                 if let Kind::Driven(_) = body.kind {
@@ -96,6 +108,34 @@ impl DirectWorld {
             let bias = if touch.gap > 0.0 { closing } else { closing * share };
             contact.bias = bias.max(-self.settings.push_out);
             self.contacts.push(contact);
+        }
+    }
+
+    /// From a point of a patch to where its friction acts; `first` is its pair's first body.
+    fn aside(&self, touch: &Touch, first: &MovingBody) -> Vector3<f64> {
+        let patch = self.patches[touch.geoms].as_ref();
+        patch
+            .map_or(Vector3::zeros(), |patch| patch.aside(&first.pose, &touch.point, &touch.normal))
+    }
+
+    /// The patches as these contacts load them; without, those that are new, evenly.
+    fn press(&mut self, contacts: Option<&[Contact]>) {
+        if self.patches.is_empty() {
+            return;
+        }
+        let mut from = 0;
+        for touches in self.touches.chunk_by(|a, b| a.geoms == b.geoms) {
+            let Touch { geoms, pair, normal, friction, .. } = touches[0];
+            let load = |i: usize| contacts.map_or(0.0, |all| all[i].impulse.dot(&all[i].normal));
+            if friction.torsion == Torsion::Patch
+                && (contacts.is_some() || self.patches[geoms].is_none())
+            {
+                let frame = self.bodies[self.pairs[pair].first.0].pose.inverse();
+                let loaded = |(i, touch): (usize, &Touch)| (frame * touch.point, load(from + i));
+                let points: Vec<_> = touches.iter().enumerate().map(loaded).collect();
+                self.patches[geoms] = Some(Patch::new(&points, &(frame * normal)));
+            }
+            from += touches.len();
         }
     }
 
@@ -158,6 +198,10 @@ impl DirectWorld {
             }
         }
         self.add_forces();
+        self.patches.fill(None);
+        let contacts = std::mem::take(&mut self.contacts);
+        self.press(Some(&contacts));
+        self.contacts = contacts;
         for body in &mut self.bodies {
             body.advance(step);
         }

@@ -20,7 +20,7 @@
 
 use super::{HEAVY, MjcfSettings, geom_names, xml::Element};
 use crate::scene::{
-    Body, BodyId, ContactPair, Friction, GeomPair, JointAxis, Motion, Scene, Springs,
+    Body, BodyId, ContactPair, Friction, GeomPair, JointAxis, Motion, Scene, Springs, Torsion,
 };
 
 /// Depth over which MuJoCo lets an impedance vary, m; ours does not.
@@ -47,15 +47,17 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
 }
 
 /// A pair with its friction.
-fn rough(pair: Element, Friction { coefficient, patch }: Friction) -> Element {
+fn rough(pair: Element, Friction { coefficient, torsion }: Friction) -> Element {
     if coefficient <= 0.0 {
         return pair.with("condim", 1);
     }
-    if patch <= 0.0 {
-        return pair.with("condim", 3).numbers("friction", [coefficient; 2]);
+    match torsion {
+        // A moment about the normal of at most the radius times the friction force.
+        Torsion::Radius(radius) if radius > 0.0 => pair
+            .with("condim", 4)
+            .numbers("friction", [coefficient, coefficient, coefficient * radius]),
+        _ => pair.with("condim", 3).numbers("friction", [coefficient; 2]),
     }
-    // A moment about the normal of at most `patch` times the friction force.
-    pair.with("condim", 4).numbers("friction", [coefficient, coefficient, coefficient * patch])
 }
 
 /// Stiffness and damping of two geoms of bodies of this inverse mass, 1/kg.

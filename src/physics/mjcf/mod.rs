@@ -20,6 +20,7 @@ mod xml;
 #[cfg(test)]
 mod tests;
 
+use super::PRESSED_PATCH;
 use crate::scene::{Body, Joint, JointAxis, Motion, Scene, Spring, Springs};
 use xml::Element;
 
@@ -86,6 +87,9 @@ pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
         if matches!(body.motion, Motion::Mechanism(_)) {
             return refuse(&body.name, "mass that depends on the direction");
         }
+    }
+    if let Some(pair) = scene.patched() {
+        return refuse(&scene.bodies[pair.first.0].name, PRESSED_PATCH);
     }
     for (i, joint) in scene.joints.iter().enumerate() {
         let child = &scene.bodies[joint.child.0];

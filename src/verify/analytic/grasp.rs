@@ -7,12 +7,16 @@
 //! that bears `N`, force `F` and moment `M` lie within the ellipsoid
 //! `(F/mu N)^2 + (M/mu N rho)^2 = 1` (Howe and Cutkosky 1996, Int. J. Robot. Res. 15:557).
 //! A face of points at the radius `r` from its middle then turns at `mu N sqrt(rho^2 + r^2)`.
+//!
+//! T15: the friction of a pressed patch ([`Torsion::Patch`]). It turns at `mu N` times the mean
+//! distance of its area from the centre of pressure, 4.0 mm for 12 x 9 mm, whatever points carry it;
+//! loaded `e` beside its middle only the part about that centre is pressed, shorter by `2 e`.
 
 use super::build;
 use super::{CheckRow, Tolerance};
 use crate::physics::{Diverged, Engine};
 use crate::scene::{
-    Body, BodyId, Friction, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs,
+    Body, BodyId, Friction, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs, Torsion,
 };
 use crate::units::{GRAM, MM};
 use nalgebra::{Rotation2, Translation3, UnitQuaternion, Vector2, Vector3};
@@ -43,7 +47,8 @@ pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
         .into_iter()
         .map(|beside| {
             let quantity = format!("moment of a face loaded {} mm beside", beside / MM);
-            let moment = hold(engine, beside, [DRAWN, 0.0]).map(|held| held.moment / MM);
+            let case = Case { beside, speed: DRAWN, ..TURNING };
+            let moment = case.hold(engine).map(|held| held.moment / MM);
             let expected = FRICTION * LOAD * beside / MM;
             CheckRow::new(("T12", quantity), expected, moment, "N mm", Tolerance::Relative(0.02))
         })
@@ -56,7 +61,7 @@ pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
 
 /// The wrench of a face that turns, while drawn along at a speed, m/s.
 fn turning(engine: &dyn Engine, speed: f64) -> Vec<CheckRow> {
-    let held = hold(engine, 0.0, [speed, TURNED]);
+    let held = Case { speed, spin: TURNED, ..TURNING }.hold(engine);
     let angle = held.as_ref().map_or(0.0, |held| held.angle);
     let (force, moment) = friction(speed, TURNED, angle);
     let how = if speed > 0.0 { "drawn and turned" } else { "turned" };
@@ -84,6 +89,40 @@ fn friction(speed: f64, spin: f64, angle: f64) -> (f64, f64) {
     })
 }
 
+/// The moment of a pressed patch, T15 rows; none on an engine that has no such friction.
+pub fn t15(engine: &dyn Engine) -> Vec<CheckRow> {
+    let patch = Case { torsion: Torsion::Patch, ..TURNING };
+    if engine.supports(&patch.scene().0).is_err() {
+        return Vec::new();
+    }
+    let two_percent = Tolerance::Relative(0.02);
+    let row = |quantity: String, expected: f64, case: Case| {
+        let moment = case.hold(engine).map(|held| held.moment / MM);
+        CheckRow::new(("T15", quantity), expected / MM, moment, "N mm", two_percent)
+    };
+    let turned = [0.0, BESIDE[0]].map(|beside| {
+        let quantity = format!("moment of a patch turned, load {} mm beside", beside / MM);
+        let lever = mean_lever([SIZE[0], SIZE[1] - 2.0 * beside]);
+        // Not guided, it turns about its centre of pressure.
+        let case = Case { beside, spin: TURNED, guide: 0.0, time: 1.0, ..patch };
+        row(quantity, FRICTION * LOAD * lever, case)
+    });
+    let drawn = BESIDE.map(|beside| {
+        let quantity = format!("moment of a patch drawn, load {} mm beside", beside / MM);
+        row(quantity, FRICTION * LOAD * beside, Case { beside, speed: DRAWN, ..patch })
+    });
+    turned.into_iter().chain(drawn).collect()
+}
+
+/// Mean distance of a rectangle's area from its middle by the midpoint rule, m.
+fn mean_lever(sides: [f64; 2]) -> f64 {
+    const CELLS: usize = 400;
+    let at = |i: usize, side: f64| side * ((i as f64 + 0.5) / CELLS as f64 - 0.5);
+    let cells = (0..CELLS).flat_map(|i| (0..CELLS).map(move |j| (i, j)));
+    let sum: f64 = cells.map(|(i, j)| at(i, sides[0]).hypot(at(j, sides[1]))).sum();
+    sum / (CELLS * CELLS) as f64
+}
+
 /// What a hand feels of a block that it draws and turns over a floor.
 #[derive(Debug, Clone, Copy)]
 struct Held {
@@ -95,57 +134,86 @@ struct Held {
     angle: f64,
 }
 
-/// Draws and turns the block at these speeds, m/s and rad/s, loaded beside its middle.
-fn hold(engine: &dyn Engine, beside: f64, [speed, spin]: [f64; 2]) -> Result<Held, Diverged> {
-    let (scene, hand, block) = scene();
-    let mut world = engine.world(&scene);
-    world.push(block, -Vector3::z() * LOAD, -Vector3::x() * (LOAD * beside));
-    let step = world.step_s();
-    let mut to = Pose::identity();
-    for k in 1..=build::steps(world.as_ref(), DRAWING) {
-        let time = k as f64 * step;
-        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), spin * time);
-        to = Pose::from_parts(Translation3::new(speed * time, 0.0, 0.0), turn);
-        world.drive(hand, to);
-        world.step()?;
+/// How a block is held.
+#[derive(Debug, Clone, Copy)]
+struct Case {
+    torsion: Torsion,
+    /// How far beside its middle it is loaded, m.
+    beside: f64,
+    /// How fast the hand draws it, m/s.
+    speed: f64,
+    /// How fast the hand turns it, rad/s.
+    spin: f64,
+    /// Springs along x and y, N/m.
+    guide: f64,
+    /// For how long, s.
+    time: f64,
+}
+
+/// Loaded in its middle, at rest.
+const TURNING: Case = Case {
+    torsion: Torsion::Radius(PATCH),
+    beside: 0.0,
+    speed: 0.0,
+    spin: 0.0,
+    guide: HOLD,
+    time: DRAWING,
+};
+
+impl Case {
+    /// Draws and turns the block.
+    fn hold(&self, engine: &dyn Engine) -> Result<Held, Diverged> {
+        let Case { beside, speed, spin, guide, .. } = *self;
+        let (scene, hand, block) = self.scene();
+        let mut world = engine.world(&scene);
+        world.push(block, -Vector3::z() * LOAD, -Vector3::x() * (LOAD * beside));
+        let step = world.step_s();
+        let mut to = Pose::identity();
+        for k in 1..=build::steps(world.as_ref(), self.time) {
+            let time = k as f64 * step;
+            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), spin * time);
+            to = Pose::from_parts(Translation3::new(speed * time, 0.0, 0.0), turn);
+            world.drive(hand, to);
+            world.step()?;
+        }
+        let at = world.pose(block);
+        let angle = |pose: &Pose| pose.rotation.scaled_axis().z;
+        let lag = to.translation.vector - (at * foot()).translation.vector;
+        // Drawn only, the face's friction turns the block; the hand's spring holds against it.
+        let moment = TURN * (angle(&to) - angle(&at)).abs();
+        Ok(Held { force: guide * lag.x, moment, angle: angle(&at) })
     }
-    let at = world.pose(block);
-    let angle = |pose: &Pose| pose.rotation.scaled_axis().z;
-    let lag = to.translation.vector - (at * foot()).translation.vector;
-    // Drawn only, the face's friction turns the block; the hand's spring holds against it.
-    let moment = TURN * (angle(&to) - angle(&at)).abs();
-    Ok(Held { force: HOLD * lag.x, moment, angle: angle(&at) })
+
+    /// A block on a floor through the origin, on springs in the plane to a driven hand.
+    fn scene(&self) -> (Scene, BodyId, BodyId) {
+        let mut scene = Scene::default();
+        let below = Pose::translation(0.0, 0.0, -10.0 * MM);
+        let ground = build::cuboid("floor", Vector3::new(0.2, 0.2, 0.02), below);
+        let floor = scene.body(build::fixed("floor", Pose::identity(), vec![ground]));
+        let block = scene.body(build::block("block", MASS, Vector3::from(SIZE), foot().inverse()));
+        scene.contact(floor, block, Friction { coefficient: FRICTION, torsion: self.torsion });
+        let hand = scene.body(Body {
+            name: "hand".into(),
+            motion: Motion::Driven,
+            pose: Pose::identity(),
+            geoms: Vec::new(),
+        });
+        let springs = [self.guide, self.guide, 0.0, 0.0, 0.0, TURN];
+        // Damped within a few milliseconds.
+        let sprung = |stiffness: f64| JointAxis::Sprung(Spring::new(stiffness, stiffness * 2e-3));
+        scene.joint(Joint {
+            name: "springs".into(),
+            parent: hand,
+            child: block,
+            in_parent: Pose::identity(),
+            in_child: foot(),
+            springs: Springs::Axes(springs.map(sprung)),
+        });
+        (scene, hand, block)
+    }
 }
 
 /// The middle of the block's face in its frame.
 fn foot() -> Pose {
     Pose::translation(0.0, 0.0, -SIZE[2] / 2.0)
-}
-
-/// A block on a floor through the origin, on springs in the plane to a driven hand.
-fn scene() -> (Scene, BodyId, BodyId) {
-    let mut scene = Scene::default();
-    let below = Pose::translation(0.0, 0.0, -10.0 * MM);
-    let ground = build::cuboid("floor", Vector3::new(0.2, 0.2, 0.02), below);
-    let floor = scene.body(build::fixed("floor", Pose::identity(), vec![ground]));
-    let block = scene.body(build::block("block", MASS, Vector3::from(SIZE), foot().inverse()));
-    scene.contact(floor, block, Friction { coefficient: FRICTION, patch: PATCH });
-    let hand = scene.body(Body {
-        name: "hand".into(),
-        motion: Motion::Driven,
-        pose: Pose::identity(),
-        geoms: Vec::new(),
-    });
-    let springs = [HOLD, HOLD, 0.0, 0.0, 0.0, TURN];
-    // Damped within a few milliseconds.
-    let sprung = |stiffness: f64| JointAxis::Sprung(Spring::new(stiffness, stiffness * 2e-3));
-    scene.joint(Joint {
-        name: "springs".into(),
-        parent: hand,
-        child: block,
-        in_parent: Pose::identity(),
-        in_child: foot(),
-        springs: Springs::Axes(springs.map(sprung)),
-    });
-    (scene, hand, block)
 }

@@ -16,6 +16,7 @@
 //! | T12 | friction of a face that slides and turns, as in the grasp |
 //! | T13 | a soft flange whose command sets off |
 //! | T14 | net force of a contact that sticks and that slides |
+//! | T15 | moment of a pressed patch of friction against a turn |
 //! | F1 .. F4 | the computed stiffness of a printed finger ([`finger`]) |
 //!
 //! (T9 compares two engines on trials.) Every expected value is computed from
@@ -121,6 +122,7 @@ pub fn run(make: Make<'_>) -> Vec<CheckRow> {
     rows.extend(grasp::t12(engine));
     rows.extend(flange::t13(engine));
     rows.extend(push::t14(engine));
+    rows.extend(grasp::t15(engine));
     rows.extend(finger::run());
     rows
 }

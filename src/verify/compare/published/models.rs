@@ -24,6 +24,9 @@ pub enum Model {
     PadCoupled,
     /// Those of pad and roof, y and z pulling at one another.
     PadAndRoofCoupled,
+    /// Springs from the ribs, pad and roof; friction of a pad by its pressed patch; a robot under
+    /// position control; connectors as they are.
+    Mechanisms,
 }
 
 impl Model {
@@ -38,6 +41,7 @@ impl Model {
             Model::PadAndRoofInPlane => "pad-and-roof-in-plane",
             Model::PadCoupled => "pad-coupled",
             Model::PadAndRoofCoupled => "pad-and-roof-coupled",
+            Model::Mechanisms => "mechanisms",
         }
     }
 

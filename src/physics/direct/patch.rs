@@ -1,0 +1,131 @@
+//! Friction of a pressed patch against a turn about its normal, from the points that carry it.
+//!
+//! Contact points are the corners of the patch. Friction at the corners would hold a turn with
+//! their levers, which are longer than those of the patch's inside. So friction acts beside each
+//! point, drawn towards the centre of pressure until the mean lever is that of the patch, evenly
+//! pressed; the normal force stays where it is. A slide without a turn is then held at the centre of
+//! pressure still (Mason 1986, Int. J. Robot. Res. 5:53), and a turn by `mu N` times the mean lever.
+//!
+//! An even pressure that has its centre beside the middle presses the part of the rectangle about
+//! that centre (Meyerhof 1953, 3rd Int. Conf. Soil Mech.): half of its length is the distance from
+//! the centre of pressure to the nearer edge.
+
+use crate::scene::Pose;
+use nalgebra::{Point3, Vector3};
+
+/// Where the friction of a contact acts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Patch {
+    /// Centre of pressure in the frame that its points were given in, m.
+    centre: Point3<f64>,
+    /// Distance of the points' friction from there, as a share of the points' own.
+    share: f64,
+}
+
+impl Patch {
+    /// From the points of a contact, in the frame of the normal, and what each bears; evenly if
+    /// they bear nothing.
+    pub fn new(points: &[(Point3<f64>, f64)], normal: &Vector3<f64>) -> Self {
+        let total: f64 = points.iter().map(|(_, load)| load).sum();
+        let part = |load: f64| if total > 0.0 { load / total } else { 1.0 / points.len() as f64 };
+        let mean = |of: &dyn Fn(&Point3<f64>) -> Vector3<f64>| {
+            points.iter().map(|(point, load)| of(point) * part(*load)).sum::<Vector3<f64>>()
+        };
+        let centre = Point3::from(mean(&|point| point.coords));
+        let distance = |point: &Point3<f64>| (point - centre).norm();
+        let lever: f64 = points.iter().map(|(point, load)| distance(point) * part(*load)).sum();
+        let [half, other] = pressed(points, &centre, normal);
+        let share = if lever > 0.0 { mean_lever(half, other) / lever } else { 0.0 };
+        Patch { centre, share }
+    }
+
+    /// From a point to where its friction acts, m, both and the normal as seen from outside; `frame` is
+    /// the patch's.
+    pub fn aside(&self, frame: &Pose, point: &Point3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
+        let inward = (frame * self.centre - point) * (1.0 - self.share);
+        inward - normal * inward.dot(normal)
+    }
+}
+
+/// Half the sides of the pressed rectangle about the centre of pressure, m. The points are corners of
+/// a rectangle, so that the way from one to the next nearest is along an edge.
+fn pressed(points: &[(Point3<f64>, f64)], centre: &Point3<f64>, normal: &Vector3<f64>) -> [f64; 2] {
+    let ways = points[1..].iter().map(|(point, _)| point - points[0].0);
+    let nearest = ways.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+    let Some(along) = nearest.and_then(|way| way.try_normalize(0.0)) else { return [0.0; 2] };
+    [along, normal.cross(&along)].map(|axis| {
+        let places = || points.iter().map(|(point, _)| (point - centre).dot(&axis));
+        places().fold(0.0, f64::max).min(-places().fold(0.0, f64::min))
+    })
+}
+
+/// Mean distance from the middle of a rectangle with these half sides, m: the integral of
+/// `sqrt(x^2 + y^2)` over its area.
+pub(super) fn mean_lever(half: f64, other: f64) -> f64 {
+    let (short, long) = if half < other { (half, other) } else { (other, half) };
+    if short <= 0.0 {
+        return long / 2.0;
+    }
+    let towards = |a: f64, b: f64| a * a / (6.0 * b) * (b / a).asinh();
+    short.hypot(long) / 3.0 + towards(short, long) + towards(long, short)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The integral by the midpoint rule.
+    fn summed(half: f64, other: f64, inside: impl Fn(f64, f64) -> bool) -> f64 {
+        let at = |i: usize, half: f64| half * ((2 * i + 1) as f64 / 800.0 - 1.0);
+        let cells = (0..800).flat_map(|i| (0..800).map(move |j| (i, j)));
+        let places = cells.map(|(i, j)| (at(i, half), at(j, other)));
+        let levers: Vec<f64> =
+            places.filter(|&(x, y)| inside(x, y)).map(|(x, y)| x.hypot(y)).collect();
+        levers.iter().sum::<f64>() / levers.len() as f64
+    }
+
+    #[test]
+    fn the_mean_lever_is_the_integral_over_the_patch() {
+        for (half, other, known) in [(6.0, 4.5, 4.042), (4.5, 6.0, 4.042), (3.5, 4.5, 3.075)] {
+            let found = mean_lever(half, other);
+            assert!((found - known).abs() < 1e-3, "{found}");
+            assert!((found / summed(half, other, |_, _| true) - 1.0).abs() < 1e-5, "{found}");
+        }
+        assert_eq!(mean_lever(0.0, 3.0), 1.5);
+        assert!((mean_lever(1e-9, 3.0) - 1.5).abs() < 1e-6);
+        assert_eq!(mean_lever(0.0, 0.0), 0.0);
+        // The disc's 2/3 of the radius lies between those of the squares in it and about it.
+        let disc = summed(1.0, 1.0, |x, y| x.hypot(y) < 1.0);
+        assert!((disc - 2.0 / 3.0).abs() < 1e-4, "{disc}");
+        let (inside, about) = (mean_lever(0.5f64.sqrt(), 0.5f64.sqrt()), mean_lever(1.0, 1.0));
+        assert!(inside < disc && disc < about);
+    }
+
+    #[test]
+    fn friction_acts_at_the_patchs_lever_about_the_centre_of_pressure() {
+        let (normal, z) = (Vector3::z(), 2.0);
+        let corners = [(6.0, 4.5), (-6.0, 4.5), (-6.0, -4.5), (6.0, -4.5)];
+        let patch = |loads: [f64; 4]| {
+            let loaded = |((x, y), load): ((f64, f64), f64)| (Point3::new(x, y, z), load);
+            let points: Vec<_> = corners.into_iter().zip(loads).map(loaded).collect();
+            let patch = Patch::new(&points, &normal);
+            let lever = |(point, load): &(Point3<f64>, f64)| {
+                (point + patch.aside(&Pose::identity(), point, &normal) - patch.centre).norm()
+                    * load
+            };
+            (patch, points.iter().map(lever).sum::<f64>() / loads.iter().sum::<f64>())
+        };
+        let (even, lever) = patch([1.0; 4]);
+        assert!((even.centre - Point3::new(0.0, 0.0, z)).norm() < 1e-12);
+        assert!((lever - mean_lever(6.0, 4.5)).abs() < 1e-12, "{lever}");
+        let unloaded = Patch::new(&corners.map(|(x, y)| (Point3::new(x, y, z), 0.0)), &normal);
+        assert!((unloaded.share - even.share).abs() < 1e-12);
+        // The centre of pressure 1.5 mm from the middle: 6 of 9 mm are pressed.
+        let (beside, lever) = patch([2.0, 2.0, 1.0, 1.0]);
+        assert!((beside.centre - Point3::new(0.0, 1.5, z)).norm() < 1e-12);
+        assert!((lever - mean_lever(6.0, 3.0)).abs() < 1e-12, "{lever}");
+        // On one edge, and on one corner.
+        assert!((patch([1.0, 1.0, 0.0, 0.0]).1 - 3.0).abs() < 1e-12);
+        assert!(patch([1.0, 0.0, 0.0, 0.0]).1 < 1e-12);
+    }
+}

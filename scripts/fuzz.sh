@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Mutates everything that the program reads for MINUTES: scripts/fuzz.sh MINUTES [SEED]
 # Prints the cases by kind and how they ended, and every failure with its fewest mutations.
+# FINGER_OPT_FUZZ_PROGRAM names a program in place of the one that is built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

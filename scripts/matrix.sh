@@ -1,68 +1,83 @@
 #!/usr/bin/env bash
 # Hard tests of studies, with their figures: scripts/matrix.sh [kills] [threads] [disks] [cache]
 # Everything if nothing is named. KILLS (443 unless set) is how often a study is killed;
-# ENGINE=direct kills studies that simulate.
+# ENGINE=direct kills studies that simulate. OPTIMIZE names a program
+# that is built already; it needs the feature `fake-engine`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-cargo build -q --features fake-engine
-optimize=$PWD/${CARGO_TARGET_DIR:-target}/debug/optimize
+if [ -z "${OPTIMIZE:-}" ]; then cargo build -q --features fake-engine; fi
+optimize=$(realpath "${OPTIMIZE:-${CARGO_TARGET_DIR:-target}/debug/optimize}")
+root=$PWD
 work=$(mktemp -d)
 trap 'umount "$work/disk" 2>/dev/null || true; rm -rf "$work"' EXIT
 cd "$work"
 common=(--task usb --engine "${ENGINE:-fake}" --quiet)
 
 body() { sed 's/,"datetime_start".*//' "$1/journal.jsonl"; }
+same_walk() { [ ! -e "$2/walk.json" ] || cmp -s "$1/walk.json" "$2/walk.json"; }
 same() { cmp -s <(body "$1") <(body "$2"); }
 fail() { echo "matrix: $*" >&2; exit 1; }
 
-# Studies of several kinds, killed at random moments, resumed and killed again, their tails torn.
+# Studies of several kinds, killed at random moments of their whole run, resumed and killed again,
+# their tails torn.
 kills() {
-    local wanted=${KILLS:-443} done=0 studies=0 kinds=(
+    local wanted=${KILLS:-443} done=0 torn=0 studies=0 lengths=() begun kinds=(
         "--budget 22" "--budget 14 --polish 6" "--budget 14 --optimizer sobol --objective range,peak-force")
+    if [ "${ENGINE:-fake}" != fake ]; then
+        kinds=("--budget 4 --polish 2 --batch 2" "--budget 6 --batch 2 --objective range,peak-force")
+    fi
     export FINGER_OPT_FAKE_DELAY_US=100
     for kind in "${!kinds[@]}"; do
+        begun=$(date +%s%N)
         # shellcheck disable=SC2086
-        "$optimize" "${common[@]}" ${kinds[kind]} --no-cache --out "whole-$kind" >/dev/null
+        "$optimize" "${common[@]}" ${kinds[kind]} --no-cache --threads 2 --out "whole-$kind" >/dev/null
+        lengths+=($((($(date +%s%N) - begun) / 1000000)))
     done
     while ((done < wanted)); do
-        local kind=$((studies % ${#kinds[@]})) name=killed-$studies
+        local kind=$((studies % ${#kinds[@]})) name=killed-$studies ms id
         for _ in 1 2 3 4 5; do
             # shellcheck disable=SC2086
             "$optimize" "${common[@]}" ${kinds[kind]} --no-cache --threads 2 --out "$name" >/dev/null 2>&1 &
-            local id=$!
-            sleep "0.$(printf %03d $((RANDOM % 400)))"
+            id=$!
+            ms=$((RANDOM * RANDOM % lengths[kind]))
+            sleep "$((ms / 1000)).$(printf %03d $((ms % 1000)))"
             if kill -KILL "$id" 2>/dev/null; then done=$((done + 1)); fi
             wait "$id" 2>/dev/null || true
             if [ -s "$name/journal.jsonl" ] && ((RANDOM % 3 == 0)); then
-                truncate -s "-$((RANDOM % 200))" "$name/journal.jsonl" 2>/dev/null || true
+                truncate -s "-$((RANDOM % 200))" "$name/journal.jsonl" && torn=$((torn + 1))
             fi
         done
         # shellcheck disable=SC2086
         "$optimize" "${common[@]}" ${kinds[kind]} --no-cache --out "$name" >/dev/null
         same "$name" "whole-$kind" || fail "$name differs from whole-$kind"
+        same_walk "$name" "whole-$kind" || fail "$name was confirmed otherwise than whole-$kind"
         rm -rf "$name"
         studies=$((studies + 1))
     done
-    echo "kills         $done kills of $studies studies of ${#kinds[@]} kinds: every journal the same"
+    echo "kills         $done kills and $torn torn tails of $studies studies of ${#kinds[@]} kinds: every" \
+        "journal and walk the same"
 }
 
-# Optimizers, batches, objectives and threads: the journal does not depend on the threads.
+# Optimizers, tasks, batches and threads: the journal does not depend on the threads.
 threads() {
     local count=0
-    for optimizer in gp cma-es random sobol grid; do
-        for batch in 1 3 4 7; do
-            local reference=
-            for threads in 1 2 3 8; do
-                local name=threads-$optimizer-$batch-$threads
-                "$optimize" "${common[@]}" --budget 18 --optimizer "$optimizer" --batch "$batch" \
-                    --threads "$threads" --no-cache --out "$name" >/dev/null
-                if [ -n "$reference" ]; then same "$name" "$reference" || fail "$name"; else reference=$name; fi
-                count=$((count + 1))
+    for optimizer in gp cma-es random sobol grid "gp --polish 6"; do
+        for tasks in usb usb,rj45; do
+            for batch in 1 3 4 7; do
+                local reference=
+                for threads in 1 2 3 8; do
+                    local name="threads-${optimizer// /}-$tasks-$batch-$threads"
+                    # shellcheck disable=SC2086
+                    "$optimize" --task "$tasks" --engine fake --quiet --budget 18 --optimizer $optimizer \
+                        --batch "$batch" --threads "$threads" --no-cache --out "$name" >/dev/null
+                    if [ -n "$reference" ]; then same "$name" "$reference" || fail "$name"; else reference=$name; fi
+                    count=$((count + 1))
+                done
             done
         done
     done
-    echo "threads       $count combinations of optimizer, batch and threads: the same journals"
+    echo "threads       $count combinations of optimizer, tasks, batch and threads: the same journals"
 }
 
 # Disks that are full, from no space to almost enough, and read-only ones. Every command that writes.
@@ -90,13 +105,26 @@ disks() {
     done
     mount -t tmpfs -o size=4k none disk
     head -c 4096 /dev/zero >disk/full
-    for command in "stiffness --svg disk/f.svg" \
-        "trial --task usb --engine fake --density 20 --direction 10 --svg disk/f.svg" \
-        "export mjcf --task usb --density 20 --direction 10 --out disk/f.xml"; do
+    "$optimize" measure add --task usb --density 20 --direction 10 --range-mm 5 kept.csv >/dev/null
+    local one="--task usb --density 20 --direction 10"
+    local mesh=$root/examples/meshes/keyed
+    for command in "stiffness --svg disk/f.svg" "finger --density 20 --direction 10 --svg disk/f.svg" \
+        "export finger --format stl --density 20 --direction 10 --out disk/f.stl" \
+        "export finger --format 3mf --density 20 --direction 10 --out disk/f.3mf" \
+        "export mjcf --task usb --density 20 --direction 10 --out disk/f.xml" \
+        "trial $one --engine fake --svg disk/f.svg" "trial $one --engine direct --record disk/f.csv" \
+        "trial $one --engine direct --plot disk/f.svg" \
+        "task new mine --engine fake --out disk/f.toml" \
+        "task import --engine fake --unit mm --plug $mesh-plug.stl --socket $mesh-socket.stl --out disk/f.toml" \
+        "task check usb --engine fake --svg disk/f.svg" \
+        "measure add --task usb --density 20 --direction 10 --range-mm 5 disk/f.csv" \
+        "calibrate --task usb --engine fake --simulations 16 --samples 20 --no-cache --quiet --measurements published --out disk" \
+        "compare whole --svg disk/f.svg"; do
         code=0
         # shellcheck disable=SC2086
         "$optimize" $command >/dev/null 2>error || code=$?
-        ((code <= 2)) && { ((code == 0)) || grep -q . error; } || fail "$command: $code"
+        { [ "$code" = 1 ] && grep -q disk/ error; } || fail "$command ends with $code: $(cat error)"
+        [ "$(ls -A disk)" = full ] || fail "$command leaves $(ls -A disk)"
         count=$((count + 1))
     done
     mount -o remount,ro disk

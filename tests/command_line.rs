@@ -515,3 +515,34 @@ fn a_space_of_computed_fingers_without_springs_is_refused_before_the_first() {
     fake(&[&study[..], &words].concat()).fails(2, &["far.toml", "finger.rcc_mm", "no springs"]);
     assert!(!out.exists());
 }
+
+/// Above 25 designs the ribs are left out, and said; above 100 the table is refused.
+#[test]
+fn a_long_table_of_stiffness_is_bounded() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("table.csv");
+    let path = file.to_str().unwrap();
+    let table = |rows: u32| {
+        let shipped = include_str!("../data/measured_stiffness.csv");
+        let mut text = format!("{}\n", shipped.lines().next().unwrap());
+        for i in 0..rows {
+            let (density, direction) = (10 + i % 11, 4 * (i / 11));
+            text += &format!(
+                "{i},{density},{direction},{},{}\n",
+                20 + density,
+                1.0 + f64::from(i) / 50.0
+            );
+        }
+        std::fs::write(&file, text).unwrap();
+    };
+    table(26);
+    let found = optimize(&["stiffness", "--json", "--stiffness-data", path]).json();
+    assert!(found["left_out"].as_str().unwrap().contains("above 25 designs"), "{found}");
+    assert_eq!(
+        (&found["means"], &found["fingers"]),
+        (&serde_json::json!([]), &serde_json::json!([]))
+    );
+    assert!(found["used"]["compliance"]["model"].is_string(), "{found}");
+    table(101);
+    optimize(&["stiffness", "--stiffness-data", path]).fails(2, &["101 measured", "100 at most"]);
+}

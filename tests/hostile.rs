@@ -446,6 +446,117 @@ fn the_journal_says_what_came_from_the_cache_and_a_swapped_entry_is_measured_aga
     assert_eq!(studies.journal("third"), studies.journal("second"));
 }
 
+/// No file may have a single block, as on a full disk: each command that writes says which file, with
+/// exit code 1, and leaves nothing behind.
+#[test]
+fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
+    let studies = Studies::new();
+    studies.study("study", 6, &[]).succeeds();
+    let meshes = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/meshes/keyed");
+    let import = format!(
+        "task import --engine fake --unit mm --plug {meshes}-plug.stl --socket {meshes}-socket.stl --out"
+    );
+    let trial = "trial --task usb --density 20 --direction 10";
+    let finger = "--density 20 --direction 10";
+    let calibrate = "calibrate --task usb --engine fake --simulations 16 --samples 20 --no-cache --quiet \
+                     --measurements published --out";
+    fs::create_dir(studies.dir("full")).unwrap();
+    let full = studies.dir("full");
+    let study = studies.dir("study");
+    for (words, file) in [
+        (calibrate.to_owned(), ""),
+        (format!("measure add --task usb {finger} --range-mm 5"), "m.csv"),
+        ("task new mine --engine fake --out".to_owned(), "mine.toml"),
+        (
+            "task new mine --round 8x12 --clearance 0.1 --body 12x12x20 --engine fake --out"
+                .to_owned(),
+            "m.toml",
+        ),
+        (import, "mine.toml"),
+        ("task check usb --engine fake --svg".to_owned(), "t.svg"),
+        (format!("export finger --format stl {finger} --out"), "f.stl"),
+        (format!("export finger --format 3mf {finger} --out"), "f.3mf"),
+        (format!("export finger --format sheet {finger} --out"), "f.html"),
+        (format!("export mjcf --task usb {finger} --out"), "f.xml"),
+        (format!("finger {finger} --svg"), "f.svg"),
+        (format!("{trial} --record"), "t.csv"),
+        (format!("{trial} --plot"), "t.svg"),
+        (format!("{trial} --engine fake --svg"), "t.svg"),
+        (format!("compare {} --svg", study.display()), "c.svg"),
+        ("stiffness --svg".to_owned(), "s.svg"),
+    ] {
+        let path = full.join(file);
+        let line = format!("ulimit -f 0; exec \"$0\" {words} \"$1\"");
+        shell(&line, &[path.to_str().unwrap()]).fails(1, &[full.to_str().unwrap(), "cannot write"]);
+        let left: Vec<_> =
+            fs::read_dir(&full).unwrap().map(|entry| entry.unwrap().path()).collect();
+        assert_eq!(left, Vec::<std::path::PathBuf>::new(), "{words}");
+    }
+    // What was there stays as it was.
+    let kept = studies.dir("kept.csv");
+    let add = |limit: &str| {
+        let words = format!("measure add --task usb {finger} --range-mm 5 --date");
+        let line = format!("{limit} exec \"$0\" {words} \"$1\" \"$2\"");
+        let day = if limit.is_empty() { "2026-01-01" } else { "2026-01-02" };
+        shell(&line, &[day, kept.to_str().unwrap()])
+    };
+    add("").succeeds();
+    let before = read(&kept);
+    add("ulimit -f 0;").fails(1, &["kept.csv: cannot write"]);
+    assert_eq!(read(&kept), before);
+    let pages =
+        || fs::read_dir(&study).unwrap().map(|e| e.unwrap().file_name()).collect::<Vec<_>>();
+    let (before, page) = (pages(), read(&study.join("report.html")));
+    shell("ulimit -f 0; exec \"$0\" report \"$1\"", &[study.to_str().unwrap()])
+        .fails(1, &["cannot write"]);
+    assert_eq!((pages(), read(&study.join("report.html"))), (before, page));
+}
+
+/// Files and times from the clock of another machine, years ahead or behind, change nothing.
+#[test]
+fn clocks_that_disagree_change_no_journal() {
+    let studies = Studies::new();
+    let cache = studies.dir("cache");
+    let more = ["--cache", cache.to_str().unwrap()];
+    studies.study("whole", 22, &more).succeeds();
+    let year = Duration::from_secs(365 * 24 * 3600);
+    let now = std::time::SystemTime::now();
+    for (name, time, date) in
+        [("ahead", now + 10 * year, "2099"), ("behind", now - 40 * year, "1999")]
+    {
+        let dir = studies.dir(name);
+        let mut killed = start(&mut studies.command(name, 22, &["--no-cache", "--threads", "1"]));
+        wait_until("half a study", || lines(&dir.join("journal.jsonl")) > 10);
+        let _ = killed.kill();
+        let _ = killed.wait();
+        let journal = read(&dir.join("journal.jsonl"));
+        let whole = &journal[..=journal.rfind('\n').unwrap()];
+        let shifted = whole.split("\"datetime_").map(|part| match part.split_once(":\"") {
+            Some((key, rest)) if ["start", "complete"].contains(&key.trim_end_matches('"')) => {
+                format!("{key}:\"{date}{}", &rest[4..])
+            }
+            _ => part.to_owned(),
+        });
+        let shifted = shifted.collect::<Vec<_>>().join("\"datetime_");
+        assert!(shifted.contains(date));
+        fs::write(dir.join("journal.jsonl"), sealed(&shifted)).unwrap();
+        let mut folders = vec![dir.clone(), cache.clone()];
+        while let Some(folder) = folders.pop() {
+            for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+                match path.is_dir() {
+                    true => folders.push(path),
+                    false => fs::File::open(&path).unwrap().set_modified(time).unwrap(),
+                }
+            }
+        }
+        studies.resume(name).succeeds();
+        assert_eq!(studies.journal(name), studies.journal("whole"), "{name}");
+        optimize(&["report", dir.to_str().unwrap()]).succeeds();
+        studies.study(&format!("{name}-cached"), 22, &more).succeeds();
+        assert_eq!(studies.journal(&format!("{name}-cached")), studies.journal("whole"));
+    }
+}
+
 #[test]
 fn a_limit_of_the_file_size_is_a_message_and_leaves_a_whole_journal() {
     let studies = Studies::new();

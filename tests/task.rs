@@ -38,6 +38,7 @@ fn trial(task: &Task) -> Trial {
 fn drafted(plug: &str, clearance_mm: f64, body: Option<&str>) -> Task {
     let size = Dimensions {
         plug: plug.parse().unwrap(),
+        round: false,
         clearance: clearance_mm * MM,
         body: body.map(|body| body.parse().unwrap()),
     };
@@ -198,6 +199,52 @@ fn drafted_tasks_insert_at_their_nominal_start() {
     }
 }
 
+/// Round plugs of 3 to 20 mm, with and without a body, in holes of flats.
+#[test]
+fn drafted_round_plugs_insert_at_their_nominal_start() {
+    use finger_opt::connector::draft::Size;
+    for (plug, clearance_mm, body) in [
+        ("3x6", 0.1, Some("8x6x14")),
+        ("8x12", 0.1, Some("12x12x20")),
+        ("20x20", 0.2, Some("24x24x25")),
+        ("8x50", 0.1, None),
+    ] {
+        let size = Dimensions {
+            plug: Size::round(plug).unwrap(),
+            round: true,
+            clearance: clearance_mm * MM,
+            body: body.map(|body| body.parse().unwrap()),
+        };
+        let task = draft("mine", &size, None).unwrap();
+        assert_eq!(problems(&task), [], "{plug}");
+        let trial = trial(&task);
+        assert_eq!(trial.outcome, Outcome::Inserted, "{plug}: {}", explain(&task, &trial));
+    }
+}
+
+#[test]
+fn a_round_task_is_written_with_the_error_of_its_hole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("peg.toml");
+    let out = path.to_str().unwrap();
+    let new = ["task", "new", "peg", "--clearance", "0.1", "--engine", "fake", "--out", out];
+    let round = ["--round", "8x12", "--body", "12x12x20"];
+    optimize(&[&new[..], &round].concat()).succeeds();
+    let text = common::read(&path);
+    assert!(
+        text.contains("# Made by: optimize task new peg --round 8x12 --clearance 0.1"),
+        "{text}"
+    );
+    assert!(text.contains("64 flats, which keep its diameter within 0.0049 mm"), "{text}");
+    let task = Task::parse(&text, out).unwrap();
+    assert_eq!((task.plug.parts.len(), task.socket.len()), (2, 65));
+    optimize(&["task", "check", out, "--engine", "fake"]).succeeds();
+    optimize(&[&new[..], &["--round", "8"]].concat()).fails(2, &["DIAMETERxLENGTH"]);
+    let both = ["--round", "8x12", "--plug", "8x8x12"];
+    optimize(&[&new[..], &both].concat()).fails(2, &["cannot be used with"]);
+    optimize(&[&new[..], &["--round", "8x8"]].concat()).fails(2, &["--round", "8 mm long"]);
+}
+
 /// What is in the file is what was drafted.
 #[test]
 fn a_drafted_file_reads_back_without_problems() {
@@ -311,7 +358,8 @@ fn surface(name: &str) -> finger_opt::connector::mesh::import::Mesh {
 
 fn imported(pair: &str, like: Option<&Task>) -> finger_opt::connector::mesh::import::Imported {
     use finger_opt::connector::mesh::import::{Along, Request, import};
-    let request = Request { name: "mine", along: Along::MinusZ, resolution: 64, like };
+    let request =
+        Request { name: "mine", along: Along::MinusZ, resolution: 64, like, say: &|_| () };
     import(surface(&format!("{pair}-plug")), surface(&format!("{pair}-socket")), &request).unwrap()
 }
 
@@ -355,57 +403,83 @@ fn the_usb_meshes_are_the_usb_task() {
     assert_eq!(outcomes(&found.task), outcomes(&usb));
 }
 
-/// A bowl cannot be cut into few flat-sided pieces: hulls, whose intrusion is measured.
-#[test]
-fn a_hollow_curved_socket_is_approximated_and_measured() {
-    use finger_opt::connector::mesh::{Surface, import};
-    // A bowl: a spherical hollow of 130 rings has more layers than are cut exactly.
-    let (rings, flats) = (130usize, 24usize);
-    let at = |ring: usize, flat: usize| {
-        let (down, round) = (ring as f64 / rings as f64, flat as f64 / flats as f64);
-        let (polar, turn) = (down * std::f64::consts::FRAC_PI_2, round * std::f64::consts::TAU);
-        nalgebra::Point3::new(
-            5.0 * polar.cos() * turn.cos(),
-            5.0 * polar.cos() * turn.sin(),
-            -5.0 * polar.sin(),
-        )
+/// Closed outlines of radius and height, mm, counter-clockwise, turned about z in so many flats.
+fn turned(outline: &[[f64; 2]], flats: usize) -> finger_opt::connector::mesh::Surface {
+    use nalgebra::Point3;
+    let at = |[radius, z]: [f64; 2], flat: usize| {
+        let turn = (flat % flats) as f64 / flats as f64 * std::f64::consts::TAU;
+        Point3::new(radius * turn.cos(), radius * turn.sin(), z)
     };
     let mut triangles = Vec::new();
-    for ring in 0..rings {
+    for (i, &low) in outline.iter().enumerate() {
+        let high = outline[(i + 1) % outline.len()];
         for flat in 0..flats {
-            let [a, b] = [at(ring, flat), at(ring, flat + 1)];
-            let [c, d] = [at(ring + 1, flat), at(ring + 1, flat + 1)];
-            triangles.extend([[a, b, c], [b, d, c]]);
+            let [a, b] = [at(low, flat), at(low, flat + 1)];
+            let [c, d] = [at(high, flat), at(high, flat + 1)];
+            triangles.extend([[a, b, d], [a, d, c]]);
         }
     }
-    // Outer skin: a cone frustum of the same flats from the rim down.
-    let outer = |flat: usize, z: f64| {
-        let turn = flat as f64 / flats as f64 * std::f64::consts::TAU;
-        nalgebra::Point3::new(8.0 * turn.cos(), 8.0 * turn.sin(), z)
-    };
-    for flat in 0..flats {
-        let (rim, next) = (at(0, flat), at(0, flat + 1));
-        let [a, b, c, d] =
-            [outer(flat, 0.0), outer(flat + 1, 0.0), outer(flat, -8.0), outer(flat + 1, -8.0)];
-        let foot = nalgebra::Point3::new(0.0, 0.0, -8.0);
-        triangles.extend([[rim, a, b], [rim, b, next], [a, c, b], [b, c, d], [c, foot, d]]);
-    }
-    let bowl = Surface::new(&triangles, MM, "bowl").unwrap();
-    let plug = surface("keyed-plug");
-    let request = import::Request {
-        name: "bowl",
-        along: import::Along::MinusZ,
-        resolution: 32,
+    // On the axis triangles shrink to lines, which hold nothing.
+    finger_opt::connector::mesh::Surface::new(&triangles, MM, "turned").unwrap()
+}
+
+/// The keyed plug, which need not fit, over a socket.
+fn over(
+    socket: finger_opt::connector::mesh::Surface,
+    resolution: u32,
+) -> Result<finger_opt::connector::mesh::import::Imported, String> {
+    use finger_opt::connector::mesh::import::{Along, Mesh, Request, import};
+    let request = Request {
+        name: "round",
+        along: Along::MinusZ,
+        resolution,
         like: Some(&Task::parse(shipped("usb"), "usb").unwrap()),
+        say: &|what| assert!(what.len() <= 80, "{what}"),
     };
-    let found =
-        import::import(plug, import::Mesh { file: "bowl".to_owned(), surface: bowl }, &request)
-            .unwrap();
-    assert_eq!(found.exact, [true, false]);
-    let (intrusion, of) = found.intrusion.unwrap();
-    assert_eq!(of, "socket");
-    assert!(intrusion.depth > 0.0);
-    assert!(found.resolution.is_none_or(|finer| finer > 32));
+    let socket = Mesh { file: "socket.stl".to_owned(), surface: socket };
+    import(surface("keyed-plug"), socket, &request).map_err(|error| error.to_string())
+}
+
+/// A bore of 64 flats with a chamfer and a floor.
+#[test]
+fn a_chamfered_bore_is_imported_exactly() {
+    let bore = [[0.0, -12.0], [9.0, -12.0], [9.0, 0.0], [4.8, 0.0], [4.0, -0.8], [4.0, -10.0]];
+    let bore = [&bore[..], &[[0.0, -10.0]]].concat();
+    let found = over(turned(&bore, 64), 64).unwrap();
+    assert_eq!(found.exact, [true; 2]);
+    assert!(found.intrusion.unwrap().0.depth < 2e-3 * MM, "{:?}", found.intrusion);
+}
+
+/// A spherical hollow of 130 rings has more layers than are cut exactly: hulls, whose intrusion is
+/// measured. It does not go with the size of a voxel, so no resolution is advised.
+#[test]
+fn a_hollow_curved_socket_is_approximated_and_measured() {
+    let bowl = || {
+        let ring = |i: usize| {
+            let polar = i as f64 / 130.0 * std::f64::consts::FRAC_PI_2;
+            [5.0 * polar.cos(), -5.0 * polar.sin()]
+        };
+        let mut outline = vec![[0.0, -8.0], [8.0, -8.0], [8.0, 0.0]];
+        outline.extend((0..130).map(ring));
+        outline.push([0.0, -5.0]);
+        turned(&outline, 24)
+    };
+    let depth = |resolution: u32| {
+        let found = over(bowl(), resolution).unwrap();
+        assert_eq!(found.exact, [true, false]);
+        let (intrusion, of) = found.intrusion.unwrap();
+        assert_eq!(of, "socket");
+        intrusion.depth
+    };
+    let [coarse, fine] = [16, 32].map(depth);
+    assert!(fine > 0.1 * coarse && coarse > 0.1 * MM, "{coarse} {fine}");
+    // What would take minutes is refused, with what is done in less and what else helps.
+    let error = over(bowl(), 1000).unwrap_err();
+    for part in
+        ["socket.stl", "--resolution 1000", "or less", "fewer flats", "task new --round", "by hand"]
+    {
+        assert!(error.contains(part), "`{part}` is not in {error}");
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! A task from a few dimensions: plug, clearance and the body that the fingers hold.
 
 use super::plan::{self, PlanError};
+use super::round::{self, Hole};
 use crate::finger::Pad;
 use crate::input::finger::FingerModel;
 use crate::input::task::{
@@ -44,17 +45,34 @@ impl FromStr for Size {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let right = "give WIDTHxHEIGHTxLENGTH in mm, as in 8.25x2.4x6.65";
-        let numbers: Result<Vec<f64>, _> =
-            text.split(['x', 'X', '×']).map(|number| number.trim().parse()).collect();
-        let Ok([width, height, length]) = <[f64; 3]>::try_from(numbers.unwrap_or_default()) else {
-            return Err(right.to_owned());
-        };
-        let [low, high] = LIMITS_MM;
-        if ![width, height, length].iter().all(|mm| (low..=high).contains(mm)) {
-            return Err(format!("each dimension lies between {low} and {high} mm; {right}"));
-        }
-        Ok(Size { width: width * MM, height: height * MM, length: length * MM })
+        let [width, height, length] = lengths(text, right)?;
+        Ok(Size { width, height, length })
     }
+}
+
+impl Size {
+    /// A cylinder from DIAMETERxLENGTH in mm.
+    ///
+    /// # Errors
+    /// If the text is something else.
+    pub fn round(text: &str) -> Result<Self, String> {
+        let [diameter, length] = lengths(text, "give DIAMETERxLENGTH in mm, as in 8x12")?;
+        Ok(Size { width: diameter, height: diameter, length })
+    }
+}
+
+/// Dimensions in mm with an x between them, in m.
+fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> {
+    let numbers: Result<Vec<f64>, _> =
+        text.split(['x', 'X', '×']).map(|number| number.trim().parse()).collect();
+    let Ok(numbers) = <[f64; N]>::try_from(numbers.unwrap_or_default()) else {
+        return Err(right.to_owned());
+    };
+    let [low, high] = LIMITS_MM;
+    if !numbers.iter().all(|mm| (low..=high).contains(mm)) {
+        return Err(format!("each dimension lies between {low} and {high} mm; {right}"));
+    }
+    Ok(numbers.map(|mm| mm * MM))
 }
 
 /// What a task is drafted from.
@@ -62,6 +80,8 @@ impl FromStr for Size {
 pub struct Dimensions {
     /// What goes in.
     pub plug: Size,
+    /// Whether that is a cylinder: width and height are its diameter.
+    pub round: bool,
     /// Opening less plug, in x and in y, m.
     pub clearance: f64,
     /// What the fingers hold; without it they hold the plug's upper end.
@@ -77,7 +97,7 @@ pub enum DraftError {
          the socket, so at least {least_mm:.1} mm are needed"
     )]
     TooShort {
-        /// "--body" or "--plug".
+        /// "--body", "--plug" or "--round".
         option: &'static str,
         /// As given, mm.
         length_mm: f64,
@@ -133,14 +153,16 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     let (plug, body) = (size.plug, size.body);
     let mut task = blank(name, like);
     let mm = |length: f64| length / MM;
-    task.description = format!(
-        "plug {} x {} mm, {} mm clearance",
-        mm(plug.width),
-        mm(plug.height),
-        mm(size.clearance)
-    );
+    let shape = match size.round {
+        true => format!("round plug of {} mm", mm(plug.width)),
+        false => format!("plug {} x {} mm", mm(plug.width), mm(plug.height)),
+    };
+    task.description = format!("{shape}, {} mm clearance", mm(size.clearance));
     let top = plug.length + body.map_or(0.0, |body| body.length);
-    let mut parts = vec![upright("plug", plug, 0.0)];
+    let mut parts = match size.round {
+        true => vec![round::peg("plug", plug.width / 2.0, plug.length)],
+        false => vec![upright("plug", plug, 0.0)],
+    };
     parts.extend(body.map(|body| upright("body", body, plug.length)));
     task.plug.mass = DENSITY * parts.iter().map(|part| geometry::volume(&part.solid)).sum::<f64>();
     task.plug.parts = parts;
@@ -161,7 +183,10 @@ fn long_enough(size: &Dimensions, top: f64) -> Result<(), DraftError> {
     let pads = Pad::PAPER.height + BELOW_PADS;
     let (option, length, least) = match size.body {
         Some(body) => ("--body", body.length, pads),
-        None => ("--plug", top, pads / (1.0 - SHARE)),
+        None => {
+            let option = if size.round { "--round" } else { "--plug" };
+            (option, top, pads / (1.0 - SHARE))
+        }
     };
     if length >= least {
         return Ok(());
@@ -185,10 +210,11 @@ fn block(name: &str, [x, y, z]: [[f64; 2]; 3]) -> Part {
     Part { name: name.to_owned(), solid, friction: None }
 }
 
-/// Four walls about the opening and a floor.
+/// Walls about the opening and a floor.
 fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
+    let hole = size.round.then(|| Hole::new(size.plug.width, size.clearance));
     let opening = [size.plug.height, size.plug.width].map(|plug| {
-        let half = (plug + size.clearance) / 2.0;
+        let half = hole.map_or((plug + size.clearance) / 2.0, |hole| hole.flat);
         [-half, half]
     });
     let body = size.body.map(|body| [body.height, body.width]);
@@ -199,12 +225,15 @@ fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
         [-edge, edge]
     });
     let ([[left, right], [low, high]], z) = (opening, [-floor, 0.0]);
-    let parts = vec![
-        block("wall at -y", [outer[0], [outer[1][0], low], z]),
-        block("wall at +y", [outer[0], [high, outer[1][1]], z]),
-        block("wall at -x", [[outer[0][0], left], opening[1], z]),
-        block("wall at +x", [[right, outer[0][1]], opening[1], z]),
-        block("floor", [outer[0], outer[1], [-floor - FLOOR, -floor]]),
-    ];
+    let mut parts = match hole {
+        Some(hole) => hole.walls(outer.map(|[_, edge]| edge), z),
+        None => vec![
+            block("wall at -y", [outer[0], [outer[1][0], low], z]),
+            block("wall at +y", [outer[0], [high, outer[1][1]], z]),
+            block("wall at -x", [[outer[0][0], left], opening[1], z]),
+            block("wall at +x", [[right, outer[0][1]], opening[1], z]),
+        ],
+    };
+    parts.push(block("floor", [outer[0], outer[1], [-floor - FLOOR, -floor]]));
     (opening, parts)
 }

@@ -9,5 +9,6 @@ pub mod nominal;
 pub mod path;
 pub mod picture;
 pub mod plan;
+pub mod round;
 pub mod seat;
 pub mod write;

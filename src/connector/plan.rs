@@ -3,10 +3,12 @@
 //! The strategy is the paper's: down beside the opening with the tip's lower edge in its middle,
 //! across it until both its sides were met, along -y to the wall, and in. What is derived here is
 //! how far each move goes. The over-strokes and the tilt were chosen by trying plugs of 3 to 35 mm:
-//! see `docs/tasks.md`.
+//! see `docs/tasks.md`. A round tip comes down with a point, which must be near the wall before it
+//! is pressed, or the plug tips over: it has its own [`Moves`].
 
 use super::body::ConvexBody;
 use super::path;
+use super::round::stands_on_cylinder;
 use super::seat::{Seat, Seating, section};
 use crate::finger::Pad;
 use crate::input::task::{Ending, Phase, Sensed, Stage, Task};
@@ -22,16 +24,14 @@ const TILT_DEG: [f64; 2] = [5.0, 10.0];
 const AIR: [f64; 2] = [5.0 * MM, 1.0 * MM];
 /// Stroke in which the touch must find the socket, m.
 const TOUCH: f64 = 3.0 * MM;
-/// Beyond first contact, m.
-const PRELOAD: f64 = 0.3 * MM;
 /// How far the tip stands on the rim at -x when it is set down, m; of a small tip a quarter.
 const BESIDE: f64 = 1.0 * MM;
 /// How far the moves along x go on after the tip has met a wall, m: there and back.
 const ACROSS: [f64; 2] = [0.8 * MM, 0.45 * MM];
-/// How far the move back presses further down, m.
-const DOWN: f64 = 0.5 * MM;
-/// How far the move along -y goes on after the wall, m.
-const SIDE: f64 = 1.0 * MM;
+/// How far a round tip is moved to either side in x, m.
+const ROUND_ACROSS: f64 = 0.5 * MM;
+/// Share of a round opening's half that the tip's lowest point starts beyond its middle.
+const ROUND_AHEAD: f64 = 0.7;
 /// How far the push is commanded beyond the seat, m.
 const PRESS: f64 = 4.0 * MM;
 /// Tilt that counts as upright beyond what the play allows, degrees.
@@ -88,9 +88,61 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     let rise = (RISE / (tip[1][1] - tip[1][0])).min(1.0);
     let [least, most] = TILT_DEG;
     task.strategy.tilt = round(libm::asin(rise) / DEG, 0.1).clamp(least, most) * DEG;
-    place_start(&mut task, &plug, tip);
-    task.strategy.phases = phases(&task, tip, seat.depth);
+    let search = match stands_on_cylinder(&plug_parts) {
+        true => Moves::of_point(&task, tip),
+        false => Moves::of_edge(&task, tip),
+    };
+    place_start(&mut task, &plug, &search);
+    task.strategy.phases = phases(&task, &search, seat.depth);
     Ok(task)
+}
+
+/// Where the search begins and how far its moves go, m.
+struct Moves {
+    /// x of the plug's axis at the start.
+    x: f64,
+    /// y of the tip's lowest point at the start.
+    edge_y: f64,
+    /// Beyond first contact.
+    preload: f64,
+    /// Along x: back, front, and while the tip moves to the side.
+    across: [f64; 3],
+    /// How far the move to the front presses further down.
+    down: f64,
+    /// Along -y.
+    side: f64,
+}
+
+impl Moves {
+    /// Of a tip with a lower edge: it is set down on the rim at -x.
+    fn of_edge(task: &Task, tip: [[f64; 2]; 2]) -> Self {
+        let [[left, right], [low, high]] = task.opening;
+        let play = right - left - (tip[0][1] - tip[0][0]);
+        let beside = BESIDE.min((tip[0][1] - tip[0][0]) / 4.0);
+        let front = play + ACROSS[0] + ACROSS[1];
+        Moves {
+            x: left - tip[0][0] - beside,
+            edge_y: (low + high) / 2.0,
+            preload: 0.3 * MM,
+            across: [beside + play + ACROSS[0], -front, 0.0],
+            down: 0.5 * MM,
+            side: (high - low) / 2.0 + 1.0 * MM,
+        }
+    }
+
+    /// Of a round tip: its lowest point is set down near the wall at -y.
+    fn of_point(task: &Task, tip: [[f64; 2]; 2]) -> Self {
+        let [x, [low, high]] = task.opening;
+        let half = (high - low) / 2.0;
+        Moves {
+            x: (x[0] + x[1] - tip[0][0] - tip[0][1]) / 2.0,
+            edge_y: (low + high) / 2.0 - ROUND_AHEAD * half,
+            preload: 0.1 * MM,
+            across: [ROUND_ACROSS, -2.0 * ROUND_ACROSS, ROUND_ACROSS],
+            down: 0.1 * MM,
+            side: (1.0 - ROUND_AHEAD) * half + 0.5 * MM,
+        }
+    }
 }
 
 fn grasp(task: &mut Task, plug: &ConvexBody) {
@@ -116,27 +168,17 @@ fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     task.success.tilt = tilt;
 }
 
-fn place_start(task: &mut Task, plug: &ConvexBody, tip: [[f64; 2]; 2]) {
+fn place_start(task: &mut Task, plug: &ConvexBody, search: &Moves) {
     task.strategy.start = [0.0; 3];
     task.strategy.phases = Vec::new();
     let edge = path::waypoints(task, plug)[0].edge;
-    let [[left, _], [low, high]] = task.opening;
-    task.strategy.start = [
-        round_mm(left - tip[0][0] - beside(tip)),
-        round_mm((low + high) / 2.0 - edge.y),
-        round_mm(AIR[0] - edge.z),
-    ];
+    task.strategy.start =
+        [round_mm(search.x), round_mm(search.edge_y - edge.y), round_mm(AIR[0] - edge.z)];
 }
 
-/// How far the tip stands on the rim when it is set down, m.
-fn beside(tip: [[f64; 2]; 2]) -> f64 {
-    BESIDE.min((tip[0][1] - tip[0][0]) / 4.0)
-}
-
-fn phases(task: &Task, tip: [[f64; 2]; 2], seat: f64) -> Vec<Phase> {
-    let play = task.opening[0][1] - task.opening[0][0] - (tip[0][1] - tip[0][0]);
-    let half = (task.opening[1][1] - task.opening[1][0]) / 2.0;
-    let searched = task.strategy.start[2] - AIR[0] - PRELOAD - DOWN;
+fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
+    let Moves { preload, across: [back, front, aside], down, side, .. } = *search;
+    let searched = task.strategy.start[2] - AIR[0] - preload - down;
     let push = searched - (task.grip.tcp_z - seat - PRESS);
     let phase = |name: &str, stage, by: [f64; 3], speed: f64, ending| Phase {
         name: name.to_owned(),
@@ -146,8 +188,6 @@ fn phases(task: &Task, tip: [[f64; 2]; 2], seat: f64) -> Vec<Phase> {
         ending,
     };
     use {Ending::Duration, Stage::Search};
-    let back = beside(tip) + play + ACROSS[0];
-    let front = play + ACROSS[0] + ACROSS[1];
     vec![
         phase(
             "approach",
@@ -161,11 +201,11 @@ fn phases(task: &Task, tip: [[f64; 2]; 2], seat: f64) -> Vec<Phase> {
             Search,
             [0.0, 0.0, -TOUCH],
             20.0,
-            Ending::Touch { preload: PRELOAD, sensed: Sensed::FIRST },
+            Ending::Touch { preload, sensed: Sensed::FIRST },
         ),
         phase("back", Search, [back, 0.0, 0.0], 80.0, Duration(0.02)),
-        phase("front", Search, [-front, 0.0, -DOWN], 80.0, Duration(0.03)),
-        phase("side", Search, [0.0, -(half + SIDE), 0.0], 100.0, Duration(0.03)),
+        phase("front", Search, [front, 0.0, -down], 80.0, Duration(0.03)),
+        phase("side", Search, [aside, -side, 0.0], 100.0, Duration(0.03)),
         phase("assembly", Stage::Assembly, [0.0, 0.0, -push], 100.0, Duration(0.03)),
     ]
 }

@@ -114,7 +114,10 @@ fn by_ribs(record: &StudyRecord, found: &ByRibs) -> Figure {
     Figure {
         name,
         value: format!("{:.1} mm", record.aggregated(Measure::Range, &ranges)),
-        note: format!("{}; the ranges beside it have the paper's one remote centre", windows.join("; ")),
+        note: format!(
+            "{}; the ranges beside it have the paper's one remote centre",
+            windows.join("; ")
+        ),
     }
 }
 

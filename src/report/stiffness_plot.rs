@@ -49,9 +49,10 @@ const PANELS: [(Axis, By); 4] = [
     (Axis::Assembly, By::Density),
 ];
 
-/// Steps along a curve, and where each takes the mechanics of a finger.
+/// Steps along a curve, and where each takes the mechanics of a finger: a figure of four fingers
+/// then computes about 25, a third of a second each.
 const SAMPLES: u32 = 80;
-const COMPUTED_SAMPLES: u32 = 8;
+const COMPUTED_SAMPLES: u32 = 3;
 
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 

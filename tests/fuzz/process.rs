@@ -28,11 +28,17 @@ pub struct Ended {
     pub stderr: String,
 }
 
+/// The binary of this build, or another: long runs outlast builds.
+fn program() -> String {
+    let built = || env!("CARGO_BIN_EXE_optimize").to_owned();
+    std::env::var("FINGER_OPT_FUZZ_PROGRAM").unwrap_or_else(|_| built())
+}
+
 /// Runs the binary; `Err` says what no input may lead to.
 pub fn run(arguments: &[String], input: &[u8], cpu_s: u32) -> Result<Ended, String> {
     let limits = format!("ulimit -v {MEMORY_KIB} -t {cpu_s} -c 0; exec \"$0\" \"$@\"");
     let mut child = Command::new("bash")
-        .args(["-c", &limits, env!("CARGO_BIN_EXE_optimize")])
+        .args(["-c", &limits, &program()])
         .args(arguments)
         .env("RUST_BACKTRACE", "0")
         .env("RAYON_NUM_THREADS", "2")

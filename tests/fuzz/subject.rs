@@ -2,6 +2,7 @@
 
 use super::mutation::{Mutation, mutated};
 use super::process::{CPU_S, TRIAL_S, Verdict, run};
+use finger_opt::connector::mesh::read;
 use sha2::{Digest, Sha256};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,10 +23,13 @@ pub enum Kind {
     AskTell,
     CommandLine,
     Trial,
+    Measurements,
+    Priors,
+    Mesh,
 }
 
 impl Kind {
-    pub const ALL: [Kind; 13] = [
+    pub const ALL: [Kind; 16] = [
         Kind::Task,
         Kind::Space,
         Kind::Robot,
@@ -39,6 +43,9 @@ impl Kind {
         Kind::AskTell,
         Kind::CommandLine,
         Kind::Trial,
+        Kind::Measurements,
+        Kind::Priors,
+        Kind::Mesh,
     ];
 }
 
@@ -59,6 +66,8 @@ pub struct Base {
     robots: Vec<String>,
     uncertainties: Vec<String>,
     fingers: Vec<String>,
+    /// Plug and socket of each example, as OBJ: where a corner moves its faces follow.
+    meshes: Vec<[String; 2]>,
     /// A finished study.
     study: tempfile::TempDir,
 }
@@ -76,9 +85,33 @@ impl Base {
             robots: shipped("robots"),
             uncertainties: shipped("uncertainties"),
             fingers: shipped("fingers"),
+            meshes: ["keyed", "usb"]
+                .map(|pair| ["plug", "socket"].map(|body| obj(pair, body)))
+                .to_vec(),
             study,
         }
     }
+}
+
+/// An example mesh with each corner once.
+fn obj(pair: &str, body: &str) -> String {
+    let name = format!("{}/examples/meshes/{pair}-{body}.stl", env!("CARGO_MANIFEST_DIR"));
+    let triangles = read(&fs::read(&name).unwrap(), &name).unwrap();
+    let (mut corners, mut faces): (Vec<String>, String) = Default::default();
+    for triangle in triangles {
+        faces.push('f');
+        for p in triangle {
+            let corner = format!("v {} {} {}\n", p.x, p.y, p.z);
+            let known = corners.iter().position(|other| *other == corner);
+            let at = known.unwrap_or(corners.len());
+            if known.is_none() {
+                corners.push(corner);
+            }
+            faces.push_str(&format!(" {}", at + 1));
+        }
+        faces.push('\n');
+    }
+    corners.concat() + &faces
 }
 
 fn with_path(words: &str, path: &Path) -> Vec<String> {
@@ -154,8 +187,42 @@ fn run_case(
             let words = "trial --json --density 20 --direction 10 --task";
             ended(&with_path(words, &path), b"")
         }
+        Kind::Measurements => {
+            let path = file(include_str!("../../data/published_bench.csv"), "f.csv")?;
+            let words = match number % 4 {
+                0 => &format!("{CALIBRATE} --measurements"),
+                _ => "measure check --json",
+            };
+            ended(&with_path(words, &path), b"")
+        }
+        Kind::Priors => {
+            let path = file(include_str!("../../priors/bench.toml"), "f.toml")?;
+            let words = format!("{CALIBRATE} --measurements published --priors");
+            ended(&with_path(&words, &path), b"")
+        }
+        Kind::Mesh => {
+            let [plug, socket] = &base.meshes[number as usize % base.meshes.len()];
+            let changed = file([plug, socket][number as usize / 2 % 2], "changed.obj")?;
+            let other = dir.path().join("other.obj");
+            fs::write(&other, [socket, plug][number as usize / 2 % 2])
+                .map_err(|e| e.to_string())?;
+            let [plug, socket] = match number / 2 % 2 {
+                0 => [changed, other],
+                _ => [other, changed],
+            };
+            let words = format!(
+                "task import --engine fake --json --unit mm --resolution 32 --plug {} --socket {} --out",
+                plug.display(),
+                socket.display()
+            );
+            ended(&with_path(&words, &dir.path().join("task.toml")), b"")
+        }
     }
 }
+
+/// As little of it as there may be, of the formula in place of an engine.
+const CALIBRATE: &str =
+    "calibrate --task usb --engine fake --simulations 16 --samples 20 --no-cache --json";
 
 /// Runs one case and judges it.
 pub fn judge(kind: Kind, mutations: &[Mutation], number: u64, base: &Base) -> Verdict {

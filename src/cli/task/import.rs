@@ -1,10 +1,10 @@
 //! `optimize task import`: a task from meshes of plug and socket.
 
 use super::super::setup::{DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, find};
-use super::super::{Failure, print, print_json};
+use super::super::{Failure, print, print_json, say};
 use super::check::{self, Checked};
 use crate::connector::mesh::import::{
-    ALLOWED, Along, CORNER, FINEST, Imported, Mesh, Request, import,
+    ALLOWED, Along, COARSEST, Imported, MOST_PARTS, Mesh, Request, import,
 };
 use crate::connector::mesh::{Surface, read};
 use crate::connector::write::{self, Notes};
@@ -16,6 +16,8 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
+/// Finest resolution there is.
+const FINEST: u32 = 1000;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;
 
@@ -45,7 +47,7 @@ pub struct Arguments {
     like: Option<String>,
     /// Voxels along the longest side, where a mesh is approximated
     #[arg(long, value_name = "N", default_value_t = 64,
-          value_parser = clap::value_parser!(u32).range(8..=i64::from(FINEST)))]
+          value_parser = clap::value_parser!(u32).range(i64::from(COARSEST)..=i64::from(FINEST)))]
     resolution: u32,
     /// File to write
     #[arg(long, value_name = "FILE")]
@@ -99,6 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         along: arguments.insert_along,
         resolution: arguments.resolution,
         like: like.as_ref(),
+        say: &|what| say(what),
     };
     let imported = import(plug, socket, &request).map_err(Failure::input)?;
     let source = Source {
@@ -156,15 +159,12 @@ fn report(
         None => (0.0, nalgebra::Vector3::zeros(), "plug"),
     };
     let clearance_mm = imported.clearance / MM;
-    let warning = (depth > ALLOWED * clearance_mm).then(|| match imported.resolution {
-        Some(finer) => format!(
-            "parts reach {depth:.3} mm into the clearance of {clearance_mm:.3} mm, more than a tenth; \
-             --resolution {finer} would do"
-        ),
-        None => format!(
-            "parts reach {depth:.3} mm into the clearance of {clearance_mm:.3} mm, more than a tenth{}",
-            imported.voxels.map_or(String::new(), bridged)
-        ),
+    let exact = imported.exact[usize::from(of == "socket")];
+    let warning = (depth > ALLOWED * clearance_mm).then(|| {
+        let remedy = if exact { String::new() } else { bridged() };
+        format!(
+            "parts reach {depth:.3} mm into the clearance of {clearance_mm:.3} mm, more than a tenth{remedy}"
+        )
     });
     if arguments.json {
         return print_json(&json!({
@@ -178,7 +178,8 @@ fn report(
             "intrusion_at_mm": [at.x, at.y, at.z],
             "clearance_mm": clearance_mm,
             "resolution": arguments.resolution,
-            "resolution_needed": imported.resolution,
+            // None is known to do: see `bridged`.
+            "resolution_needed": null,
             "plug_was_inward": inward[0],
             "socket_was_inward": inward[1],
             "warning": warning,
@@ -208,16 +209,12 @@ fn report(
     print(&(text + &checked.text()))
 }
 
-/// What does where finer voxels do not.
-fn bridged(voxels: f64) -> String {
-    let why = match voxels > CORNER {
-        true => {
-            "a hull bridges a hollow there, which a higher --resolution does not mend".to_owned()
-        }
-        false => format!("a --resolution above {FINEST} would be needed"),
-    };
+/// What does where hulls reach into the clearance. Two voxels across a tenth of it would be more than
+/// there is time for, and hulls bridge what is hollow by more than that (docs/tasks.md).
+fn bridged() -> String {
     format!(
-        ", by {voxels:.1} voxels: {why}; export the mesh with fewer, flat faces (what makes up to 100 \
-         convex pieces is cut exactly), or write the parts about it by hand (docs/tasks.md)"
+        ": hulls bridge what is hollow, and no --resolution mends that; export the mesh with fewer flats \
+         (what makes up to {MOST_PARTS} convex pieces is cut exactly), begin with `optimize task new --round`, \
+         or write the parts about it by hand (docs/tasks.md)"
     )
 }

@@ -4,6 +4,7 @@ use super::super::setup::{DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, find};
 use super::super::{Failure, print};
 use super::check;
 use crate::connector::draft::{DENSITY, Dimensions, Size, draft};
+use crate::connector::round::Hole;
 use crate::connector::write::{self, Notes};
 use crate::input::shipped::{Source, TASKS};
 use crate::input::task::Task;
@@ -17,7 +18,7 @@ const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
 
 /// Write a commented task file from a few dimensions, or like another task
 ///
-/// With --plug, start, tilt, strokes and success depth are derived from the geometry. With --like
+/// With --plug or --round, start, tilt, strokes and success depth are derived from the geometry. With --like
 /// alone the file is a copy of that task; with both, friction and grasp force are that task's.
 /// With neither it is a USB-C plug.
 #[derive(Debug, Args)]
@@ -26,13 +27,16 @@ pub struct Arguments {
     #[arg(value_name = "NAME")]
     name: String,
     /// What goes in: width (y, between the jaws) x height (x) x length, mm
-    #[arg(long, value_name = "WxHxL", requires = "clearance")]
+    #[arg(long, value_name = "WxHxL", requires = "clearance", group = "tip")]
     plug: Option<Size>,
+    /// What goes in, if it is a cylinder: diameter x length, mm
+    #[arg(long, value_name = "DxL", requires = "clearance", group = "tip", value_parser = Size::round)]
+    round: Option<Size>,
     /// Opening less plug in x and y, mm: both sides together
-    #[arg(long, value_name = "C", requires = "plug", value_parser = clearance)]
+    #[arg(long, value_name = "C", requires = "tip", value_parser = clearance)]
     clearance: Option<f64>,
     /// What the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
-    #[arg(long, value_name = "WxHxL", requires = "plug")]
+    #[arg(long, value_name = "WxHxL", requires = "tip")]
     body: Option<Size>,
     /// Another task: ket8, ket12, rj45, usb, or the path of a task file
     #[arg(long, value_name = "T")]
@@ -48,7 +52,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let like = arguments.like.as_deref().map(|name| find("task", TASKS, name)).transpose()?;
-    let text = match (&like, arguments.plug) {
+    let text = match (&like, arguments.plug.or(arguments.round)) {
         (Some(like), None) => copy(&arguments.name, like)?,
         (like, _) => drafted(arguments, like.as_ref())?,
     };
@@ -74,14 +78,22 @@ fn drafted(arguments: &Arguments, like: Option<&Source>) -> Result<String, Failu
     let like = like.map(|like| Task::parse(&like.text, &like.file)).transpose();
     let like = like.map_err(Failure::input)?;
     let task = draft(&arguments.name, &size, like.as_ref()).map_err(Failure::input)?;
-    let command = format!(
-        "optimize task new {} --plug {} --clearance {}{}",
-        arguments.name,
-        text(&size.plug),
-        size.clearance / MM,
-        size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)))
-    );
+    let body = size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)));
+    let tip = match size.round {
+        true => format!("--round {}", mm(&[size.plug.width, size.plug.length])),
+        false => format!("--plug {}", text(&size.plug)),
+    };
+    let (name, clearance_mm) = (&arguments.name, size.clearance / MM);
+    let command = format!("optimize task new {name} {tip} --clearance {clearance_mm}{body}");
     let mut head = vec![format!("Made by: {command}")];
+    if size.round {
+        let hole = Hole::new(size.plug.width, size.clearance);
+        head.push(format!(
+            "The hole has {} flats, which keep its diameter within {:.4} mm.",
+            hole.flats,
+            2.0 * hole.off / MM
+        ));
+    }
     if example {
         head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
     }
@@ -91,22 +103,27 @@ fn drafted(arguments: &Arguments, like: Option<&Source>) -> Result<String, Failu
 
 /// As given, or those of the example.
 fn dimensions(arguments: &Arguments) -> Result<(Dimensions, bool), Failure> {
-    if let (Some(plug), Some(clearance)) = (arguments.plug, arguments.clearance) {
-        return Ok((Dimensions { plug, clearance: clearance * MM, body: arguments.body }, false));
+    let tip = arguments.plug.or(arguments.round);
+    if let (Some(plug), Some(clearance)) = (tip, arguments.clearance) {
+        let (clearance, body) = (clearance * MM, arguments.body);
+        let round = arguments.round.is_some();
+        return Ok((Dimensions { plug, round, clearance, body }, false));
     }
     let [plug, clearance, body] = EXAMPLE;
     let parse = |text: &str| text.parse::<Size>().map_err(Failure::usage);
     let clearance = self::clearance(clearance).map_err(Failure::usage)?;
-    let size =
-        Dimensions { plug: parse(plug)?, clearance: clearance * MM, body: Some(parse(body)?) };
-    Ok((size, true))
+    let (plug, body) = (parse(plug)?, Some(parse(body)?));
+    Ok((Dimensions { plug, round: false, clearance: clearance * MM, body }, true))
 }
 
 fn text(size: &Size) -> String {
-    [size.width, size.height, size.length]
-        .map(|length| (length / MM * 1e4).round() / 1e4)
-        .map(|mm| mm.to_string())
-        .join("x")
+    mm(&[size.width, size.height, size.length])
+}
+
+/// Lengths as the options have them.
+fn mm(lengths: &[f64]) -> String {
+    let mm = |length: &f64| ((length / MM * 1e4).round() / 1e4).to_string();
+    lengths.iter().map(mm).collect::<Vec<_>>().join("x")
 }
 
 /// The other task's file with this name.

@@ -250,6 +250,10 @@ impl Layer {
                 mesh.add_constraint(a, b);
             }
         }
+        // Merging them takes the third power of their number.
+        if mesh.num_inner_faces() > MOST_PIECES {
+            return None;
+        }
         let mut found = Vec::new();
         for face in mesh.inner_faces() {
             let corners = face.vertices().map(|vertex| risers.get(&vertex.fix().index()).copied());

@@ -9,16 +9,21 @@ use nalgebra::Point3;
 use parry::transformation::vhacd::{VHACD, VHACDParameters};
 use rapier3d_f64::parry;
 
-/// More exact parts than this cost more than they are worth.
-const MOST_PARTS: usize = 100;
+/// Most parts, as many as a task may have: exact ones cost a trial less than hulls that are wrong.
+pub const MOST_PARTS: usize = 200;
 /// An exact cut has the surface's volume, as a share.
 const ALIKE: f64 = 1e-4;
 /// What parts of an exact cut may share, as a share of the whole.
 const SHARED: f64 = 0.01;
 /// What they may reach out, m.
 const NEAR: f64 = 2e-3 * MM;
-/// Most parts of an approximation.
+/// Most parts of an approximation while it is cut.
 const MOST_HULLS: u32 = 1024;
+/// Most voxels of an approximation times those along its longest side, which its time goes with:
+/// half a minute of processor.
+const MOST_WORK: f64 = 2e8;
+/// Coarsest resolution that is asked for.
+pub const COARSEST: u32 = 8;
 /// How hollow a part may be, as a share: a tenth of VHACD's default, since what it leaves fills
 /// the clearance.
 const CONCAVITY: f64 = 0.001;
@@ -32,15 +37,56 @@ pub struct Decomposed {
     pub exact: bool,
 }
 
-/// Decomposes; `resolution` is in voxels along the longest side, where it is needed.
-pub fn decompose(surface: &Surface, resolution: u32) -> Decomposed {
+/// Why a surface has no convex solids.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Undone {
+    /// That would take minutes.
+    Long {
+        /// The finest resolution that does not.
+        finest: u32,
+    },
+    /// A task may not have so many.
+    Many {
+        /// How many there would be.
+        parts: usize,
+    },
+}
+
+/// Decomposes; `resolution` is in voxels along the longest side, where it is needed. `say` is told
+/// what takes its time.
+///
+/// # Errors
+/// If no task can have the result, or it would take long.
+pub fn decompose(
+    surface: &Surface,
+    resolution: u32,
+    say: &dyn Fn(&str),
+) -> Result<Decomposed, Undone> {
+    say(&format!("cutting {} faces into convex pieces", surface.faces.len()));
     let exact = (0..3).filter_map(|turns| cut_along(surface, turns));
     let whole = exact.filter(|solids| is_whole(surface, solids));
     // The cut of fewest parts; of equals the first, across z.
     if let Some(solids) = whole.min_by_key(Vec::len) {
-        return Decomposed { solids, exact: true };
+        return Ok(Decomposed { solids, exact: true });
     }
-    Decomposed { solids: approximate(surface, resolution), exact: false }
+    let most = |finest: &u32| voxels(surface, *finest) * f64::from(*finest) <= MOST_WORK;
+    if !most(&resolution) {
+        let finest = (COARSEST..resolution).rev().find(most).unwrap_or(COARSEST);
+        return Err(Undone::Long { finest });
+    }
+    let thousands = voxels(surface, resolution) / 1e3;
+    say(&format!("approximating {thousands:.0} thousand voxels by convex hulls"));
+    let solids = approximate(surface, resolution);
+    match solids.len() {
+        parts if parts > MOST_PARTS => Err(Undone::Many { parts }),
+        _ => Ok(Decomposed { solids, exact: false }),
+    }
+}
+
+/// About how many voxels fill a surface and lie on it.
+fn voxels(surface: &Surface, resolution: u32) -> f64 {
+    let side = surface.longest_side() / f64::from(resolution);
+    surface.volume() / side.powi(3) + surface.area() / side.powi(2)
 }
 
 /// Cut across z, x or y: after so many turns of the axes.

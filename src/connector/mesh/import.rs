@@ -1,6 +1,7 @@
 //! A task from a mesh of a plug and one of its socket.
 
-use super::decompose::{Decomposed, decompose};
+pub use super::decompose::{COARSEST, MOST_PARTS};
+use super::decompose::{Decomposed, Undone, decompose};
 use super::intrusion::{self, Intrusion};
 use super::surface::Surface;
 use super::{MeshError, cut};
@@ -21,11 +22,6 @@ const LEAST_COVER: f64 = 2.0 * MM;
 const ABOUT: f64 = 0.5 * MM;
 /// Share of the clearance that may be filled.
 pub const ALLOWED: f64 = 0.1;
-
-/// Farthest that the corner of a voxel reaches, in voxels: its diagonal, rounded up.
-pub const CORNER: f64 = 2.0;
-/// Finest resolution there is.
-pub const FINEST: u32 = 1000;
 
 /// The direction, in the files, in which the plug goes in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -84,6 +80,8 @@ pub struct Request<'a> {
     pub resolution: u32,
     /// A task of which all but the shapes is taken.
     pub like: Option<&'a Task>,
+    /// Told what is being done.
+    pub say: &'a dyn Fn(&str),
 }
 
 /// A task and how well it stands for its meshes.
@@ -97,13 +95,12 @@ pub struct Imported {
     pub clearance: f64,
     /// The farthest that a part reaches into the clearance, and whose it is.
     pub intrusion: Option<(Intrusion, &'static str)>,
-    /// The resolution that would do, where this one does not.
-    pub resolution: Option<u32>,
-    /// The intrusion in voxels; nothing where the mesh is not approximated.
-    pub voxels: Option<f64>,
 }
 
 /// Brings two meshes in.
+///
+/// # Errors
+/// If one of them cannot be made of convex parts, opened or held.
 pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, MeshError> {
     let turn = request.along.turn();
     let turned = |surface: Surface| surface.moved(&turn, Vector3::zeros());
@@ -111,8 +108,8 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     let plug_surface = stand(turned(plug.surface), middles[0]);
     let (socket_surface, opening) =
         open(turned(socket.surface), middles[1], &socket.file, request.along)?;
-    let [inner, outer] =
-        [&plug_surface, &socket_surface].map(|surface| decompose(surface, request.resolution));
+    let inner = convex(&plug_surface, &plug.file, "plug", request)?;
+    let outer = convex(&socket_surface, &socket.file, "socket", request)?;
     let mut task = draft::blank(request.name, request.like);
     task.description = format!("from {} and {}", file_name(&plug.file), file_name(&socket.file));
     task.plug.mass = draft::DENSITY * plug_surface.volume();
@@ -131,27 +128,21 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     };
     let clearance = clearance(&task);
     let intrusion = intrude(&task, [&plug_surface, &socket_surface]);
-    let allowed = ALLOWED * clearance;
-    let depth = intrusion.map_or(0.0, |(intrusion, _)| intrusion.depth);
-    let finer = f64::from(request.resolution) * depth / allowed.max(f64::MIN_POSITIVE);
-    let exact = [inner.exact, outer.exact];
-    let voxels = intrusion.and_then(|(found, of)| {
-        let (surface, exact) = match of {
-            "plug" => (&plug_surface, inner.exact),
-            _ => (&socket_surface, outer.exact),
-        };
-        let voxel = surface.longest_side() / f64::from(request.resolution);
-        (!exact).then_some(found.depth / voxel)
-    });
-    // More than the corner of a voxel: a hull that bridges a hollow, which finer voxels do not mend.
-    let helps = voxels.is_some_and(|voxels| voxels <= CORNER) && finer <= f64::from(FINEST);
-    Ok(Imported {
-        exact,
-        clearance,
-        intrusion,
-        resolution: (depth > allowed && helps).then(|| finer.ceil() as u32),
-        voxels,
-        task,
+    Ok(Imported { exact: [inner.exact, outer.exact], clearance, intrusion, task })
+}
+
+/// A body as convex parts.
+fn convex(
+    surface: &Surface,
+    file: &str,
+    body: &str,
+    request: &Request,
+) -> Result<Decomposed, MeshError> {
+    let resolution = request.resolution;
+    let say = |what: &str| (request.say)(&format!("{body}: {what}"));
+    decompose(surface, resolution, &say).map_err(|undone| match undone {
+        Undone::Long { finest } => MeshError::Long { file: file.to_owned(), resolution, finest },
+        Undone::Many { parts } => MeshError::Many { file: file.to_owned(), parts },
     })
 }
 

@@ -8,6 +8,7 @@ mod merge;
 mod read;
 mod surface;
 
+use decompose::MOST_PARTS;
 pub use read::read;
 pub use surface::Surface;
 
@@ -80,6 +81,33 @@ pub enum MeshError {
     NoGrip {
         /// The file.
         file: String,
+    },
+    /// To be approximated more finely than there is time for.
+    #[error(
+        "{file}: is no solid of flat sides that up to {MOST_PARTS} convex pieces make, and approximating it \
+         with --resolution {resolution} would take minutes: give --resolution {finest} or less, export \
+         the mesh with fewer flats (a circle of 32 is exact), begin with `optimize task new --round`, \
+         or write its parts by hand (docs/tasks.md)"
+    )]
+    Long {
+        /// The file.
+        file: String,
+        /// As asked for, voxels along the longest side.
+        resolution: u32,
+        /// What does not take long.
+        finest: u32,
+    },
+    /// More parts than a task may have.
+    #[error(
+        "{file}: comes to {parts} convex hulls; a task may have {MOST_PARTS}: export the mesh with fewer \
+         flats (a circle of 32 is exact), begin with `optimize task new --round`, or write its parts \
+         by hand (docs/tasks.md)"
+    )]
+    Many {
+        /// The file.
+        file: String,
+        /// How many.
+        parts: usize,
     },
     /// No strategy.
     #[error(transparent)]

@@ -57,6 +57,15 @@ impl Surface {
         (0..3).map(side).fold(0.0, f64::max)
     }
 
+    /// Area, m2.
+    pub fn area(&self) -> f64 {
+        let of = |face: &[usize; 3]| {
+            let [a, b, c] = face.map(|corner| self.points[corner]);
+            (b - a).cross(&(c - a)).norm() / 2.0
+        };
+        self.faces.iter().map(of).sum()
+    }
+
     /// Volume, m3.
     pub fn volume(&self) -> f64 {
         surface_moments(&self.points, &self.faces).0

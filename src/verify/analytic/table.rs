@@ -4,11 +4,14 @@ use super::{CheckRow, Tolerance};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The rows as an aligned table, at most 100 columns wide, and whether all pass.
+/// Columns of a quantity; what is longer goes on in the next line.
+const QUANTITY: usize = 29;
+
+/// The rows as an aligned table, at most 80 columns wide, and whether all pass.
 pub fn table(rows: &[CheckRow]) -> String {
     let mut text = format!(
-        "{:<6}{:<44}{:>9} {:>9} {:<5}{:>9}  {:<8}\n",
-        "check", "quantity", "expected", "measured", "unit", "error", "allowed"
+        "{:<4}{:<QUANTITY$}{:>9}{:>9} {:<6}{:>9} {:<7}\n",
+        "", "quantity", "expected", "measured", "unit", "error", "allowed"
     );
     for row in rows {
         let (error, allowed) = match row.tolerance {
@@ -16,16 +19,19 @@ pub fn table(rows: &[CheckRow]) -> String {
             Tolerance::Absolute(error) => (number(row.error()), number(error)),
         };
         let verdict = if row.passed { "ok" } else { "FAIL" };
+        let (quantity, rest) = broken(&row.quantity);
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{:<6}{:<44}{:>9} {:>9} {:<5}{error:>9}  {allowed:<8}{verdict}",
+            "{:<4}{quantity:<QUANTITY$}{:>9}{:>9} {:<6}{error:>9} {allowed:<8}{verdict}",
             row.check,
-            row.quantity,
             number(row.expected),
             number(row.measured),
             row.unit,
         );
+        if !rest.is_empty() {
+            let _ = writeln!(text, "      {rest}");
+        }
     }
     let failed = rows.iter().filter(|row| !row.passed).count();
     let _ = match failed {
@@ -58,12 +64,24 @@ pub fn json(rows: &[CheckRow]) -> Value {
         .collect()
 }
 
+/// A quantity as far as its column goes, to the end of a word, and the rest.
+fn broken(quantity: &str) -> (&str, &str) {
+    match quantity.char_indices().nth(QUANTITY) {
+        None => (quantity, ""),
+        Some((end, _)) => match quantity[..end].rfind(' ') {
+            Some(space) => (&quantity[..space], &quantity[space + 1..]),
+            None => quantity.split_at(end),
+        },
+    }
+}
+
 fn number(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
         size if size < 1e-3 => format!("{value:.1e}"),
         size if size < 10.0 => format!("{value:.5}"),
-        _ => format!("{value:.3}"),
+        size if size < 1e4 => format!("{value:.3}"),
+        _ => format!("{value:.2e}"),
     }
 }
 
@@ -85,7 +103,13 @@ mod tests {
         let tolerance = Tolerance::Relative(0.01);
         vec![
             CheckRow::new(name("good"), 2.0, Ok::<_, Diverged>(2.01), "mm", tolerance),
-            CheckRow::new(name("bad"), 2.0, Ok::<_, Diverged>(2.03), "mm", tolerance),
+            CheckRow::new(
+                name("bad, and named by more words than its column has room for"),
+                7_175_000.0,
+                Ok::<_, Diverged>(-8e6),
+                "rad/Nm",
+                tolerance,
+            ),
             CheckRow::new(name("diverged"), 2.0, Err(Diverged), "mm", tolerance),
         ]
     }
@@ -98,9 +122,14 @@ mod tests {
     #[test]
     fn table_fits_a_terminal_and_names_the_failures() {
         let text = table(&rows());
-        assert!(text.lines().all(|line| line.len() <= 100), "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+        assert!(text.contains("quantity") && text.contains("unit"), "{text}");
         assert_eq!(text.matches("FAIL").count(), 2, "{text}");
         assert!(text.ends_with("\nfail: 2 of 3 checks\n"), "{text}");
+        // The long name is whole, in two lines.
+        assert!(
+            text.contains("bad, and named by more words ") && text.contains("\n      than its")
+        );
     }
 
     #[test]

@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-parts="stiffness finger bench check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
+parts="stiffness finger shapes bench check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 reference=results/reference
@@ -103,6 +103,18 @@ trials() {
 
 # What a study decides by is kept, so that `report` and `compare` open it; its films are not, which
 # are large: the report is the one that `report` makes without them.
+# What the shape of the finger adds to its infill.
+shapes() {
+    local folder="$reference/finger/rj45"
+    mkdir -p "$folder"
+    /usr/bin/env time -f "%e s wall, %U s processor, %M KiB" -o "$folder/time.txt" \
+        "$optimize" --task rj45 --space finger --budget 200 --no-cache --out "$work/shapes" --quiet \
+        > "$folder/summary.txt"
+    sed -i '/^study /d' "$folder/summary.txt"
+    cp "$work/shapes"/{evaluations.csv,report.html} "$folder/"
+    record studies "$folder"/*
+}
+
 studies() {
     local task kept
     for task in usb ket8 ket12 rj45; do

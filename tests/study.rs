@@ -443,6 +443,19 @@ fn the_best_designs_are_walked_beside_the_journal() {
 }
 
 #[test]
+fn the_order_on_the_bench_says_whose_it_is() {
+    let studies = Studies::new();
+    let paper = studies.study("paper", 4, &["--no-confirm"]);
+    assert!(paper.succeeds().contains("on usb our validation ranked 11"), "{}", paper.stdout);
+    for (name, other) in [("ribs", ["--finger-model", "computed"]), ("robot", ["--robot", "rigid"])]
+    {
+        let found = studies.study(name, 4, &[&other[..], &["--no-confirm"]].concat());
+        let words = "our validation, though of paper fingers on servo, ranked";
+        assert!(found.succeeds().contains(words), "{}", found.stdout);
+    }
+}
+
+#[test]
 fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
     let studies = Studies::new();
     studies.study("s", 200, &[]).succeeds();

@@ -111,8 +111,8 @@ fn matters(record: &StudyRecord) -> Option<String> {
 /// What is known of how the robot orders the designs.
 fn robot(record: &StudyRecord) -> Vec<String> {
     let known = |(at, task): (usize, &str)| {
-        let Order { spearman, fingers, own } = order_on_bench(record, at)?;
-        let whose = if own { "this study" } else { "our validation" };
+        let Order { spearman, fingers, source } = order_on_bench(record, at)?;
+        let whose = source.words();
         Some(format!(
             "robot         on {task} {whose} ranked {fingers} printed fingers {spearman:+.2} like the bench (1: alike)"
         ))

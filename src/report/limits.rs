@@ -4,7 +4,7 @@ use crate::evaluation::objective::Measure;
 use crate::input::stiffness::Axis;
 use crate::study::StudyRecord;
 use crate::surrogate::Model;
-use crate::verify::compare::published::{Order, order_on_bench, rank_correlation};
+use crate::verify::compare::published::{Order, OrderSource, order_on_bench, rank_correlation};
 use maud::{Markup, html};
 
 /// Key of the remote centre, where a space has it among its parameters.
@@ -60,8 +60,14 @@ fn gaps(record: &StudyRecord) -> String {
 
 fn published_order(record: &StudyRecord) -> String {
     let here = |(at, task): (usize, &str)| {
-        let Order { spearman, fingers, own } = order_on_bench(record, at)?;
-        let whose = if own { "this study's" } else { "our validated" };
+        let Order { spearman, fingers, source } = order_on_bench(record, at)?;
+        let whose = match source {
+            OrderSource::Study => "this study's",
+            OrderSource::Validation => "our validated",
+            OrderSource::OtherRig => {
+                "our validated (paper's fingers, robot servo: not this study's)"
+            }
+        };
         let published = rank_correlation(task)
             .map_or(String::new(), |(r, n)| format!("; of the published ones {r:+.2} over {n}"));
         Some(format!(

@@ -16,7 +16,7 @@ pub use accuracy::{accuracy, accuracy_json};
 pub use agreement::{Agreement, rank_correlation};
 pub use calibrated::{Calibrated, LeftOutFinger};
 pub use models::{Model, ModelTables, Spread, models_json, models_text};
-pub use order::{Order, order_on_bench};
+pub use order::{Order, OrderSource, order_on_bench};
 pub use table::{CSV_HEADER, SUMMARY_HEADER, csv, json, summary_csv};
 pub use targets::{Target, targets};
 pub use text::text;

@@ -1,6 +1,7 @@
 //! How far our simulation ranks the fingers of a task as the bench does.
 
 use crate::evaluation::objective::Measure;
+use crate::finger::model::FingerModelKind;
 use crate::input::published::{Origin, Published, designs, of_task};
 use crate::input::stiffness::Measurement;
 use crate::study::StudyRecord;
@@ -16,9 +17,34 @@ pub struct Order {
     pub spearman: f64,
     /// Fingers it rests on.
     pub fingers: usize,
-    /// Whether the ranges are the study's own; else those of the committed validation.
-    pub own: bool,
+    /// Whose ranges these are.
+    pub source: OrderSource,
 }
+
+/// Whose simulated ranges are held against the bench.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OrderSource {
+    /// The study's own.
+    Study,
+    /// Those of the committed validation, with the study's finger model and robot.
+    Validation,
+    /// Those of the committed validation, which has another finger model or another robot.
+    OtherRig,
+}
+
+impl OrderSource {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            OrderSource::Study => "this study",
+            OrderSource::Validation => "our validation",
+            OrderSource::OtherRig => "our validation, though of paper fingers on servo,",
+        }
+    }
+}
+
+/// The robot of the committed validation; its fingers are the paper's.
+const VALIDATION_ROBOT: &str = "servo";
 
 #[derive(Deserialize)]
 struct Validated {
@@ -41,13 +67,21 @@ pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
     let own: Vec<(f64, f64)> = bench.iter().filter_map(pair).collect();
     let all = bench.iter().filter(|bench| bench.tolerable_range_mm.is_some()).count();
     match own.len() == all {
-        true => order(&own, true),
-        false => order(&validated(name), false),
+        true => order(&own, OrderSource::Study),
+        false => order(&validated(name), of_validation(record)),
     }
 }
 
-fn order(pairs: &[(f64, f64)], own: bool) -> Option<Order> {
-    Some(Order { spearman: spearman(pairs)?, fingers: pairs.len(), own })
+fn of_validation(record: &StudyRecord) -> OrderSource {
+    let config = &record.config;
+    match config.finger_model == FingerModelKind::Paper && config.robot == VALIDATION_ROBOT {
+        true => OrderSource::Validation,
+        false => OrderSource::OtherRig,
+    }
+}
+
+fn order(pairs: &[(f64, f64)], source: OrderSource) -> Option<Order> {
+    Some(Order { spearman: spearman(pairs)?, fingers: pairs.len(), source })
 }
 
 /// What a study simulated of a measured finger, mm.
@@ -73,7 +107,7 @@ mod tests {
         for (task, pairs, rank) in
             [("ket8", 11, -0.57), ("ket12", 7, 0.85), ("rj45", 11, 0.52), ("usb", 11, -0.03)]
         {
-            let found = order(&validated(task), false).unwrap();
+            let found = order(&validated(task), OrderSource::Validation).unwrap();
             assert_eq!(found.fingers, pairs, "{task}");
             assert!((found.spearman - rank).abs() < 0.005, "{task}: {}", found.spearman);
         }

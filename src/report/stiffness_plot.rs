@@ -49,10 +49,8 @@ const PANELS: [(Axis, By); 4] = [
     (Axis::Assembly, By::Density),
 ];
 
-/// Steps along a curve, and where each takes the mechanics of a finger: a figure of four fingers
-/// then computes about 25, a third of a second each.
+/// Steps along a curve of a model that computes no finger.
 const SAMPLES: u32 = 80;
-const COMPUTED_SAMPLES: u32 = 3;
 
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
@@ -89,10 +87,17 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by: By) -> Drawn {
     let span = limits.end - limits.start;
     let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
     let curves = levels(measured.iter().map(|m| by.of(m).1));
-    let count = if model.computes() { COMPUTED_SAMPLES } else { SAMPLES };
-    let at = |i| x.start + (x.end - x.start) * f64::from(i) / f64::from(count);
+    // Each place may take the mechanics of a finger, a third of a second: then only the ends and where
+    // the other panel of the axis has its curves, so that both share them.
+    let places: Vec<f64> = if model.computes() {
+        let levels = levels(measured.iter().map(|m| by.of(m).0));
+        [x.start].into_iter().chain(levels).chain([x.end]).collect()
+    } else {
+        let at = |i| x.start + (x.end - x.start) * f64::from(i) / f64::from(SAMPLES);
+        (0..=SAMPLES).map(at).collect()
+    };
     let band = |&curve: &f64| {
-        (0..=count).map(at).map(|x| Ok((x, by.predict(model, axis, x, curve)?))).collect()
+        places.iter().map(|&x| Ok((x, by.predict(model, axis, x, curve)?))).collect()
     };
     let bands: Vec<Vec<(f64, Estimate)>> =
         curves.iter().map(band).collect::<Result<_, String>>()?;

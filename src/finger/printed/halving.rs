@@ -15,10 +15,12 @@ pub(super) struct Halved {
 /// Halves a mesh, and each half, down to parts of at most `leaf` triangles.
 pub(super) fn halve(mesh: &Mesh, leaf: usize) -> Halved {
     let centre = |t| mesh.corners(t).iter().fold(Point2::origin(), |sum, p| sum + p.coords / 3.0);
+    let centres: Vec<_> = (0..mesh.triangles.len()).map(centre).collect();
     let mut halving = Halving {
         leaf,
         corners: mesh.triangles.iter().map(|&[a, b, c, ..]| [a, b, c]).collect(),
-        centres: (0..mesh.triangles.len()).map(centre).collect(),
+        ranks: DIRECTIONS.map(|direction| ranks(&centres, direction)),
+        centres,
         stamps: vec![0; mesh.nodes.len()],
         cuts: Vec::new(),
     };
@@ -27,11 +29,27 @@ pub(super) fn halve(mesh: &Mesh, leaf: usize) -> Halved {
     Halved { order, cuts: halving.cuts }
 }
 
+/// The place of each triangle along a direction: none is given twice.
+fn ranks(centres: &[Point2<f64>], [x, y]: [f64; 2]) -> Vec<u32> {
+    let places: Vec<f64> = centres.iter().map(|centre| x * centre.x + y * centre.y).collect();
+    let mut sorted: Vec<u32> = (0..centres.len() as u32).collect();
+    sorted.sort_unstable_by(|&a, &b| {
+        places[a as usize].total_cmp(&places[b as usize]).then(a.cmp(&b))
+    });
+    let mut ranks = vec![0; centres.len()];
+    for (rank, t) in sorted.into_iter().enumerate() {
+        ranks[t as usize] = rank as u32;
+    }
+    ranks
+}
+
 /// Sorts triangles so that halves, quarters, ... of the order share few nodes.
 struct Halving {
     leaf: usize,
     corners: Vec<[u32; 3]>,
     centres: Vec<Point2<f64>>,
+    /// Of each direction.
+    ranks: [Vec<u32>; 4],
     /// Scratch of [`Halving::shared`].
     stamps: Vec<u8>,
     /// Number of triangles before each cut, in the order in which the parts are visited.
@@ -45,10 +63,10 @@ const SHARES: [f64; 3] = [0.5, 0.4, 0.6];
 /// A smaller set of triangles is halved along x or y, whichever is longer.
 const FEW: usize = 30;
 
-/// The triangles that lie first along a direction, and the others.
+/// The triangles that lie first along one of the directions, and the others.
 #[derive(Debug, Clone, Copy)]
 struct Cut {
-    direction: [f64; 2],
+    direction: usize,
     first: usize,
 }
 
@@ -67,9 +85,9 @@ impl Halving {
     }
 
     /// Brings the triangles that lie first along a direction to the front.
-    fn cut(&self, order: &mut [u32], Cut { direction: [x, y], first }: Cut) {
-        let place = |t: u32| x * self.centres[t as usize].x + y * self.centres[t as usize].y;
-        order.select_nth_unstable_by(first, |&a, &b| place(a).total_cmp(&place(b)).then(a.cmp(&b)));
+    fn cut(&self, order: &mut [u32], Cut { direction, first }: Cut) {
+        let ranks = &self.ranks[direction];
+        order.select_nth_unstable_by_key(first, |&t| ranks[t as usize]);
     }
 
     fn longest(&self, order: &[u32]) -> Cut {
@@ -79,14 +97,15 @@ impl Halving {
                 places.fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p), high.max(p)));
             high - low
         };
-        let direction = DIRECTIONS[usize::from(extent(|p| p.x) <= extent(|p| p.y))];
+        // The first two directions are x and y.
+        let direction = usize::from(extent(|p| p.x) <= extent(|p| p.y));
         Cut { direction, first: order.len() / 2 }
     }
 
     /// The cut across which the fewest corners are shared.
     fn best(&mut self, order: &mut [u32]) -> Cut {
-        let mut best = (usize::MAX, Cut { direction: DIRECTIONS[0], first: order.len() / 2 });
-        for direction in DIRECTIONS {
+        let mut best = (usize::MAX, Cut { direction: 0, first: order.len() / 2 });
+        for direction in 0..DIRECTIONS.len() {
             for share in SHARES {
                 let cut = Cut { direction, first: (order.len() as f64 * share) as usize };
                 self.cut(order, cut);

@@ -59,7 +59,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bands = found.bands.as_ref().map(repeat::bands_text).unwrap_or_default();
     let computed = computed.iter().flat_map(words::by_ribs).collect::<String>();
     let text = text(&found.chosen, &found.setup, &found.evaluation);
-    print(&format!("{text}{computed}{bands}time          {:.1} s\n", found.wall_s))
+    let all = format!("{text}{computed}{bands}time          {:.1} s\n", found.wall_s);
+    print(&words::wrapped(&all))
 }
 
 /// Measures; ends early, with a failure, once `stop` is set.

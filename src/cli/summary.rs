@@ -70,8 +70,8 @@ fn text(dir: &Path, record: &StudyRecord, ending: Ending, known: u64) -> String 
         lines.push(format!("cache         {known} evaluations were known from other studies"));
     }
     let page = dir.join(super::report::PAGE);
-    lines.push(format!("study         {} (see {})", dir.display(), page.display()));
-    lines.join("\n") + "\n"
+    let place = format!("study         {} (see {})\n", dir.display(), page.display());
+    super::words::wrapped(&(lines.join("\n") + "\n")) + &place
 }
 
 /// That a task is of no use as it is.

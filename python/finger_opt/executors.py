@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 import threading
 import time
@@ -18,8 +19,10 @@ from typing import Any
 from . import _native
 from ._run import run_open
 
-#: How often Slurm is asked for jobs that have ended, s.
+#: How often the folder of the jobs is looked into for results, s.
 LOOK = 1.0
+#: How often Slurm is asked which jobs it still has, s.
+ASK = 30.0
 
 
 class SlurmExecutor(Executor):
@@ -40,6 +43,7 @@ class SlurmExecutor(Executor):
         self._executor.update_parameters(**{"time": 60, "job_name": "finger-opt", **parameters})
         self._max_workers = workers
         self._jobs: dict[Future[Any], Any] = {}
+        self._gone: set[str] = set()
         self._lock = threading.Lock()
         self._ended = threading.Event()
         self._watch = threading.Thread(target=self._look, daemon=True)
@@ -55,18 +59,42 @@ class SlurmExecutor(Executor):
         return future
 
     def _look(self) -> None:
+        asked = time.monotonic()
         while not self._ended.wait(LOOK):
             with self._lock:
                 jobs = list(self._jobs.items())
+            lost: set[str] = set()
+            if time.monotonic() - asked >= ASK:
+                asked = time.monotonic()
+                lost = self._lost({job.job_id for _, job in jobs})
             for future, job in jobs:
-                if not job.done():
+                done = job.done()
+                if not done and job.job_id not in lost:
                     continue
                 with self._lock:
                     del self._jobs[future]
                 try:
+                    if not done:
+                        raise RuntimeError(f"Slurm job {job.job_id} ended without a result: see {job.paths.stderr}")
                     future.set_result(job.result())
                 except Exception as error:
                     future.set_exception(error)
+
+    def _lost(self, jobs: set[str]) -> set[str]:
+        """Jobs that Slurm did not have the last two times it was asked.
+
+        ``sacct`` knows a killed job only where Slurm keeps accounts. A job that has just ended may have
+        a result that the file system does not show yet, hence twice.
+        """
+        try:
+            said = subprocess.run(["squeue", "--me", "-h", "-o", "%i"], capture_output=True, text=True, timeout=ASK)
+        except (OSError, subprocess.TimeoutExpired):
+            return set()
+        if said.returncode != 0:
+            return set()
+        gone = jobs - set(said.stdout.split())
+        lost, self._gone = gone & self._gone, gone
+        return lost
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Ends the watch; jobs that still run are cancelled."""

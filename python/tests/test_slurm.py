@@ -137,3 +137,18 @@ def test_the_command_hands_a_study_to_slurm(slurm, command, tmp_path, fake):
     assert code == 0, errors
     assert "best design" in out
     assert fo.load_study(tmp_path / "s").config["batch"] == 2
+
+
+def test_a_killed_job_is_noticed_without_accounts(slurm, tmp_path, monkeypatch):
+    from finger_opt import executors
+
+    monkeypatch.setattr(executors, "ASK", 2.0)
+    executor = executors.SlurmExecutor(folder=str(tmp_path / "jobs"), workers=2, partition="short")
+    killed = executor.submit(time.sleep, 600)
+    other = executor.submit(time.sleep, 8)
+    time.sleep(2)
+    job = executor._jobs[killed].job_id
+    subprocess.run(["scancel", "--signal=KILL", "--full", job], check=True)
+    assert f"Slurm job {job} ended without a result" in str(killed.exception(timeout=60))
+    assert other.result(timeout=60) is None
+    executor.shutdown()

@@ -4,6 +4,7 @@ use super::on_bench;
 use super::words::{self, merge};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::firm::{Firm, REPEATS};
+use crate::report::beyond_chance;
 use crate::study::{ByRibs, Recommendation, Recorded, StudyRecord};
 use crate::units::N_PER_MM;
 use crate::verify::compare::published::{Order, order_on_bench};
@@ -111,10 +112,16 @@ fn matters(record: &StudyRecord) -> Option<String> {
 /// What is known of how the robot orders the designs.
 fn robot(record: &StudyRecord) -> Vec<String> {
     let known = |(at, task): (usize, &str)| {
-        let Order { spearman, fingers, source } = order_on_bench(record, at)?;
+        let order = order_on_bench(record, at)?;
+        let chance = if beyond_chance(&order) {
+            ""
+        } else {
+            "; no more than chance gives: measure the best few"
+        };
+        let Order { spearman, fingers, source } = order;
         let whose = source.words();
         Some(format!(
-            "robot         on {task} {whose} ranked {fingers} printed fingers {spearman:+.2} like the bench (1: alike)"
+            "robot         on {task} {whose} ranked {fingers} printed fingers {spearman:+.2} like the bench (1: alike){chance}"
         ))
     };
     let mut lines: Vec<String> = record.config.tasks().enumerate().filter_map(known).collect();

@@ -8,6 +8,7 @@ use crate::evaluation::{Evaluation, Window, grid_mm};
 use crate::outcome::Outcome;
 use crate::study::{ByRibs, Recommendation, Recorded, StudyRecord};
 use crate::units::N_PER_MM;
+use crate::verify::compare::published::{Order, order_on_bench};
 use maud::{Markup, html};
 
 /// A number to be seen at a glance: its name, itself, and what is to be known of it.
@@ -34,6 +35,7 @@ pub(super) fn card(record: &StudyRecord, best: &Recorded) -> Markup {
                 }
             }
             @if let Some(widest) = wider(record, best) { p { (widest) } }
+            @for line in bench(record) { p { (line) } }
             p {
                 a href="evaluations.csv" { "table of all evaluations" } ", "
                 a href="journal.jsonl" { "journal" } ", "
@@ -129,6 +131,32 @@ fn wider(record: &StudyRecord, best: &Recorded) -> Option<String> {
     (by_range && !record.walked.is_empty() && widest > own + 0.05).then(|| {
         format!("The widest window, {widest:.1} mm by the first search, was less firm when measured again.")
     })
+}
+
+/// What is known of how the bench orders fingers, task by task.
+fn bench(record: &StudyRecord) -> Vec<String> {
+    let known = |(at, task): (usize, &str)| {
+        let order = order_on_bench(record, at)?;
+        let advice = if beyond_chance(&order) { "" } else { ", no more than chance gives" };
+        Some(format!(
+            "On {task} {} ranked {} printed fingers with a correlation of {:+.2} to the bench{advice} (1: the same order).",
+            order.source.words(),
+            order.fingers,
+            order.spearman,
+        ))
+    };
+    let mut lines: Vec<String> = record.config.tasks().enumerate().filter_map(known).collect();
+    if lines.is_empty() {
+        lines.push("How the bench orders fingers on this task is not known.".to_owned());
+    }
+    lines.push("Print and measure more than one: optimize next says which.".to_owned());
+    lines
+}
+
+/// Whether a random order would do as well in less than 5 % of cases: of `n` fingers its rank correlation has
+/// mean 0 and variance 1 / (n - 1), taken as normal.
+pub fn beyond_chance(order: &Order) -> bool {
+    order.spearman * (order.fingers as f64 - 1.0).sqrt() > 1.645
 }
 
 /// The firm window of a study of one task.

@@ -38,6 +38,7 @@ mod windows;
 
 use crate::study::StudyRecord;
 
+pub use answer::beyond_chance;
 pub use compare_plot::svg as compare_svg;
 pub use page::{Replay, card, page};
 pub use text::volume_unit;

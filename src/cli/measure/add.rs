@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let new = appended(&text, &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;
     write_file(path, &new)?;
-    print(&format!("{file}: {} lines\n", found.len()))
+    print(&format!("{file}: {}\n", super::lines(&found)))
 }
 
 impl Arguments {

@@ -66,7 +66,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )
     };
     let lines: String = tasks.iter().map(line).collect();
-    print(&format!("{lines}{}: {} lines, nothing looks wrong\n", arguments.file, found.len()))
+    let counted = super::lines(&found);
+    print(&format!("{lines}{}: {counted}, nothing looks wrong\n", arguments.file))
 }
 
 /// Insertion windows measured, over all lines of a task.

@@ -37,6 +37,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
+/// How many lines a file has, in words.
+fn lines(found: &[Experiment]) -> String {
+    match found.len() {
+        1 => "1 line".to_owned(),
+        count => format!("{count} lines"),
+    }
+}
+
 /// The measurements of that name or at that path, checked; their tasks are shipped ones or
 /// those in `more`.
 pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {

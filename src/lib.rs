@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! input -> finger -> surrogate -> physics -> trial -> connector
-//!       -> evaluation -> optimizer -> study -> verify -> calibration -> report -> cli
+//!       -> evaluation -> optimizer -> sensitivity -> study -> verify -> calibration -> report -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per

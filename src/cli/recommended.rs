@@ -34,14 +34,24 @@ pub fn lines(record: &StudyRecord, found: &Recommendation) -> Vec<String> {
         lines.extend(words::force(evaluation));
         lines.extend(words::drawn_text(evaluation));
     }
-    let by_ribs = found.by_ribs.iter().flat_map(|found| words::by_ribs(found));
-    lines.extend(by_ribs.map(|line| line.trim_end().to_owned()));
+    lines.extend(by_ribs(record, found));
     lines.push(words::stiffness(&best.stiffness));
     lines.extend(walked(record, best));
     lines.extend(as_good(record, found));
     lines.extend(matters(record));
     lines.extend(robot(record));
     lines
+}
+
+/// What the finger tolerates with springs computed from its ribs; of several tasks with their names.
+fn by_ribs(record: &StudyRecord, found: &Recommendation) -> Vec<String> {
+    let lines: Vec<String> = found.by_ribs.iter().flat_map(|found| words::by_ribs(found)).collect();
+    let named = lines.len() > 1;
+    let name = |(line, task): (&String, &str)| match named {
+        true => format!("{} on {task}", line.trim_end()),
+        false => line.trim_end().to_owned(),
+    };
+    lines.iter().zip(record.config.tasks()).map(name).collect()
 }
 
 fn firm_range(record: &StudyRecord, found: &Recommendation) -> Option<String> {

@@ -174,13 +174,13 @@ mod tests {
     fn long_lines_go_on_below_where_they_begin() {
         let short = "range         3.5 mm\n";
         let design =
-            "  least force infill density 10 %, infill direction 29°: 79.2 N (evaluation 176)\n";
+            "  least force infill density 10 %, infill direction 29°: 79.2 N (evaluation 1176)\n";
         let shape = "best design   material modulus 0.5 GPa, notch pad 11 mm, outline back radius 33 mm, \
                      outline length 64.8 mm, ribs thickness 0.38 mm, skin thickness 0.7 mm (evaluation 9)\n";
         let path = format!("study         {}\n", "x".repeat(100));
         assert_eq!(wrapped(short), short);
         assert_eq!(wrapped(&path), path, "nothing to break it at");
-        let broken = "  least force infill density 10 %, infill direction 29°: 79.2 N\n              (evaluation 176)\n";
+        let broken = "  least force infill density 10 %, infill direction 29°: 79.2 N\n              (evaluation 1176)\n";
         assert_eq!(wrapped(&format!("{short}{design}")), format!("{short}{broken}"));
         let lines = wrapped(shape);
         assert!(lines.lines().all(|line| line.chars().count() <= COLUMNS), "{lines}");

@@ -101,6 +101,8 @@ def test_ctrl_c_ends_a_long_call():
     # Success rates take many trials: minutes, if nothing ended it.
     code = (
         "import finger_opt as fo, signal, threading, os\n"
+        # A process begun in a shell's background inherits that Ctrl-C is ignored.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "threading.Timer(2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
         "fo.evaluate('usb', 20, 10, uncertainty='typical')\n"
     )

@@ -298,6 +298,8 @@ def test_an_asynchronous_study_repeats_from_its_journal(create, command):
 def test_ctrl_c_leaves_a_journal_that_goes_on(create, expected, tmp_path):
     code = (
         "import finger_opt as fo, os, signal, threading, time\n"
+        # A process begun in a shell's background inherits that Ctrl-C is ignored.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         f"journal = {str(tmp_path / 'stopped' / 'journal.jsonl')!r}\n"
         "def stop():\n"
         "    while not os.path.exists(journal) or open(journal).read().count(chr(10)) < 5:\n"

@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 pub const CPU_S: u32 = 17;
 /// The same of a simulated trial, of which 60 s are simulated at most, in a build for tests.
 pub const TRIAL_S: u32 = 100;
+/// The same of meshes, whose approximation by hulls may take half a minute by its limit (docs/reliability.md).
+pub const IMPORT_S: u32 = 51;
 /// Address space that it may take, KiB.
 const MEMORY_KIB: u32 = 1 << 20;
 /// After so long it hangs, whatever the machine is busy with.

@@ -9,6 +9,8 @@ pub const MM: f64 = 1e-3;
 pub const N_PER_MM: f64 = 1e3;
 /// One degree, in radians.
 pub const DEG: f64 = std::f64::consts::PI / 180.0;
+/// One gigapascal, in pascals.
+pub const GPA: f64 = 1e9;
 /// One gram, in kilograms.
 pub const GRAM: f64 = 1e-3;
 

@@ -499,6 +499,35 @@ fn a_touch_felt_at_a_force_and_late_presses_harder() {
     }
 }
 
+/// An RJ45 plug's latch bends under the lips of its jack as far as they force it to, and snaps
+/// back behind them.
+#[test]
+fn a_latch_snaps_behind_its_lips() {
+    let sold = AS_SOLD.iter().find(|sold| sold.name == "rj45").unwrap();
+    let task = Task::parse(sold.text, sold.file).unwrap();
+    let hinge = task.plug.latch.as_ref().unwrap().hinge;
+    for robot in ["servo", "ur5e_position"] {
+        let file = ROBOTS.iter().find(|file| file.name == robot).unwrap();
+        let robot = Robot::parse(file.text, file.file).unwrap();
+        let rig = EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap();
+        let recording = rig.record(&finger(2.6, 45.0), 0.0).unwrap();
+        assert_eq!(recording.trial.outcome, Outcome::Inserted, "{:?}", recording.trial);
+        let turns = recording.frames.iter().map(|frame| {
+            let bent = frame.poses.plug.inverse() * frame.poses.latch.unwrap();
+            let moved = (bent * hinge - hinge).norm();
+            assert!(moved < 0.02 * MM, "the hinge gave by {moved} m");
+            bent.rotation.scaled_axis().y.abs()
+        });
+        let turns: Vec<f64> = turns.collect();
+        // The shoulder's edge, 3.9 mm along the plug from the hinge, has to give way by 0.89 mm with
+        // the plug in the middle of its play, and by 0.17 mm more or less at its ends.
+        let most = turns.iter().copied().fold(0.0, f64::max);
+        assert!((0.68 / 3.9..1.1 / 3.9).contains(&most), "{most} rad");
+        let last = turns.last().unwrap();
+        assert!(*last < 0.02, "still bent by {last} rad");
+    }
+}
+
 /// A USB-A plug finds its receptacle and goes on over the tongue from the task file's own start.
 #[test]
 fn a_usb_a_plug_goes_over_its_tongue() {

@@ -9,7 +9,7 @@ use finger_opt::connector::nominal::explain;
 use finger_opt::connector::write::{self, Notes};
 use finger_opt::finger::Finger;
 use finger_opt::input::robot::Robot;
-use finger_opt::input::shipped::{ROBOTS, TASKS};
+use finger_opt::input::shipped::{AS_SOLD, ROBOTS, TASKS};
 use finger_opt::input::task::Task;
 use finger_opt::outcome::Outcome;
 use finger_opt::physics::direct::Direct;
@@ -54,6 +54,37 @@ fn shipped_tasks_have_no_problems() {
 }
 
 /// Each fault in a shipped task: the key that is named, a word of what is wrong and one of the remedy.
+/// Edges and latches that a task may not have, with what the reader says of them.
+#[test]
+fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
+    let sold = AS_SOLD.iter().find(|file| file.name == "rj45").unwrap();
+    assert!(problems(&Task::parse(sold.text, sold.file).unwrap()).is_empty());
+    let edge = "{ at = \"-x+z\", chamfer_mm = 0.2 }";
+    for (from, to, key, problem) in [
+        (edge, "{ at = \"-x-x\", chamfer_mm = 0.2 }", "\"wall at +x\" edges", "names no edge"),
+        (edge, "{ at = \"-x+z\" }", "\"wall at +x\" edges", "either chamfer_mm or radius_mm"),
+        (edge, "{ at = \"-x+z\", radius_mm = 0.0 }", "edges.radius_mm", "above 0"),
+        (edge, "{ at = \"-x+z\", chamfer_mm = 3.0 }", "\"wall at +x\" edges", "smaller"),
+        (edge, "{ at = \"+z\", radius_mm = 1.3 }", "\"wall at +x\" edges", "smaller"),
+        (
+            edge,
+            "{ at = \"-x+z\", radius_mm = 0.1 }, { at = \"+z\", chamfer_mm = 0.1 }",
+            "\"wall at +x\" edges",
+            "a second time",
+        ),
+        ("\"latch blade\", ", "\"latch bland\", ", "plug.latch.parts", "no part of that name"),
+        ("\"latch blade\", ", "\"latch arm\", ", "plug.latch.parts", "stands for two"),
+        ("\"latch blade\", \"latch shoulder\", \"latch arm\"", "", "plug.latch.parts", "not all"),
+        ("axis = \"y\"\nroot_mm", "axis = \"z\"\nroot_mm", "plug.latch.axis", "along the flexure"),
+        ("modulus_gpa = 2.35", "modulus_gpa = 0.0", "plug.latch.modulus_gpa", "above 0"),
+    ] {
+        assert!(sold.text.contains(from), "no `{from}`");
+        let error = Task::parse(&sold.text.replacen(from, to, 1), sold.file).unwrap_err();
+        let error = error.to_string();
+        assert!(error.contains(key) && error.contains(problem), "{to}: {error}");
+    }
+}
+
 #[test]
 fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
     let shell = "y_mm = [-6.0, 6.0]\nz_mm = [0.0, 12.57]";
@@ -533,6 +564,7 @@ fn the_document_has_every_key_and_no_other() {
 
 /// Asks the reader for the keys below a path, by one that no table has: its answer lists them.
 fn explore(path: &str, known: &mut Vec<String>) {
+    let lists = ["part", "phase", "coupling", "edges"];
     let keys = |extra: &[(&str, &str)]| -> Result<Vec<String>, String> {
         let mut value = toml::Table::new();
         for (key, word) in extra {
@@ -541,7 +573,13 @@ fn explore(path: &str, known: &mut Vec<String>) {
         value.insert("?".to_owned(), 0.into());
         let mut inner = toml::Value::Table(value);
         for name in path.split('.').filter(|name| !name.is_empty()).rev() {
-            if ["part", "phase", "coupling"].contains(&name) {
+            if let ("part", Some(part)) = (name, inner.as_table_mut())
+                && !part.contains_key("shape")
+            {
+                // What lies below a part is a box's.
+                part.insert("shape".to_owned(), "box".into());
+            }
+            if lists.contains(&name) {
                 inner = vec![inner].into();
             }
             inner = toml::Value::Table([(name.to_owned(), inner)].into_iter().collect());
@@ -558,7 +596,8 @@ fn explore(path: &str, known: &mut Vec<String>) {
         let path = format!("{path}.{key}");
         path.trim_start_matches('.').replace("plug.part", "part").replace("socket.part", "part")
     };
-    let sections = ["plug", "socket", "grip", "friction", "finger", "strategy", "success"];
+    let sections =
+        ["plug", "plug.latch", "socket", "grip", "friction", "finger", "strategy", "success"];
     let mut below = Vec::new();
     if path.ends_with("part") {
         known.push("part.shape".to_owned());
@@ -577,7 +616,7 @@ fn explore(path: &str, known: &mut Vec<String>) {
             });
         }
         let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        if sections.contains(&path.as_str()) || ["part", "phase", "coupling"].contains(&&*key) {
+        if sections.contains(&path.as_str()) || lists.contains(&&*key) {
             explore(&path, known);
         }
     }

@@ -1,6 +1,6 @@
 //! A plug or a socket as a set of convex parts, and what can be asked of it.
 
-use crate::input::task::Part;
+use crate::input::task::{Part, Plug};
 use crate::physics::shapes;
 use crate::scene::Pose;
 use crate::units::MM;
@@ -17,6 +17,8 @@ pub struct ConvexBody<'a> {
     /// The parts as the task has them.
     pub parts: &'a [Part],
     shapes: Vec<Placed>,
+    /// Those that give way to another body, by index.
+    yielding: &'a [usize],
 }
 
 struct Placed {
@@ -49,13 +51,19 @@ impl<'a> ConvexBody<'a> {
             // A cylinder bulges beyond its 16 corners by 2 %.
             Placed { shape, pose: geom.pose * turn, centre, radius: 1.02 * far }
         };
-        ConvexBody { parts, shapes: parts.iter().map(place).collect() }
+        ConvexBody { parts, shapes: parts.iter().map(place).collect(), yielding: &[] }
+    }
+
+    /// A plug, whose latch gives way.
+    pub fn plug(plug: &'a Plug) -> Self {
+        let yielding = plug.latch.as_ref().map_or(&[][..], |latch| &latch.parts);
+        ConvexBody { yielding, ..ConvexBody::new(&plug.parts) }
     }
 
     /// The deepest overlap with another body, if there is one.
     pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<Overlap> {
-        let pairs =
-            (0..self.shapes.len()).flat_map(|i| (0..other.shapes.len()).map(move |j| [i, j]));
+        let stiff = (0..self.shapes.len()).filter(|i| !self.yielding.contains(i));
+        let pairs = stiff.flat_map(|i| (0..other.shapes.len()).map(move |j| [i, j]));
         let depth = |[i, j]: [usize; 2]| {
             let depth = self.shapes[i].overlap(own, &other.shapes[j], at)?;
             Some(Overlap { depth, parts: [i, j] })
@@ -127,17 +135,48 @@ pub fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
 /// within, and where a line between one within and one beyond crosses a plane.
 pub fn clipped(points: &[Point3<f64>], axis: usize, [from, to]: [f64; 2]) -> Vec<Point3<f64>> {
     let side = |points: &[Point3<f64>], plane: f64, sign: f64| {
-        let beyond = |p: &Point3<f64>| sign * (p[axis] - plane) > 0.0;
-        let mut kept: Vec<_> = points.iter().copied().filter(|p| !beyond(p)).collect();
-        let (inside, count) = (kept.clone(), kept.len());
-        for p in &inside[..count] {
-            for q in points.iter().filter(|q| beyond(q)) {
-                kept.push(p + (q - p) * ((plane - p[axis]) / (q[axis] - p[axis])));
-            }
-        }
+        let (beyond, mut kept): (Vec<_>, Vec<_>) =
+            points.iter().copied().partition(|p| sign * (p[axis] - plane) > 0.0);
+        let crossing = |p: &Point3<f64>, q: &Point3<f64>| {
+            p + (q - p) * ((plane - p[axis]) / (q[axis] - p[axis]))
+        };
+        let crossings =
+            kept.iter().flat_map(|p| beyond.iter().map(move |q| crossing(p, q))).collect();
+        kept.extend(outline(crossings, axis));
         kept
     };
     side(&side(points, to, 1.0), from, -1.0)
+}
+
+/// The corners of the convex hull of points in a plane across an axis (Andrew 1979), so that
+/// clipping again and again does not multiply them.
+fn outline(mut points: Vec<Point3<f64>>, axis: usize) -> Vec<Point3<f64>> {
+    let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    points.sort_by(|a, b| a[u].total_cmp(&b[u]).then(a[v].total_cmp(&b[v])));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let turn = |a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>| {
+        (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u])
+    };
+    let chain = |points: &mut dyn Iterator<Item = &Point3<f64>>| {
+        let mut chain: Vec<Point3<f64>> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain[..]
+                && turn(&a, &b, p) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(*p);
+        }
+        // Its last point begins the other chain.
+        chain.pop();
+        chain
+    };
+    let mut around = chain(&mut points.iter());
+    around.extend(chain(&mut points.iter().rev()));
+    around
 }
 
 #[cfg(test)]
@@ -177,5 +216,25 @@ mod tests {
         let cut = clipped(&wedge.corners(), 2, [0.0, 0.004]);
         let [low, high] = span(cut.iter().map(|p| p.x));
         assert!(low.abs() < 1e-12 && (high - 0.004).abs() < 1e-12, "{low} {high}");
+    }
+
+    /// Four cuts of a body of many corners leave as many as its outline has, and all where it
+    /// ends.
+    #[test]
+    fn clipping_again_and_again_does_not_multiply_corners() {
+        let ring = (0..64).map(|i| f64::from(i) * std::f64::consts::TAU / 64.0);
+        let ends =
+            ring.flat_map(|a| [-5.0, 5.0].map(|z| Point3::new(9.0 * a.cos(), 9.0 * a.sin(), z)));
+        let mut body: Vec<_> = ends.collect();
+        for axis in [2, 0, 1, 0] {
+            body = clipped(&body, axis, [-4.0, 3.0]);
+            let [low, high] = span(body.iter().map(|p| p[axis]));
+            assert!(
+                (low + 4.0).abs() < 1e-12 && (high - 3.0).abs() < 1e-12,
+                "{axis}: {low} {high}"
+            );
+        }
+        // A box of 7 mm, each of whose corners is there at least once.
+        assert!((8..64).contains(&body.len()), "{} corners", body.len());
     }
 }

@@ -128,7 +128,7 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
         name: name.to_owned(),
         description: String::new(),
         turn: like.map_or(0.0, |task| task.turn),
-        plug: Plug { parts: Vec::new(), mass: 0.0 },
+        plug: Plug { parts: Vec::new(), mass: 0.0, latch: None },
         socket: Vec::new(),
         opening: [[0.0; 2]; 2],
         grip: like.map_or(grip, |task| Grip {

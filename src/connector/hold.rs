@@ -134,7 +134,7 @@ mod tests {
     fn the_shipped_grasps_are_found_in_their_plugs() {
         for file in TASKS {
             let task = Task::parse(file.text, file.file).unwrap();
-            let plug = ConvexBody::new(&task.plug.parts);
+            let plug = ConvexBody::plug(&task.plug);
             let (shoulder, faces) = find(&plug, 2.0 * MM).unwrap();
             assert!((shoulder - task.grip.shoulder_z).abs() < 1e-9, "{}", file.name);
             for (found, stated) in faces.iter().zip(task.grip.faces_y) {

@@ -101,7 +101,7 @@ fn lost_late(task: &Task, trial: &Trial) -> String {
 
 /// The tip's lowest point at the end of each search phase, mm.
 fn searched(task: &Task, trial: &Trial) -> Vec<(String, [f64; 3])> {
-    let plug = ConvexBody::new(&task.plug.parts);
+    let plug = ConvexBody::plug(&task.plug);
     let commanded = path::waypoints(task, &plug);
     let in_search = |name: &str| {
         commanded.iter().any(|point| point.name == name && point.stage == Stage::Search)

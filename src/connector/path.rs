@@ -81,7 +81,7 @@ mod tests {
     fn the_commanded_edge_starts_over_the_opening_and_ends_below() {
         let file = TASKS.iter().find(|file| file.name == "usb").unwrap();
         let task = Task::parse(file.text, file.file).unwrap();
-        let plug = ConvexBody::new(&task.plug.parts);
+        let plug = ConvexBody::plug(&task.plug);
         let way = waypoints(&task, &plug);
         assert!(way[0].edge.y.abs() < 0.1 * MM, "{way:?}");
         let touch = way.iter().find(|point| point.name == "touch").unwrap();

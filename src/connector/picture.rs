@@ -42,7 +42,7 @@ struct Drawing<'a> {
 
 /// The task as a stand-alone SVG.
 pub fn svg(task: &Task) -> String {
-    let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
+    let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
     let way = path::waypoints(task, &plug);
     let seat = Seating::new(task, &plug, &socket).deepest();
     let tip = section(&plug, task.success.depth.min(seat.depth));

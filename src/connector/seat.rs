@@ -166,7 +166,7 @@ mod tests {
     fn seat(name: &str, change: impl Fn(String) -> String) -> (Seat, Task) {
         let file = TASKS.iter().find(|file| file.name == name).unwrap();
         let task = Task::parse(&change(file.text.to_owned()), file.file).unwrap();
-        let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
+        let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
         (Seating::new(&task, &plug, &socket).deepest(), task)
     }
 
@@ -192,7 +192,7 @@ mod tests {
     fn the_play_of_a_key_is_its_clearance() {
         let file = TASKS.iter().find(|file| file.name == "ket12").unwrap();
         let task = Task::parse(file.text, file.file).unwrap();
-        let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
+        let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
         let seating = Seating::new(&task, &plug, &socket);
         for (axis, clearance_mm) in [(0, 0.208), (1, 0.195)] {
             let play = seating.play(20.0 * MM, [0.0, 0.0], axis);

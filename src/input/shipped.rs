@@ -34,7 +34,10 @@ pub const TASKS: &[Shipped] = shipped! {
 };
 
 /// Connectors as they are sold, in place of a task's published model of the same name.
-pub const AS_SOLD: &[Shipped] = shipped! { "usb": "tasks/usb_a.toml" };
+pub const AS_SOLD: &[Shipped] = shipped! {
+    "rj45": "tasks/rj45_latch.toml",
+    "usb": "tasks/usb_a.toml",
+};
 
 /// Search spaces.
 pub const SPACES: &[Shipped] = shipped! {

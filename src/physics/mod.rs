@@ -40,16 +40,29 @@ pub trait Engine: Send + Sync {
     }
 }
 
-/// An engine lacks what a scene needs.
+/// An engine cannot simulate a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the engine {engine} cannot simulate `{part}`: it has no {lacking}; use --engine direct")]
-pub struct Unsupported {
-    /// Name and version of the engine.
-    pub engine: String,
-    /// Body or joint of the scene.
-    pub part: String,
-    /// What is needed.
-    pub lacking: &'static str,
+pub enum Unsupported {
+    /// It lacks what a scene needs.
+    #[error(
+        "the engine {engine} cannot simulate `{part}`: it has no {lacking}; use --engine direct"
+    )]
+    Lacking {
+        /// Name and version of the engine.
+        engine: String,
+        /// Body or joint of the scene.
+        part: String,
+        /// What is needed.
+        lacking: &'static str,
+    },
+    /// It has all that is needed, but not for these numbers.
+    #[error("the engine {engine} refuses these bodies: {reason}; use --engine direct")]
+    Refused {
+        /// Name and version of the engine.
+        engine: String,
+        /// In its own words.
+        reason: String,
+    },
 }
 
 /// What an engine without [`crate::scene::Torsion::Patch`] lacks.
@@ -58,7 +71,7 @@ const PRESSED_PATCH: &str = "torsional friction of a pressed patch";
 /// Refuses springs that couple axes, masses that depend on the direction, and pressed patches.
 fn refuse_coupling(engine: &dyn Engine, scene: &Scene) -> Result<(), Unsupported> {
     let refuse = |part: &str, lacking| {
-        Err(Unsupported { engine: engine.version(), part: part.to_owned(), lacking })
+        Err(Unsupported::Lacking { engine: engine.version(), part: part.to_owned(), lacking })
     };
     let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled(_));
     if let Some(joint) = scene.joints.iter().find(coupled) {

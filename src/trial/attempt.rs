@@ -12,7 +12,7 @@ use crate::input::robot::Mounted;
 use crate::input::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
 use crate::input::task::{Ending, Hold, Phase, Sensed, Stage, Task};
 use crate::outcome::Outcome;
-use crate::physics::{ContactPoint, Diverged, World};
+use crate::physics::{ContactForce, ContactPoint, Diverged, World};
 use crate::scene::{BodyId, Pose};
 use crate::units::{DEG, MM};
 use nalgebra::{Point3, Vector3};
@@ -252,7 +252,7 @@ impl<'a> Attempt<'a> {
         self.world.step()?;
         let dt = self.world.step_s();
         self.time += dt;
-        let contact = self.world.contact(self.cell.socket, self.cell.plug);
+        let contact = self.socket_force();
         self.watch.see_force(&contact.net, dt);
         self.record(dt);
         self.watch_grasp(dt)?;
@@ -280,10 +280,22 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Where a body presses the plug, task frame.
+    /// Where a body presses the plug or its latch, task frame.
     fn presses(&self, body: BodyId) -> impl Iterator<Item = ContactPoint> {
-        let points = self.world.contact_points(body, self.cell.plug);
-        points.into_iter().map(|point| point.seen(&self.socket))
+        let parts = [self.cell.plug].into_iter().chain(self.cell.latch);
+        let points = parts.flat_map(move |part| self.world.contact_points(body, part));
+        points.map(|point| point.seen(&self.socket))
+    }
+
+    /// Force of the socket on the plug and its latch.
+    fn socket_force(&self) -> ContactForce {
+        let mut sum = self.world.contact(self.cell.socket, self.cell.plug);
+        if let Some(latch) = self.cell.latch {
+            let more = self.world.contact(self.cell.socket, latch);
+            sum.net += more.net;
+            sum.normal_sum += more.normal_sum;
+        }
+        sum
     }
 
     /// Takes a frame, if the trial is filmed.
@@ -316,7 +328,7 @@ impl<'a> Attempt<'a> {
     }
 
     fn contact_force(&self) -> f64 {
-        self.world.contact(self.cell.socket, self.cell.plug).normal_sum
+        self.socket_force().normal_sum
     }
 
     fn watch_grasp(&mut self, dt: f64) -> Result<(), Stop> {
@@ -340,7 +352,8 @@ impl<'a> Attempt<'a> {
 
     fn poses(&self) -> Poses {
         let fingers = self.cell.hands.map(|hand| self.pose(hand.finger));
-        Poses { plug: self.plug(), fingers }
+        let latch = self.cell.latch.map(|latch| self.pose(latch));
+        Poses { plug: self.plug(), latch, fingers }
     }
 
     fn placement(&self) -> Placement {

@@ -6,7 +6,7 @@
 use crate::finger::{self, Finger};
 use crate::input::arm::Reduced;
 use crate::input::robot::{Flange, Mounted, Servo};
-use crate::input::task::{PadTorsion, Part, Task, geometry};
+use crate::input::task::{Latch, PadTorsion, Part, Task, geometry};
 use crate::scene::{
     Body, BodyId, Friction, Geom, Inertia, Joint, JointAxis, JointId, Motion, Pose, Scene, Shape,
     Spring, Springs, Torsion,
@@ -28,6 +28,8 @@ const JAW_DAMPING: f64 = 30.0;
 const CLOSING_SPEED: f64 = 0.1;
 /// Farthest target, m: the softest finger's deflection and the servo's own.
 const CLOSING_STROKE: f64 = 0.02;
+/// Damping of a latch, as a share of critical: it snaps, and is at rest before the next move.
+const LATCH_DAMPING: f64 = 0.1;
 /// A held jaw does not give: a non-backdrivable gear, N/m.
 const HOLD_GAIN: f64 = 1e7;
 
@@ -42,8 +44,10 @@ pub struct WorkCell {
     pub flange: BodyId,
     /// The hand at -y and the hand at +y.
     pub hands: [Hand; 2],
-    /// The plug.
+    /// The plug, but for its latch.
     pub plug: BodyId,
+    /// The plug's latch, if it has one that springs.
+    pub latch: Option<BodyId>,
     /// The socket.
     pub socket: BodyId,
     /// What the plug stands on until it is grasped.
@@ -79,14 +83,17 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     });
     let stand = scene.body(stand_body(task, plug_pose));
     let hands = [-1.0, 1.0].map(|side| hand(&mut scene, task, finger, flange, tcp, side));
+    let latch = task.plug.latch.as_ref().map(|latch| sprung(&mut scene, task, latch, plug));
     let hard = Friction::hard(task.friction.plug_socket);
-    scene.contact(plug, socket, hard);
-    scene.contact(plug, stand, hard);
+    for part in [plug].into_iter().chain(latch) {
+        scene.contact(part, socket, hard);
+        scene.contact(part, stand, hard);
+    }
     let soft = pad_friction(task);
     for hand in &hands {
         scene.contact(hand.finger, plug, soft);
     }
-    WorkCell { command, flange, hands, plug, socket, stand, scene }
+    WorkCell { command, flange, hands, plug, latch, socket, stand, scene }
 }
 
 /// The servo setting of a jaw that has been closing for `time` seconds; `side`
@@ -183,12 +190,48 @@ fn pad_friction(task: &Task) -> Friction {
 }
 
 fn plug_body(task: &Task, pose: Pose) -> Body {
+    let mass = task.plug.mass - latch_mass(task);
     Body {
         name: "plug".into(),
-        motion: Motion::Free(geometry::inertia(&task.plug.parts, task.plug.mass)),
+        motion: Motion::Free(geometry::inertia(task.plug.rigid(), mass)),
         pose,
-        geoms: task.plug.parts.iter().map(Part::geom).collect(),
+        geoms: task.plug.rigid().map(Part::geom).collect(),
     }
+}
+
+/// The latch's share of the plug's mass, kg.
+fn latch_mass(task: &Task) -> f64 {
+    let volume = |part: &Part| geometry::volume(&part.solid);
+    let sprung: f64 = task.plug.sprung().map(volume).sum();
+    task.plug.mass * (sprung / task.plug.parts.iter().map(volume).sum::<f64>())
+}
+
+/// The latch on its hinge: a body of its own, whose frame is the plug's until it is bent.
+fn sprung(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId {
+    let inertia = geometry::inertia(task.plug.sprung(), latch_mass(task));
+    let pose = scene.bodies[plug.0].pose;
+    let body = scene.body(Body {
+        name: "latch".into(),
+        motion: Motion::Free(inertia),
+        pose,
+        geoms: task.plug.sprung().map(Part::geom).collect(),
+    });
+    let mut arm = inertia.centre - latch.hinge;
+    arm[latch.axis] = 0.0;
+    let about_hinge = inertia.moments[latch.axis] + inertia.mass * arm.norm_squared();
+    let damping = 2.0 * LATCH_DAMPING * (latch.stiffness * about_hinge).sqrt();
+    let mut axes = [JointAxis::Locked; 6];
+    axes[3 + latch.axis] = JointAxis::Sprung(Spring::new(latch.stiffness, damping));
+    let hinge = Pose::from_parts(Translation3::from(latch.hinge.coords), nalgebra::one());
+    scene.joint(Joint {
+        name: "hinge of the latch".into(),
+        parent: plug,
+        child: body,
+        in_parent: hinge,
+        in_child: hinge,
+        springs: Springs::Axes(axes),
+    });
+    body
 }
 
 fn stand_body(task: &Task, plug: Pose) -> Body {

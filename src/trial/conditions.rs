@@ -58,7 +58,7 @@ impl Conditions {
     /// Moves the part, and what it stands on, to where these conditions put it in the gripper.
     pub fn displace(&self, cell: &mut WorkCell) {
         let by = Pose::translation(self.grasp_across, 0.0, -self.grasp_low);
-        for body in [cell.plug, cell.stand] {
+        for body in [cell.plug, cell.stand].into_iter().chain(cell.latch) {
             let pose = &mut cell.scene.bodies[body.0].pose;
             *pose = by * *pose;
         }

@@ -24,7 +24,8 @@ pub(super) struct LeadingEdge {
 impl LeadingEdge {
     /// Of a task's plug.
     pub fn new(task: &Task) -> Self {
-        let corners = task.plug.parts.iter().flat_map(|part| part.solid.corners());
+        // A latch gives way, and leads nothing.
+        let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
         LeadingEdge {
             corners: corners.filter(|corner| corner.z < task.success.depth).collect(),
             opening: task.opening.map(|[from, to]| [from - LEANING, to + LEANING]),

@@ -55,6 +55,8 @@ pub struct PhaseEnd {
 pub struct Poses {
     /// The plug.
     pub plug: Pose,
+    /// Its latch, if that springs.
+    pub latch: Option<Pose>,
     /// The finger at -y and the finger at +y.
     pub fingers: [Pose; 2],
 }

@@ -91,12 +91,15 @@ fn outcome(trial: &Trial) -> String {
 fn bodies(task: &Task, pad: &Pad, phase: &PhaseEnd) -> Vec<(Vec<Geom>, Pose, &'static str)> {
     let shoulder = task.grip.shoulder();
     let [left, right] = phase.poses.fingers;
-    vec![
+    let mut bodies = vec![
         (task.socket.iter().map(|part| part.geom()).collect(), Pose::identity(), SOCKET),
-        (task.plug.parts.iter().map(|part| part.geom()).collect(), phase.poses.plug, PLUG),
+        (task.plug.rigid().map(|part| part.geom()).collect(), phase.poses.plug, PLUG),
         (pad.geoms(shoulder, -1.0), left, FINGER),
         (pad.geoms(shoulder, 1.0), right, FINGER),
-    ]
+    ];
+    let latch = |pose| (task.plug.sprung().map(|part| part.geom()).collect(), pose, PLUG);
+    bodies.extend(phase.poses.latch.map(latch));
+    bodies
 }
 
 /// What holds everything that any phase shows along x (axis 1) or y (axis 0).

@@ -40,6 +40,11 @@ impl Frame {
         -self.poses.plug.translation.z / MM
     }
 
+    /// Where the latch is: with the plug, if it has none that springs.
+    pub fn latch(&self) -> Pose {
+        self.poses.latch.unwrap_or(self.poses.plug)
+    }
+
     /// Angle between the plug's axis and z, degrees.
     pub fn tilt_deg(&self) -> f64 {
         Placement::new(&self.poses.plug).tilt / DEG
@@ -54,7 +59,7 @@ impl Frame {
 
     /// The same seen from another frame.
     fn seen(&mut self, from: &Pose) {
-        let poses = [&mut self.poses.plug].into_iter();
+        let poses = [&mut self.poses.plug].into_iter().chain(&mut self.poses.latch);
         for pose in poses.chain(&mut self.poses.fingers).chain(&mut self.jaws) {
             *pose = from * *pose;
         }

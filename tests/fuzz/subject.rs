@@ -1,7 +1,7 @@
 //! What is mutated, and what is asked of the program about it.
 
 use super::mutation::{Mutation, mutated};
-use super::process::{CPU_S, IMPORT_S, TRIAL_S, Verdict, run};
+use super::process::{CPU_S, TRIAL_S, Verdict, run};
 use finger_opt::connector::mesh::read;
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -235,7 +235,6 @@ pub fn judge(kind: Kind, mutations: &[Mutation], number: u64, base: &Base) -> Ve
 fn ended(arguments: &[String], input: &[u8]) -> Result<&'static str, String> {
     let cpu_s = match arguments {
         [command, ..] if command == "trial" => TRIAL_S,
-        [_, import, ..] if import == "import" => IMPORT_S,
         _ => CPU_S,
     };
     let ended = run(arguments, input, cpu_s)?;

@@ -75,7 +75,7 @@ pub fn run(
     let text = format!(
         "our ranges and the published simulation's beside the published experiments\n\
          robot {robot}, engine {engine}, {}{phases}\n\
-         mechanisms: robot {UNDER_POSITION_CONTROL}, pads by their pressed patch, usb as sold\n\
+         mechanisms: robot {UNDER_POSITION_CONTROL}, pads by their pressed patch, rj45 and usb as sold\n\
          taught: starts moved to where the finger inserts, since the task's own does not\n\
          {fitted}\n\n{table}",
         search_name(search),

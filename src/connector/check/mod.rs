@@ -55,11 +55,8 @@ struct Case<'a> {
 
 /// All that is wrong with a task, the cause before what follows from it.
 pub fn problems(task: &Task) -> Vec<Problem> {
-    let case = Case {
-        task,
-        plug: ConvexBody::new(&task.plug.parts),
-        socket: ConvexBody::new(&task.socket),
-    };
+    let case =
+        Case { task, plug: ConvexBody::plug(&task.plug), socket: ConvexBody::new(&task.socket) };
     // In a wrong unit everything else is wrong, too.
     let mut found = lengths::problems(&case);
     if !found.is_empty() {

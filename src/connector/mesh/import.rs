@@ -118,7 +118,11 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     task.opening = opening;
     let task = match request.like {
         Some(like) => Task {
-            plug: crate::input::task::Plug { mass: like.plug.mass, parts: task.plug.parts },
+            plug: crate::input::task::Plug {
+                mass: like.plug.mass,
+                parts: task.plug.parts,
+                latch: None,
+            },
             grip: like.grip,
             strategy: like.strategy.clone(),
             success: like.success,
@@ -148,7 +152,7 @@ fn convex(
 
 /// The smaller play of the two directions, at the depth of success.
 fn clearance(task: &Task) -> f64 {
-    let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
+    let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
     let seating = Seating::new(task, &plug, &socket);
     let seat = seating.deepest();
     let depth = task.success.depth.min(seat.depth);
@@ -172,7 +176,7 @@ fn parts(body: &str, decomposed: &Decomposed) -> Vec<Part> {
 
 /// Grip, strategy and success by the shapes.
 fn planned(mut task: Task, file: &str) -> Result<Task, MeshError> {
-    let found = hold::find(&ConvexBody::new(&task.plug.parts), LEAST_COVER);
+    let found = hold::find(&ConvexBody::plug(&task.plug), LEAST_COVER);
     let (shoulder, faces) = found.ok_or_else(|| MeshError::NoGrip { file: file.to_owned() })?;
     (task.grip.shoulder_z, task.grip.faces_y) = (shoulder, faces);
     Ok(plan::complete(task)?)
@@ -180,7 +184,7 @@ fn planned(mut task: Task, file: &str) -> Result<Task, MeshError> {
 
 /// Where the middle of a task's tip lies in its plug frame, and of its opening in the task frame.
 fn middles(task: &Task) -> [[f64; 2]; 2] {
-    let plug = ConvexBody::new(&task.plug.parts);
+    let plug = ConvexBody::plug(&task.plug);
     let tip = section(&plug, plug.extent(2)[0] + TIP);
     [tip, task.opening].map(|ranges| ranges.map(|[low, high]| (low + high) / 2.0))
 }

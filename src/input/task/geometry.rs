@@ -222,8 +222,8 @@ pub fn surface_moments(
 
 /// Mass properties of parts of one density with the given total mass (kg). The
 /// products of inertia are left out: they are zero or small for these plugs.
-pub fn inertia(parts: &[Part], mass: f64) -> Inertia {
-    let moments: Vec<_> = parts.iter().map(|part| part.solid.moments()).collect();
+pub fn inertia<'a>(parts: impl IntoIterator<Item = &'a Part>, mass: f64) -> Inertia {
+    let moments: Vec<_> = parts.into_iter().map(|part| part.solid.moments()).collect();
     let volume: f64 = moments.iter().map(|m| m.0).sum();
     let centre = moments.iter().map(|m| m.1 * m.0).sum::<Vector3<f64>>() / volume;
     let density = mass / volume;

@@ -1,11 +1,15 @@
 //! Tasks: plug, socket, grip, friction, search strategy and success, from one TOML file.
 
 pub mod duration;
+mod edges;
 pub(crate) mod geometry;
+mod latch;
 mod raw;
 mod raw_finger;
+mod raw_part;
 
 pub use geometry::{Part, Solid};
+pub use latch::Latch;
 
 use crate::input::InputError;
 use crate::input::finger::FingerModel;
@@ -46,6 +50,22 @@ pub struct Plug {
     pub parts: Vec<Part>,
     /// Total mass, kg; spread evenly over the volume of the parts.
     pub mass: f64,
+    /// Those of its parts that spring, if any do.
+    pub latch: Option<Latch>,
+}
+
+impl Plug {
+    /// The parts that are one rigid body.
+    pub fn rigid(&self) -> impl Iterator<Item = &Part> {
+        let springs = |i: &usize| self.latch.as_ref().is_some_and(|latch| latch.parts.contains(i));
+        self.parts.iter().enumerate().filter(move |(i, _)| !springs(i)).map(|(_, part)| part)
+    }
+
+    /// The parts of the latch.
+    pub fn sprung(&self) -> impl Iterator<Item = &Part> {
+        let parts = self.latch.iter().flat_map(|latch| &latch.parts);
+        parts.filter_map(|&i| self.parts.get(i))
+    }
 }
 
 /// Where the fingers hold the plug, plug frame.

@@ -1,14 +1,14 @@
 //! The task file as written, and the checks that turn it into a [`Task`].
 
-use super::geometry::{self, Part, Solid};
+use super::latch::RawLatch;
 use super::raw_finger::RawFinger;
+use super::raw_part::RawPart;
 use super::{
     Ending, Friction, Grip, Hold, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
     Success, Task,
 };
 use crate::input::{Check, InputError, read, shown};
 use crate::units::{DEG, GRAM, MM};
-use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -33,6 +33,7 @@ struct RawTask {
 struct RawPlug {
     mass_g: f64,
     part: Vec<RawPart>,
+    latch: Option<RawLatch>,
 }
 
 #[derive(Deserialize)]
@@ -41,45 +42,6 @@ struct RawSocket {
     opening_x_mm: [f64; 2],
     opening_y_mm: [f64; 2],
     part: Vec<RawPart>,
-}
-
-#[derive(Deserialize)]
-#[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
-enum RawPart {
-    Box {
-        name: String,
-        x_mm: [f64; 2],
-        y_mm: [f64; 2],
-        z_mm: [f64; 2],
-        friction: Option<f64>,
-    },
-    Cylinder {
-        name: String,
-        centre_mm: [f64; 2],
-        diameter_mm: f64,
-        z_mm: [f64; 2],
-        friction: Option<f64>,
-    },
-    Prism {
-        name: String,
-        axis: RawAxis,
-        outline_mm: Vec<[f64; 2]>,
-        span_mm: [f64; 2],
-        friction: Option<f64>,
-    },
-    Hull {
-        name: String,
-        points_mm: Vec<[f64; 3]>,
-        friction: Option<f64>,
-    },
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum RawAxis {
-    X,
-    Y,
-    Z,
 }
 
 #[derive(Deserialize)]
@@ -164,10 +126,6 @@ struct RawSuccess {
 
 /// Thinnest part and narrowest opening, mm: a thousandth of what a printer prints.
 const THINNEST_MM: f64 = 1e-3;
-/// Most parts of a plug or a socket: what a collision costs grows with their product.
-const MOST_PARTS: usize = 200;
-/// Most corners of an outline.
-const MOST_CORNERS: usize = 256;
 /// Most phases of a strategy.
 const MOST_PHASES: usize = 100;
 /// Largest radius of the patch that torsional friction stands for, mm: larger is none.
@@ -190,8 +148,10 @@ pub fn from_table(table: toml::Table, file: &str) -> Result<Task, InputError> {
 fn check(raw: RawTask, file: &str) -> Result<Task, InputError> {
     let check = Check { file };
     check.name(&raw.name)?;
+    let parts = check.parts("plug.part", &raw.plug.part)?;
     let plug = Plug {
-        parts: check.parts("plug.part", &raw.plug.part)?,
+        latch: raw.plug.latch.as_ref().map(|latch| check.latch(latch, &parts)).transpose()?,
+        parts,
         mass: check.positive("plug.mass_g", raw.plug.mass_g)? * GRAM,
     };
     Ok(Task {
@@ -225,7 +185,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    fn friction(&self, key: &str, value: f64) -> Result<f64, InputError> {
+    pub fn friction(&self, key: &str, value: f64) -> Result<f64, InputError> {
         if (0.0..=5.0).contains(&value) {
             return Ok(value);
         }
@@ -234,7 +194,7 @@ impl Check<'_> {
     }
 
     /// A size above 0, m.
-    fn size(&self, key: &str, mm: f64) -> Result<f64, InputError> {
+    pub fn size(&self, key: &str, mm: f64) -> Result<f64, InputError> {
         if self.distance(key, self.positive(key, mm)?)? < THINNEST_MM {
             return self.fail(key, format!("is {mm}; it must be {THINNEST_MM} mm or more"));
         }
@@ -269,7 +229,7 @@ impl Check<'_> {
         Ok(torsion * MM)
     }
 
-    fn span(&self, key: &str, span: [f64; 2]) -> Result<[f64; 2], InputError> {
+    pub fn span(&self, key: &str, span: [f64; 2]) -> Result<[f64; 2], InputError> {
         let [a, b] = span;
         self.distance(key, a)?;
         self.distance(key, b)?;
@@ -279,86 +239,6 @@ impl Check<'_> {
             return self.fail(key, problem);
         }
         Ok([span[0] * MM, span[1] * MM])
-    }
-
-    fn parts(&self, key: &str, parts: &[RawPart]) -> Result<Vec<Part>, InputError> {
-        if parts.is_empty() {
-            return self.fail(key, "needs at least one part");
-        }
-        if parts.len() > MOST_PARTS {
-            let count = parts.len();
-            return self.fail(key, format!("are {count}; there may be {MOST_PARTS}"));
-        }
-        parts.iter().map(|part| self.part(key, part)).collect()
-    }
-
-    fn part(&self, key: &str, part: &RawPart) -> Result<Part, InputError> {
-        let (name, friction) = match part {
-            RawPart::Box { name, friction, .. }
-            | RawPart::Cylinder { name, friction, .. }
-            | RawPart::Prism { name, friction, .. }
-            | RawPart::Hull { name, friction, .. } => (name, *friction),
-        };
-        let at = |field: &str| format!("{key} \"{name}\" {field}");
-        let solid = match part {
-            RawPart::Box { x_mm, y_mm, z_mm, .. } => {
-                let x = self.span(&at("x_mm"), *x_mm)?;
-                let y = self.span(&at("y_mm"), *y_mm)?;
-                let z = self.span(&at("z_mm"), *z_mm)?;
-                Solid::Box {
-                    min: Vector3::new(x[0], y[0], z[0]),
-                    max: Vector3::new(x[1], y[1], z[1]),
-                }
-            }
-            RawPart::Cylinder { centre_mm, diameter_mm, z_mm, .. } => Solid::Cylinder {
-                centre: [
-                    self.distance(&at("centre_mm"), centre_mm[0])? * MM,
-                    self.distance(&at("centre_mm"), centre_mm[1])? * MM,
-                ],
-                radius: self.size(&at("diameter_mm"), *diameter_mm)? / 2.0,
-                z: self.span(&at("z_mm"), *z_mm)?,
-            },
-            RawPart::Prism { axis, outline_mm, span_mm, .. } => Solid::Prism {
-                axis: *axis as usize,
-                outline: self.outline(&at("outline_mm"), outline_mm)?,
-                span: self.span(&at("span_mm"), *span_mm)?,
-            },
-            RawPart::Hull { points_mm, .. } => self.hull(&at("points_mm"), points_mm)?,
-        };
-        let friction = friction.map(|mu| self.friction(&at("friction"), mu)).transpose()?;
-        Ok(Part { name: name.clone(), solid, friction })
-    }
-
-    /// Points that span a volume; those inside the hull are left out.
-    fn hull(&self, key: &str, points: &[[f64; 3]]) -> Result<Solid, InputError> {
-        for &value in points.iter().flatten() {
-            self.finite(key, value)?;
-        }
-        let points: Vec<_> = points.iter().map(|p| Point3::from(p.map(|v| v * MM))).collect();
-        match geometry::hull(&points) {
-            Some((points, _)) => Ok(Solid::Hull { points }),
-            None => self.fail(key, "lie in a plane; a hull needs four points or more that do not"),
-        }
-    }
-
-    /// A strictly convex outline: every turn is to the same side.
-    fn outline(&self, key: &str, outline: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, InputError> {
-        if !(3..=MOST_CORNERS).contains(&outline.len()) {
-            return self.fail(key, format!("needs three corners at least, {MOST_CORNERS} at most"));
-        }
-        let n = outline.len();
-        let mut turns = Vec::with_capacity(n);
-        for i in 0..n {
-            let [a, b, c] = [outline[i], outline[(i + 1) % n], outline[(i + 2) % n]];
-            self.distance(key, a[0])?;
-            self.distance(key, a[1])?;
-            turns.push((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]));
-        }
-        let convex = turns.iter().all(|&t| t > 1e-9) || turns.iter().all(|&t| t < -1e-9);
-        if !convex {
-            return self.fail(key, "is not convex; split the part into convex parts");
-        }
-        Ok(outline.iter().map(|p| [p[0] * MM, p[1] * MM]).collect())
     }
 
     fn grip(&self, raw: &RawGrip) -> Result<Grip, InputError> {

@@ -4,7 +4,7 @@
 //! trial does besides goes into the model's numbers: the force that drives a driven
 //! body is set before each step, a servo's gains where its spring is replaced.
 
-// `world` cannot fail: what `supports` lets through and MuJoCo refuses all the same ends here, with its message.
+// `world` cannot fail: a scene that `supports` was not asked about may end here, with MuJoCo's message.
 #![allow(clippy::panic)]
 
 mod world;
@@ -25,26 +25,33 @@ pub struct Mujoco {
     pub settings: MjcfSettings,
 }
 
+impl Mujoco {
+    /// The scene as MuJoCo reads it.
+    fn model(&self, scene: &Scene) -> Result<MjModel, Unsupported> {
+        let text = mjcf::write(scene, "scene", &self.settings).map_err(|error| {
+            let (part, lacking) = (error.part, error.lacking);
+            Unsupported::Lacking { engine: self.version(), part, lacking }
+        })?;
+        MjModel::from_xml_string(&text).map_err(|error| {
+            let reason = error.to_string().trim_end().to_owned();
+            Unsupported::Refused { engine: self.version(), reason }
+        })
+    }
+}
+
 impl Engine for Mujoco {
     fn version(&self) -> String {
         format!("mujoco {}", mujoco_rs::mujoco_version())
     }
 
     fn supports(&self, scene: &Scene) -> Result<(), Unsupported> {
-        mjcf::supports(scene).map_err(|error| Unsupported {
-            engine: self.version(),
-            part: error.part,
-            lacking: error.lacking,
-        })
+        self.model(scene).map(|_| ())
     }
 
     /// # Panics
-    /// On a scene that it does not support, and if MuJoCo refuses the model.
+    /// On a scene that it does not support.
     fn world(&self, scene: &Scene) -> Box<dyn World> {
-        let text = mjcf::write(scene, "scene", &self.settings);
-        let text = text.unwrap_or_else(|error| panic!("{error}"));
-        let model = MjModel::from_xml_string(&text);
-        let model = model.unwrap_or_else(|error| panic!("MuJoCo refuses the model: {error}"));
+        let model = self.model(scene).unwrap_or_else(|error| panic!("{error}"));
         Box::new(MujocoWorld::new(scene, model))
     }
 

@@ -91,5 +91,16 @@ fn the_arm_is_refused_by_name() {
     let (mut scene, ..) = servo_scene();
     scene.bodies[1].motion = Motion::Mechanism(nalgebra::Matrix6::identity());
     let refused = Mujoco::default().supports(&scene).unwrap_err();
-    assert_eq!((refused.part.as_str(), refused.engine.as_str()), ("jaw", "mujoco 3.17.0"));
+    let Unsupported::Lacking { engine, part, .. } = refused else { panic!("{refused}") };
+    assert_eq!((part.as_str(), engine.as_str()), ("jaw", "mujoco 3.17.0"));
+}
+
+/// A body too light for MuJoCo is refused in its own words before anything is simulated.
+#[test]
+fn numbers_that_mujoco_refuses_are_no_panic() {
+    let (mut scene, jaw, _) = servo_scene();
+    let light = Inertia { mass: 1e-20, centre: Point3::origin(), moments: Vector3::repeat(1e-30) };
+    scene.bodies[jaw.0].motion = Motion::Carried(light);
+    let refused = Mujoco::default().supports(&scene).unwrap_err();
+    assert!(refused.to_string().contains("mass and inertia"), "{refused}");
 }

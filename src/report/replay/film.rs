@@ -19,12 +19,17 @@ const JAW_MM: f64 = 45.0;
 pub(super) fn bodies(film: &Film) -> Vec<(&'static str, &'static str, Vec<Geom>)> {
     let task = film.task;
     let tip = |side| film.pad.geoms(film.task.grip.shoulder(), side);
-    vec![
+    let mut bodies = vec![
         ("socket", "socket", task.socket.iter().map(|part| part.geom()).collect()),
-        ("plug", "plug", task.plug.parts.iter().map(|part| part.geom()).collect()),
+        ("plug", "plug", task.plug.rigid().map(|part| part.geom()).collect()),
         ("finger", "finger0", tip(-1.0)),
         ("finger", "finger1", tip(1.0)),
-    ]
+    ];
+    let sprung: Vec<Geom> = task.plug.sprung().map(|part| part.geom()).collect();
+    if !sprung.is_empty() {
+        bodies.push(("plug", "latch", sprung));
+    }
+    bodies
 }
 
 /// Everything that the page shows of a film.
@@ -46,7 +51,7 @@ pub(super) fn to_json(film: &Film) -> Value {
         Outcome::Failed(class) => format!("failed: {} (class {})", class.label(), class.number()),
         outcome => outcome.word().to_owned(),
     };
-    json!({
+    let mut page = json!({
         "outcome": outcome,
         "kind": trial.outcome.word(),
         // Rounded as the times are, so that the last frame has its outcome.
@@ -68,7 +73,11 @@ pub(super) fn to_json(film: &Film) -> Value {
         "slip": each(&|frame| frame.slip / MM, 3),
         "contact": points(&|frame| &frame.contacts),
         "grip": points(&|frame| &frame.grips),
-    })
+    });
+    if film.task.plug.latch.is_some() {
+        page["pose"]["latch"] = json!(poses(&Frame::latch));
+    }
+    page
 }
 
 /// The finger between the roof of its tip and its jaw, mm, about its frame.

@@ -73,7 +73,8 @@ pub fn glb(film: &Film) -> Vec<u8> {
     let input = buffer.floats(&times, "SCALAR", 1, None);
     let (mut nodes, mut meshes) = (Vec::new(), Vec::new());
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
-    for (material, (_, of, geoms)) in bodies(film).into_iter().enumerate() {
+    for (kind, of, geoms) in bodies(film) {
+        let material = MATERIALS.iter().position(|(name, _)| *name == kind).unwrap_or_default();
         let node = nodes.len();
         meshes.push(json!({"name": of, "primitives": primitives(&mut buffer, &geoms, material)}));
         nodes.push(json!({"name": of, "mesh": meshes.len() - 1}));
@@ -120,17 +121,21 @@ pub fn glb(film: &Film) -> Vec<u8> {
 fn pose_of(name: &str) -> Option<fn(&Frame) -> Pose> {
     match name {
         "plug" => Some(|frame| frame.poses.plug),
+        "latch" => Some(Frame::latch),
         "finger0" => Some(|frame| frame.poses.fingers[0]),
         "finger1" => Some(|frame| frame.poses.fingers[1]),
         _ => None,
     }
 }
 
-/// One for each of the [`bodies`].
+/// Colour of each kind of the [`bodies`]: red, green, blue, opacity.
+const MATERIALS: [(&str, [f64; 4]); 3] = [
+    ("socket", [0.27, 0.37, 0.57, 0.4]),
+    ("plug", [0.81, 0.37, 0.05, 1.0]),
+    ("finger", [0.09, 0.3, 0.11, 1.0]),
+];
+
 fn materials() -> Vec<Value> {
-    let finger = ("finger", [0.09, 0.3, 0.11, 1.0]);
-    let all =
-        [("socket", [0.27, 0.37, 0.57, 0.4]), ("plug", [0.81, 0.37, 0.05, 1.0]), finger, finger];
     let one = |(name, colour): (&str, [f64; 4])| {
         let mut material = json!({
             "name": name,
@@ -142,7 +147,7 @@ fn materials() -> Vec<Value> {
         }
         material
     };
-    all.into_iter().map(one).collect()
+    MATERIALS.into_iter().map(one).collect()
 }
 
 /// A triangle list of each shape; without normals viewers shade it flat.

@@ -24,7 +24,7 @@ pub fn recording() -> Recording {
         Frame {
             time_s,
             stage: Stage::Assembly,
-            poses: Poses { plug, fingers: [plug; 2] },
+            poses: Poses { plug, latch: None, fingers: [plug; 2] },
             jaws: [plug * Pose::translation(0.0, 0.5 * MM, 0.0); 2],
             force,
             slip: 0.0,

@@ -5,11 +5,13 @@
 //! plug is K x = N (cos a - mu sin a) across and F = N (sin a + mu cos a) along
 //! the insertion, hence F = K x tan(a + atan mu), x being the way that the
 //! chamfer has pushed the plug aside (Whitney 1982, J. Dyn. Sys. Meas. Control
-//! 104:65, chamfer crossing, for a support that does not turn).
+//! 104:65, chamfer crossing, for a support that does not turn). The chamfer is a turned block; at
+//! 45 degrees also what a task's `edges` make of a block's edge.
 
 use super::build;
 use super::{CheckRow, Tolerance};
 use crate::finger::Finger;
+use crate::input::task::{Part, Solid};
 use crate::physics::{Diverged, Engine};
 use crate::scene::{Body, Friction, Joint, JointAxis, Motion, Pose, Scene, Springs};
 use crate::units::{DEG, GRAM, MM, N_PER_MM};
@@ -32,18 +34,18 @@ const UPRIGHT: f64 = 100.0;
 
 /// Insertion force over lateral force, T6 rows.
 pub fn t6(engine: &dyn Engine) -> Vec<CheckRow> {
-    ANGLES
-        .into_iter()
-        .map(|angle| {
-            let quantity = format!("Fz/(K x) on a chamfer of {angle} deg, mu {FRICTION}");
-            let expected = (angle * DEG + FRICTION.atan()).tan();
-            let measured = force_ratio(engine, angle * DEG);
-            CheckRow::new(("T6", quantity), expected, measured, "-", Tolerance::Relative(0.02))
-        })
-        .collect()
+    let turned = ANGLES.map(|angle| (angle, "chamfer", chamfer(-SIZE[1] / 2.0, angle * DEG)));
+    let cut = cut_edge(-SIZE[1] / 2.0).map(|body| (45.0, "cut edge", body));
+    let rows = turned.into_iter().chain(cut).map(|(angle, name, socket)| {
+        let quantity = format!("Fz/(K x) on a {name} of {angle} deg, mu {FRICTION}");
+        let expected = (angle * DEG + FRICTION.atan()).tan();
+        let measured = force_ratio(engine, socket);
+        CheckRow::new(("T6", quantity), expected, measured, "-", Tolerance::Relative(0.02))
+    });
+    rows.collect()
 }
 
-fn force_ratio(engine: &dyn Engine, angle: f64) -> Result<f64, Diverged> {
+fn force_ratio(engine: &dyn Engine, socket: Body) -> Result<f64, Diverged> {
     let support = Finger { rotation: [UPRIGHT; 3], ..Finger::new(5.0 * N_PER_MM, 40.0 * N_PER_MM) };
     let size = Vector3::from(SIZE);
     let mut scene = Scene::default();
@@ -70,7 +72,7 @@ fn force_ratio(engine: &dyn Engine, angle: f64) -> Result<f64, Diverged> {
         in_child: middle,
         springs: Springs::Axes(support.springs().map(JointAxis::Sprung)),
     });
-    let socket = scene.body(chamfer(-size.y / 2.0, angle));
+    let socket = scene.body(socket);
     scene.contact(socket, plug, Friction::hard(FRICTION));
 
     let mut world = engine.world(&scene);
@@ -94,4 +96,14 @@ fn chamfer(y: f64, angle: f64) -> Body {
     let normal = turn * Vector3::y();
     let pose = Pose::from_parts(Translation3::from(Vector3::y() * y - normal * size.y / 2.0), turn);
     build::fixed("chamfer", pose, vec![build::cuboid("chamfer", size, Pose::identity())])
+}
+
+/// A block with a chamfer at 45 degrees along its edge, as a task has it; the chamfer's middle is
+/// the line y, z = 0.
+fn cut_edge(y: f64) -> Option<Body> {
+    let leg = 2.0 * MM;
+    let max = Vector3::new(10.0 * MM, y + leg / 2.0, leg / 2.0);
+    let solid = Solid::chamfered(&(max - Vector3::repeat(20.0 * MM)), &max, "+y+z", leg)?;
+    let part = Part { name: "cut edge".into(), solid, friction: None };
+    Some(build::fixed("cut edge", Pose::identity(), vec![part.geom()]))
 }

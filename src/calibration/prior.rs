@@ -45,6 +45,8 @@ pub enum Target {
     Task(String),
     /// The width of the socket's opening, mm.
     Clearance,
+    /// The radius of the edges that lead in, mm, where the task has them sharp.
+    Edges,
     /// Compliance and assembly stiffness of the finger.
     Stiffness,
     /// Tilting stiffness of the finger.
@@ -56,8 +58,9 @@ pub enum Target {
 }
 
 /// The targets that are no path in a task file.
-const NAMED: [(&str, Target); 5] = [
+const NAMED: [(&str, Target); 6] = [
     ("task.clearance_mm", Target::Clearance),
+    ("task.edge_radius_mm", Target::Edges),
     ("finger.stiffness", Target::Stiffness),
     ("finger.rotation_x_nm_per_rad", Target::Tilting),
     ("finger.rcc_mm", Target::Centre),

@@ -40,7 +40,11 @@ impl<'a> Simulation<'a> {
         let has = |parameter: &&Parameter| match &parameter.sets {
             Target::Task(path) => template.number(path).is_some(),
             Target::Flange => soft,
-            Target::Clearance | Target::Stiffness | Target::Tilting | Target::Centre => true,
+            Target::Clearance
+            | Target::Edges
+            | Target::Stiffness
+            | Target::Tilting
+            | Target::Centre => true,
         };
         let parameters = parameters.iter().filter(has).collect();
         Simulation { evaluator, template, parameters, cache }
@@ -130,6 +134,9 @@ fn change(parameter: &Parameter, value: f64, specimen: &mut Specimen, robot: &mu
         Target::Clearance => {
             let clearance = parameter.applied(0.0, value) * MM;
             specimen.task = Conditions { clearance, ..Conditions::NOMINAL }.task(&specimen.task);
+        }
+        Target::Edges => {
+            specimen.task = specimen.task.rounded(parameter.applied(0.0, value) * MM);
         }
         Target::Stiffness => {
             *compliance = parameter.applied(*compliance, value);

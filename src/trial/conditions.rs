@@ -41,9 +41,11 @@ impl Conditions {
             *moment *= self.friction_finger;
         }
         task.friction.plug_socket *= self.friction_socket;
+        for part in task.plug.parts.iter_mut().chain(&mut task.socket) {
+            part.friction = part.friction.map(|mu| mu * self.friction_socket);
+        }
         let half = self.clearance / 2.0;
         for part in &mut task.socket {
-            part.friction = part.friction.map(|mu| mu * self.friction_socket);
             let [x, y] = nominal.opening.map(|[from, to]| (from + to) / 2.0);
             let outward = |axis, middle| half * side(part, axis, middle);
             let by = [outward(0, x), outward(1, y)];
@@ -171,11 +173,12 @@ mod tests {
     }
 
     #[test]
-    fn friction_scales_the_guides_of_the_latch_too() {
+    fn friction_scales_the_latch_and_its_guides_too() {
         let slippery = Conditions { friction_socket: 0.5, ..Conditions::NOMINAL };
         let rj45 = tasks().into_iter().find(|task| task.name == "rj45").unwrap();
         let of = |task: &Task| -> Vec<f64> {
-            let own = task.socket.iter().filter_map(|part| part.friction);
+            let parts = task.plug.parts.iter().chain(&task.socket);
+            let own = parts.filter_map(|part| part.friction);
             own.chain([task.friction.plug_socket]).collect()
         };
         let (before, after) = (of(&rj45), of(&slippery.task(&rj45)));

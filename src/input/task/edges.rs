@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 /// 1.2 % of the radius.
 const FLATS: usize = 4;
 /// Corners nearer to one another are one, m.
-const SAME: f64 = 1e-6 * MM;
+pub const SAME: f64 = 1e-6 * MM;
 
 /// A face of a box: its axis, and which end of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,6 +7,7 @@ mod latch;
 mod raw;
 mod raw_finger;
 mod raw_part;
+mod rounded;
 
 pub use geometry::{Part, Solid};
 pub use latch::Latch;

@@ -515,10 +515,12 @@ fn a_latch_snaps_behind_its_lips() {
         let turns = recording.frames.iter().map(|frame| {
             let bent = frame.poses.plug.inverse() * frame.poses.latch.unwrap();
             let moved = (bent * hinge - hinge).norm();
-            assert!(moved < 0.02 * MM, "the hinge gave by {moved} m");
-            bent.rotation.scaled_axis().y.abs()
+            (moved, bent.rotation.scaled_axis().y.abs())
         });
-        let turns: Vec<f64> = turns.collect();
+        let (moved, turns): (Vec<f64>, Vec<f64>) = turns.unzip();
+        // It snaps by 0.2 rad within a step or two; a step follows the tangent of that turn.
+        assert!(moved.iter().all(|&moved| moved < 0.1 * MM), "the hinge gave");
+        assert!(moved.last().unwrap() / MM < 1e-3, "the hinge gave and did not come back");
         // The shoulder's edge, 3.9 mm along the plug from the hinge, has to give way by 0.89 mm with
         // the plug in the middle of its play, and by 0.17 mm more or less at its ends.
         let most = turns.iter().copied().fold(0.0, f64::max);

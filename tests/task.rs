@@ -53,7 +53,6 @@ fn shipped_tasks_have_no_problems() {
     }
 }
 
-/// Each fault in a shipped task: the key that is named, a word of what is wrong and one of the remedy.
 /// Edges and latches that a task may not have, with what the reader says of them.
 #[test]
 fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
@@ -77,6 +76,7 @@ fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
         ("\"latch blade\", \"latch shoulder\", \"latch arm\"", "", "plug.latch.parts", "not all"),
         ("axis = \"y\"\nroot_mm", "axis = \"z\"\nroot_mm", "plug.latch.axis", "along the flexure"),
         ("modulus_gpa = 2.35", "modulus_gpa = 0.0", "plug.latch.modulus_gpa", "above 0"),
+        ("thickness_mm = 0.67", "thickness_mm = 3.0", "plug.latch.thickness_mm", "no beam"),
     ] {
         assert!(sold.text.contains(from), "no `{from}`");
         let error = Task::parse(&sold.text.replacen(from, to, 1), sold.file).unwrap_err();
@@ -85,6 +85,23 @@ fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
     }
 }
 
+/// A flexure that begins or ends in the air, and a latch that has the faces which the pads press.
+#[test]
+fn a_latch_that_hangs_on_nothing_or_is_gripped_is_noticed() {
+    let sold = AS_SOLD.iter().find(|file| file.name == "rj45").unwrap();
+    for (from, to, key) in [
+        ("root_mm = [-4.19, 0.0, 3.5]", "root_mm = [-4.19, 0.0, -3.5]", "plug.latch.root_mm"),
+        ("end_mm = [-5.07, 0.0, 8.05]", "end_mm = [-9.07, 0.0, 8.05]", "plug.latch.end_mm"),
+        ("\"latch arm\"]", "\"latch arm\", \"grip block\"]", "grip."),
+    ] {
+        assert!(sold.text.contains(from), "no `{from}`");
+        let task = Task::parse(&sold.text.replacen(from, to, 1), sold.file).unwrap();
+        let found = problems(&task);
+        assert!(found.iter().any(|problem| problem.key.starts_with(key)), "{to}: {found:?}");
+    }
+}
+
+/// Each fault in a shipped task: the key that is named, a word of what is wrong and one of the remedy.
 #[test]
 fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
     let shell = "y_mm = [-6.0, 6.0]\nz_mm = [0.0, 12.57]";

@@ -158,6 +158,10 @@ impl Priors {
             if (*scale == Scale::Log || *way == Way::Factor) && *low <= 0.0 {
                 return check.fail(name, "low must be above 0: a factor, or a logarithm");
             }
+            if parameter.sets == Target::Edges && (*way == Way::Factor || *low < 0.0) {
+                return check
+                    .fail(name, "must be as = \"shift\" from 0 up: a radius in place of none");
+            }
             if parameter.source.trim().is_empty() {
                 return check.fail(name, "source is empty; say where the bounds come from");
             }
@@ -197,6 +201,11 @@ mod tests {
         for (from, to, word) in [
             ("low = 0.5", "low = 5.0", "below high"),
             ("low = 0.5", "low = -0.5", "above 0"),
+            (
+                "sets = \"task.edge_radius_mm\"\nas = \"shift\"",
+                "sets = \"task.edge_radius_mm\"\nas = \"factor\"",
+                "in place of none",
+            ),
             ("sets = \"task.friction.plug_socket\"", "sets = \"friction\"", "sets nothing"),
             ("name = \"friction pad-plug\"", "name = \"friction plug-socket\"", "twice"),
             ("\nscale = \"log\"", "\nscale = \"logg\"", "logg"),

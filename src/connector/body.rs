@@ -101,6 +101,21 @@ impl<'a> ConvexBody<'a> {
         self.shapes.iter().position(holds)
     }
 
+    /// The parts that a point lies in, or within so much of.
+    pub fn near(&self, point: &Point3<f64>, within: f64) -> impl Iterator<Item = usize> {
+        let point = shapes::vector(&(point.coords * MILLIMETRES));
+        let close = move |part: &Placed| {
+            let pose = shapes::pose(&part.pose, MILLIMETRES);
+            part.shape.distance_to_point(&pose, point, true) <= within * MILLIMETRES
+        };
+        self.shapes.iter().enumerate().filter(move |(_, part)| close(part)).map(|(i, _)| i)
+    }
+
+    /// Its parts but for those of a latch, which the fingers do not press, by index.
+    pub fn stiff(&self) -> impl Iterator<Item = (usize, &Part)> {
+        self.parts.iter().enumerate().filter(|(i, _)| !self.yielding.contains(i))
+    }
+
     /// All corners of all parts.
     pub fn corners(&self) -> impl Iterator<Item = Point3<f64>> + '_ {
         self.parts.iter().flat_map(|part| part.solid.corners())

@@ -31,8 +31,10 @@ pub fn pad_z(shoulder: f64) -> [f64; 2] {
 /// where the plug is widest, or where the task says.
 pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held {
     let pad_z = pad_z(shoulder);
-    let pieces: Vec<Vec<Point3<f64>>> =
-        plug.parts.iter().map(|part| before_pad(part, pad_z)).collect();
+    let mut pieces: Vec<Vec<Point3<f64>>> = vec![Vec::new(); plug.parts.len()];
+    for (i, part) in plug.stiff() {
+        pieces[i] = before_pad(part, pad_z);
+    }
     let faces = widest(&pieces);
     let at = faces_y.or(faces.map(|faces| faces.map(|(y, _)| y)));
     let cover = [0, 1].map(|side| at.map_or(0.0, |faces| cover(&pieces, faces[side], side)));
@@ -92,7 +94,7 @@ fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Optio
         let [_, top] = span(piece.iter().map(|p| p.z));
         (high - low > SEAM && top > from).then_some(top)
     };
-    plug.parts.iter().filter_map(top).max_by(f64::total_cmp)
+    plug.stiff().filter_map(|(_, part)| top(part)).max_by(f64::total_cmp)
 }
 
 /// Where fingers can hold a plug that nobody said how to hold: the highest shoulder that both
@@ -100,7 +102,7 @@ fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Optio
 /// can be held, too, but a body better.
 pub fn find(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
     let mut tops: Vec<f64> =
-        plug.parts.iter().map(|part| span(part.solid.corners().iter().map(|p| p.z))[1]).collect();
+        plug.stiff().map(|(_, part)| span(part.solid.corners().iter().map(|p| p.z))[1]).collect();
     tops.sort_by(|a, b| b.total_cmp(a));
     let holds = |flat: bool| {
         tops.iter().find_map(|&shoulder| {

@@ -85,9 +85,10 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     let hands = [-1.0, 1.0].map(|side| hand(&mut scene, task, finger, flange, tcp, side));
     let latch = task.plug.latch.as_ref().map(|latch| sprung(&mut scene, task, latch, plug));
     let hard = Friction::hard(task.friction.plug_socket);
-    for part in [plug].into_iter().chain(latch) {
-        scene.contact(part, socket, hard);
-        scene.contact(part, stand, hard);
+    scene.contact(plug, socket, hard);
+    scene.contact(plug, stand, hard);
+    if let Some(latch) = latch {
+        scene.contact(latch, socket, hard);
     }
     let soft = pad_friction(task);
     for hand in &hands {
@@ -235,7 +236,7 @@ fn sprung(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId
 }
 
 fn stand_body(task: &Task, plug: Pose) -> Body {
-    let corners = task.plug.parts.iter().flat_map(|part| part.solid.corners());
+    let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
     let bottom = corners.map(|p| p.z).fold(f64::INFINITY, f64::min);
     let half = Vector3::new(20.0, 20.0, 1.0) * MM;
     let pose = plug * Pose::translation(0.0, 0.0, bottom - half.z);

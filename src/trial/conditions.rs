@@ -1,6 +1,7 @@
 //! What may differ between two trials of the same finger at the same offset.
 
 use super::cell::WorkCell;
+use crate::finger::{Pad, ROOF_GAP};
 use crate::input::task::{PadTorsion, Part, Solid, Task};
 use crate::scene::Pose;
 
@@ -41,7 +42,10 @@ impl Conditions {
             *moment *= self.friction_finger;
         }
         task.friction.plug_socket *= self.friction_socket;
-        for part in task.plug.parts.iter_mut().chain(&mut task.socket) {
+        // What the pads press keeps its own: that is friction of the finger.
+        let pads = task.grip.shoulder_z + ROOF_GAP - Pad::PAPER.height;
+        let below = |part: &&mut Part| part.solid.corners().iter().all(|corner| corner.z < pads);
+        for part in task.plug.parts.iter_mut().filter(below).chain(&mut task.socket) {
             part.friction = part.friction.map(|mu| mu * self.friction_socket);
         }
         let half = self.clearance / 2.0;

@@ -22,6 +22,7 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
         found.extend(overlaps(name, body));
     }
     found.extend(gaps(&case.plug));
+    found.extend(flexure(case));
     found.extend(mass(case));
     found
 }
@@ -53,6 +54,22 @@ fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
     })
     .map(|problem| Problem { key: problem.key.trim_end().to_owned(), ..problem })
     .collect()
+}
+
+/// A flexure goes from what stands still of the plug to what moves.
+fn flexure(case: &Case) -> Vec<Problem> {
+    let Some(latch) = &case.task.plug.latch else { return Vec::new() };
+    let on = |point, moves: bool| {
+        case.plug.near(point, SEAM).any(|part| latch.parts.contains(&part) == moves)
+    };
+    let [root, end] = &latch.flexure;
+    let off = |key: &str, what| {
+        let problem = "lies on no part that ".to_owned() + what;
+        Problem::new(key, problem, "put it on the plug's surface, or name the right parts")
+    };
+    let root = (!on(root, false)).then(|| off("plug.latch.root_mm", "stands still"));
+    let end = (!on(end, true)).then(|| off("plug.latch.end_mm", "moves with the latch"));
+    root.into_iter().chain(end).collect()
 }
 
 /// A plug is one piece: every part touches one that touches the first.

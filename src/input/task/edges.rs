@@ -73,10 +73,19 @@ impl Face {
     }
 }
 
-/// What the cuts leave of a box; `None` if they take more than a face has.
-pub fn cut(min: &Vector3<f64>, max: &Vector3<f64>, edges: &[(Edge, Cut)]) -> Option<Solid> {
+/// Why a box cannot be cut so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Uncut {
+    /// The cuts take more than a face has.
+    Room,
+    /// The hull that is left is so thin, or so small, that corners of it would be lost.
+    Thin,
+}
+
+/// What the cuts leave of a box.
+pub fn cut(min: &Vector3<f64>, max: &Vector3<f64>, edges: &[(Edge, Cut)]) -> Result<Solid, Uncut> {
     if !fit(&(max - min), edges) {
-        return None;
+        return Err(Uncut::Room);
     }
     let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
     let corner = |face: Face| if face.high { max } else { min };
@@ -87,14 +96,18 @@ pub fn cut(min: &Vector3<f64>, max: &Vector3<f64>, edges: &[(Edge, Cut)]) -> Opt
         at[second.axis] = corner(*second)[second.axis];
         flats(&mut spaces, [first.outward(), second.outward()], &at, *cut);
     }
-    geometry::hull(&corners(&spaces)).map(|(points, _)| Solid::Hull { points })
+    let corners = corners(&spaces);
+    match geometry::hull(&corners) {
+        Some((points, _)) if points.len() == corners.len() => Ok(Solid::Hull { points }),
+        _ => Err(Uncut::Thin),
+    }
 }
 
 impl Solid {
     /// A box with a chamfer along the edges of that name; `None` where there is none to be made.
     pub fn chamfered(min: &Vector3<f64>, max: &Vector3<f64>, at: &str, leg: f64) -> Option<Self> {
         let edges: Vec<_> = named(at)?.into_iter().map(|edge| (edge, Cut::Chamfer(leg))).collect();
-        cut(min, max, &edges)
+        cut(min, max, &edges).ok()
     }
 }
 
@@ -165,7 +178,7 @@ mod tests {
 
     const SIZE: [f64; 3] = [4.0, 6.0, 10.0];
 
-    fn left(text: &str, cut: Cut) -> Option<Solid> {
+    fn left(text: &str, cut: Cut) -> Result<Solid, Uncut> {
         let edges: Vec<_> = named(text).unwrap().into_iter().map(|edge| (edge, cut)).collect();
         super::cut(&Vector3::zeros(), &(Vector3::from(SIZE) * MM), &edges)
     }
@@ -199,11 +212,40 @@ mod tests {
 
     #[test]
     fn a_cut_may_take_a_face_away_but_not_the_other_side() {
-        let Some(Solid::Hull { points }) = left("-z+x", Cut::Chamfer(4.0 * MM)) else { panic!() };
+        let Ok(Solid::Hull { points }) = left("-z+x", Cut::Chamfer(4.0 * MM)) else { panic!() };
         assert_eq!(points.len(), 8, "a wedge at the tip: {points:?}");
-        assert_eq!(left("-z+x", Cut::Chamfer(4.1 * MM)), None);
-        assert_eq!(left("-z", Cut::Radius(2.1 * MM)), None);
-        assert!(left("-z", Cut::Radius(1.9 * MM)).is_some());
+        assert_eq!(left("-z+x", Cut::Chamfer(4.1 * MM)), Err(Uncut::Room));
+        assert_eq!(left("-z", Cut::Radius(2.1 * MM)), Err(Uncut::Room));
+        assert!(left("-z", Cut::Radius(1.9 * MM)).is_ok());
+    }
+
+    /// Of every plate that is cut, what is left is whole; the others are refused.
+    #[test]
+    fn no_plate_loses_corners() {
+        let (mut whole, mut refused) = (0, 0);
+        for thick in [0.05, 0.1, 0.3, 1.0] {
+            for side in [5.0, 20.0, 100.0, 900.0] {
+                let max = Vector3::new(thick, side, 2.0 * side) * MM;
+                let named = |at| named(at).unwrap().into_iter();
+                let radius = |edge| (edge, Cut::Radius(thick / 3.0 * MM));
+                let chamfer = |edge| (edge, Cut::Chamfer(thick / 3.0 * MM));
+                let edges: Vec<_> =
+                    named("-z").map(radius).chain(named("+z").map(chamfer)).collect();
+                match super::cut(&Vector3::zeros(), &max, &edges) {
+                    Ok(solid) => {
+                        whole += 1;
+                        let share = volume(&solid) / max.product();
+                        assert!(share > 0.95, "{thick} x {side} mm keeps {share}");
+                    }
+                    Err(why) => {
+                        refused += 1;
+                        assert_eq!(why, Uncut::Thin);
+                        assert!(thick / side < 0.003, "{thick} x {side} mm");
+                    }
+                }
+            }
+        }
+        assert!(whole > 4 && refused > 0, "{whole} whole, {refused} refused");
     }
 
     #[test]

@@ -12,6 +12,8 @@ use serde::Deserialize;
 /// (Howell 2001, Compliant Mechanisms, Wiley, Sec. 5.2.1). Its end is 4 % stiffer than `3 E I / L^3`.
 const GAMMA: f64 = 0.85;
 const K_THETA: f64 = 2.65;
+/// Most that a flexure may lean towards the axis about which it bends, as a share of its length.
+const SLANT: f64 = 0.05;
 
 /// Parts of a plug that turn together about a hinge against a spring.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +26,8 @@ pub struct Latch {
     pub axis: usize,
     /// Of the hinge, N m/rad.
     pub stiffness: f64,
+    /// From where to where its flexure goes, plug frame, m.
+    pub flexure: [Point3<f64>; 2],
 }
 
 /// The latch as written: its parts, and the flexure that carries them.
@@ -77,15 +81,20 @@ impl Check<'_> {
         let axis = raw.axis as usize;
         let length =
             self.size("plug.latch.end_mm: its distance from root_mm", along.norm() / MM)?;
-        if along[axis].abs() > 0.5 * length {
+        if along[axis].abs() > SLANT * length {
             return self.fail("plug.latch.axis", "lies along the flexure; it bends across it");
         }
         let width = self.size("plug.latch.width_mm", raw.width_mm)?;
         let thickness = self.size("plug.latch.thickness_mm", raw.thickness_mm)?;
+        if thickness > 0.5 * length {
+            let key = "plug.latch.thickness_mm";
+            return self.fail(key, "is more than half the flexure's length; that is no beam");
+        }
         let modulus = self.positive("plug.latch.modulus_gpa", raw.modulus_gpa)? * GPA;
         let hinge = Point3::from(end - along * GAMMA);
         let stiffness = stiffness(length, width, thickness, modulus);
-        Ok(Latch { parts: found, hinge, axis, stiffness })
+        let flexure = [root, end].map(Point3::from);
+        Ok(Latch { parts: found, hinge, axis, stiffness, flexure })
     }
 }
 

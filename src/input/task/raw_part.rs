@@ -1,6 +1,6 @@
 //! Parts as written, and the checks that turn them into solids.
 
-use super::edges::{self, Cut, Edge};
+use super::edges::{self, Cut, Edge, Uncut};
 use super::geometry::{self, Part, Solid};
 use crate::input::{Check, InputError};
 use crate::units::MM;
@@ -175,8 +175,13 @@ impl Check<'_> {
             return Ok(Solid::Box { min, max });
         }
         match edges::cut(&min, &max, &cuts) {
-            Some(solid) => Ok(solid),
-            None => self.fail(key, "take off more than the part has; make them smaller"),
+            Ok(solid) => Ok(solid),
+            Err(Uncut::Room) => {
+                self.fail(key, "take off more than the part has; make them smaller")
+            }
+            Err(Uncut::Thin) => {
+                self.fail(key, "need a part that is not so thin or so small; leave its edges sharp")
+            }
         }
     }
 }

@@ -7,13 +7,15 @@ use nalgebra::Vector3;
 
 /// Boxes that begin so near to the plug's tip lead in, m.
 const LEAD: f64 = 2.0 * MM;
+/// Largest radius, as a share of a box's smallest side: sheet metal is round at its edge.
+const MOST: f64 = 0.49;
 /// A wall that is so near to the opening is its wall, m.
 const BESIDE: f64 = 0.15 * MM;
 
 impl Task {
     /// The same with a radius, m, on the edges that lead in: those at the bottom of the plug's boxes
-    /// at its tip, and those of the socket's boxes along the opening. A box too thin for it, and all
-    /// that is no box, stays as it is.
+    /// at its tip, and those of the socket's boxes along the opening; of a thin box, what its
+    /// thickness allows. What is no box stays as it is.
     pub fn rounded(&self, radius: f64) -> Task {
         let mut task = self.clone();
         let corners = self.plug.parts.iter().flat_map(|part| part.solid.corners());
@@ -47,11 +49,12 @@ fn round(
 ) {
     let Solid::Box { min, max } = &part.solid else { return };
     let edges = which(min, max).unwrap_or_default();
+    let radius = radius.min(MOST * (max - min).min());
     let cuts: Vec<_> = edges.into_iter().map(|edge| (edge, Cut::Radius(radius))).collect();
     if cuts.is_empty() {
         return;
     }
-    if let Some(solid) = cut(min, max, &cuts) {
+    if let Ok(solid) = cut(min, max, &cuts) {
         part.solid = solid;
     }
 }

@@ -20,8 +20,10 @@
 
 use super::{HEAVY, MjcfSettings, geom_names, xml::Element};
 use crate::scene::{
-    Body, BodyId, ContactPair, Friction, GeomPair, JointAxis, Motion, Scene, Springs, Torsion,
+    Body, BodyId, ContactPair, Friction, GeomPair, Inertia, Joint, JointAxis, Motion, Pose, Scene,
+    Springs, Torsion,
 };
+use nalgebra::{DMatrix, Matrix3, Point3, Vector3, Vector6};
 
 /// Depth over which MuJoCo lets an impedance vary, m; ours does not.
 const WIDTH: f64 = 1e-3;
@@ -76,7 +78,7 @@ fn soft(pair: Element, weight: f64, settings: &MjcfSettings) -> Element {
 
 /// The inverse mass that MuJoCo gives a body, 1/kg: the mean over the three
 /// axes of the inverse mass at its centre of mass, which an axis that is locked to
-/// the parent is taken to have none of.
+/// a parent on a joint of its own is taken to have none of.
 pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     let Body { motion, .. } = &scene.bodies[body.0];
     let inertia = match motion {
@@ -85,11 +87,68 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
         Motion::Free(inertia) | Motion::Carried(inertia) => inertia,
     };
     let joint = scene.joints.iter().find(|joint| joint.child == body);
-    let free = match joint.map(|joint| &joint.springs) {
-        Some(Springs::Axes(axes)) => {
-            axes[..3].iter().filter(|axis| matches!(axis, JointAxis::Sprung(_))).count()
-        }
-        Some(Springs::Coupled(_)) | None => 3,
+    let Some((joint, axes)) = joint.and_then(|joint| match &joint.springs {
+        Springs::Axes(axes) => Some((joint, axes)),
+        Springs::Coupled(_) => None,
+    }) else {
+        return 1.0 / inertia.mass;
     };
-    free as f64 / 3.0 / inertia.mass
+    let free = axes[..3].iter().filter(|axis| matches!(axis, JointAxis::Sprung(_))).count();
+    let loose = !scene.joints.iter().any(|other| other.child == joint.parent);
+    match scene.bodies[joint.parent.0].motion {
+        Motion::Free(parent) | Motion::Carried(parent) if free < 3 && loose => {
+            on_free_body(scene, joint, axes, [&parent, inertia])
+        }
+        _ => free as f64 / 3.0 / inertia.mass,
+    }
+}
+
+/// The same of a body on a joint of a free one, a latch on its plug: the mean over the axes of
+/// `J M^-1 J^T` with the mass matrix `M` of both, in the velocity of the parent and the rates of
+/// the joint's free axes.
+fn on_free_body(
+    scene: &Scene,
+    joint: &Joint,
+    axes: &[JointAxis; 6],
+    [parent, child]: [&Inertia; 2],
+) -> f64 {
+    let [above, below] = [joint.parent, joint.child].map(|body| scene.bodies[body.0].pose);
+    let at = below * child.centre;
+    let frame = above * joint.in_parent;
+    // Columns: linear velocity at the child's centre of mass, and angular, of each free axis.
+    let free = (0..6).filter(|&i| matches!(axes[i], JointAxis::Sprung(_)));
+    let column = |i: usize| {
+        let axis = frame.rotation * Vector3::ith(i % 3, 1.0);
+        let arm = at.coords - frame.translation.vector;
+        let [linear, angular] =
+            if i < 3 { [axis, Vector3::zeros()] } else { [axis.cross(&arm), axis] };
+        Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+    };
+    let columns: Vec<Vector6<f64>> = free.map(column).collect();
+    let n = 6 + columns.len();
+    let rates = DMatrix::from_fn(6, n, |row, i| match i {
+        0..6 => f64::from(u8::from(row == i)),
+        _ => columns[i - 6][row],
+    });
+    let of_child = rates.transpose() * spatial(&below, child, &at) * &rates;
+    let mut mass = of_child;
+    let own = spatial(&above, parent, &at);
+    mass.view_mut((0, 0), (6, 6)).zip_apply(&own, |sum, more| *sum += more);
+    let linear = rates.rows(0, 3).transpose();
+    // Inertias are positive.
+    let answer = mass.cholesky().map(|factor| factor.solve(&linear));
+    answer.map_or(0.0, |answer| (rates.rows(0, 3) * answer).trace() / 3.0)
+}
+
+/// Inertia of a body against the linear velocity at a point of it and its angular velocity.
+fn spatial(pose: &Pose, inertia: &Inertia, at: &Point3<f64>) -> DMatrix<f64> {
+    let arm = (pose * inertia.centre - at).cross_matrix();
+    let turn = pose.rotation.to_rotation_matrix().into_inner();
+    let about = turn * Matrix3::from_diagonal(&inertia.moments) * turn.transpose();
+    let mut made = DMatrix::zeros(6, 6);
+    made.view_mut((0, 0), (3, 3)).copy_from(&(Matrix3::identity() * inertia.mass));
+    made.view_mut((0, 3), (3, 3)).copy_from(&(-arm * inertia.mass));
+    made.view_mut((3, 0), (3, 3)).copy_from(&(arm * inertia.mass));
+    made.view_mut((3, 3), (3, 3)).copy_from(&(about - arm * arm * inertia.mass));
+    made
 }

@@ -6,6 +6,7 @@ use crate::scene::{
     Body, BodyId, Inertia, Joint, JointAxis, JointId, Motion, Pose, Spring, Springs,
 };
 use crate::trial::cell;
+use mujoco_rs::prelude::MjtObjBase;
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
 /// A body of 0.1 kg on a servo of 1000 N/m and 5 N along y.
@@ -103,4 +104,31 @@ fn numbers_that_mujoco_refuses_are_no_panic() {
     scene.bodies[jaw.0].motion = Motion::Carried(light);
     let refused = Mujoco::default().supports(&scene).unwrap_err();
     assert!(refused.to_string().contains("mass and inertia"), "{refused}");
+}
+
+/// What a latch on its plug weighs for a contact is what MuJoCo gives it, so that its contacts are
+/// as stiff as all others.
+#[test]
+fn a_latch_weighs_what_mujoco_gives_it() {
+    let sold = crate::input::shipped::AS_SOLD.iter().find(|file| file.name == "rj45").unwrap();
+    let task = crate::input::task::Task::parse(sold.text, sold.file).unwrap();
+    let robot = crate::input::shipped::ROBOTS[0];
+    let robot = crate::input::robot::Robot::parse(robot.text, robot.file).unwrap();
+    let mounted = robot.mount(task.turn, task.strategy.tilt).unwrap();
+    let finger = crate::finger::Finger::new(2000.0, 45_000.0);
+    let scene = cell::build(&task, &mounted, &finger).scene;
+    let engine = Mujoco::default();
+    let model = engine.model(&scene).unwrap();
+    let weight = model.body_invweight0()[world::id(&model, MjtObjBase::mjOBJ_BODY, "latch")][0];
+    let text = mjcf::write(&scene, "scene", &engine.settings).unwrap();
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let of_latch = |node: &roxmltree::Node| {
+        let names = ["geom1", "geom2"].map(|side| node.attribute(side).unwrap_or(""));
+        node.has_tag_name("pair") && names.iter().any(|name| name.starts_with("latch:"))
+    };
+    let pair = document.descendants().find(of_latch).unwrap();
+    let impedance = pair.attribute("solimp").unwrap().split_whitespace().next().unwrap();
+    let impedance: f64 = impedance.parse().unwrap();
+    let regular = weight * (1.0 - impedance) / impedance;
+    assert!((regular * engine.settings.contact_mass - 1.0).abs() < 1e-6, "{impedance}, {weight}");
 }

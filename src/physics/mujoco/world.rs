@@ -236,7 +236,7 @@ impl World for MujocoWorld {
 
 /// # Panics
 /// If there is none: the model was written from the scene.
-fn id(model: &MjModel, kind: MjtObjBase, name: &str) -> usize {
+pub(super) fn id(model: &MjModel, kind: MjtObjBase, name: &str) -> usize {
     model.name_to_id(kind, name).unwrap_or_else(|| panic!("the model has no `{name}`"))
 }
 

@@ -15,10 +15,12 @@ use crate::outcome::Outcome;
 use crate::physics::{ContactForce, ContactPoint, Diverged, World};
 use crate::scene::{BodyId, Pose};
 use crate::units::{DEG, MM};
+use descent::Begun;
 use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+mod descent;
 pub mod driven;
 
 /// Rest after a move that has none of its own, s.
@@ -51,6 +53,8 @@ pub(super) struct Attempt<'a> {
     pub world: Box<dyn World>,
     target: Tcp,
     stage: Stage,
+    /// What has been done already of the first phase of the search.
+    begun: Option<Begun>,
     /// Turn of the socket, rad.
     pub yaw: f64,
     /// From the world to the socket.
@@ -85,6 +89,7 @@ impl<'a> Attempt<'a> {
             world,
             target: Tcp { position: pose.translation.vector, tilt: 0.0 },
             stage: Stage::Approach,
+            begun: None,
             yaw: 0.0,
             socket: Pose::identity(),
             time: 0.0,
@@ -166,20 +171,25 @@ impl<'a> Attempt<'a> {
             self.hold();
         }
         self.stage = phase.stage;
+        let begun = self.begun.take().unwrap_or(Begun { motion: self.motion(phase), steps: 0 });
+        let motion = begun.motion;
+        let end = match phase.ending {
+            Ending::Duration(rest) => self.follow(motion, rest.max(self.rest_time())),
+            Ending::Tolerance(within) => self.reach(motion, within),
+            Ending::Touch { preload, sensed } => self.touch(begun, preload, sensed, phase.speed),
+        };
+        self.end_phase(&phase.name);
+        end
+    }
+
+    /// The move of a phase that begins now.
+    fn motion(&self, phase: &Phase) -> Move {
         let mut displacement = Vector3::from(phase.displacement);
         if phase.stage == Stage::Assembly {
             let along = displacement.try_normalize(0.0).unwrap_or_default();
             displacement += along * self.robot.lead(&along);
         }
-        let to = self.target.moved(displacement);
-        let motion = Move::new(self.target, to, phase.speed);
-        let end = match phase.ending {
-            Ending::Duration(rest) => self.follow(motion, rest.max(self.rest_time())),
-            Ending::Tolerance(within) => self.reach(motion, within),
-            Ending::Touch { preload, sensed } => self.touch(motion, preload, sensed, phase.speed),
-        };
-        self.end_phase(&phase.name);
-        end
+        Move::new(self.target, self.target.moved(displacement), phase.speed)
     }
 
     /// The jaws stay where they are from now on.
@@ -216,7 +226,7 @@ impl<'a> Attempt<'a> {
     /// Moves until the plug is felt to touch the socket, then on by the preload at this speed, m/s.
     fn touch(
         &mut self,
-        motion: Move,
+        Begun { motion, steps: done }: Begun,
         preload: f64,
         sensed: Sensed,
         speed: f64,
@@ -226,7 +236,7 @@ impl<'a> Attempt<'a> {
         let steps = self.steps(motion.duration() + self.robot.settling());
         let mut left = self.steps(sensed.latency);
         let mut felt = false;
-        for i in 1..=steps {
+        for i in done + 1..=steps {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
             felt = felt || self.contact_force() > sensed.force;

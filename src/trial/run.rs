@@ -103,7 +103,7 @@ impl EngineRig {
         attempt.yaw = conditions.yaw;
         attempt.recorder = recorder;
         let end = attempt.prepare();
-        Prepared { attempt, end }
+        Prepared { attempt, end, descended: OnceLock::new() }
     }
 }
 
@@ -191,18 +191,28 @@ struct Prepared<'a> {
     attempt: Attempt<'a>,
     /// Whether it came so far.
     end: Result<(), Stop>,
+    /// The attempt after its way through the air, where that is the same for every offset.
+    descended: OnceLock<Option<Attempt<'a>>>,
 }
 
-impl Prepared<'_> {
+impl<'a> Prepared<'a> {
     fn run(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
         let (trial, samples, _) = self.watched(offset, every_s.map(Trace::new));
         (trial, samples)
     }
 
+    /// What every offset may start from, if nobody looks at the way through the air.
+    fn descended(&self) -> Option<&Attempt<'a>> {
+        self.end.ok()?;
+        self.descended.get_or_init(|| self.attempt.descended()).as_ref()
+    }
+
     /// The trial, and what was asked for on the way: samples from the search on, frames from the
     /// grasp on if it is filmed.
     fn watched(&self, offset: f64, trace: Option<Trace>) -> (Trial, Vec<Sample>, Vec<Frame>) {
-        let mut attempt = self.attempt.shifted(offset);
+        let seen = trace.is_some() || self.attempt.recorder.is_some();
+        let mut attempt =
+            if seen { None } else { self.descended() }.unwrap_or(&self.attempt).shifted(offset);
         attempt.trace = trace;
         if let Some(recorder) = &mut attempt.recorder {
             recorder.seen(&attempt.socket);

@@ -4,6 +4,7 @@
 //! (flange, jaws) are eliminated first by a block Cholesky factorisation; what
 //! remains is a small dense system of the bodies that may touch.
 
+use super::dense::Six;
 use nalgebra::{Cholesky, Const, Matrix6, SVector};
 
 /// Velocity (linear of the centre of mass, angular) or impulse, world axes.
@@ -134,17 +135,18 @@ impl Blocks {
     }
 
     /// The remaining matrix, dense, row by row, both halves.
-    pub fn remainder(&self, dense: &mut [f64]) {
-        let n = 6 * (self.size - self.eliminated);
-        dense.fill(0.0);
-        for i in self.eliminated..self.size {
-            for j in self.eliminated..=i {
-                let Some(block) = self.get(i, j) else { continue };
-                let (row, column) = (6 * (i - self.eliminated), 6 * (j - self.eliminated));
+    pub fn remainder(&self, dense: &mut [Six]) {
+        let sixes = self.size - self.eliminated;
+        dense.fill([0.0; 6]);
+        for i in 0..sixes {
+            for j in 0..=i {
+                let Some(block) = self.get(i + self.eliminated, j + self.eliminated) else {
+                    continue;
+                };
                 for r in 0..6 {
                     for c in 0..6 {
-                        dense[(row + r) * n + column + c] = block[(r, c)];
-                        dense[(column + c) * n + row + r] = block[(r, c)];
+                        dense[(6 * i + r) * sixes + j][c] = block[(r, c)];
+                        dense[(6 * j + c) * sixes + i][r] = block[(r, c)];
                     }
                 }
             }
@@ -178,9 +180,9 @@ mod tests {
         let expected = whole.lu().solve(&nalgebra::DVector::from_fn(24, |i, _| rhs[i / 6][i % 6]));
         system.eliminate().expect("positive definite");
         system.reduce(&mut rhs);
-        let mut dense = vec![0.0; 144];
+        let mut dense = vec![[0.0; 6]; 24];
         system.remainder(&mut dense);
-        let reduced = nalgebra::DMatrix::from_row_slice(12, 12, &dense);
+        let reduced = nalgebra::DMatrix::from_row_slice(12, 12, dense.as_flattened());
         let right = nalgebra::DVector::from_fn(12, |i, _| rhs[2 + i / 6][i % 6]);
         let solved = reduced.lu().solve(&right).expect("regular");
         for i in 0..12 {

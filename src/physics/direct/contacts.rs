@@ -148,6 +148,10 @@ impl Solid {
     fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, solids: &[Solid]) -> bool {
         let outside = self.pose * Point3::from(place + outward * COVER);
         self.neighbours.iter().any(|&j| {
+            let boxed = solids[j].frame.inverse_transform_point(&outside).coords.abs();
+            if (0..3).any(|i| boxed[i] > solids[j].half[i] + 2.0 * SEAM) {
+                return false;
+            }
             let local = solids[j].pose.inverse_transform_point(&outside).coords * MILLIMETRES;
             let distance = solids[j].shape.distance_to_local_point(shapes::vector(&local), true);
             distance < SEAM * MILLIMETRES

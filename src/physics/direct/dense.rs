@@ -1,67 +1,110 @@
-//! Small dense symmetric systems, row by row in a slice. Every inner loop runs
-//! along a row without carrying a sum, so that it needs not wait for the last addition.
+//! Small dense symmetric systems: rows of six numbers each, row by row. Every inner loop runs
+//! along a row without carrying a sum, so that it needs not wait for the last addition, and
+//! over six at a time, so that it is unrolled.
 
-use super::blocks::Vector6;
+/// Six neighbours in a row of a matrix.
+pub(super) type Six = [f64; 6];
+
+/// A function of a matrix, compiled for the usual numbers of sixes to a row and for any.
+macro_rules! unrolled {
+    ($sixes:expr, $function:ident($($argument:expr),*)) => {
+        match $sixes {
+            1 => $function($($argument,)* 1),
+            2 => $function($($argument,)* 2),
+            3 => $function($($argument,)* 3),
+            4 => $function($($argument,)* 4),
+            sixes => $function($($argument,)* sixes),
+        }
+    };
+}
+
+/// `to += factor * from`.
+#[inline(always)]
+fn add(to: &mut Six, factor: f64, from: Six) {
+    for c in 0..6 {
+        to[c] += factor * from[c];
+    }
+}
+
+/// `to -= factor * from`.
+#[inline(always)]
+fn subtract(to: &mut Six, factor: f64, from: Six) {
+    for c in 0..6 {
+        to[c] -= factor * from[c];
+    }
+}
 
 /// `result = matrix * vector` for a symmetric matrix with both halves.
-pub(super) fn multiply(matrix: &[f64], vector: &[Vector6], result: &mut [Vector6]) {
-    result.fill(Vector6::zeros());
-    let n = 6 * vector.len();
-    if n == 0 {
-        return;
-    }
+pub(super) fn multiply(matrix: &[Six], vector: &[Six], result: &mut [Six]) {
+    unrolled!(vector.len(), product(matrix, vector, result));
+}
+
+#[inline(always)]
+fn product(matrix: &[Six], vector: &[Six], result: &mut [Six], sixes: usize) {
+    let result = &mut result[..sixes];
+    result.fill([0.0; 6]);
     // The rows serve as columns.
-    let factors = vector.iter().flat_map(|part| part.iter());
-    for (row, factor) in matrix.chunks_exact(n).zip(factors) {
-        for (part, to) in row.chunks_exact(6).zip(&mut *result) {
-            for c in 0..6 {
-                to[c] += part[c] * factor;
-            }
+    for (k, &factor) in vector[..sixes].as_flattened().iter().enumerate() {
+        let row = &matrix[k * sixes..][..sixes];
+        for s in 0..sixes {
+            add(&mut result[s], factor, row[s]);
         }
     }
 }
 
-/// Cholesky factorisation `U^T U` in place of the upper half, the diagonal
-/// holding the reciprocals of `U`'s; None if the matrix is not positive definite
-/// (or not finite).
-pub(super) fn factor(matrix: &mut [f64], n: usize) -> Option<()> {
-    for k in 0..n {
-        let (done, rest) = matrix.split_at_mut((k + 1) * n);
-        let row = &mut done[k * n + k..];
-        if row[0].is_nan() || row[0] <= 0.0 {
+/// Cholesky factorisation `U^T U` of a matrix with so many sixes to a row, in place of the upper
+/// half, the diagonal holding the reciprocals of `U`'s; None if the matrix is not positive
+/// definite (or not finite). What is left in the lower half means nothing.
+pub(super) fn factor(matrix: &mut [Six], sixes: usize) -> Option<()> {
+    unrolled!(sixes, factored(matrix))
+}
+
+#[inline(always)]
+fn factored(matrix: &mut [Six], sixes: usize) -> Option<()> {
+    for (first, at) in (0..sixes).flat_map(|first| (0..6).map(move |at| (first, at))) {
+        let (above, row) = matrix.split_at_mut((6 * first + at) * sixes);
+        for s in first..sixes {
+            let mut sum = row[s];
+            for above in above.chunks_exact(sixes) {
+                subtract(&mut sum, above[first][at], above[s]);
+            }
+            row[s] = sum;
+        }
+        let pivot = row[first][at];
+        if pivot.is_nan() || pivot <= 0.0 {
             return None;
         }
-        let scale = 1.0 / row[0].sqrt();
-        row[0] = scale;
-        for value in &mut row[1..] {
-            *value *= scale;
+        let scale = 1.0 / pivot.sqrt();
+        for s in first..sixes {
+            row[s] = row[s].map(|value| value * scale);
         }
-        for (i, below) in rest.chunks_exact_mut(n).enumerate() {
-            let from = &row[1 + i..];
-            let factor = from[0];
-            for (to, value) in below[k + 1 + i..].iter_mut().zip(from) {
-                *to -= factor * value;
-            }
-        }
+        row[first][at] = scale;
     }
     Some(())
 }
 
 /// Solves with the factor, in place.
-pub(super) fn solve(factor: &[f64], vector: &mut [f64]) {
-    let n = vector.len();
+pub(super) fn solve(factor: &[Six], vector: &mut [Six]) {
+    unrolled!(vector.len(), solved(factor.as_flattened(), vector.as_flattened_mut()));
+}
+
+#[inline(always)]
+fn solved(factor: &[f64], vector: &mut [f64], sixes: usize) {
+    let n = 6 * sixes;
+    let (factor, vector) = (&factor[..n * n], &mut vector[..n]);
     for k in 0..n {
-        let (done, rest) = vector.split_at_mut(k + 1);
-        let row = &factor[k * n + k..(k + 1) * n];
-        done[k] *= row[0];
-        for (to, value) in rest.iter_mut().zip(&row[1..]) {
-            *to -= done[k] * value;
+        let mut value = vector[k];
+        for i in 0..k {
+            value -= vector[i] * factor[i * n + k];
         }
+        vector[k] = value * factor[k * n + k];
     }
     for k in (0..n).rev() {
-        let row = &factor[k * n + k..(k + 1) * n];
-        let sum: f64 = row[1..].iter().zip(&vector[k + 1..]).map(|(a, b)| a * b).sum();
-        vector[k] = (vector[k] - sum) * row[0];
+        let mut sum = 0.0;
+        for i in k + 1..n {
+            sum += factor[k * n + i] * vector[i];
+        }
+        vector[k] = (vector[k] - sum) * factor[k * n + k];
     }
 }
 
@@ -74,17 +117,17 @@ mod tests {
     fn factor_and_solution_undo_the_product() {
         let side = DMatrix::from_fn(12, 12, |r, c| ((1 + 5 * r + 3 * c) as f64).sin());
         let whole = &side * side.transpose() + DMatrix::identity(12, 12);
-        let wanted: Vec<Vector6> =
-            (0..2).map(|i| Vector6::from_fn(|r, _| (6 * i + r) as f64 - 4.0)).collect();
-        let mut product = vec![Vector6::zeros(); 2];
-        multiply(whole.as_slice(), &wanted, &mut product);
-        let flat = |parts: &[Vector6]| DVector::from_fn(12, |i, _| parts[i / 6][i % 6]);
+        let wanted: Vec<Six> =
+            (0..2).map(|i| std::array::from_fn(|r| (6 * i + r) as f64 - 4.0)).collect();
+        let mut square = whole.as_slice().as_chunks::<6>().0.to_vec();
+        let mut product = vec![[0.0; 6]; 2];
+        multiply(&square, &wanted, &mut product);
+        let flat = |parts: &[Six]| DVector::from_column_slice(parts.as_flattened());
         assert!((&whole * flat(&wanted) - flat(&product)).norm() < 1e-12);
-        let mut square = whole.as_slice().to_vec();
-        factor(&mut square, 12).expect("positive definite");
-        let mut solved = flat(&product);
-        solve(&square, solved.as_mut_slice());
-        assert!((solved - flat(&wanted)).norm() < 1e-9);
-        assert!(factor(&mut vec![-1.0; 36], 6).is_none());
+        factor(&mut square, 2).expect("positive definite");
+        let mut solved = product.clone();
+        solve(&square, &mut solved);
+        assert!((flat(&solved) - flat(&wanted)).norm() < 1e-9);
+        assert!(factor(&mut [[-1.0; 6]; 6], 1).is_none());
     }
 }

@@ -10,7 +10,7 @@
 
 use super::blocks::Vector6;
 use super::cone::{Cone, Pull, State};
-use super::dense;
+use super::dense::{self, Six};
 use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
 
 /// Out-of-balance force at which an iteration ends, N (N per 10 mm for moments).
@@ -49,7 +49,7 @@ pub(super) fn moved_aside(
 }
 
 /// Velocity of a contact point of a body of this velocity, m/s.
-pub(super) fn relative(lever: &Matrix4x3<f64>, v: &Vector6) -> Vector4<f64> {
+pub(super) fn relative(lever: &Matrix4x3<f64>, v: &Six) -> Vector4<f64> {
     Vector4::new(v[0], v[1], v[2], 0.0) + lever * Vector3::new(v[3], v[4], v[5])
 }
 
@@ -73,6 +73,8 @@ pub(super) struct Contact {
     slide: f64,
     /// Relative velocity, m/s.
     velocity: Vector4<f64>,
+    /// What the law wants to know of it.
+    pull: Pull,
     /// Its change along the line of search.
     change: Vector4<f64>,
     /// Impulse on the second body, N s.
@@ -80,11 +82,14 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    /// A contact between bodies at these places with these levers.
+    /// A contact between bodies at these places with these levers; the rest as in the fields.
+    #[inline(always)]
     pub fn new(
         place: [Option<usize>; 2],
         lever: [Matrix4x3<f64>; 2],
         normal: Vector3<f64>,
+        drift: Vector4<f64>,
+        bias: f64,
         cone: Cone,
     ) -> Self {
         let zero = Vector4::zeros();
@@ -92,18 +97,19 @@ impl Contact {
             place,
             lever,
             normal: normal.push(0.0),
-            drift: zero,
-            bias: 0.0,
+            drift,
+            bias,
             cone,
             slide: 0.0,
             velocity: zero,
+            pull: Pull::new(&zero, &zero, 0.0),
             change: zero,
             impulse: zero,
         }
     }
 
     /// Relative velocity by the free bodies' velocities.
-    fn relative(&self, velocities: &[Vector6]) -> Vector4<f64> {
+    fn relative(&self, velocities: &[Six]) -> Vector4<f64> {
         let mut sum = Vector4::zeros();
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
             if let Some(place) = self.place[side] {
@@ -113,8 +119,15 @@ impl Contact {
         sum
     }
 
+    /// What the law wants to know so far along the line of search.
     fn pull(&self, along: f64) -> Pull {
         Pull::new(&(self.velocity + self.change * along), &self.normal, self.bias + self.slide)
+    }
+
+    /// Law and impulse at the present velocity.
+    fn apply(&mut self) {
+        self.pull = Pull::new(&self.velocity, &self.normal, self.bias + self.slide);
+        self.impulse = self.cone.impulse(&self.pull, &self.normal);
     }
 
     /// What the contact would slide at, times its friction.
@@ -128,23 +141,21 @@ impl Contact {
 #[derive(Clone)]
 pub(super) struct Solver {
     /// Rows of the reduced system, row by row.
-    pub system: Vec<f64>,
+    pub system: Vec<Six>,
     /// Right-hand side.
-    pub rhs: Vec<Vector6>,
+    pub rhs: Vec<Six>,
     /// The solution; on entry, the first guess.
-    pub velocities: Vec<Vector6>,
-    hessian: Vec<f64>,
-    gradient: Vec<Vector6>,
-    direction: Vec<Vector6>,
-    /// The direction as the dense solution wants it.
-    flat: Vec<f64>,
+    pub velocities: Vec<Six>,
+    hessian: Vec<Six>,
+    gradient: Vec<Six>,
+    direction: Vec<Six>,
 }
 
 impl Solver {
     /// For so many bodies.
     pub fn new(bodies: usize) -> Self {
-        let zeros = vec![Vector6::zeros(); bodies];
-        let square = vec![0.0; 36 * bodies * bodies];
+        let zeros = vec![[0.0; 6]; bodies];
+        let square = vec![[0.0; 6]; 6 * bodies * bodies];
         Solver {
             system: square.clone(),
             rhs: zeros.clone(),
@@ -152,7 +163,6 @@ impl Solver {
             hessian: square,
             gradient: zeros.clone(),
             direction: zeros,
-            flat: vec![0.0; 6 * bodies],
         }
     }
 
@@ -167,10 +177,9 @@ impl Solver {
             self.newton(contacts, step * FORCE_TOLERANCE, &mut iterations)?;
             let mut error: f64 = 0.0;
             for contact in contacts.iter_mut() {
-                let pull = contact.pull(0.0);
                 // With the sliding term that the velocities were solved with.
-                contact.impulse = contact.cone.impulse(&pull, &contact.normal);
-                if contact.cone.state(&pull) != State::Apart {
+                contact.apply();
+                if contact.cone.state(&contact.pull) != State::Apart {
                     let now = contact.sliding();
                     error = error.max((now - contact.slide).abs());
                     contact.slide = now;
@@ -198,7 +207,8 @@ impl Solver {
             *iterations += 1;
             self.descend(contacts)?;
             let along = self.search(contacts);
-            for (v, d) in self.velocities.iter_mut().zip(&self.direction) {
+            let direction = self.direction.as_flattened();
+            for (v, d) in self.velocities.as_flattened_mut().iter_mut().zip(direction) {
                 *v += d * along;
             }
             self.update_velocities(contacts);
@@ -215,13 +225,18 @@ impl Solver {
     }
 
     /// The gradient, and its largest component as a force times the step.
-    fn slope(&mut self, contacts: &[Contact]) -> f64 {
+    fn slope(&mut self, contacts: &mut [Contact]) -> f64 {
         dense::multiply(&self.system, &self.velocities, &mut self.gradient);
-        for (g, r) in self.gradient.iter_mut().zip(&self.rhs) {
+        let rhs = self.rhs.as_flattened();
+        for (g, r) in self.gradient.as_flattened_mut().iter_mut().zip(rhs) {
             *g -= r;
         }
         for contact in contacts {
-            let impulse = contact.cone.impulse(&contact.pull(0.0), &contact.normal);
+            contact.apply();
+            let impulse = contact.impulse;
+            if impulse == Vector4::zeros() {
+                continue;
+            }
             for (side, sign) in [(0, 1.0), (1, -1.0)] {
                 if let Some(place) = contact.place[side] {
                     let moment = contact.lever[side].tr_mul(&impulse) * sign;
@@ -234,9 +249,9 @@ impl Solver {
                 }
             }
         }
-        let scaled = |g: &Vector6| {
-            let linear = g.fixed_rows::<3>(0).amax();
-            linear.max(g.fixed_rows::<3>(3).amax() / ARM)
+        let scaled = |g: &Six| {
+            let largest = |part: &[f64]| Vector3::from_column_slice(part).amax();
+            largest(&g[..3]).max(largest(&g[3..]) / ARM)
         };
         // NaN must not pass for small: `max` would drop it.
         self.gradient.iter().map(scaled).fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
@@ -246,20 +261,16 @@ impl Solver {
     fn descend(&mut self, contacts: &mut [Contact]) -> Option<()> {
         self.hessian.copy_from_slice(&self.system);
         for contact in contacts.iter() {
-            let pull = contact.pull(0.0);
-            if contact.cone.state(&pull) != State::Apart {
-                let stiffness = contact.cone.stiffness(&pull, &contact.normal);
+            if contact.cone.state(&contact.pull) != State::Apart {
+                let stiffness = contact.cone.stiffness(&contact.pull, &contact.normal);
                 add_stiffness(&mut self.hessian, self.velocities.len(), contact, &stiffness);
             }
         }
-        for (d, g) in self.flat.chunks_exact_mut(6).zip(&self.gradient) {
-            d.copy_from_slice((-g).as_slice());
+        for (d, g) in self.direction.iter_mut().zip(&self.gradient) {
+            *d = g.map(|g| -g);
         }
-        dense::factor(&mut self.hessian, 6 * self.velocities.len())?;
-        dense::solve(&self.hessian, &mut self.flat);
-        for (d, flat) in self.direction.iter_mut().zip(self.flat.chunks_exact(6)) {
-            d.copy_from_slice(flat);
-        }
+        dense::factor(&mut self.hessian, self.velocities.len())?;
+        dense::solve(&self.hessian, &mut self.direction);
         for contact in contacts.iter_mut() {
             contact.change = contact.relative(&self.direction);
         }
@@ -269,8 +280,9 @@ impl Solver {
     /// How far to go along the direction: all the way if the potential's slope
     /// does not turn against us, else to where it is a tenth of the first.
     fn search(&mut self, contacts: &[Contact]) -> f64 {
-        let dot =
-            |a: &[Vector6], b: &[Vector6]| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>();
+        let dot = |a: &[Six], b: &[Six]| {
+            a.iter().zip(b).map(|(a, b)| Vector6::from(*a).dot(&Vector6::from(*b))).sum::<f64>()
+        };
         let first = dot(&self.gradient, &self.direction);
         // Along the line the quadratic part is linear in the distance.
         dense::multiply(&self.system, &self.direction, &mut self.gradient);
@@ -279,7 +291,7 @@ impl Solver {
             let power = |c: &Contact| c.cone.impulse(&c.pull(along), &c.normal).dot(&c.change);
             contacts.iter().map(power).sum()
         };
-        let start = first + pushed(0.0);
+        let start = first + contacts.iter().map(|c| c.impulse.dot(&c.change)).sum::<f64>();
         let slope = |along: f64| start + along * curvature - pushed(along);
         let mut high = (1.0, slope(1.0));
         if high.1 <= 0.3 * first.abs() {
@@ -305,28 +317,43 @@ impl Solver {
     }
 }
 
-/// Adds `J^T K J` of a contact to the upper half, with `J = [1, lever]` on each
-/// side, up to sign. `K` is symmetric, so `(K lever)^T` is `lever^T K`.
-fn add_stiffness(hessian: &mut [f64], bodies: usize, contact: &Contact, k: &Matrix4<f64>) {
-    let n = 6 * bodies;
+/// Adds `J^T K J` of a contact to the upper half, with `J = [1, lever]` on each side, up to sign.
+/// `K` is symmetric, so `(K lever)^T` is `lever^T K`.
+fn add_stiffness(hessian: &mut [Six], bodies: usize, contact: &Contact, k: &Matrix4<f64>) {
+    let [first, second] = contact.place;
     let across = contact.lever.map(|lever| k * lever);
-    for row in 0..2 {
-        let Some(i) = contact.place[row] else { continue };
-        for column in 0..2 {
-            let Some(j) = contact.place[column].filter(|&j| j >= i) else { continue };
-            let sign = if row == column { 1.0 } else { -1.0 };
-            let both = across[row].tr_mul(&contact.lever[column]) * sign;
-            let (right, down) = (across[column] * sign, across[row] * sign);
-            for r in 0..3 {
-                let at = (6 * i + r) * n + 6 * j;
-                let (upper, lower) = hessian[at..].split_at_mut(3 * n);
-                for c in 0..3 {
-                    upper[c] += sign * k[(r, c)];
-                    upper[3 + c] += right[(r, c)];
-                    lower[c] += down[(c, r)];
-                    lower[3 + c] += both[(r, c)];
-                }
+    let mut add = |sides: [usize; 2], [i, j]: [usize; 2]| {
+        let sign = if i == j { 1.0 } else { -1.0 };
+        let [left, right] = sides.map(|side| &across[side]);
+        let lever = &contact.lever[sides[1]];
+        for r in 0..3 {
+            let row = &mut hessian[(6 * i + r) * bodies + j];
+            for c in 0..3 {
+                row[c] += sign * k[(r, c)];
+                row[3 + c] += sign * right[(r, c)];
+            }
+            let row = &mut hessian[(6 * i + 3 + r) * bodies + j];
+            for c in 0..3 {
+                row[c] += sign * left[(c, r)];
+                row[3 + c] += sign * dot(&left.column(r).into(), &lever.column(c).into());
             }
         }
+    };
+    if let Some(i) = first {
+        add([0, 0], [i, i]);
     }
+    if let Some(j) = second {
+        add([1, 1], [j, j]);
+    }
+    match (first, second) {
+        (Some(i), Some(j)) if i < j => add([0, 1], [i, j]),
+        (Some(i), Some(j)) => add([1, 0], [j, i]),
+        _ => {}
+    }
+}
+
+/// Product of two columns, summed as a product of any length is.
+#[inline(always)]
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    (a[0] * b[0] + a[2] * b[2]) + (a[1] * b[1] + a[3] * b[3])
 }

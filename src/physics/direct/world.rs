@@ -10,7 +10,7 @@ use super::patch::Patch;
 use super::solver::{Contact, Solver, lever, moved_aside, relative};
 use crate::physics::{ContactForce, ContactPoint, Diverged, World};
 use crate::scene::{BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Torsion};
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
 
 /// Tries at finding which servos are at their limits.
 const TRIES: usize = 5;
@@ -98,16 +98,16 @@ impl DirectWorld {
                         .map(|lever| moved_aside(&lever, &aside, &touch.normal))
                 }
             };
-            let mut contact = Contact::new(place, lever, touch.normal, cone);
+            let mut drift = Vector4::zeros();
             for (body, lever, sign) in [(ends[0], &lever[0], -1.0), (ends[1], &lever[1], 1.0)] {
                 if let Kind::Driven(_) = body.kind {
-                    contact.drift += relative(lever, &body.velocity) * sign;
+                    drift += relative(lever, body.velocity.as_ref()) * sign;
                 }
             }
             let closing = touch.gap / step;
             let bias = if touch.gap > 0.0 { closing } else { closing * share };
-            contact.bias = bias.max(-self.settings.push_out);
-            self.contacts.push(contact);
+            let bias = bias.max(-self.settings.push_out);
+            self.contacts.push(Contact::new(place, lever, touch.normal, drift, bias, cone));
         }
     }
 
@@ -155,9 +155,14 @@ impl DirectWorld {
         self.system.eliminate()?;
         self.system.reduce(&mut self.values);
         self.system.remainder(&mut self.solver.system);
-        self.solver.rhs.copy_from_slice(&self.values[self.eliminated..]);
+        let free = &mut self.values[self.eliminated..];
+        for (rhs, value) in self.solver.rhs.iter_mut().zip(&*free) {
+            *rhs = (*value).into();
+        }
         self.solver.solve(&mut self.contacts, step)?;
-        self.values[self.eliminated..].copy_from_slice(&self.solver.velocities);
+        for (value, velocity) in free.iter_mut().zip(&self.solver.velocities) {
+            *value = (*velocity).into();
+        }
         self.system.expand(&mut self.values);
         Some(())
     }
@@ -177,7 +182,7 @@ impl DirectWorld {
         for body in &mut self.bodies {
             body.steer(step);
             if let Some(free) = body.place().and_then(|place| place.checked_sub(self.eliminated)) {
-                self.solver.velocities[free] = body.velocity;
+                self.solver.velocities[free] = body.velocity.into();
             }
         }
         for joint in &mut self.joints {

@@ -75,8 +75,8 @@ fn factored(matrix: &mut [Six], sixes: usize) -> Option<()> {
             return None;
         }
         let scale = 1.0 / pivot.sqrt();
-        for s in first..sixes {
-            row[s] = row[s].map(|value| value * scale);
+        for part in &mut row[first..sixes] {
+            *part = part.map(|value| value * scale);
         }
         row[first][at] = scale;
     }

@@ -1,7 +1,7 @@
 //! The part of the first touch that is the same wherever the socket lies: the way through the air
 //! above it.
 
-use super::{Attempt, Stop};
+use super::Attempt;
 use crate::input::task::{Ending, Stage};
 use crate::scene::BodyId;
 use crate::trial::motion::Move;

@@ -16,6 +16,8 @@ parts="stiffness finger shapes bench check windows validation validation-ur5e tr
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 reference=results/reference
+# The landscapes that optimizers are compared on.
+recorded="usb ket8 ket12 rj45 finger6 codesign6"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -181,7 +183,7 @@ instructions() {
 # Every run behind the tables of results/reference/optimizers.md that are ours.
 optimizers() {
     local folder="$reference/optimizers" landscapes=() task
-    for task in usb ket8 ket12 rj45; do
+    for task in $recorded; do
         landscapes+=(--landscape "$reference/landscapes/$task.csv")
     done
     "$optimize" bench optimizers --functions branin,hartmann6 --optimizers gp \
@@ -201,27 +203,37 @@ columns() {
         { for (i = 1; i <= n; i++) printf "%s%s", $(at[name[i]]), i < n ? "," : "\n" }'
 }
 
-# The coarse ones for the processor time.
+# Every design of its space: those of two numbers, coarse ones for the processor time, and those of
+# six numbers on the few levels of the space files beside the tables.
 landscapes() {
-    local folder="$reference/landscapes" task
+    local folder="$reference/landscapes" name task space study axes header
     sed 's/step = 1.0/step = 2.0/' spaces/infill.toml > "$work/coarse.toml"
-    for task in usb ket8 ket12 rj45; do
-        local space=infill budget=861
-        case $task in ket12 | rj45) space="$work/coarse.toml" budget=231 ;; esac
-        "$optimize" --task "$task" --space "$space" --optimizer grid --budget "$budget" --no-cache \
-            --quiet --out "$work/landscape-$task" > /dev/null
-        local header=infill_density_percent,infill_direction_deg,range_mm,negative_mm,positive_mm
-        header=$header,failure_negative,failure_positive
-        echo "$header" > "$folder/$task.csv"
-        columns "$header" < "$work/landscape-$task/evaluations.csv" | sort -t, -k1,1n -k2,2n \
-            >> "$folder/$task.csv"
-    done
+    while read -r name task space; do
+        study="$work/landscape-$name"
+        "$optimize" --task "$task" --space "$space" --optimizer grid --budget 10000 --no-cache \
+            --no-confirm --quiet --out "$study" > /dev/null
+        axes=$(head -1 "$study/evaluations.csv" | sed 's/^evaluation,//; s/,objective_mm,.*//')
+        header=$axes,range_mm,negative_mm,positive_mm,failure_negative,failure_positive
+        echo "$header" > "$folder/$name.csv"
+        columns "$header" < "$study/evaluations.csv" |
+            LC_ALL=C sort -t, -k1,1n -k2,2n -k3,3g -k4,4g -k5,5g -k6,6g >> "$folder/$name.csv"
+    done << EOF
+usb usb infill
+ket8 ket8 infill
+ket12 ket12 $work/coarse.toml
+rj45 rj45 $work/coarse.toml
+finger6 rj45 $folder/finger6.toml
+codesign6 ket8 $folder/codesign6.toml
+EOF
     record windows "$folder"/*.csv
 }
 
 peers() {
     local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv"
-    local landscapes=("$reference"/landscapes/{usb,ket8,ket12,rj45}.csv)
+    local landscapes=() task
+    for task in $recorded; do
+        landscapes+=("$reference/landscapes/$task.csv")
+    done
     "$python" scripts/peers.py run tpe --csv "$csv" --landscape "${landscapes[@]}"
     "$python" scripts/peers.py run gpsampler botorch --seeds 10 --csv "$csv" \
         --landscape "${landscapes[@]}"

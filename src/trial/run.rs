@@ -320,6 +320,27 @@ mod tests {
     }
 
     #[test]
+    fn starts_that_share_the_way_down_are_the_same_trials() {
+        let slow = "speed_mm_per_s = 20.0";
+        assert!(TASKS[3].text.contains(slow));
+        for speed in [slow, "speed_mm_per_s = 2000.0"] {
+            let text = TASKS[3].text.replace(slow, speed);
+            let task = Task::parse(&text, TASKS[3].file).unwrap();
+            let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+            let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+            let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
+            let engine = Direct::default();
+            let ready = rig.prepare(&engine, &finger, &Conditions::NOMINAL, None, &NEVER);
+            assert!(speed != slow || ready.descended().is_some());
+            // A trial with samples goes all the way by itself.
+            for offset in [-2.5e-3, 0.0, 4e-3] {
+                let trial = ready.run(offset, None).0;
+                assert_eq!(trial, ready.run(offset, Some(1e-3)).0, "{speed} at {offset} m");
+            }
+        }
+    }
+
+    #[test]
     fn a_recorded_trial_is_the_same_trial() {
         let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
         let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();

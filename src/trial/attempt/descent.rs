@@ -7,8 +7,11 @@ use crate::scene::BodyId;
 use crate::trial::motion::Move;
 use crate::units::MM;
 
-/// How far the plug stays above the socket, m: more than any engine foresees a contact.
+/// The way down is shared while the plug is this far above the socket, m.
 const CLEAR: f64 = 0.3 * MM;
+/// ... and was, if it is still this far above at its end: more than a contact is foreseen, m. A fast move may
+/// come nearer within a step.
+const UNTOUCHED: f64 = 0.25 * MM;
 
 /// A phase that has begun.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +25,7 @@ pub(super) struct Begun {
 impl<'a> Attempt<'a> {
     /// A copy, right before the search, that has gone down as far as nothing can touch the socket
     /// however it is shifted or turned about z: from there on every start goes its own way. None if
-    /// the search does not begin with a touch, or fails in the air.
+    /// the search does not begin with a touch, fails in the air or comes down too fast.
     pub fn descended(&self) -> Option<Attempt<'a>> {
         let phase =
             self.task.strategy.phases.iter().find(|phase| phase.stage != Stage::Approach)?;
@@ -39,7 +42,7 @@ impl<'a> Attempt<'a> {
             copy.step().ok()?;
         }
         copy.begun = Some(Begun { motion, steps });
-        Some(copy)
+        (copy.clearance() > UNTOUCHED).then_some(copy)
     }
 
     /// From the top of the socket to the lowest corner of the plug with its latch, along z, m.

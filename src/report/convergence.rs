@@ -2,6 +2,7 @@
 
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet, words};
+use super::drawn::{drawn, turning};
 use super::elements::figure;
 use super::marks::{PointMark, line, points, stairs};
 use super::text::volume_unit;
@@ -80,16 +81,16 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     let at = |r: &Recorded| Some((r.index as f64, r.value()?));
     if objectives.single().is_some() {
         let (inside, outside): (Vec<&Recorded>, Vec<&Recorded>) =
-            record.evaluations.iter().partition(|r| r.feasible().is_some());
+            drawn(record, &record.evaluations).into_iter().partition(|r| r.feasible().is_some());
         let (inside, outside) =
             (inside.into_iter().filter_map(at), outside.into_iter().filter_map(at));
         points(&mut chart, inside, PointMark::dot(BLUE, 3), "each evaluation")?;
         points(&mut chart, outside, PointMark::ring(MUTED, 3, 1), "violates a constraint")?;
     }
-    let lost = record.evaluations.iter().filter(|r| r.score.is_none());
+    let lost = drawn(record, &record.evaluations).into_iter().filter(|r| r.score.is_none());
     let lost = lost.map(|r| (r.index as f64, bottom));
     points(&mut chart, lost, PointMark::cross(RED, 4), "no value")?;
-    line(&mut chart, stairs(best), ORANGE.rgb().stroke_width(3), name)?;
+    line(&mut chart, stairs(turning(best)), ORANGE.rgb().stroke_width(3), name)?;
     let corner = match objectives.single() {
         Some(measure) if measure.sense() < 0.0 => SeriesLabelPosition::UpperRight,
         _ => SeriesLabelPosition::LowerRight,

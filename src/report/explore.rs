@@ -1,6 +1,7 @@
 //! The evaluations to look into: a surface of the model, windows, course, force, all parameters
 //! at once, linked by the evaluation that is chosen. The script is our own, 10 kB.
 
+use super::drawn::drawn;
 use super::surface;
 use super::text::outcome;
 use crate::evaluation::objective::Measure;
@@ -87,7 +88,7 @@ fn to_json(record: &StudyRecord) -> Value {
     json!({
         "parameters": named,
         "measure": {"label": measure.label(), "name": measure.name(), "unit": measure.unit(), "sense": measure.sense()},
-        "evaluations": record.current().iter().map(evaluation).collect::<Vec<_>>(),
+        "evaluations": drawn(record, record.current()).into_iter().map(evaluation).collect::<Vec<_>>(),
         "best": record.recommended().map(|best| best.index),
         "model": surface::to_json(record),
     })

@@ -2,6 +2,7 @@
 
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, sheet};
+use super::drawn::drawn;
 use super::elements::{figure, table};
 use super::marks::{PointMark, line, points};
 use super::text::{design, stiffness, volume_unit};
@@ -44,7 +45,8 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
         Some([x, y, ..]) => Some((*x, *y)),
         _ => None,
     };
-    let all = || record.evaluations.iter().filter_map(|r| Some((r, point(r)?)));
+    let shown = drawn(record, &record.evaluations);
+    let all = || shown.iter().filter_map(|&r| Some((r, point(r)?)));
     let x = AxisOf { label: &first.label(), range: around(all().map(|(_, p)| p.0), 0.08) };
     let y = AxisOf { label: &second.label(), range: around(all().map(|(_, p)| p.1), 0.16) };
     let mut chart = axes(area, "", x, y)?;

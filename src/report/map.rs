@@ -2,6 +2,7 @@
 
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, axes, message, sheet, words};
+use super::drawn::drawn;
 use super::elements::figure;
 use super::marks::{PointMark, points};
 use super::theme::{Colour, INK, LINES, MUTED, ORANGE, RED, SCALE};
@@ -87,7 +88,7 @@ fn draw(
         Rectangle::new([(density - dx, direction - dy), (density + dx, direction + dy)], style)
     };
     // Best last: it stays visible where designs differ in more than the infill.
-    let mut evaluations: Vec<_> = record.evaluations.iter().collect();
+    let mut evaluations = drawn(record, &record.evaluations);
     let sense = scale.measure.sense();
     let merit = |r: &Recorded| r.value().map_or(f64::NEG_INFINITY, |value| sense * value);
     evaluations.sort_by(|a, b| merit(a).total_cmp(&merit(b)));

@@ -10,6 +10,7 @@ mod chart;
 pub mod compare;
 mod compare_plot;
 mod convergence;
+mod drawn;
 mod elements;
 mod explore;
 mod front;

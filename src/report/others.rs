@@ -2,6 +2,7 @@
 
 use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, sheet};
+use super::drawn::drawn;
 use super::elements::figure;
 use super::marks::{PointMark, points};
 use super::text::is_infill;
@@ -34,7 +35,8 @@ pub(super) fn section(record: &StudyRecord, width: u32) -> Result<Option<Markup>
 fn draw(area: &Area<'_>, of: &Parameter, record: &StudyRecord, best: &Recorded) -> Drawn {
     let measure = record.config.objective.first();
     let point = |r: &Recorded| Some((r.design.get(&of.key)?, r.value()?));
-    let all: Vec<(f64, f64)> = record.evaluations.iter().filter_map(point).collect();
+    let all: Vec<(f64, f64)> =
+        drawn(record, &record.evaluations).into_iter().filter_map(point).collect();
     let mut range = around(all.iter().map(|p| p.1).chain([0.0]), 0.1);
     if measure != Measure::RobustRange {
         range.start = 0.0;

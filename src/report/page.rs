@@ -2,7 +2,7 @@
 
 use super::theme::variables;
 use super::{
-    ReportError, bench, best, convergence, explore, front, limits, map, others, printer,
+    ReportError, bench, best, convergence, drawn, explore, front, limits, map, others, printer,
     provenance, published, shape, windows,
 };
 use crate::study::StudyRecord;
@@ -54,6 +54,7 @@ pub fn page(
                             "Robustness of a compliant finger in a connector insertion, by \
                             contact simulation: " (record.evaluations.len()) " of "
                             (config.evaluations()) " evaluations."
+                            @if let Some(note) = drawn::note(record) { " " (note) }
                         }
                     }
                     nav aria-label="contents" {

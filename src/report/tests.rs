@@ -91,6 +91,30 @@ fn recorded(
     Recorded { index, proposal: None, design, score, stiffness, tasks, timing }
 }
 
+#[test]
+fn of_very_many_evaluations_the_best_and_some_are_drawn() {
+    let few = study();
+    let many = (0..20_000u64).map(|index| {
+        let one = &few.evaluations[index as usize % few.evaluations.len()];
+        Recorded { index, ..one.clone() }
+    });
+    let many = record("usb", many.collect());
+    let shown = super::drawn::drawn(&many, &many.evaluations);
+    assert!((4000..5100).contains(&shown.len()), "{}", shown.len());
+    assert!(shown.windows(2).all(|pair| pair[0].index < pair[1].index));
+    let best = many.recommended().unwrap().index;
+    assert!(shown.iter().any(|one| one.index == best));
+    let widest = |all: &[&Recorded]| {
+        let mut values: Vec<f64> = all.iter().filter_map(|one| one.value()).collect();
+        values.sort_by(|a, b| b.total_cmp(a));
+        values[..500].to_vec()
+    };
+    assert_eq!(widest(&shown), widest(&many.evaluations.iter().collect::<Vec<_>>()));
+    let page = super::page(&many, model(), &[]).unwrap();
+    assert!(page.contains("are drawn: the 500 best") && page.len() < 4_000_000, "{}", page.len());
+    assert!(!super::page(&few, model(), &[]).unwrap().contains("are drawn"));
+}
+
 /// An evaluation whose nominal start already ends so.
 fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
     let mut failure_counts = [0; 4];

@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-parts="stiffness finger shapes bench check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
+parts="stiffness finger shapes bench check windows validation validation-ur5e trials studies pictures objectives instructions optimizers scale"
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 reference=results/reference
@@ -194,6 +194,25 @@ optimizers() {
     { cat "$work/functions.csv"; sed 1d "$work/rastrigin.csv"; sed 1d "$work/landscapes.csv"; } \
         > "$folder/ours.csv"
     record optimizers "$folder/ours.csv"
+}
+
+# How busy workers are, by a simulated clock: the time to think is that of this machine.
+scale() {
+    local table="$reference/scale/utilisation.md"
+    mkdir -p "$reference/scale"
+    {
+        cat << 'EOF'
+# How busy workers are
+
+`cargo run --release --example utilisation -- 4 64 1000 sobol 1000`, on a machine of 2 cores; "thinking" is the
+processor time of a tell with an ask. Measurements take log-uniform times over a factor of ten. Means over
+seeds, medians of regret; "at equal time" is when the quicker of both had measured everything. What ends
+after the last proposal of `--async` is not counted as idle.
+
+EOF
+        cargo run --release --quiet --example utilisation -- 4 64 1000 sobol 1000
+    } > "$table"
+    record optimizers "$table"
 }
 
 # The named columns of a table without commas in its cells, without the header.

@@ -89,6 +89,7 @@ windows() {
 
 validation() {
     "$optimize" validate --out "$reference/validation" > /dev/null
+    cut -d, -f1-4,10,16 "$reference/validation/validation.csv" > data/simulated_ranges.csv
     record windows "$reference"/validation/*.{csv,svg} "$reference/validation/accuracy.md"
 }
 

@@ -6,7 +6,7 @@ use super::setup::{Setup, SetupArguments};
 use super::specimen::FingerArguments;
 use crate::evaluation::tolerance::offset;
 use crate::input::shipped::Source;
-use crate::trial::{Driven, State};
+use crate::trial::{Driven, NEVER, State};
 use crate::units::MM;
 use clap::Args;
 use nalgebra::Vector3;
@@ -38,8 +38,8 @@ impl Insertion {
         arguments.setup.given = tasks.to_vec();
         let setup = Setup::from_arguments(&arguments.setup)?;
         let specimen = arguments.finger.choose(&setup)?.specimen;
-        let taught = setup.evaluator.taught(&specimen).map_err(Failure::input)?;
-        let rig = setup.evaluator.rig_from(&specimen, None, 1.0).map_err(Failure::input)?;
+        let taught = setup.evaluator.taught(&specimen, &NEVER).map_err(Failure::input)?;
+        let rig = setup.evaluator.rig(&specimen, None, 1.0).map_err(Failure::input)?;
         let driven = rig.driven(&specimen.finger).ok_or_else(|| {
             Failure::usage(
                 "this engine simulates nothing that could be driven; use --engine direct",

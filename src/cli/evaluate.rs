@@ -79,7 +79,7 @@ pub fn find(arguments: &Arguments, stop: &AtomicBool) -> Result<Found, Failure> 
         return Err(Failure::running("interrupted"));
     }
     let wall_s = clock.elapsed().as_secs_f64();
-    let bands = arguments.repeat.bands(&setup, &chosen, &evaluation.window)?;
+    let bands = arguments.repeat.bands(&setup, &chosen, &evaluation)?;
     Ok(Found { setup, chosen, evaluation, bands, wall_s })
 }
 

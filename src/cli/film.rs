@@ -5,7 +5,7 @@ use super::Failure;
 use super::setup::Setup;
 use crate::evaluation::evaluator::Specimen;
 use crate::evaluation::tolerance::offset;
-use crate::evaluation::{OffsetStep, Window, grid_mm};
+use crate::evaluation::{Evaluation, OffsetStep, grid_mm};
 use crate::outcome::Outcome;
 use crate::report::replay::{self, Film, PairEnd};
 use crate::study::{StudyRecord, write_file, write_own_file};
@@ -118,7 +118,7 @@ pub fn boundary(
                         .evaluator
                         .specimen(template, &best.design, best.stiffness)
                         .map_err(Failure::input)?;
-                    pair(setup, &specimen, &task.window, end, pool)?
+                    pair(setup, &specimen, task, end, pool)?
                 }
             };
             match pair {
@@ -141,10 +141,11 @@ pub fn boundary(
 fn pair(
     setup: &Setup,
     specimen: &Specimen,
-    window: &Window,
+    measured: &Evaluation,
     end: PairEnd,
     pool: &ThreadPool,
 ) -> Result<Option<String>, Failure> {
+    let window = &measured.window;
     let (last, outward): (OffsetStep, OffsetStep) = match end {
         PairEnd::Negative => (window.negative_steps, -1),
         PairEnd::Positive => (window.positive_steps, 1),
@@ -156,7 +157,7 @@ fn pair(
     if window.nominal != Outcome::Inserted || failed.is_none() {
         return Ok(None);
     }
-    let rig = setup.evaluator.rig(specimen, 1.0).map_err(Failure::input)?;
+    let rig = setup.evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
     let film = |step| rig.record(&specimen.finger, offset(step));
     let (inside, outside) = pool.install(|| rayon::join(|| film(last), || film(last + outward)));
     let Some((inside, outside)) = inside.zip(outside) else { return Ok(None) };

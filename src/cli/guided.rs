@@ -16,6 +16,7 @@ use crate::study::{
     WorkError, now,
 };
 use serde_json::{Value, json};
+use crate::trial::NEVER;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -34,9 +35,6 @@ pub struct Guided {
     measuring: BTreeMap<u64, Work>,
     progress: Progress,
 }
-
-/// Looking into the cache is not stopped.
-static NEVER: AtomicBool = AtomicBool::new(false);
 
 /// What is to be done next.
 pub enum Order {

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::setup::Setup;
 use super::specimen::Chosen;
-use crate::evaluation::Window;
+use crate::evaluation::{Evaluation, OffsetStep};
 use crate::evaluation::robustness::repeat::{Band, Bands, Repeats};
 use crate::outcome::Outcome;
 use clap::Args;
@@ -27,7 +27,7 @@ impl RepeatArguments {
         &self,
         setup: &Setup,
         chosen: &Chosen,
-        offset: f64,
+        (taught, offset): (Option<OffsetStep>, f64),
     ) -> Result<Option<BTreeMap<String, usize>>, Failure> {
         let count = |outcomes: Vec<Outcome>| {
             let mut counts = BTreeMap::new();
@@ -36,7 +36,7 @@ impl RepeatArguments {
             }
             counts
         };
-        self.with(setup, chosen, |repeats| count(repeats.outcomes(offset)))
+        self.with(setup, chosen, taught, |repeats| count(repeats.outcomes(offset)))
     }
 
     /// The bands at the ends of a window; `None` if none is asked for.
@@ -44,23 +44,24 @@ impl RepeatArguments {
         &self,
         setup: &Setup,
         chosen: &Chosen,
-        window: &Window,
+        measured: &Evaluation,
     ) -> Result<Option<Bands>, Failure> {
-        if window.nominal != Outcome::Inserted {
+        if measured.window.nominal != Outcome::Inserted {
             return Ok(None);
         }
-        self.with(setup, chosen, |repeats| repeats.bands(window))
+        self.with(setup, chosen, measured.taught, |repeats| repeats.bands(&measured.window))
     }
 
     fn with<T>(
         &self,
         setup: &Setup,
         chosen: &Chosen,
+        taught: Option<OffsetStep>,
         measure: impl Fn(&Repeats) -> T,
     ) -> Result<Option<T>, Failure> {
         let Some(count) = self.repeat else { return Ok(None) };
         let specimen = &chosen.specimen;
-        let rig = |factor| setup.evaluator.rig(specimen, factor).map_err(Failure::input);
+        let rig = |factor| setup.evaluator.rig(specimen, taught, factor).map_err(Failure::input);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);
         let repeats = Repeats::new([&*whole, &*half], &specimen.finger, self.repeat_seed, count);
         Ok(Some(measure(&repeats)))

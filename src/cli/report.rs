@@ -4,7 +4,7 @@ use super::setup::{self, STIFFNESS_DATA};
 use super::{Failure, print};
 use crate::files::{self, LARGEST_OWN};
 use crate::report::replay::PairEnd;
-use crate::report::{self, Replay};
+use crate::report::{self, Beside, Replay, printer};
 use crate::study::{StudyRecord, write_evaluations_csv, write_own_file};
 use crate::surrogate::Model;
 use clap::Args;
@@ -43,18 +43,15 @@ pub fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(), Fail
     if let Some(front) = report::front_svg(record).map_err(drawn)? {
         write_own_file(&dir.join("front.svg"), &front)?;
     }
-    for (name, content) in report::printer::files(record) {
-        write_own_file(&dir.join(name), &content)?;
-    }
     write_own_file(
         &dir.join(PAGE),
-        &report::page(record, model, &replays(dir, record)).map_err(drawn)?,
+        &report::page(record, model, &beside(dir, record)).map_err(drawn)?,
     )?;
     Ok(())
 }
 
-/// The films that the study kept; none of those that are missing.
-fn replays(dir: &Path, record: &StudyRecord) -> Vec<Replay> {
+/// The films and the files for the printer that the study kept.
+fn beside(dir: &Path, record: &StudyRecord) -> Beside {
     let several = record.config.several_tasks();
     let of = |(at, task): (usize, &str)| {
         let on = if several { format!(" on {task}") } else { String::new() };
@@ -63,5 +60,7 @@ fn replays(dir: &Path, record: &StudyRecord) -> Vec<Replay> {
             Some(Replay { label: format!("Play the {} end{on}", end.word()), page })
         })
     };
-    record.config.tasks().enumerate().flat_map(of).flatten().collect()
+    let replays = record.config.tasks().enumerate().flat_map(of).flatten().collect();
+    let printable = [printer::SURFACE, printer::SHEET].iter().all(|name| dir.join(name).exists());
+    Beside { replays, printable }
 }

@@ -3,7 +3,7 @@
 use super::calibrated::EffortArguments;
 use super::progress::Progress;
 use super::setup::Setup;
-use super::{Failure, film, on_bench, report, say, summary, unusable};
+use super::{Failure, export, film, on_bench, report, say, summary, unusable};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::robustness::Plan;
 use crate::evaluation::tolerance::Search;
@@ -118,6 +118,7 @@ pub fn conclude(
     if ending != Ending::Interrupted && !stop.load(Ordering::SeqCst) {
         film::boundary(study.dir(), &record, setup, pool)?;
     }
+    export::study::write(study.dir(), &record)?;
     report::write(study.dir(), &record, &setup.evaluator.surrogate)?;
     if ending == Ending::Interrupted || stop.load(Ordering::SeqCst) {
         return Err(Failure::running(format!("interrupted; {}", resume_hint(study))));

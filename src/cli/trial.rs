@@ -9,7 +9,7 @@ use super::{Failure, print, print_json};
 use crate::evaluation::{OffsetStep, grid_mm};
 use crate::outcome::Outcome;
 use crate::study::write_file;
-use crate::trial::{Sample, Trial, picture};
+use crate::trial::{NEVER, Sample, Trial, picture};
 use crate::units::MM;
 use clap::Args;
 use serde_json::{Value, json};
@@ -72,8 +72,8 @@ pub fn find(arguments: &Arguments, every_s: Option<f64>) -> Result<Found, Failur
     let chosen = arguments.finger.choose(&setup)?;
     let specimen = &chosen.specimen;
     let offset = arguments.offset_mm * MM;
-    let taught = setup.evaluator.taught(specimen).map_err(Failure::input)?;
-    let rig = setup.evaluator.rig_from(specimen, taught, 1.0).map_err(Failure::input)?;
+    let taught = setup.evaluator.taught(specimen, &NEVER).map_err(Failure::input)?;
+    let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
     let filmed = arguments.film.record(&*rig, specimen, arguments.offset_mm)?;
     let (trial, samples) = match (every_s, filmed) {
         (Some(every_s), _) => rig.grasp(&specimen.finger).traced(offset, every_s),
@@ -86,7 +86,7 @@ pub fn find(arguments: &Arguments, every_s: Option<f64>) -> Result<Found, Failur
             format!("{}, start shifted by {:+.1} mm", specimen.task.name, arguments.offset_mm);
         write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
     }
-    let repeats = arguments.repeat.outcomes(&setup, &chosen, offset)?;
+    let repeats = arguments.repeat.outcomes(&setup, &chosen, (taught, offset))?;
     Ok(Found { setup, chosen, taught, trial, samples, repeats })
 }
 

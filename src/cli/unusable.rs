@@ -17,7 +17,8 @@ pub fn check(dir: &Path, record: &StudyRecord, setup: &Setup) -> Result<(), Fail
     let evaluator = &setup.evaluator;
     let specimen =
         evaluator.specimen(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
-    let rig = evaluator.rig(&specimen, 1.0).map_err(Failure::input)?;
+    let taught = nearest.on(task).and_then(|found| found.taught);
+    let rig = evaluator.rig(&specimen, taught, 1.0).map_err(Failure::input)?;
     let trial = rig.grasp(&specimen.finger).trial(0.0);
     let label = format!("{}, nominal start, evaluation {}", specimen.task.name, nearest.index);
     let file = dir.join(PICTURE);

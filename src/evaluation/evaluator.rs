@@ -8,7 +8,7 @@ use super::stoppable::Stoppable;
 use super::taught::{Moved, teach};
 use super::template::{Impossible, Template};
 use super::tolerance::Search;
-use super::{Evaluation, OffsetStep, Window};
+use super::{Evaluation, OffsetStep};
 use crate::finger::Finger;
 use crate::finger::computed::AtPad;
 use crate::finger::model::{CentreFrom, FingerSource, Made};
@@ -131,34 +131,29 @@ impl Evaluator {
         Ok(Specimen { task, finger, centre, stiffness })
     }
 
-    /// Where trials of a specimen are run, with the engine's step times `step_factor`; from
-    /// the taught start, if the task has such.
-    ///
-    /// # Errors
-    /// If robot or engine cannot do the task.
-    pub fn rig(&self, specimen: &Specimen, step_factor: f64) -> Result<Box<dyn Rig>, RigError> {
-        let taught = self.taught(specimen)?;
-        self.rig_from(specimen, taught, step_factor)
-    }
-
     /// By how much the start of a specimen is moved, in grid steps; `None` if its task has no
-    /// taught start, 0 if no start inserts.
+    /// taught start, 0 if no start inserts. Ends early, with a worthless result, once `stop` is set.
     ///
     /// # Errors
     /// If robot or engine cannot do the task.
-    pub fn taught(&self, specimen: &Specimen) -> Result<Option<OffsetStep>, RigError> {
+    pub fn taught(
+        &self,
+        specimen: &Specimen,
+        stop: &AtomicBool,
+    ) -> Result<Option<OffsetStep>, RigError> {
         if specimen.task.strategy.rule == StartRule::Given {
             return Ok(None);
         }
-        let rig = self.rig_from(specimen, None, 1.0)?;
-        Ok(Some(teach(&*rig, &specimen.finger).unwrap_or(0)))
+        let rig = self.rig(specimen, None, 1.0)?;
+        Ok(Some(teach(&*rig, &specimen.finger, stop).unwrap_or(0)))
     }
 
-    /// The same as [`rig`](Self::rig) from a start that was taught before, if it was.
+    /// Where trials of a specimen are run, with the engine's step times `step_factor`; from
+    /// the start that was [`taught`](Self::taught), if it was.
     ///
     /// # Errors
     /// If robot or engine cannot do the task.
-    pub fn rig_from(
+    pub fn rig(
         &self,
         specimen: &Specimen,
         taught: Option<OffsetStep>,
@@ -184,8 +179,8 @@ impl Evaluator {
         plan: &Plan,
         stop: &AtomicBool,
     ) -> Result<Evaluation, RigError> {
-        let taught = self.taught(specimen)?;
-        let rig = self.rig_from(specimen, taught, 1.0)?;
+        let taught = self.taught(specimen, stop)?;
+        let rig = self.rig(specimen, taught, 1.0)?;
         let rig = Stoppable { rig: &*rig, stop };
         let Specimen { finger, stiffness, .. } = specimen;
         let evaluation = robustness::evaluate(&rig, finger, stiffness, search, plan);
@@ -212,7 +207,7 @@ impl Evaluator {
         self.measure(&taught, search, plan, stop)
     }
 
-    /// The firm part of a specimen's window, by [`firm::REPEATS`] repeats that this seed names;
+    /// The firm part of the window that was measured of a specimen, from the start that was taught then, by [`firm::REPEATS`] repeats that this seed names;
     /// ends early, with a worthless result, once `stop` is set.
     ///
     /// # Errors
@@ -220,19 +215,18 @@ impl Evaluator {
     pub fn firm(
         &self,
         specimen: &Specimen,
-        window: &Window,
+        measured: &Evaluation,
         seed: u64,
         stop: &AtomicBool,
     ) -> Result<Firm, RigError> {
-        if window.nominal != Outcome::Inserted {
+        if measured.window.nominal != Outcome::Inserted {
             return Ok(Firm::NONE);
         }
-        let taught = self.taught(specimen)?;
-        let rig = |factor| self.rig_from(specimen, taught, factor);
+        let rig = |factor| self.rig(specimen, measured.taught, factor);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);
         let [whole, half] = [&whole, &half].map(|rig| Stoppable { rig: &**rig, stop });
         let repeats = Repeats::new([&whole, &half], &specimen.finger, seed, firm::REPEATS);
-        Ok(firm::measure(&repeats, window))
+        Ok(firm::measure(&repeats, &measured.window))
     }
 
     /// Measures a design on every task by `measure`, which may know the answer already.

@@ -15,7 +15,13 @@ pub struct Stoppable<'a> {
 }
 
 impl Rig for Stoppable<'_> {
-    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+    /// By its own flag; that of the call is for rigs that have none.
+    fn grasp_until<'a>(
+        &'a self,
+        finger: &Finger,
+        conditions: &Conditions,
+        _stop: &'a AtomicBool,
+    ) -> Box<dyn Grasped + 'a> {
         if self.stop.load(Ordering::SeqCst) {
             return Box::new(Stopped);
         }

@@ -188,6 +188,7 @@ impl Log {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicBool;
     use super::*;
     use crate::outcome::FailureClass;
     use crate::trial::fake::FakeRig;
@@ -223,7 +224,12 @@ mod tests {
     struct Gap(std::ops::Range<OffsetStep>);
 
     impl Rig for Gap {
-        fn grasp_in(&self, _: &Finger, _: &Conditions) -> Box<dyn Grasped + '_> {
+        fn grasp_until<'a>(
+            &'a self,
+            _: &Finger,
+            _: &Conditions,
+            _: &'a AtomicBool,
+        ) -> Box<dyn Grasped + 'a> {
             Box::new(Gap(self.0.clone()))
         }
     }

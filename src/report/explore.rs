@@ -17,7 +17,9 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let view = |id: &str, label: &str, caption: &str| {
         html! { figure { svg id=(id) role="img" aria-label=(label) {} figcaption { (caption) } } }
     };
-    let importance = surface::importance(record);
+    let model = surface::Model::of(record);
+    let importance =
+        model.as_ref().map_or(Vec::new(), |model| surface::importance(record, model));
     Some(html! {
         p.muted {
             "Click a mark to choose an evaluation in all views; it turns red. The arrow keys go to the \
@@ -50,7 +52,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
             }
         }
         div #tip hidden role="status" {}
-        script type="application/json" id="study" { (PreEscaped(embedded(&to_json(record)))) }
+        script type="application/json" id="study" { (PreEscaped(embedded(&to_json(record, model.as_ref())))) }
         script { (PreEscaped(include_str!("explore.js"))) }
     })
 }
@@ -60,7 +62,7 @@ pub(super) fn embedded(value: &Value) -> String {
     value.to_string().replace('<', "\\u003c")
 }
 
-fn to_json(record: &StudyRecord) -> Value {
+fn to_json(record: &StudyRecord, model: Option<&surface::Model>) -> Value {
     let parameters = record.config.space.parameters();
     let measure = record.config.objective.first();
     let named: Vec<Value> = parameters
@@ -90,6 +92,6 @@ fn to_json(record: &StudyRecord) -> Value {
         "measure": {"label": measure.label(), "name": measure.name(), "unit": measure.unit(), "sense": measure.sense()},
         "evaluations": drawn(record, record.current()).into_iter().map(evaluation).collect::<Vec<_>>(),
         "best": record.recommended().map(|best| best.index),
-        "model": surface::to_json(record),
+        "model": model.and_then(|model| surface::to_json(record, model)),
     })
 }

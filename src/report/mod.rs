@@ -41,7 +41,7 @@ use crate::study::StudyRecord;
 
 pub use answer::beyond_chance;
 pub use compare_plot::svg as compare_svg;
-pub use page::{Replay, card, page};
+pub use page::{Beside, Replay, card, page};
 pub use text::volume_unit;
 
 /// Why a plot could not be made.

@@ -13,6 +13,15 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 /// a phone shrinks it to fit.
 const PLOT: (u32, u32) = (560, 400);
 
+/// What lies beside the page in the folder of a study.
+#[derive(Debug, Clone, Default)]
+pub struct Beside {
+    /// Its films.
+    pub replays: Vec<Replay>,
+    /// Whether the recommended finger's files for the printer are there.
+    pub printable: bool,
+}
+
 /// A film that the study kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
@@ -30,11 +39,11 @@ pub struct Replay {
 pub fn page(
     record: &StudyRecord,
     model: &Model,
-    replays: &[Replay],
+    beside: &Beside,
 ) -> Result<String, ReportError> {
     let config = &record.config;
     let title = format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed);
-    let sections = sections(record, model, replays)?;
+    let sections = sections(record, model, beside)?;
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -94,7 +103,7 @@ type Section = (&'static str, String, Markup);
 fn sections(
     record: &StudyRecord,
     model: &Model,
-    replays: &[Replay],
+    beside: &Beside,
 ) -> Result<Vec<Section>, ReportError> {
     let first = record.config.objective.first().name();
     let first = first[..1].to_uppercase() + &first[1..];
@@ -109,9 +118,9 @@ fn sections(
     let sections = [
         bench::section(record).and_then(|bench| section("bench", "Best on the bench", bench)),
         section("best", best, best::section(record)),
-        films(replays).and_then(|films| section("replay", played, films)),
+        films(&beside.replays).and_then(|films| section("replay", played, films)),
         explore::section(record).and_then(|views| section("explore-views", "All designs", views)),
-        printer::section(record).and_then(|printer| section("printer", "To the printer", printer)),
+        printer::section(record).filter(|_| beside.printable).and_then(|printer| section("printer", "To the printer", printer)),
         section("windows", "Tolerance windows of the best designs", windows),
         shape::section(record).and_then(|shape| section("shape", "Beyond the infill alone", shape)),
         front::section(record, PLOT)?

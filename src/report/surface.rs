@@ -17,14 +17,16 @@ const SAMPLES: u32 = 48;
 /// Values of one parameter for its share.
 const LEVELS: u32 = 9;
 
-struct Model {
+/// The process of a study, fitted once a page.
+pub(super) struct Model {
     gp: Gp,
     mean: f64,
     sd: f64,
 }
 
 impl Model {
-    fn of(record: &StudyRecord) -> Option<Self> {
+    /// `None` with too few evaluations, or if their values are all alike.
+    pub(super) fn of(record: &StudyRecord) -> Option<Self> {
         let parameters = record.config.space.parameters();
         let known: Vec<(Vec<f64>, f64)> = record
             .current()
@@ -62,16 +64,15 @@ fn unit(parameter: &Parameter, value: f64) -> f64 {
 
 /// The surface over the two parameters that matter most, the others as recommended; nothing for
 /// one parameter or too few evaluations.
-pub(super) fn to_json(record: &StudyRecord) -> Option<Value> {
+pub(super) fn to_json(record: &StudyRecord, model: &Model) -> Option<Value> {
     let parameters = record.config.space.parameters();
     if parameters.len() < 2 {
         return None;
     }
-    let model = Model::of(record)?;
     let best = record.recommended()?;
     let base: Vec<f64> =
         parameters.iter().map(|p| unit(p, best.design.get(&p.key).unwrap_or(p.low))).collect();
-    let shares = shares(&model, parameters.len());
+    let shares = shares(model, parameters.len());
     let mut axes: Vec<usize> = (0..parameters.len()).collect();
     axes.sort_by(|&a, &b| shares[b].total_cmp(&shares[a]).then(a.cmp(&b)));
     axes.truncate(2);
@@ -98,11 +99,13 @@ pub(super) fn to_json(record: &StudyRecord) -> Option<Value> {
 
 /// The share of the variance over the space that each parameter makes by itself (Sobol's first
 /// order index, I. M. Sobol 2001, Math. Comput. Simul. 55:271) by the model's mean; by name.
-pub(super) fn importance(record: &StudyRecord) -> Vec<(String, f64)> {
+pub(super) fn importance(record: &StudyRecord, model: &Model) -> Vec<(String, f64)> {
     let parameters = record.config.space.parameters();
-    let Some(model) = Model::of(record).filter(|_| parameters.len() > 1) else { return Vec::new() };
+    if parameters.len() < 2 {
+        return Vec::new();
+    }
     let names = parameters.iter().map(|parameter| label(&parameter.key).0);
-    let mut named: Vec<(String, f64)> = names.zip(shares(&model, parameters.len())).collect();
+    let mut named: Vec<(String, f64)> = names.zip(shares(model, parameters.len())).collect();
     named.sort_by(|a, b| b.1.total_cmp(&a.1));
     named
 }

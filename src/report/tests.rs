@@ -1,3 +1,4 @@
+use std::sync::atomic::AtomicBool;
 use super::*;
 use crate::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
 use crate::evaluation::tolerance::{Search, evaluate};
@@ -110,9 +111,9 @@ fn of_very_many_evaluations_the_best_and_some_are_drawn() {
         values[..500].to_vec()
     };
     assert_eq!(widest(&shown), widest(&many.evaluations.iter().collect::<Vec<_>>()));
-    let page = super::page(&many, model(), &[]).unwrap();
+    let page = super::page(&many, model(), &Beside::default()).unwrap();
     assert!(page.contains("are drawn: the 500 best") && page.len() < 4_000_000, "{}", page.len());
-    assert!(!super::page(&few, model(), &[]).unwrap().contains("are drawn"));
+    assert!(!super::page(&few, model(), &Beside::default()).unwrap().contains("are drawn"));
 }
 
 /// An evaluation whose nominal start already ends so.
@@ -166,7 +167,7 @@ fn check_page(page: &str) {
 #[test]
 fn the_page_is_whole_and_its_numbers_are_the_records() {
     let study = study();
-    let html = page(&study, model(), &[]).unwrap();
+    let html = page(&study, model(), &Beside::default()).unwrap();
     check_page(&html);
     let best = study.best().unwrap();
     let window = &best.tasks[0].window;
@@ -198,7 +199,7 @@ fn a_measured_design_shows_our_value_beside_the_published_ones() {
     let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
     let ours = format!("<td>{:.1} mm (3 | 2)</td>", evaluation.window.range_mm());
     let one = record("usb", vec![recorded(0, [20.0, 20.0], stiffness, evaluation)]);
-    let html = page(&one, model, &[]).unwrap();
+    let html = page(&one, model, &Beside::default()).unwrap();
     check_page(&html);
     assert!(html.contains(&format!("<td>5</td><td>20 %, 20°</td>{ours}")), "{ours}");
     assert!(html.contains("<td>6</td><td>20 %, 40°</td><td></td>"));
@@ -212,7 +213,7 @@ fn a_best_design_outside_the_hull_is_warned_of() {
     let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
     let one = record("usb", vec![recorded(0, [10.0, 40.0], stiffness, evaluation)]);
     let distance = format!("by {:.2} of the measured span", stiffness.hull_distance);
-    assert!(page(&one, model, &[]).unwrap().contains(&distance), "{distance}");
+    assert!(page(&one, model, &Beside::default()).unwrap().contains(&distance), "{distance}");
 }
 
 #[test]
@@ -228,7 +229,7 @@ fn empty_failed_and_diverged_studies_still_have_a_page() {
         ),
     ] {
         let study = record("usb", evaluations);
-        let html = page(&study, model(), &[]).unwrap();
+        let html = page(&study, model(), &Beside::default()).unwrap();
         check_page(&html);
         assert!(html.contains(words), "{words}");
         assert!(convergence_svg(&study).unwrap().contains("evaluation"));
@@ -242,7 +243,7 @@ fn what_comes_from_files_is_escaped_and_unknown_tasks_are_told() {
     study.config.uncertainty = Some("<b>errors".to_owned());
     study.evaluations[0].design.0.insert("<i>key".to_owned(), 1.0);
     study.segments[0].provenance.input_sha256.insert("<u>".to_owned(), "<s>".to_owned());
-    let html = page(&study, model(), &[]).unwrap();
+    let html = page(&study, model(), &Beside::default()).unwrap();
     check_page(&html);
     for raw in ["<img", "<b>errors", "<i>", "<u>", "<s>"] {
         assert!(!html.contains(raw), "{raw}");
@@ -263,7 +264,7 @@ fn fronts_constraints_and_tasks_have_their_places_on_the_page() {
         recorded.tasks.push(recorded.tasks[0].clone());
         recorded.score = goals.score(&recorded.tasks());
     }
-    let html = page(&study, model(), &[]).unwrap();
+    let html = page(&study, model(), &Beside::default()).unwrap();
     check_page(&html);
     assert!(html.contains("<h3>&lt;s&gt;other</h3>") && !html.contains("<s>other"));
     assert!(html.contains("keeps range&lt;=6") && html.contains("violates a constraint"));
@@ -277,7 +278,7 @@ fn fronts_constraints_and_tasks_have_their_places_on_the_page() {
     for recorded in &mut study.evaluations {
         recorded.score.as_mut().unwrap().violations = vec![1.0 + recorded.index as f64];
     }
-    let html = page(&study, model(), &[]).unwrap();
+    let html = page(&study, model(), &Beside::default()).unwrap();
     assert!(html.contains("No design keeps all constraints, so none is recommended"));
     assert!(html.contains("evaluation 0 ("), "the one that violates least");
     assert!(study.best().is_none() && study.front().is_empty());
@@ -324,7 +325,7 @@ fn other_spaces_have_no_map_but_a_page() {
             (DIRECTION_KEY.to_owned(), direction),
         ]));
     }
-    let html = page(&study, model(), &[]).unwrap();
+    let html = page(&study, model(), &Beside::default()).unwrap();
     check_page(&html);
     assert!(html.contains("has no infill density and direction"));
 }
@@ -335,9 +336,14 @@ struct GapRig;
 struct GapGrasp<'a>(Box<dyn Grasped + 'a>);
 
 impl Rig for GapRig {
-    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+    fn grasp_until<'a>(
+        &'a self,
+        finger: &Finger,
+        conditions: &Conditions,
+        stop: &'a AtomicBool,
+    ) -> Box<dyn Grasped + 'a> {
         static RIG: FakeRig = FakeRig { delay: std::time::Duration::ZERO };
-        Box::new(GapGrasp(RIG.grasp_in(finger, conditions)))
+        Box::new(GapGrasp(RIG.grasp_until(finger, conditions, stop)))
     }
 }
 
@@ -358,7 +364,7 @@ fn the_limits_are_those_of_what_was_done() {
     let finger = Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM);
     let range = |search| evaluate(&GapRig, &finger, search).window.range_mm();
     assert_eq!((range(Search::Strides), range(Search::Walk)), (5.8, 4.1));
-    let html = page(&study(), model(), &[]).unwrap();
+    let html = page(&study(), model(), &Beside::default()).unwrap();
     for statement in [
         "the range is up to 0.2 mm wider",
         "it can step over a gap",
@@ -381,7 +387,7 @@ fn the_limits_are_those_of_what_was_done() {
     let text = include_str!("../../spaces/codesign.toml");
     codesign.config.space = Space::parse(text, "codesign.toml").unwrap();
     codesign.config.objective = Objectives::of(Measure::RobustRange);
-    let html = page(&codesign, model(), &[]).unwrap();
+    let html = page(&codesign, model(), &Beside::default()).unwrap();
     for statement in ["remote centre is a number of the design", "alone carries its error"] {
         assert!(html.contains(statement), "{statement}");
     }
@@ -395,7 +401,7 @@ fn evaluations_are_counted_from_0() {
     assert_eq!((steps[0].0, steps[steps.len() - 1].0), (0.0, 59.0));
     let best = study.best().unwrap().index;
     let fact = format!("<dt>evaluation</dt><dd>{best} (the 60 are counted from 0)</dd>");
-    assert!(page(&study, model(), &[]).unwrap().contains(&fact), "{fact}");
+    assert!(page(&study, model(), &Beside::default()).unwrap().contains(&fact), "{fact}");
 }
 
 /// Every page and plot can be drawn; they are written to `$FINGER_OPT_LOOK`, if
@@ -411,8 +417,8 @@ fn everything_can_be_drawn() {
     };
     let jammed = Outcome::Failed(FailureClass::Jammed);
     let failed = record("usb", vec![at_nominal(0, [10.0, 0.0], jammed)]);
-    write("report.html", page(&study(), model(), &[]).unwrap());
-    write("failed.html", page(&failed, model(), &[]).unwrap());
+    write("report.html", page(&study(), model(), &Beside::default()).unwrap());
+    write("failed.html", page(&failed, model(), &Beside::default()).unwrap());
     write("convergence.svg", convergence_svg(&study()).unwrap());
     write("stiffness.svg", stiffness::svg(model()).unwrap());
     write("stiffness.txt", stiffness::table(model()));

@@ -6,7 +6,7 @@ use crate::evaluation::template::{Impossible, Template};
 use crate::evaluation::tolerance::{self, Search};
 use crate::evaluation::uncertainty::{Draw, Errors};
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use crate::trial::Conditions;
+use crate::trial::{Conditions, NEVER};
 use crate::units::{DEG, MM};
 
 /// Half the width over which a normal error is varied, in standard deviations: 95 % of it.
@@ -88,7 +88,7 @@ impl Factors {
         }
         let predicted = evaluator.predict(&design)?;
         let specimen = evaluator.specimen(template, &design, predicted)?;
-        let rig = evaluator.rig(&specimen, 1.0)?;
+        let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, &NEVER)?, 1.0)?;
         let finger = Draw::under(conditions, stiffness).finger(&specimen.finger, &predicted);
         Ok(tolerance::evaluate_in(&*rig, &finger, &conditions, Search::Strides))
     }

@@ -118,7 +118,7 @@ impl Confirmer<'_> {
             }
             let specimen =
                 self.evaluator.specimen(template, &recorded.design, recorded.stiffness)?;
-            Ok(self.evaluator.firm(&specimen, &task.window, seed, self.stop)?)
+            Ok(self.evaluator.firm(&specimen, task, seed, self.stop)?)
         };
         let tasks = self.evaluator.templates.iter().zip(&recorded.tasks).enumerate();
         let firm: Result<Vec<Firm>, Impossible> = tasks.map(measure).collect();

@@ -10,6 +10,7 @@ use super::{Conditions, Grasped, Rig, Trial};
 use crate::finger::Finger;
 use crate::outcome::{FailureClass, Outcome};
 use crate::units::{DEG, MM, N_PER_MM};
+use std::sync::atomic::AtomicBool;
 
 /// The rig with the closed-form window.
 #[derive(Debug, Clone, Copy, Default)]
@@ -30,7 +31,12 @@ impl FakeRig {
 }
 
 impl Rig for FakeRig {
-    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+    fn grasp_until<'a>(
+        &'a self,
+        finger: &Finger,
+        conditions: &Conditions,
+        _stop: &'a AtomicBool,
+    ) -> Box<dyn Grasped + 'a> {
         let (low, high) = window_in_mm(finger, conditions);
         Box::new(FakeGrasp { low, high, delay: self.delay })
     }

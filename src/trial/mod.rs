@@ -85,21 +85,25 @@ pub struct Trial {
     pub retried: bool,
 }
 
+/// The flag of trials that nobody stops.
+pub static NEVER: AtomicBool = AtomicBool::new(false);
+
 /// A place where trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
     /// Grasps the part with a pair of such fingers under these conditions; what
     /// follows does not depend on the offset until the approach, so it is done once.
-    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_>;
-
-    /// The same, where grasp and trials end at once, with a worthless result, when `stop` is
-    /// set; rigs whose trials take no time need not ask.
+    /// Grasp and trials end at once, with a worthless result, when `stop` is set; rigs whose
+    /// trials take no time need not ask.
     fn grasp_until<'a>(
         &'a self,
         finger: &Finger,
         conditions: &Conditions,
-        _stop: &'a AtomicBool,
-    ) -> Box<dyn Grasped + 'a> {
-        self.grasp_in(finger, conditions)
+        stop: &'a AtomicBool,
+    ) -> Box<dyn Grasped + 'a>;
+
+    /// The same for trials that nobody stops.
+    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+        self.grasp_until(finger, conditions, &NEVER)
     }
 
     /// The same in the world as the task file says.

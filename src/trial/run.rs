@@ -4,7 +4,7 @@ use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
 use super::record::{Frame, Recorder};
 use super::trace::{Sample, Trace};
-use super::{Conditions, Grasped, Recording, Rig, Trial, cell};
+use super::{Conditions, Grasped, NEVER, Recording, Rig, Trial, cell};
 use crate::finger::Finger;
 use crate::input::arm::ArmError;
 use crate::input::robot::{Mounted, Robot};
@@ -15,9 +15,6 @@ use crate::units::N_PER_MM;
 use nalgebra::Vector3;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
-
-/// For trials that nobody stops.
-static NEVER: AtomicBool = AtomicBool::new(false);
 
 /// A task, a robot in place for it, and an engine that can simulate both.
 pub struct EngineRig {
@@ -108,10 +105,6 @@ impl EngineRig {
 }
 
 impl Rig for EngineRig {
-    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
-        self.grasp_until(finger, conditions, &NEVER)
-    }
-
     fn grasp_until<'a>(
         &'a self,
         finger: &Finger,

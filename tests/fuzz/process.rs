@@ -1,8 +1,11 @@
 //! The binary under limits: 10 s of processor time, 1 GB, an exit code that is documented.
 
 use std::io::{Read, Write};
+use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 /// Processor time that a case may take, s, also in a build for tests, which takes 1.7 times as long.
 pub const CPU_S: u32 = 10;
@@ -34,12 +37,19 @@ fn program() -> String {
     std::env::var("FINGER_OPT_FUZZ_PROGRAM").unwrap_or_else(|_| built())
 }
 
+/// Where cases run, and leave what a mutated name makes them write.
+pub fn folder() -> &'static Path {
+    static FOLDER: LazyLock<TempDir> = LazyLock::new(|| tempfile::tempdir().unwrap());
+    FOLDER.path()
+}
+
 /// Runs the binary; `Err` says what no input may lead to.
 pub fn run(arguments: &[String], input: &[u8], cpu_s: u32) -> Result<Ended, String> {
     let limits = format!("ulimit -v {MEMORY_KIB} -t {cpu_s} -c 0; exec \"$0\" \"$@\"");
     let mut child = Command::new("bash")
         .args(["-c", &limits, &program()])
         .args(arguments)
+        .current_dir(folder())
         .env("RUST_BACKTRACE", "0")
         .env("RAYON_NUM_THREADS", "2")
         .stdin(Stdio::piped())

@@ -2,6 +2,7 @@
 
 mod finger;
 mod mjcf;
+pub mod study;
 
 use super::Failure;
 use clap::{Args, Subcommand};

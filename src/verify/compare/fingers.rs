@@ -12,6 +12,7 @@ use crate::input::space::Design;
 use crate::input::stiffness::Measurement;
 use crate::input::task::{StartRule, Task};
 use crate::outcome::Outcome;
+use crate::trial::NEVER;
 use crate::trial::engine::EngineKind;
 use rayon::prelude::*;
 
@@ -68,7 +69,7 @@ impl Windows<'_> {
                 return Ok((window, false));
             }
         }
-        let Some(by) = teach(&*rig, &finger) else { return Ok((own(), false)) };
+        let Some(by) = teach(&*rig, &finger, &NEVER) else { return Ok((own(), false)) };
         let moved = Moved { rig: &*rig, by };
         Ok((tolerance::evaluate(&moved, &finger, self.search).window, by != 0))
     }

@@ -1,0 +1,24 @@
+//! The recommended finger of a study for the printer, written into its folder when it ends.
+
+use crate::cli::Failure;
+use crate::finger::export::prism::Prism;
+use crate::finger::export::{sheet, stl, title};
+use crate::finger::printed::mechanics;
+use crate::report::printer::{SHEET, SURFACE, recommended};
+use crate::study::{StudyRecord, write_own_file};
+use std::path::Path;
+
+/// Writes surface and sheet; nothing if nothing is recommended or its finger cannot be printed.
+///
+/// # Errors
+/// If a file cannot be written.
+pub fn write(dir: &Path, record: &StudyRecord) -> Result<(), Failure> {
+    let Some(geometry) = recommended(record) else { return Ok(()) };
+    if let Ok(prism) = Prism::finger(&geometry) {
+        write_own_file(&dir.join(SURFACE), &stl::write(&prism, &title(&geometry)))?;
+    }
+    if let Ok(stiffness) = mechanics::compute(&geometry) {
+        write_own_file(&dir.join(SHEET), &sheet::html(&geometry, &stiffness))?;
+    }
+    Ok(())
+}

@@ -102,7 +102,7 @@ fn config(budget: u64) -> StudyConfig {
 fn evaluator() -> Evaluator {
     let usb = TASKS.iter().find(|task| task.name == "usb").expect("shipped");
     Evaluator {
-        surrogate: model(),
+        surrogate: model().into(),
         fingers: FingerSource::Paper,
         templates: vec![Template::parse(usb.text, usb.file).expect("valid")],
         robot: robot(),

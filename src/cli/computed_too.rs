@@ -6,7 +6,6 @@ use super::setup::{Setup, SetupArguments};
 use super::specimen::FingerArguments;
 use crate::evaluation::robustness::Plan;
 use crate::evaluation::tolerance::Search;
-use crate::finger::model::FingerModelKind;
 use crate::study::ByRibs;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
@@ -15,20 +14,17 @@ use std::sync::atomic::AtomicBool;
 /// insert; nothing if a finger model was asked for, if the finger is given by its springs, or if the
 /// engine has no such fingers.
 pub fn measure(
-    arguments: &SetupArguments,
+    (arguments, setup): (&SetupArguments, &Setup),
     finger: &FingerArguments,
     search: Search,
+    stop: &AtomicBool,
 ) -> Option<ByRibs> {
     if arguments.finger_model.kind.is_some() || finger.springs_are_given() {
         return None;
     }
-    let mut arguments = arguments.clone();
-    arguments.finger_model.kind = Some(FingerModelKind::Computed);
-    let setup = Setup::from_arguments(&arguments).ok()?;
-    let measured = finger.choose(&setup).and_then(|chosen| {
-        let never = AtomicBool::new(false);
-        let found =
-            setup.evaluator.measure_or_teach(&chosen.specimen, search, &Plan::WINDOW, &never);
+    let evaluator = setup.by_ribs()?;
+    let measured = finger.specimen(setup, &evaluator).and_then(|specimen| {
+        let found = evaluator.measure_or_teach(&specimen, search, &Plan::WINDOW, stop);
         found.map_err(Failure::input)
     });
     Some(match measured {

@@ -10,6 +10,7 @@ use crate::evaluation::Evaluation;
 use crate::evaluation::robustness::repeat::Bands;
 use crate::evaluation::tolerance::Search;
 use crate::input::shipped::UNCERTAINTIES;
+use crate::trial::NEVER;
 use clap::Args;
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -49,8 +50,9 @@ pub struct Found {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let found = find(arguments, &AtomicBool::new(false))?;
-    let computed = computed_too::measure(&arguments.setup, &arguments.finger, arguments.search());
+    let found = find(arguments, &NEVER)?;
+    let setup = (&arguments.setup, &found.setup);
+    let computed = computed_too::measure(setup, &arguments.finger, arguments.search(), &NEVER);
     if arguments.json {
         let mut fields = found.json(arguments);
         computed.iter().for_each(|found| merge(&mut fields, computed_too::json(found)));

@@ -1,6 +1,6 @@
 //! `optimize report DIR`: makes the tables and plots of a study again.
 
-use super::setup::{self, STIFFNESS_DATA};
+use super::setup;
 use super::{Failure, print};
 use crate::files::{self, LARGEST_OWN};
 use crate::report::replay::PairEnd;
@@ -22,10 +22,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dir = &arguments.dir;
     let record = StudyRecord::load(dir)?;
     let inputs = record.inputs(dir)?;
-    let surrogate = setup::surrogate(
-        &setup::input(&inputs, STIFFNESS_DATA)?,
-        &setup::printed_or_shipped(setup::finger_input(&inputs)?.as_ref())?,
-    )?;
+    let surrogate = setup::surrogate_of(&inputs)?;
     write(dir, &record, &surrogate)?;
     let count = record.evaluations.len();
     let page = dir.join(PAGE);

@@ -105,7 +105,7 @@ pub fn conclude(
         let (evaluator, search, plan) = (&setup.evaluator, Search::Walk, &Plan::WINDOW);
         let walker = Simulated { evaluator, search, plan, cache, stop };
         let by_ribs = setup.by_ribs();
-        let by_ribs = by_ribs.as_ref().map(|setup| &setup.evaluator);
+        let by_ribs = by_ribs.as_ref();
         let confirmer = Confirmer { walker: &walker, by_ribs, evaluator, pool, stop };
         confirmer.confirm(study).map_err(|error| hint(error, study))?;
     }

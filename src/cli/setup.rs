@@ -23,6 +23,7 @@ use crate::surrogate::{self, FitError, Model};
 use crate::trial::Rig;
 use crate::trial::run::RigError;
 use std::path::Path;
+use std::sync::Arc;
 
 pub use crate::trial::engine::EngineKind;
 
@@ -108,9 +109,37 @@ impl FingerModelArguments {
 
 /// The fingers that a finger file makes; without one, the paper's.
 pub fn fingers(source: Option<&Source>) -> Result<FingerSource, Failure> {
-    let Some(Source { file, text }) = source else { return Ok(FingerSource::Paper) };
-    let file = FingerFile::parse(text, file).map_err(Failure::input)?;
-    Ok(FingerSource::Computed(Box::new(ComputedFingers::new(file, TOUCHING))))
+    Ok(Fingers::parse(source.cloned())?.made())
+}
+
+/// A finger file, read once: of fingers that are computed.
+struct Fingers {
+    source: Option<Source>,
+    file: Option<FingerFile>,
+}
+
+impl Fingers {
+    fn parse(source: Option<Source>) -> Result<Self, Failure> {
+        let parse = |Source { file, text }: &Source| FingerFile::parse(text, file);
+        let file = source.as_ref().map(parse).transpose().map_err(Failure::input)?;
+        Ok(Fingers { source, file })
+    }
+
+    /// The finger whose stiffness was measured: of the file; without one, the shipped finger.
+    fn measured_finger(&self) -> Result<PrintedFinger, Failure> {
+        match &self.file {
+            Some(file) => Ok(file.finger().clone()),
+            None => printed_finger(DEFAULT_FINGER),
+        }
+    }
+
+    /// What makes fingers of a design.
+    fn made(self) -> FingerSource {
+        match self.file {
+            None => FingerSource::Paper,
+            Some(file) => FingerSource::Computed(Box::new(ComputedFingers::new(file, TOUCHING))),
+        }
+    }
 }
 
 /// Everything that is needed to measure a design.
@@ -129,7 +158,7 @@ pub struct Setup {
 /// Roles of the input files beside the tasks and the errors.
 const SPACE: &str = "space";
 const ROBOT: &str = "robot";
-pub const STIFFNESS_DATA: &str = "stiffness";
+const STIFFNESS_DATA: &str = "stiffness";
 const UNCERTAINTY: &str = "uncertainty";
 
 /// The role of a task, counted from 1.
@@ -153,9 +182,10 @@ impl Setup {
         let robot = find("robot", ROBOTS, &arguments.robot)?;
         let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
         let finger = arguments.finger_model.source(Some(&parsed))?;
-        let printed = printed_or_shipped(finger.as_ref())?;
-        let stiffness = stiffness_data(arguments.stiffness_data.as_deref(), &printed)?;
-        Setup::parse(&tasks, [&space, &robot, &stiffness], finger.as_ref(), arguments.engine)
+        let fingers = Fingers::parse(finger)?;
+        let stiffness =
+            stiffness_data(arguments.stiffness_data.as_deref(), &fingers.measured_finger()?)?;
+        Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, arguments.engine)
     }
 
     /// The same from the copies kept in a study's folder.
@@ -166,9 +196,11 @@ impl Setup {
         let tasks = roles.map(|role| input(inputs, &role)).collect::<Result<Vec<_>, _>>()?;
         let [space, robot, stiffness] =
             [SPACE, ROBOT, STIFFNESS_DATA].map(|role| input(inputs, role));
-        let finger = finger_input(inputs)?;
-        let others = [&space?, &robot?, &stiffness?];
-        let mut setup = Setup::parse(&tasks, others, finger.as_ref(), engine)?;
+        let space = space?;
+        let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
+        let fingers = Fingers::parse(finger_input(inputs)?)?;
+        let others = [&robot?, &stiffness?];
+        let mut setup = Setup::new(&tasks, (&space, parsed), others, fingers, engine)?;
         if inputs.contains_key(UNCERTAINTY) {
             setup = setup.under(input(inputs, UNCERTAINTY)?)?;
         }
@@ -179,50 +211,49 @@ impl Setup {
         }
     }
 
-    fn parse(
+    fn new(
         tasks: &[Source],
-        others: [&Source; 3],
-        finger: Option<&Source>,
+        (space_source, space): (&Source, Space),
+        others: [&Source; 2],
+        fingers: Fingers,
         engine: EngineKind,
     ) -> Result<Self, Failure> {
-        let fingers = fingers(finger)?;
-        let printed = printed_or_shipped(finger)?;
-        let [space_source, robot_source, stiffness_source] = others;
-        let file = &space_source.file;
-        let space = Space::parse(&space_source.text, file).map_err(Failure::input)?;
-        if let FingerSource::Computed(fingers) = &fingers {
-            printable::check(&space, file, &fingers.file).map_err(Failure::input)?;
-        }
+        let [robot_source, stiffness_source] = others;
         let robot = Robot::parse(&robot_source.text, &robot_source.file).map_err(Failure::input)?;
-        let fits = |task: &Task| engine.rig(task, &robot, &fingers.any(task), 1.0).map(|_| ());
-        let template = |task: &Source| {
-            let template = Template::parse(&task.text, &task.file).map_err(Failure::input)?;
-            fits(template.task()).map_err(Failure::input)?;
-            template.check(&space, file, &fits).map_err(Failure::input)?;
-            Ok(template)
-        };
+        let template =
+            |task: &Source| Template::parse(&task.text, &task.file).map_err(Failure::input);
         let templates = tasks.iter().map(template).collect::<Result<Vec<_>, Failure>>()?;
         different(&templates)?;
         let roles = (1..).map(task_role).zip(tasks);
-        let others = [SPACE, ROBOT, STIFFNESS_DATA].map(str::to_owned).into_iter().zip(others);
-        let finger = finger.map(|source| (FINGER.to_owned(), source));
+        let others = [SPACE, ROBOT, STIFFNESS_DATA].map(str::to_owned).into_iter();
+        let others = others.zip([space_source, robot_source, stiffness_source]);
+        let finger = fingers.source.iter().map(|source| (FINGER.to_owned(), source));
         let sources = roles.chain(others).chain(finger);
-        let inputs = sources.map(|(role, source)| (role, source.text.clone()));
-        let surrogate = surrogate(stiffness_source, &printed)?;
-        let evaluator = Evaluator { surrogate, fingers, templates, robot, engine };
-        sprung::check(&evaluator, &space, file).map_err(Failure::input)?;
-        Ok(Setup { inputs: inputs.collect(), evaluator, uncertainty: None, measured: None, space })
+        let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
+        let surrogate = Arc::new(surrogate(stiffness_source, &fingers.measured_finger()?)?);
+        let evaluator =
+            Evaluator { surrogate, fingers: fingers.made(), templates, robot, engine };
+        fit_together(&evaluator, &space, &space_source.file)?;
+        Ok(Setup { inputs, evaluator, uncertainty: None, measured: None, space })
     }
 
-    /// The same with springs computed from the ribs, if they are the paper's and the design space,
-    /// the tasks and the engine have a place for others.
-    pub fn by_ribs(&self) -> Option<Self> {
-        if self.evaluator.fingers.kind() != FingerModelKind::Paper {
+    /// The evaluator with springs computed from the ribs of the shipped finger, if its own are the
+    /// paper's and the design space, the tasks and the engine have a place for others.
+    pub fn by_ribs(&self) -> Option<Evaluator> {
+        let own = &self.evaluator;
+        if own.fingers.kind() != FingerModelKind::Paper {
             return None;
         }
-        let mut inputs = self.inputs.clone();
-        inputs.insert(FINGER.to_owned(), FINGERS.first()?.text.to_owned());
-        Setup::from_inputs(&inputs, self.evaluator.engine.name()).ok()
+        let source = find("finger", FINGERS, DEFAULT_FINGER).ok()?;
+        let evaluator = Evaluator {
+            surrogate: Arc::clone(&own.surrogate),
+            fingers: fingers(Some(&source)).ok()?,
+            templates: own.templates.clone(),
+            robot: own.robot.clone(),
+            engine: own.engine,
+        };
+        fit_together(&evaluator, &self.space, SPACE).ok()?;
+        Some(evaluator)
     }
 
     /// The same with errors under which designs are measured.
@@ -276,6 +307,20 @@ impl Setup {
     }
 }
 
+/// Whether robot, engine, fingers and space, read from `file`, go with each task.
+fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Failure> {
+    let Evaluator { fingers, templates, robot, engine, .. } = evaluator;
+    if let FingerSource::Computed(fingers) = fingers {
+        printable::check(space, file, &fingers.file).map_err(Failure::input)?;
+    }
+    let fits = |task: &Task| engine.rig(task, robot, &fingers.any(task), 1.0).map(|_| ());
+    for template in templates {
+        fits(template.task()).map_err(Failure::input)?;
+        template.check(space, file, &fits).map_err(Failure::input)?;
+    }
+    sprung::check(evaluator, space, file).map_err(Failure::input)
+}
+
 /// A task file with this rule of its start. What is no task stays as it is, to be refused.
 pub fn started(task: Source, rule: StartRule) -> Source {
     let Ok(mut table) = task.text.parse::<toml::Table>() else { return task };
@@ -312,7 +357,7 @@ pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
 }
 
 /// The finger file kept in a study's folder, if its fingers are computed.
-pub fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
+fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
     inputs.contains_key(FINGER).then(|| input(inputs, FINGER)).transpose()
 }
 
@@ -366,12 +411,10 @@ pub fn printed_finger(name: &str) -> Result<PrintedFinger, Failure> {
     PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// The finger of a file; without one, the shipped finger.
-pub fn printed_or_shipped(source: Option<&Source>) -> Result<PrintedFinger, Failure> {
-    match source {
-        Some(Source { file, text }) => PrintedFinger::parse(text, file).map_err(Failure::input),
-        None => printed_finger(DEFAULT_FINGER),
-    }
+/// The stiffness model of a study, from the copies in its folder.
+pub fn surrogate_of(inputs: &Inputs) -> Result<Model, Failure> {
+    let finger = Fingers::parse(finger_input(inputs)?)?.measured_finger()?;
+    surrogate(&input(inputs, STIFFNESS_DATA)?, &finger)
 }
 
 /// Fits the stiffness model to a CSV of measurements of such fingers.

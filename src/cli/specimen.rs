@@ -3,7 +3,7 @@
 use super::Failure;
 use super::setup::Setup;
 use super::words;
-use crate::evaluation::evaluator::Specimen;
+use crate::evaluation::evaluator::{Evaluator, Specimen};
 use crate::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
 use crate::input::shown;
 use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
@@ -63,6 +63,15 @@ impl FingerArguments {
 
     /// The finger, checked against the space.
     pub fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
+        self.by(setup, &setup.evaluator)
+    }
+
+    /// The same finger by the models of another evaluator of the same setup.
+    pub fn specimen(&self, setup: &Setup, by: &Evaluator) -> Result<Specimen, Failure> {
+        Ok(self.by(setup, by)?.specimen)
+    }
+
+    fn by(&self, setup: &Setup, evaluator: &Evaluator) -> Result<Chosen, Failure> {
         let template = setup.only_task()?;
         for (flag, key, value) in [
             ("--density", DENSITY_KEY, self.density),
@@ -77,7 +86,7 @@ impl FingerArguments {
         design.0.extend(self.density.map(|density| (DENSITY_KEY.to_owned(), density)));
         design.0.extend(self.direction.map(|direction| (DIRECTION_KEY.to_owned(), direction)));
         let (stiffness, given) = match (self.stiffness_compliance, self.stiffness_assembly) {
-            (Some(_), Some(_)) if setup.evaluator.fingers.kind() == FingerModelKind::Computed => {
+            (Some(_), Some(_)) if evaluator.fingers.kind() == FingerModelKind::Computed => {
                 return Err(Failure::usage(
                     "--stiffness-compliance and --stiffness-assembly are springs of the finger \
                      model `paper`; --finger-model computed needs --density and --direction alone",
@@ -87,12 +96,12 @@ impl FingerArguments {
                 (Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM), true)
             }
             _ if self.density.is_some() && self.direction.is_some() => {
-                (setup.evaluator.predict(&design).map_err(Failure::input)?, false)
+                (evaluator.predict(&design).map_err(Failure::input)?, false)
             }
             _ => return Err(Failure::usage("give --density and --direction")),
         };
         let specimen =
-            setup.evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
+            evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
         Ok(Chosen { specimen, design, set, given })
     }
 

@@ -22,6 +22,7 @@ use crate::trial::Rig;
 use crate::trial::engine::EngineKind;
 use crate::trial::run::RigError;
 use crate::units::N_PER_MM;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// What a stiffness is called in errors.
@@ -32,7 +33,7 @@ const STIFFEST_N_PER_MM: f64 = 1e6;
 /// Stiffness model, tasks, robot and engine: all that decides what a design measures.
 pub struct Evaluator {
     /// Predicts a finger's stiffness from its infill.
-    pub surrogate: Model,
+    pub surrogate: Arc<Model>,
     /// Makes a finger of a stiffness and a design.
     pub fingers: FingerSource,
     /// The tasks, whose numbers a design may set; at least one.

@@ -9,7 +9,7 @@ use finger_opt::connector::nominal::explain;
 use finger_opt::connector::write::{self, Notes};
 use finger_opt::finger::Finger;
 use finger_opt::input::robot::Robot;
-use finger_opt::input::shipped::{AS_SOLD, ROBOTS, TASKS};
+use finger_opt::input::shipped::{ROBOTS, TASKS};
 use finger_opt::input::task::Task;
 use finger_opt::outcome::Outcome;
 use finger_opt::physics::direct::Direct;
@@ -56,8 +56,8 @@ fn shipped_tasks_have_no_problems() {
 /// Edges and latches that a task may not have, with what the reader says of them.
 #[test]
 fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
-    let sold = AS_SOLD.iter().find(|file| file.name == "rj45").unwrap();
-    assert!(problems(&Task::parse(sold.text, sold.file).unwrap()).is_empty());
+    let text = include_str!("../tasks/rj45_latch.toml");
+    assert!(problems(&Task::parse(text, "rj45_latch.toml").unwrap()).is_empty());
     let edge = "{ at = \"-x+z\", chamfer_mm = 0.2 }";
     for (from, to, key, problem) in [
         (edge, "{ at = \"-x-x\", chamfer_mm = 0.2 }", "\"wall at +x\" edges", "names no edge"),
@@ -78,8 +78,8 @@ fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
         ("modulus_gpa = 2.35", "modulus_gpa = 0.0", "plug.latch.modulus_gpa", "above 0"),
         ("thickness_mm = 0.67", "thickness_mm = 3.0", "plug.latch.thickness_mm", "no beam"),
     ] {
-        assert!(sold.text.contains(from), "no `{from}`");
-        let error = Task::parse(&sold.text.replacen(from, to, 1), sold.file).unwrap_err();
+        assert!(text.contains(from), "no `{from}`");
+        let error = Task::parse(&text.replacen(from, to, 1), "rj45_latch.toml").unwrap_err();
         let error = error.to_string();
         assert!(error.contains(key) && error.contains(problem), "{to}: {error}");
     }
@@ -88,14 +88,14 @@ fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
 /// A flexure that begins or ends in the air, and a latch that has the faces which the pads press.
 #[test]
 fn a_latch_that_hangs_on_nothing_or_is_gripped_is_noticed() {
-    let sold = AS_SOLD.iter().find(|file| file.name == "rj45").unwrap();
+    let text = include_str!("../tasks/rj45_latch.toml");
     for (from, to, key) in [
         ("root_mm = [-4.19, 0.0, 3.5]", "root_mm = [-4.19, 0.0, -3.5]", "plug.latch.root_mm"),
         ("end_mm = [-5.07, 0.0, 8.05]", "end_mm = [-9.07, 0.0, 8.05]", "plug.latch.end_mm"),
         ("\"latch arm\"]", "\"latch arm\", \"grip block\"]", "grip."),
     ] {
-        assert!(sold.text.contains(from), "no `{from}`");
-        let task = Task::parse(&sold.text.replacen(from, to, 1), sold.file).unwrap();
+        assert!(text.contains(from), "no `{from}`");
+        let task = Task::parse(&text.replacen(from, to, 1), "rj45_latch.toml").unwrap();
         let found = problems(&task);
         assert!(found.iter().any(|problem| problem.key.starts_with(key)), "{to}: {found:?}");
     }

@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 /// What is made of a recorded trial.
 #[derive(Debug, Clone, Args)]
 pub struct FilmArguments {
-    /// Record the trial: a page that plays it, a table of every millisecond, or a glTF scene
-    #[arg(long, value_name = "FILE.html|.csv|.glb", value_parser = recordable)]
+    /// Record the trial: a page that plays it, or a table of every millisecond
+    #[arg(long, value_name = "FILE.html|.csv", value_parser = recordable)]
     record: Option<PathBuf>,
     /// Draw force against depth
     #[arg(long, value_name = "FILE.svg")]
@@ -68,7 +68,6 @@ impl FilmArguments {
 fn write(file: &Path, film: &Film) -> Result<(), Failure> {
     match extension(file).as_deref() {
         Some("csv") => write_file(file, &replay::csv(film.recording))?,
-        Some("glb") => write_file(file, &replay::glb(film))?,
         _ => {
             let title = format!("{}, {}", film.task.name, film.label);
             write_file(file, &replay::page(&title, &[*film]))?;
@@ -84,8 +83,8 @@ fn extension(file: &Path) -> Option<String> {
 fn recordable(text: &str) -> Result<PathBuf, String> {
     let file = PathBuf::from(text);
     match extension(&file).as_deref() {
-        Some("html" | "csv" | "glb") => Ok(file),
-        _ => Err("its name must end with .html, .csv or .glb, which says what is written".into()),
+        Some("html" | "csv") => Ok(file),
+        _ => Err("its name must end with .html or .csv, which says what is written".into()),
     }
 }
 

@@ -15,8 +15,8 @@ use crate::study::{
     Arrived, Cache, Course, Ending, Next, Simulated, Study, StudyError, Timing, Wanted, Work,
     WorkError, now,
 };
-use serde_json::{Value, json};
 use crate::trial::NEVER;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -3,8 +3,8 @@
 use super::Failure;
 use super::setup::Setup;
 use super::specimen::Chosen;
-use crate::evaluation::{Evaluation, OffsetStep};
 use crate::evaluation::robustness::repeat::{Band, Bands, Repeats};
+use crate::evaluation::{Evaluation, OffsetStep};
 use crate::outcome::Outcome;
 use clap::Args;
 use serde_json::{Value, json};

@@ -5,12 +5,11 @@ use super::{Failure, print, print_json};
 use crate::evaluation::objective::Measure;
 use crate::evaluation::template::Impossible;
 use crate::input::shipped::UNCERTAINTIES;
-use crate::report::sensitivity::{self as shown, Ranking};
+use crate::report::sensitivity as shown;
 use crate::sensitivity::factors::Factors;
-use crate::sensitivity::morris::Screening;
 use crate::sensitivity::sobol::Sample;
 use crate::study::write_file;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -19,34 +18,24 @@ use std::path::PathBuf;
 pub struct Arguments {
     #[command(flatten)]
     setup: SetupArguments,
-    /// morris: one input after the other, from random places; sobol: shares of the variance
-    #[arg(long, value_enum, default_value = "morris")]
-    method: Method,
     /// range or centred-range
     #[arg(long, value_name = "NAME", default_value = "range")]
     objective: Measure,
     /// Errors of the cell that are varied, too: typical, none, or the path of a file
     #[arg(long, value_name = "NAME", default_value = "typical")]
     uncertainty: String,
-    /// Walks (morris, 10 if not given) or rows (sobol, 64): evaluations are this times (inputs + 1 or + 2)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=10_000))]
-    samples: Option<u32>,
+    /// Rows of the sample: evaluations are this times (inputs + 2)
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(4..=10_000))]
+    samples: u32,
     /// Seed of the sample
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Write a chart: a tornado, or bars of the shares
+    /// Write a chart of the shares
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
-}
-
-/// How inputs are ranked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Method {
-    Morris,
-    Sobol,
 }
 
 /// Runs the command.
@@ -73,31 +62,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     fn rank(&self, setup: &Setup, factors: &Factors) -> Result<shown::Found, Failure> {
         let inputs = factors.all().len();
-        let samples = |default| self.samples.map_or(default, |samples| samples as usize);
-        let (ranking, values) = match self.method {
-            Method::Morris => {
-                let screening = Screening::new(inputs, samples(10), self.seed);
-                let values = self.values(setup, factors, &screening.points())?;
-                (Ranking::Morris(screening.effects(&counted(&values))), values)
-            }
-            Method::Sobol => {
-                let sample = Sample::new(inputs, samples(64), self.seed);
-                let values = self.values(setup, factors, &sample.points())?;
-                let indices = sample.indices(&counted(&values)).ok_or_else(|| {
-                    Failure::running(format!(
-                        "{} is {} for every input: nothing matters",
-                        self.objective,
-                        self.objective.show(counted(&values)[0])
-                    ))
-                })?;
-                (Ranking::Sobol(indices), values)
-            }
-        };
+        let sample = Sample::new(inputs, self.samples as usize, self.seed);
+        let values = self.values(setup, factors, &sample.points())?;
+        let indices = sample.indices(&counted(&values)).ok_or_else(|| {
+            Failure::running(format!(
+                "{} is {} for every input: nothing matters",
+                self.objective,
+                self.objective.show(counted(&values)[0])
+            ))
+        })?;
         Ok(shown::Found {
             task: setup.only_task()?.task().name.clone(),
             objective: self.objective,
             factors: factors.all().to_vec(),
-            ranking,
+            indices,
             evaluations: values.len(),
             diverged: values.iter().filter(|value| value.is_none()).count(),
             without_window: values.iter().filter(|value| **value == Some(0.0)).count(),

@@ -231,8 +231,7 @@ impl Setup {
         let sources = roles.chain(others).chain(finger);
         let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
         let surrogate = Arc::new(surrogate(stiffness_source, &fingers.measured_finger()?)?);
-        let evaluator =
-            Evaluator { surrogate, fingers: fingers.made(), templates, robot, engine };
+        let evaluator = Evaluator { surrogate, fingers: fingers.made(), templates, robot, engine };
         fit_together(&evaluator, &space, &space_source.file)?;
         Ok(Setup { inputs, evaluator, uncertainty: None, measured: None, space })
     }

@@ -100,8 +100,7 @@ impl FingerArguments {
             }
             _ => return Err(Failure::usage("give --density and --direction")),
         };
-        let specimen =
-            evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
+        let specimen = evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
         Ok(Chosen { specimen, design, set, given })
     }
 

@@ -2,11 +2,11 @@
 
 use super::setup::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
 use super::{Failure, print, print_json};
-use crate::report::{stiffness, stiffness_means};
+use crate::report::stiffness;
 use crate::study::write_file;
-use crate::surrogate::{Means, Model, means};
+use crate::surrogate::Model;
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// Show the stiffness model.
@@ -34,25 +34,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         write_file(path, &svg)?;
     }
     if arguments.json {
-        return print_json(&as_json(&model)?);
+        return print_json(&stiffness::json(&model));
     }
-    let means = compared(&model)?;
-    let text = means.as_ref().map_or(format!("\n{}.\n", left_out()), stiffness_means::text);
-    print(&(stiffness::table(&model) + &text))
-}
-
-/// Most fingers that are computed from their ribs and whose means are compared: that takes a third of a
-/// second of processor each, and more than that where there are many.
-const MOST_COMPUTED: usize = 25;
-
-fn left_out() -> String {
-    format!("Left out: fingers by their ribs and means compared, above {MOST_COMPUTED} designs")
-}
-
-/// What is computed of the fingers, if they are few enough.
-fn compared(model: &Model) -> Result<Option<Means>, Failure> {
-    let few = model.measurements().len() <= MOST_COMPUTED;
-    few.then(|| means(model).map_err(Failure::input)).transpose()
+    print(&stiffness::table(&model))
 }
 
 impl Arguments {
@@ -65,22 +49,6 @@ impl Arguments {
 
     /// What `--json` prints.
     pub fn json(&self) -> Result<Value, Failure> {
-        as_json(&self.model()?)
+        Ok(stiffness::json(&self.model()?))
     }
-}
-
-fn as_json(model: &Model) -> Result<Value, Failure> {
-    let means = compared(model)?;
-    let mut value = stiffness::json(model);
-    if let Some(keys) = value.as_object_mut() {
-        match means {
-            Some(means) => keys.extend(stiffness_means::json(&means)),
-            None => {
-                let none = ["means", "preferred", "fingers"].map(|key| (key.to_owned(), json!([])));
-                keys.extend(none);
-                keys.extend([("left_out".to_owned(), left_out().into())]);
-            }
-        }
-    }
-    Ok(value)
 }

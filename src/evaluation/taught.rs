@@ -134,11 +134,8 @@ mod tests {
     fn teaching_ends_when_it_is_to_stop() {
         let finger = Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM);
         for after in [1, 2, 5] {
-            let counter = Interrupted {
-                after,
-                stop: AtomicBool::new(false),
-                trials: AtomicUsize::new(0),
-            };
+            let counter =
+                Interrupted { after, stop: AtomicBool::new(false), trials: AtomicUsize::new(0) };
             let far = Moved { rig: &counter as &dyn Rig, by: 30 };
             teach(&far, &finger, &counter.stop);
             assert_eq!(counter.trials.load(Ordering::SeqCst), after);

@@ -188,11 +188,11 @@ impl Log {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::AtomicBool;
     use super::*;
     use crate::outcome::FailureClass;
     use crate::trial::fake::FakeRig;
     use crate::units::N_PER_MM;
+    use std::sync::atomic::AtomicBool;
 
     #[test]
     fn both_searches_find_the_window_of_the_closed_form() {

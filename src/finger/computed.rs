@@ -8,9 +8,7 @@
 //! 1/k_y,centre = 1/k_y - s^2/k_t,   1/k_z,centre = 1/k_z - c^2/k_t
 //! ```
 //!
-//! If they pull at one another (see [`Kept`]), it is with the correlation `rho` of the computed compliances
-//! there: the springs are the inverse of
-//! `[1/k_y,centre, rho/sqrt(k_y,centre k_z,centre); .., 1/k_z,centre]`.
+//! The two do not pull at one another.
 //! Across the plane (x, ry, rz) the centre is another one: the plate's 3 x 3 stiffness at the
 //! pad is carried over to the same joint whole, with its coupling of x to ry and rz.
 
@@ -21,7 +19,7 @@ use super::{Finger, Pad};
 use crate::input::finger::Coupling;
 use crate::input::printed::{Outline, PrintedFinger};
 use crate::units::{MM, N_PER_MM};
-use nalgebra::{Matrix2, Matrix3, Matrix6, Vector3};
+use nalgebra::{Matrix3, Matrix6};
 
 /// What presses a finger when its stiffness is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,20 +46,6 @@ impl Touching {
             Touching::PadAndRoof => &mut computed.pad_and_roof,
         }
     }
-}
-
-/// Which of the computed springs a finger keeps; `docs/finger.md` has what each does to the windows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Kept {
-    /// That y and z pull at one another.
-    pub coupling: bool,
-    /// Those across the plane; else they are the paper's.
-    pub across: bool,
-}
-
-impl Kept {
-    /// What trials take unless told otherwise.
-    pub const DEFAULT: Kept = Kept { coupling: false, across: true };
 }
 
 /// What a task file or a design says in place of the computed values.
@@ -94,7 +78,6 @@ pub(super) struct Computed<'a> {
     pub printed: &'a PrintedFinger,
     pub stiffness: &'a FingerStiffness,
     pub touching: Touching,
-    pub kept: Kept,
     /// Height of the part's shoulder above the TCP, m.
     pub shoulder: f64,
 }
@@ -118,12 +101,8 @@ impl Computed<'_> {
         };
         let in_y = at_centre("compliance", at_pad.compliance, below)?;
         let in_z = at_centre("assembly", at_pad.assembly, ahead)?;
-        let coupling = if self.kept.coupling { plane.coupling_at_centre() } else { 0.0 };
-        let across = match self.kept.across {
-            true => across_at_centre(self.stiffness, below, ahead),
-            false => across_of_the_paper(),
-        };
-        let matrix = assembled(in_plane(in_y, in_z, coupling), tilting, across);
+        let across = across_at_centre(self.stiffness, below, ahead);
+        let matrix = assembled([1.0 / in_y, 1.0 / in_z], tilting, across);
         Ok(Finger {
             compliance: matrix[(1, 1)],
             assembly: matrix[(2, 2)],
@@ -158,29 +137,16 @@ impl Computed<'_> {
 /// Places of x, ry and rz among the six axes.
 const ACROSS: [usize; 3] = [0, 4, 5];
 
-/// Stiffness in y and z from the compliances, m/N, and their correlation.
-fn in_plane(in_y: f64, in_z: f64, correlation: f64) -> Matrix2<f64> {
-    let mixed = -correlation / (in_y * in_z).sqrt();
-    Matrix2::new(1.0 / in_y, mixed, mixed, 1.0 / in_z) / (1.0 - correlation * correlation)
-}
-
 /// The stiffness on all six axes at the centre.
-fn assembled(plane: Matrix2<f64>, tilting: f64, across: Matrix3<f64>) -> Matrix6<f64> {
+fn assembled([in_y, in_z]: [f64; 2], tilting: f64, across: Matrix3<f64>) -> Matrix6<f64> {
     let mut matrix = Matrix6::zeros();
-    matrix.fixed_view_mut::<2, 2>(1, 1).copy_from(&plane);
-    matrix[(3, 3)] = tilting;
+    (matrix[(1, 1)], matrix[(2, 2)], matrix[(3, 3)]) = (in_y, in_z, tilting);
     for (i, row) in ACROSS.into_iter().enumerate() {
         for (j, column) in ACROSS.into_iter().enumerate() {
             matrix[(row, column)] = across[(i, j)];
         }
     }
     matrix
-}
-
-/// The paper's springs in x, ry and rz.
-fn across_of_the_paper() -> Matrix3<f64> {
-    let Finger { depth, rotation: [_, ry, rz], .. } = Finger::new(1.0, 1.0);
-    Matrix3::from_diagonal(&Vector3::new(depth, ry, rz))
 }
 
 /// Stiffness in x, ry and rz at a point below and in front of the pad's middle, m.
@@ -196,6 +162,7 @@ mod tests {
     use crate::finger::printed::mechanics::FingerStiffness;
     use crate::finger::printed::stiffness::CrossStiffness;
     use crate::input::shipped::FINGERS;
+    use nalgebra::Vector3;
 
     const SHOULDER: f64 = 3.5 * MM;
 
@@ -215,8 +182,8 @@ mod tests {
 
     fn finger(at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
         let (printed, stiffness) = (printed(), stiffness(8.0 * MM, -2.0 * MM, 2.5));
-        let (touching, kept, shoulder) = (Touching::Pad, Kept::DEFAULT, SHOULDER);
-        Computed { printed: &printed, stiffness: &stiffness, touching, kept, shoulder }
+        let (touching, shoulder) = (Touching::Pad, SHOULDER);
+        Computed { printed: &printed, stiffness: &stiffness, touching, shoulder }
             .finger(at_pad, given)
     }
 

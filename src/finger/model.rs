@@ -1,9 +1,9 @@
 //! Where the springs of a finger come from that were not measured: the paper, or its ribs.
 
 use super::Finger;
-use super::computed::{AtPad, Computed, Given, Kept, Touching};
+use super::computed::{AtPad, Computed, Given, Touching};
 use super::printed::FingerError;
-use super::printed::infill::{self, pitch};
+use super::printed::infill;
 use super::printed::known::Known;
 use super::printed::mechanics::FingerStiffness;
 use crate::input::finger::{Coupling, Rcc};
@@ -55,10 +55,6 @@ pub struct ComputedFingers {
     pub file: FingerFile,
     /// What presses them.
     pub touching: Touching,
-    /// Which of the computed springs they keep.
-    pub kept: Kept,
-    /// By how much the first rib is moved against the file's, as a share of the pitch.
-    pub phase_share: f64,
     known: Known,
 }
 
@@ -135,13 +131,7 @@ impl FingerSource {
 impl ComputedFingers {
     /// FingerSource of a file, with its rib phase.
     pub fn new(file: FingerFile, touching: Touching) -> Self {
-        ComputedFingers {
-            file,
-            touching,
-            kept: Kept::DEFAULT,
-            phase_share: 0.0,
-            known: Known::default(),
-        }
+        ComputedFingers { file, touching, known: Known::default() }
     }
 
     /// The stiffness of a design from its ribs, computed once; NaN of the infill is refused.
@@ -149,11 +139,7 @@ impl ComputedFingers {
     /// # Errors
     /// If the printed finger cannot be.
     pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, FingerError> {
-        let printed = self.file.with(design)?;
-        let infill = infill::Design::of(design, None);
-        let moved = self.phase_share * pitch(&printed, &infill);
-        let phase_mm = (moved != 0.0).then(|| (printed.ribs.phase + moved) / MM);
-        self.known.stiffness(&printed, &infill::Design { phase_mm, ..infill })
+        self.known.stiffness(&self.file.with(design)?, &infill::Design::of(design, None))
     }
 
     fn finger(
@@ -174,8 +160,8 @@ impl ComputedFingers {
             let corrected = plane.corrected(at_pad.compliance, at_pad.assembly);
             *plane = corrected.unwrap_or(*plane);
         }
-        let (printed, touching, kept) = (&self.file.with(design)?, self.touching, self.kept);
+        let (printed, touching) = (&self.file.with(design)?, self.touching);
         let shoulder = task.grip.shoulder();
-        Computed { printed, stiffness: &stiffness, touching, kept, shoulder }.finger(at_pad, given)
+        Computed { printed, stiffness: &stiffness, touching, shoulder }.finger(at_pad, given)
     }
 }

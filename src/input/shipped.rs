@@ -33,12 +33,6 @@ pub const TASKS: &[Shipped] = shipped! {
     "usb": "tasks/usb.toml",
 };
 
-/// Connectors as they are sold, in place of a task's published model of the same name.
-pub const AS_SOLD: &[Shipped] = shipped! {
-    "rj45": "tasks/rj45_latch.toml",
-    "usb": "tasks/usb_a.toml",
-};
-
 /// Search spaces.
 pub const SPACES: &[Shipped] = shipped! {
     "infill": "spaces/infill.toml",

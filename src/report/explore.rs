@@ -18,8 +18,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
         html! { figure { svg id=(id) role="img" aria-label=(label) {} figcaption { (caption) } } }
     };
     let model = surface::Model::of(record);
-    let importance =
-        model.as_ref().map_or(Vec::new(), |model| surface::importance(record, model));
+    let importance = model.as_ref().map_or(Vec::new(), |model| surface::importance(record, model));
     Some(html! {
         p.muted {
             "Click a mark to choose an evaluation in all views; it turns red. The arrow keys go to the \

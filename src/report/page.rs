@@ -2,8 +2,8 @@
 
 use super::theme::variables;
 use super::{
-    ReportError, bench, best, convergence, drawn, explore, front, limits, map, others, printer,
-    provenance, published, shape, windows,
+    ReportError, bench, best, convergence, drawn, explore, front, limits, printer, provenance,
+    published, shape, windows,
 };
 use crate::study::StudyRecord;
 use crate::surrogate::Model;
@@ -36,11 +36,7 @@ pub struct Replay {
 ///
 /// # Errors
 /// If the drawing library refuses.
-pub fn page(
-    record: &StudyRecord,
-    model: &Model,
-    beside: &Beside,
-) -> Result<String, ReportError> {
+pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<String, ReportError> {
     let config = &record.config;
     let title = format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed);
     let sections = sections(record, model, beside)?;
@@ -105,10 +101,7 @@ fn sections(
     model: &Model,
     beside: &Beside,
 ) -> Result<Vec<Section>, ReportError> {
-    let first = record.config.objective.first().name();
-    let first = first[..1].to_uppercase() + &first[1..];
-    let map = map::section(record, model.measurements(), (PLOT.0, 500))?;
-    let windows = each_task(record, |task| windows::section(record, task, PLOT.0))?;
+    let windows = each_task(record, |task| Ok(windows::section(record, task)))?;
     let published = each_task(record, |task| published::section(record, task, PLOT))?;
     let section = |id, title: &str, body| Some((id, title.to_owned(), body));
     let (best, played) = match record.on_bench {
@@ -120,18 +113,16 @@ fn sections(
         section("best", best, best::section(record)),
         films(&beside.replays).and_then(|films| section("replay", played, films)),
         explore::section(record).and_then(|views| section("explore-views", "All designs", views)),
-        printer::section(record).filter(|_| beside.printable).and_then(|printer| section("printer", "To the printer", printer)),
+        printer::section(record)
+            .filter(|_| beside.printable)
+            .and_then(|printer| section("printer", "To the printer", printer)),
         section("windows", "Tolerance windows of the best designs", windows),
         shape::section(record).and_then(|shape| section("shape", "Beyond the infill alone", shape)),
         front::section(record, PLOT)?
             .and_then(|front| section("front", "Between the objectives", front)),
-        others::section(record, PLOT.0)?.and_then(|others| {
-            section("others", &format!("{first} over the other parameters"), others)
-        }),
         section("published", "Published ranges beside ours", published),
         section("limits", "What this does not say", limits::section(record, model)),
         section("failures", "How the trials ended", provenance::outcomes(record)),
-        section("map", &format!("{first} of the measured and the evaluated designs"), map),
         section("convergence", "Convergence", convergence::section(record, PLOT)?),
         section("provenance", "Provenance", provenance::provenance(record)),
     ];

@@ -2,11 +2,10 @@
 
 use super::ReportError;
 use super::chart::{Area, Drawn, font, message, sheet, tick, words};
-use super::theme::{BLUE, Colour, INK, LINES, MUTED, ORANGE};
+use super::theme::{BLUE, INK, LINES, MUTED};
 use crate::evaluation::objective::Measure;
 use crate::sensitivity::Interval;
 use crate::sensitivity::factors::Factor;
-use crate::sensitivity::morris::Effect;
 use crate::sensitivity::sobol::Indices;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -21,23 +20,14 @@ pub struct Found {
     pub objective: Measure,
     /// The inputs, as varied.
     pub factors: Vec<Factor>,
-    /// How much each matters, in their order.
-    pub ranking: Ranking,
+    /// Shares of the objective's variance, in their order.
+    pub indices: Vec<Indices>,
     /// Windows that were simulated.
     pub evaluations: usize,
     /// Those of them whose nominal start diverged: they count as 0.
     pub diverged: usize,
     /// Those whose nominal start fails: 0, too.
     pub without_window: usize,
-}
-
-/// How much each input matters.
-#[derive(Debug, Clone)]
-pub enum Ranking {
-    /// Change of the objective over the input's whole range.
-    Morris(Vec<Effect>),
-    /// Shares of the objective's variance.
-    Sobol(Vec<Indices>),
 }
 
 /// One bar: the factor's place, what it is ranked by, and a second value beside it.
@@ -51,61 +41,29 @@ impl Found {
     /// The inputs by how much they matter, most first.
     fn bars(&self) -> Vec<Bar> {
         let bar = |(factor, (by, beside)): (usize, (Interval, f64))| Bar { factor, by, beside };
-        let mut bars: Vec<Bar> = match &self.ranking {
-            Ranking::Morris(effects) => effects
-                .iter()
-                .map(|effect| (effect.size, effect.mean))
-                .enumerate()
-                .map(bar)
-                .collect(),
-            Ranking::Sobol(indices) => {
-                let pairs = indices.iter().map(|indices| (indices.total, indices.first.value));
-                pairs.enumerate().map(bar).collect()
-            }
-        };
+        let pairs = self.indices.iter().map(|indices| (indices.total, indices.first.value));
+        let mut bars: Vec<Bar> = pairs.enumerate().map(bar).collect();
         bars.sort_by(|a, b| b.by.value.total_cmp(&a.by.value));
         bars
     }
-
-    fn method(&self) -> &'static str {
-        match self.ranking {
-            Ranking::Morris(_) => "morris",
-            Ranking::Sobol(_) => "sobol",
-        }
-    }
 }
 
-/// The inputs by how much they matter, for other programs; `mu` in the objective's unit, shares without.
+/// The inputs by how much they matter, for other programs.
 pub fn json(found: &Found) -> Value {
-    let unit = found.objective.key();
     let one = |bar: Bar| {
         let Factor { key, low, high, .. } = &found.factors[bar.factor];
         let mut fields = json!({"name": key, "low": low, "high": high});
         let mut set = |name: String, value: f64| fields[name] = json!(value);
-        match &found.ranking {
-            Ranking::Morris(effects) => {
-                let Effect { mean, size, sd } = effects[bar.factor];
-                set(format!("mu_{unit}"), mean);
-                set(format!("mu_star_{unit}"), size.value);
-                set(format!("mu_star_low_{unit}"), size.low);
-                set(format!("mu_star_high_{unit}"), size.high);
-                set(format!("sigma_{unit}"), sd);
-            }
-            Ranking::Sobol(indices) => {
-                for (name, share) in
-                    [("first", indices[bar.factor].first), ("total", indices[bar.factor].total)]
-                {
-                    set(name.to_owned(), share.value);
-                    set(format!("{name}_low"), share.low);
-                    set(format!("{name}_high"), share.high);
-                }
-            }
+        let Indices { first, total } = found.indices[bar.factor];
+        for (name, share) in [("first", first), ("total", total)] {
+            set(name.to_owned(), share.value);
+            set(format!("{name}_low"), share.low);
+            set(format!("{name}_high"), share.high);
         }
         fields
     };
     json!({
         "task": found.task,
-        "method": found.method(),
         "objective": found.objective.name(),
         "evaluations": found.evaluations,
         "diverged": found.diverged,
@@ -116,34 +74,23 @@ pub fn json(found: &Found) -> Value {
 
 /// The same as a table of 80 columns.
 pub fn text(found: &Found) -> String {
-    let head = match found.ranking {
-        Ranking::Morris(_) => ["change, mm", "95 %", "mean, mm", "sd, mm"],
-        Ranking::Sobol(_) => ["total", "95 %", "alone", "95 %"],
-    };
+    let head = ["total", "95 %", "alone", "95 %"];
     let interval = |of: Interval| format!("{:.2} to {:.2}", of.low, of.high);
     let mut lines = vec![
         format!("{} of {}: which input matters, most first", found.objective, found.task),
         format!("{:<33} {:>10} {:>14} {:>8} {:>12}", "input", head[0], head[1], head[2], head[3]),
     ];
     for bar in found.bars() {
-        let (beside, last) = match &found.ranking {
-            Ranking::Morris(effects) => (bar.beside, format!("{:.2}", effects[bar.factor].sd)),
-            Ranking::Sobol(indices) => (bar.beside, interval(indices[bar.factor].first)),
-        };
+        let (beside, last) = (bar.beside, interval(found.indices[bar.factor].first));
         let name = short(&found.factors[bar.factor].key);
         let (value, of) = (bar.by.value, interval(bar.by));
         lines.push(format!("{name:<33} {value:>10.2} {of:>14} {beside:>8.2} {last:>12}"));
     }
-    lines.push(match found.ranking {
-        Ranking::Morris(_) => {
-            "change: mean size of what the input alone changes over its range (mu*); \
-                               sd large\nbeside it: the change depends on the other inputs"
-                .to_owned()
-        }
-        Ranking::Sobol(_) => "total: share of the variance that is left if all others are fixed; \
-                              alone: share\nthat goes if this one is fixed"
+    lines.push(
+        "total: share of the variance that is left if all others are fixed; alone: share\n\
+         that goes if this one is fixed"
             .to_owned(),
-    });
+    );
     let counts =
         [(found.without_window, "fail at the nominal start"), (found.diverged, "diverge there")];
     let zeros = counts.iter().filter(|(count, _)| *count > 0);
@@ -179,32 +126,19 @@ fn draw(area: &Area<'_>, found: &Found) -> Drawn {
     let largest = bars.iter().map(|bar| bar.by.high.max(bar.by.value)).fold(1e-9, f64::max);
     let pixels = f64::from(WIDTH as i32 - LEFT - 60) / largest;
     let at = |value: f64| LEFT + (value.max(0.0) * pixels).round() as i32;
-    let (title, note) = match found.ranking {
-        Ranking::Morris(_) => (
-            format!("{} of {}: change over each input's range (mm)", found.objective, found.task),
-            "bar: mean size (mu*), line: 95 %; blue: grows with the input, orange: falls",
-        ),
-        Ranking::Sobol(_) => (
-            format!("{} of {}: shares of the variance", found.objective, found.task),
-            "bar: with all it acts with (total), line: 95 %; dark: alone",
-        ),
-    };
+    let title = format!("{} of {}: shares of the variance", found.objective, found.task);
+    let note = "bar: with all it acts with (total), line: 95 %; dark: alone";
     let style = |size, colour, h| words(size, colour, h, VPos::Center);
     area.draw_text(&title, &style(20, INK, HPos::Left), (20, 24)).map_err(message)?;
     area.draw_text(note, &style(15, MUTED, HPos::Left), (20, 50)).map_err(message)?;
     for (row, bar) in bars.iter().enumerate() {
         let y = 86 + ROW * row as i32;
-        let falls = matches!(found.ranking, Ranking::Morris(_)) && bar.beside < 0.0;
-        let colour: Colour = if falls { ORANGE } else { BLUE };
         let rectangle = |to: i32, half: i32, style: ShapeStyle| {
             Rectangle::new([(LEFT, y - half), (to, y + half)], style)
         };
-        area.draw(&rectangle(at(bar.by.value), 10, colour.rgb().mix(0.6).filled()))
+        area.draw(&rectangle(at(bar.by.value), 10, BLUE.rgb().mix(0.6).filled()))
             .map_err(message)?;
-        if matches!(found.ranking, Ranking::Sobol(_)) {
-            area.draw(&rectangle(at(bar.beside), 5, INK.rgb().mix(0.7).filled()))
-                .map_err(message)?;
-        }
+        area.draw(&rectangle(at(bar.beside), 5, INK.rgb().mix(0.7).filled())).map_err(message)?;
         let ends = vec![(at(bar.by.low), y), (at(bar.by.high), y)];
         area.draw(&PathElement::new(ends, INK.rgb().stroke_width(2))).map_err(message)?;
         let factor = &found.factors[bar.factor];

@@ -1,37 +1,35 @@
 //! The stiffness model as curves, with what was measured.
 
+use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet, words};
 use super::marks::{PointMark, dashed, line, points};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
-use super::{ReportError, centre_plot};
 use crate::input::stiffness::{Axis, Measurement};
 use crate::surrogate::{Estimate, Model};
 use crate::units::N_PER_MM;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-/// Six panels: both axes of stiffness against direction and against density, curves with a band of
-/// one standard deviation, and the measured designs; remote centre and tilting stiffness as the ribs
-/// have them.
+/// Four panels: both axes of stiffness against direction and against density, curves with a band of
+/// one standard deviation, and the measured designs.
 ///
 /// # Errors
 /// If the drawing library refuses.
 pub fn svg(model: &Model) -> Result<String, ReportError> {
-    sheet("the stiffness model", (1160, 1290), |area| {
+    sheet("the stiffness model", (1160, 880), |area| {
         let (head, body) = area.split_vertically(58);
         let style = |size, colour| words(size, colour, HPos::Left, VPos::Top);
         let title = "Stiffness of one finger: model and measurements";
         head.draw_text(title, &style(20, INK), (20, 8)).map_err(message)?;
         let note = "band: ± 1 standard deviation of a new finger    filled: measured at the \
                      curve's value    open: measured in between (colour of the nearest curve)    \
-                     dashed: limits of the measurements; below, the paper's one value";
+                     dashed: limits of the measurements";
         head.draw_text(note, &style(15, MUTED), (20, 36)).map_err(message)?;
-        let panels = body.split_evenly((3, 2));
+        let panels = body.split_evenly((2, 2));
         for (panel, (axis, by)) in panels.iter().zip(PANELS) {
             draw(panel, model, axis, by)?;
         }
-        let densities = levels(model.measurements().iter().map(|m| m.density_percent));
-        centre_plot::draw([&panels[4], &panels[5]], model.computed(), &densities)
+        Ok(())
     })
 }
 

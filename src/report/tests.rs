@@ -1,4 +1,3 @@
-use std::sync::atomic::AtomicBool;
 use super::*;
 use crate::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
 use crate::evaluation::tolerance::{Search, evaluate};
@@ -17,6 +16,7 @@ use crate::trial::{Conditions, Grasped, Rig, Trial};
 use crate::units::{MM, N_PER_MM};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
+use std::sync::atomic::AtomicBool;
 
 fn finray9() -> PrintedFinger {
     PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()

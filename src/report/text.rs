@@ -19,9 +19,9 @@ pub(super) fn outcome(outcome: Outcome) -> String {
     format!("{}{class}", outcome.label())
 }
 
-/// What ended a window at one side, short enough for a plot.
-pub(super) fn end_short(end: Option<Outcome>) -> String {
-    end.map_or("no failure", Outcome::short).to_owned()
+/// What ended a window at one side.
+pub(super) fn end(end: Option<Outcome>) -> String {
+    end.map_or("no failure".to_owned(), outcome)
 }
 
 /// A design in words: infill first, then whatever else the space names.

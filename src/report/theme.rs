@@ -36,22 +36,7 @@ colours! {
     GREEN = "green", (38, 132, 82), "#62c894";
     /// Series; failures.
     RED = "red", (190, 50, 44), "#f2837b";
-    /// Map, smallest to largest.
-    MAP0 = "map0", (218, 232, 245), "#1d3145";
-    /// Map.
-    MAP1 = "map1", (170, 207, 233), "#1c4a70";
-    /// Map.
-    MAP2 = "map2", (109, 174, 213), "#21679c";
-    /// Map.
-    MAP3 = "map3", (58, 133, 188), "#3a8cc6";
-    /// Map.
-    MAP4 = "map4", (24, 92, 156), "#78b8e3";
-    /// Map.
-    MAP5 = "map5", (8, 50, 104), "#c4e2f6";
 }
-
-/// The map's scale, smallest to largest.
-pub(super) const SCALE: [Colour; 6] = [MAP0, MAP1, MAP2, MAP3, MAP4, MAP5];
 
 impl Colour {
     /// For drawing; in a file this is what is seen.

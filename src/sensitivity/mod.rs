@@ -1,11 +1,9 @@
-//! Which input of a function matters: screening by elementary effects (Morris) and shares of the
-//! variance (Sobol), each with its interval.
+//! Which input of a function matters: shares of its variance (Sobol), each with its interval.
 //!
-//! Both work on the unit cube: `points` says where to evaluate, in any order and in parallel;
-//! `effects` and `indices` read the values in the order of the points.
+//! All works on the unit cube: `points` says where to evaluate, in any order and in parallel;
+//! `indices` reads the values in the order of the points.
 
 pub mod factors;
-pub mod morris;
 pub mod sobol;
 
 use crate::stream::stream;

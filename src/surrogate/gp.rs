@@ -110,11 +110,9 @@ pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess> {
     fit_about(PhysicalMean { lamina: true }, link, exponents, measured)
 }
 
-/// Fits the ratio of measured and computed stiffness: the same for all designs, or with the
-/// lamina's term beside it.
-pub(super) fn fit_ratio(axis: Axis, lamina: bool, ratios: &Measured) -> Option<PhysicalProcess> {
-    let exponents = if lamina { physics(axis).1 } else { &[1.0] };
-    fit_about(PhysicalMean { lamina }, Link::logarithm(), exponents, ratios)
+/// Fits the ratio of measured and computed stiffness, about one number for all designs.
+pub(super) fn fit_ratio(ratios: &Measured) -> Option<PhysicalProcess> {
+    fit_about(PhysicalMean { lamina: false }, Link::logarithm(), &[1.0], ratios)
 }
 
 /// Maximum likelihood over the grid.
@@ -162,11 +160,10 @@ impl Fitted for PhysicalProcess {
     }
 
     fn describe(&self) -> String {
-        let mean = match (self.link.sum(), self.mean.lamina) {
-            (Sum::Parallel, _) => "k = a + b density^n cos^4(direction)",
-            (Sum::Series, _) => "1/k = a + b density^n cos^4(direction)",
-            (Sum::Product, true) => "ln(k / computed) = a + b density^n cos^4(direction)",
-            (Sum::Product, false) => "ln(k / computed) = a",
+        let mean = match self.link.sum() {
+            Sum::Parallel => "k = a + b density^n cos^4(direction)",
+            Sum::Series => "1/k = a + b density^n cos^4(direction)",
+            Sum::Product => "ln(k / computed) = a",
         };
         let exponent = match self.mean.lamina {
             true => format!(", n = {}", self.exponent),

@@ -20,8 +20,6 @@ pub enum ModelKind {
     ComputedScale,
     /// A Gaussian process of the logarithm of measured / computed about one number.
     ComputedProcess,
-    /// The same with the term of the physical mean beside the number.
-    ComputedLamina,
 }
 
 impl ModelKind {
@@ -33,15 +31,6 @@ impl ModelKind {
         ModelKind::GaussianProcess,
     ];
 
-    /// The models of measured / computed stiffness, simplest first.
-    pub const COMPUTED: [ModelKind; 3] =
-        [ModelKind::ComputedScale, ModelKind::ComputedProcess, ModelKind::ComputedLamina];
-
-    /// Whether it is fitted to measured / computed, not to the measured stiffness itself.
-    pub fn is_computed(self) -> bool {
-        ModelKind::COMPUTED.contains(&self)
-    }
-
     /// A short name for tables.
     pub fn label(self) -> &'static str {
         match self {
@@ -51,7 +40,6 @@ impl ModelKind {
             ModelKind::GaussianProcess => "Gaussian process, physical mean",
             ModelKind::ComputedScale => "computed, scaled",
             ModelKind::ComputedProcess => "Gaussian process, computed mean",
-            ModelKind::ComputedLamina => "Gaussian process, both means",
         }
     }
 }
@@ -73,7 +61,6 @@ pub(super) fn fit_axis(
         ModelKind::RidgeQuadratic => boxed(ridge::fit(measured, 2, positive, &ridge::PENALTIES)),
         ModelKind::GaussianProcess => boxed(gp::fit(axis, measured)),
         ModelKind::ComputedScale => boxed(scale::fit(axis, measured)),
-        ModelKind::ComputedProcess => boxed(gp::fit_ratio(axis, false, measured)),
-        ModelKind::ComputedLamina => boxed(gp::fit_ratio(axis, true, measured)),
+        ModelKind::ComputedProcess => boxed(gp::fit_ratio(measured)),
     }
 }

@@ -5,7 +5,6 @@ use super::{Computed, Estimate, Fitted, Measured, ModelKind, infills, measured};
 use crate::finger::printed::FingerError;
 use crate::input::stiffness::{Axis, Measurement};
 use crate::units::N_PER_MM;
-use ndarray::Axis as Along;
 use rayon::prelude::*;
 
 /// Leave-one-out error of one model on one axis.
@@ -89,21 +88,6 @@ impl Data {
             left_out: predicted.iter().zip(&self.units).map(|(e, unit)| e.mean * unit).collect(),
             chosen: false,
         }
-    }
-
-    /// Fits `kind` without some designs, by index, and predicts those: absolute errors, percent.
-    pub fn leave_out(&self, kind: ModelKind, out: &[usize]) -> Vec<f64> {
-        let of = |keep: &dyn Fn(&usize) -> bool| {
-            let rows: Vec<usize> = (0..self.units.len()).filter(keep).collect();
-            Measured::new(
-                self.measured.records().select(Along(0), &rows),
-                self.measured.targets().select(Along(0), &rows),
-            )
-        };
-        let (others, these) = (of(&|i| !out.contains(i)), of(&|i| out.contains(i)));
-        let predicted = self.predict(kind, &others, &these);
-        let error = |(e, k): (Estimate, &f64)| 100.0 * (e.mean / k - 1.0).abs();
-        predicted.into_iter().zip(these.targets()).map(error).collect()
     }
 
     fn predict(&self, kind: ModelKind, others: &Measured, these: &Measured) -> Vec<Estimate> {

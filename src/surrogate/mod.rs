@@ -10,18 +10,16 @@
 //!
 //! Fewer than seven fingers do not carry such a model. Then the models are of measured /
 //! computed stiffness: the ribs give the shape ([`Computed`]), the fingers its scale.
-//! `compare` asks how far each carries.
+//! `docs/notes/finger.md` has how far each carries.
 //!
 //! Nothing here is random, so equal measurements give bit-identical models.
 
-mod compare;
 mod computed;
 mod gp;
 mod hull;
 mod kind;
 mod link;
 mod loo;
-mod means;
 mod model;
 mod ridge;
 mod row;
@@ -33,11 +31,9 @@ use crate::input::stiffness::{Axis, Infill};
 use linfa::prelude::Dataset;
 use ndarray::{Array1, Array2, Ix1};
 
-pub use compare::{Comparison, LeftOut, Verdict, compare};
 pub use computed::Computed;
 pub use kind::ModelKind;
 pub use loo::Loo;
-pub use means::{ComputedFinger, Means, Spread, means};
 pub use model::{ENOUGH, FitError, Model, fit};
 
 /// A value with its standard deviation, both in the same unit.

@@ -30,12 +30,6 @@ pub(super) fn fit(axis: Axis, ratios: &Measured) -> Option<Scale> {
     Some(Scale { log, sd: (squares / (FREEDOM + count - 1.0)).sqrt(), count })
 }
 
-/// Standard deviation of the mean logarithm of these ratios, percent.
-pub(super) fn error_percent(axis: Axis, ratios: &[f64]) -> f64 {
-    let none = [[0.0; 2]].repeat(ratios.len());
-    fit(axis, &super::measured(&none, ratios)).map_or(f64::NAN, |scale| scale.error_percent())
-}
-
 impl Scale {
     fn error_percent(&self) -> f64 {
         100.0 * self.sd / self.count.sqrt()

@@ -229,23 +229,3 @@ fn the_shipped_fingers_scatter_about_the_computed_ones_as_said() {
         assert!((scatter - said).abs() < 0.005, "{axis:?}: {scatter}");
     }
 }
-
-/// Where a whole direction is missing the computed compliance stiffness carries on; inside the
-/// shipped designs neither mean is clearly better there, and the old one is in assembly.
-#[test]
-fn the_computed_mean_carries_where_no_finger_was_measured() {
-    let (rows, verdicts) = compare(&shipped(), computed()).unwrap();
-    let error = |axis, model, left_out| {
-        let of =
-            |row: &&Comparison| row.axis == axis && row.model == model && row.left_out == left_out;
-        rows.iter().find(of).unwrap().mean_absolute_percent
-    };
-    let compliance = |model| error(Axis::Compliance, model, LeftOut::Direction(40.0));
-    let [old, new] = [ModelKind::GaussianProcess, ModelKind::ComputedProcess].map(compliance);
-    assert!(new < 0.3 * old, "{new} {old}");
-    let few = |count| error(Axis::Compliance, ModelKind::ComputedScale, LeftOut::AllBut(count));
-    assert!(few(3) < few(2) && few(2) < few(1) && few(1) < 25.0);
-    let [assembly, compliance] = &verdicts[..] else { panic!("{verdicts:?}") };
-    assert!(assembly.gain_percent < 0.0, "{assembly:?}");
-    assert!(compliance.gain_percent > 0.0 && !compliance.is_clear(), "{compliance:?}");
-}

@@ -5,22 +5,18 @@ mod import;
 mod new;
 mod show;
 
-use super::{Failure, tasks};
+use super::Failure;
 use crate::finger::Finger;
 use crate::input::shipped::STIFFNESS;
 use crate::input::stiffness;
 use crate::verify::compare::three;
 use clap::{Args, Subcommand};
 
-/// Make, show and check a task; alone it lists what is shipped
+/// Make, show and check a task
 #[derive(Debug, Args)]
-#[command(args_conflicts_with_subcommands = true)]
 pub struct Arguments {
     #[command(subcommand)]
-    command: Option<Command>,
-    /// Print the list as JSON
-    #[arg(long)]
-    json: bool,
+    command: Command,
 }
 
 #[derive(Debug, Subcommand)]
@@ -47,11 +43,10 @@ enum Command {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
-        None => tasks::list(arguments.json),
-        Some(Command::New(arguments)) => new::run(arguments),
-        Some(Command::Show(arguments)) => show::run(arguments),
-        Some(Command::Check(arguments)) => check::run(arguments),
-        Some(Command::Import(arguments)) => import::run(arguments),
+        Command::New(arguments) => new::run(arguments),
+        Command::Show(arguments) => show::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Import(arguments) => import::run(arguments),
     }
 }
 

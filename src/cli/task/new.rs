@@ -45,7 +45,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Contact engine that tries the nominal start
-    #[arg(long, value_enum, default_value = DEFAULT_ENGINE, hide = true)]
+    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
     engine: EngineKind,
 }
 

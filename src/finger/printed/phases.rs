@@ -1,5 +1,4 @@
-//! Where the first rib lies is the slicer's choice: a finger at all of its choices, and with
-//! lines of another width.
+//! Where the first rib lies is the slicer's choice: a finger at all of its choices.
 
 use super::FingerError;
 use super::geometry::Geometry;
@@ -35,31 +34,4 @@ pub fn over_phases(
     // Collected by index, so that of several errors the same one is told.
     let found: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
     found.into_iter().collect()
-}
-
-/// By how much the CAD's ribs are thinner than the slicer's line, m: what is not known of the
-/// width of a printed line.
-pub fn line_width_error(finger: &PrintedFinger) -> f64 {
-    (finger.line_width - finger.ribs.thickness).abs()
-}
-
-/// The stiffness with ribs and skin thinner, and thicker, by [`line_width_error`].
-///
-/// # Errors
-/// If the finger cannot be made.
-pub fn over_line_widths(
-    finger: &PrintedFinger,
-    density_percent: f64,
-    direction_deg: f64,
-) -> Result<[Planar; 2], FingerError> {
-    let design = Design { density_percent, direction_deg, phase_mm: None };
-    let wider = |by: f64| {
-        let mut finger = finger.clone();
-        finger.ribs.thickness += by;
-        finger.skin += by;
-        planar(&Geometry::new(&finger, &design)?, SIZE)
-    };
-    let error = line_width_error(finger);
-    let (thinner, thicker) = rayon::join(|| wider(-error), || wider(error));
-    Ok([thinner?, thicker?])
 }

@@ -1,12 +1,10 @@
-//! Recorded trials for looking at: a page that plays them, a table, a glTF scene, a curve.
+//! Recorded trials for looking at: a page that plays them, a table, a curve.
 
 mod curve;
 mod film;
-mod gltf;
 mod table;
 
 pub use curve::svg as curve_svg;
-pub use gltf::glb;
 pub use table::csv;
 
 use crate::finger::Pad;

@@ -11,7 +11,6 @@ use crate::input::robot::Robot;
 use crate::input::space::Design;
 use crate::input::stiffness::Measurement;
 use crate::input::task::{StartRule, Task};
-use crate::outcome::Outcome;
 use crate::trial::NEVER;
 use crate::trial::engine::EngineKind;
 use rayon::prelude::*;
@@ -26,13 +25,11 @@ pub struct Windows<'a> {
     pub engine: EngineKind,
     /// How the windows' ends are looked for.
     pub search: Search,
-    /// Whether a start that does not insert is taught though its task does not ask for it.
-    pub teach: bool,
 }
 
 impl Windows<'_> {
-    /// The windows of all designs on all tasks, with their measured stiffness, and how many
-    /// starts of each task were taught; in parallel, collected by task and design.
+    /// The windows of all designs on all tasks, with their measured stiffness; in parallel,
+    /// collected by task and design.
     ///
     /// # Errors
     /// If a finger cannot be, or the robot or the engine cannot do a task.
@@ -40,37 +37,31 @@ impl Windows<'_> {
         &self,
         tasks: &[Task],
         designs: &[Measurement],
-    ) -> Result<Vec<(TaskTable, usize)>, Impossible> {
+    ) -> Result<Vec<TaskTable>, Impossible> {
         let pairs: Vec<(&Task, &Measurement)> = tasks
             .iter()
             .flat_map(|task| designs.iter().map(move |design| (task, design)))
             .collect();
-        let windows: Result<Vec<(Window, bool)>, Impossible> =
+        let windows: Result<Vec<Window>, Impossible> =
             pairs.into_par_iter().map(|(task, design)| self.window(task, design)).collect();
         let windows = windows?;
-        let table = |(task, found): (&Task, &[(Window, bool)])| {
-            let windows = found.iter().map(|(window, _)| window.clone());
-            let rows = designs.iter().copied().zip(windows);
-            (TaskTable::new(&task.name, rows), found.iter().filter(|(_, taught)| *taught).count())
+        let table = |(task, found): (&Task, &[Window])| {
+            TaskTable::new(&task.name, designs.iter().copied().zip(found.iter().cloned()))
         };
         Ok(tasks.iter().zip(windows.chunks(designs.len().max(1))).map(table).collect())
     }
 
-    /// The window of a finger about its start, and whether that was moved to where it inserts.
-    fn window(&self, task: &Task, design: &Measurement) -> Result<(Window, bool), Impossible> {
+    /// The window of a finger about the start that its task asks for.
+    fn window(&self, task: &Task, design: &Measurement) -> Result<Window, Impossible> {
         let Measurement { compliance, assembly, density_percent, direction_deg, .. } = *design;
         let infill = Design::infill(density_percent, direction_deg);
         let finger = self.fingers.make(AtPad { compliance, assembly }, &infill, task)?.finger;
         let rig = self.engine.rig(task, self.robot, &finger, 1.0)?;
-        let own = || tolerance::evaluate(&*rig, &finger, self.search).window;
-        if task.strategy.rule == StartRule::Given {
-            let window = own();
-            if window.nominal == Outcome::Inserted || !self.teach {
-                return Ok((window, false));
-            }
-        }
-        let Some(by) = teach(&*rig, &finger, &NEVER) else { return Ok((own(), false)) };
-        let moved = Moved { rig: &*rig, by };
-        Ok((tolerance::evaluate(&moved, &finger, self.search).window, by != 0))
+        let taught = match task.strategy.rule {
+            StartRule::Given => None,
+            StartRule::Taught => teach(&*rig, &finger, &NEVER),
+        };
+        let moved = Moved { rig: &*rig, by: taught.unwrap_or(0) };
+        Ok(tolerance::evaluate(&moved, &finger, self.search).window)
     }
 }

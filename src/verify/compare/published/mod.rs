@@ -3,8 +3,6 @@
 
 mod accuracy;
 mod agreement;
-mod calibrated;
-mod models;
 mod order;
 mod table;
 mod targets;
@@ -14,8 +12,6 @@ mod text;
 
 pub use accuracy::{accuracy, accuracy_json};
 pub use agreement::{Agreement, rank_correlation};
-pub use calibrated::{Calibrated, LeftOutFinger};
-pub use models::{Model, ModelTables, Spread, models_json, models_text};
 pub use order::{Order, OrderSource, order_on_bench};
 pub use table::{CSV_HEADER, SUMMARY_HEADER, csv, json, summary_csv};
 pub use targets::{Target, targets};

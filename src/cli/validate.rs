@@ -1,8 +1,5 @@
 //! `optimize validate`: our windows beside the published ones.
 
-mod against;
-mod calibrated;
-
 use super::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, FingerModelArguments};
 use super::{Failure, print, print_json};
 use crate::evaluation::tolerance::Search;
@@ -11,7 +8,6 @@ use crate::input::robot::Robot;
 use crate::input::shipped::TASKS;
 use crate::input::stiffness::Measurement;
 use crate::input::task::{StartRule, Task};
-use crate::report::validation;
 use crate::study::write_file;
 use crate::verify::compare::published::{self as beside, TaskTable};
 use crate::verify::compare::{self, fingers::Windows};
@@ -38,18 +34,10 @@ impl Fingers {
     }
 }
 
-/// What else our ranges are compared with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Against {
-    /// The published experiments on the robot
-    Bench,
-}
-
 /// Compare our tolerance windows with the published ones.
 ///
 /// Measures the windows of all published designs, with their measured stiffness, step by
-/// step as the paper does, and writes validation.csv, validation_summary.csv, accuracy.md
-/// and figures.
+/// step as the paper does, and writes validation.csv, validation_summary.csv and accuracy.md.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Task: ket8, ket12, rj45, usb, all, or the path of a task file of such a name
@@ -67,31 +55,12 @@ pub struct Arguments {
     /// Look every 0.5 mm and bisect: a third of the trials, but blind to gaps narrower than that
     #[arg(long)]
     strides: bool,
-    /// The default: step by step to the first failure
-    #[arg(long, hide = true, conflicts_with = "strides")]
-    walk: bool,
-    /// Compare our ranges with several finger models, and the published simulation's, with the
-    /// published experiments instead
-    #[arg(long, value_enum)]
-    against: Option<Against>,
-    /// Computed fingers at so many rib phases, evenly over a pitch: median and range of each
-    /// agreement
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "against",
-          value_parser = clap::value_parser!(u32).range(1..=64))]
-    phases: u32,
-    /// Computed fingers also with the paper's springs across the plane, and with y and z coupled
-    #[arg(long, requires = "against")]
-    variants: bool,
-    /// With --against: folder of leave_one_out*.csv of `optimize calibrate --out`, the measured
-    /// fingers predicted each without itself, as a further model
-    #[arg(long, value_name = "DIR", requires = "against")]
-    calibrated: Option<PathBuf>,
     #[command(flatten)]
     finger_model: FingerModelArguments,
     /// What becomes of the nominal start, in place of what the task file says
     #[arg(long, value_enum)]
     start: Option<StartRule>,
-    /// Folder that tables and figures are written to
+    /// Folder that tables are written to
     #[arg(long, value_name = "DIR", default_value = "results/validation")]
     out: PathBuf,
     /// Print the result as JSON
@@ -107,9 +76,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let robot = setup::robot(&arguments.robot)?;
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
-    if arguments.against == Some(Against::Bench) {
-        return against::run(arguments, &tasks, &robot, search);
-    }
     let tables = arguments.measure(&tasks, &robot, search)?;
     write(&arguments.out, &tables)?;
     let engine = arguments.engine.name();
@@ -128,7 +94,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
          ends: failure class (1 lost early, 2 missed, 3 jammed, 4 lost)\n\n\
          {}\nmean error of the range, mm; rank correlation (Spearman); failures matched, %\n\
          starts: nominal ones that insert; bench: the published experiments\n\n{}\n\
-         tables and figures are in {}\n",
+         tables are in {}\n",
         robot.name,
         search_name(search),
         texts.join("\n"),
@@ -156,7 +122,6 @@ pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
 }
 
 impl Arguments {
-    /// The tables without `--against`.
     fn measure(
         &self,
         tasks: &[Task],
@@ -165,9 +130,8 @@ impl Arguments {
     ) -> Result<Vec<TaskTable>, Failure> {
         let fingers = setup::fingers(self.finger_model.source(None)?.as_ref())?;
         let engine = self.engine;
-        let windows = Windows { fingers: &fingers, robot, engine, search, teach: false };
-        let found = windows.measure(tasks, &self.fingers.designs()).map_err(Failure::input)?;
-        Ok(found.into_iter().map(|(table, _)| table).collect())
+        let windows = Windows { fingers: &fingers, robot, engine, search };
+        windows.measure(tasks, &self.fingers.designs()).map_err(Failure::input)
     }
 }
 
@@ -191,10 +155,5 @@ fn write(out: &Path, tables: &[TaskTable]) -> Result<(), Failure> {
     write_file(&out.join("validation.csv"), &beside::csv(tables))?;
     write_file(&out.join("validation_summary.csv"), &beside::summary_csv(tables))?;
     write_file(&out.join("accuracy.md"), &beside::accuracy(tables))?;
-    let figures = validation::figures(tables)
-        .map_err(|error| Failure::running(format!("cannot draw the figures: {error}")))?;
-    for (name, svg) in figures {
-        write_file(&out.join(name), &svg)?;
-    }
     Ok(())
 }

@@ -1,13 +1,36 @@
-//! Names the program's sources: results that were computed by other sources are not its own.
+//! Names the sources that decide numbers: results that other sources computed are not the program's own.
 
 use sha2::{Digest, Sha256};
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// What decides the evaluation of a design.
+const SIMULATION: [&str; 7] = [
+    "Cargo.lock",
+    "crates/ask-tell/src/stream.rs",
+    "crates/contact",
+    "crates/finray",
+    "crates/input",
+    "crates/insertion",
+    "data",
+];
+/// What else decides the course and the answer of a study.
+const STUDY: [&str; 3] = ["crates/ask-tell", "src/calibration", "src/study"];
+
 fn main() -> io::Result<()> {
-    let mut files = vec![PathBuf::from("Cargo.lock"), PathBuf::from("Cargo.toml")];
-    collect(Path::new("src"), &mut files)?;
+    name("FINGER_OPT_SIMULATION_SHA256", &SIMULATION)?;
+    name("FINGER_OPT_STUDY_SHA256", &[&SIMULATION[..], &STUDY[..]].concat())
+}
+
+/// Sets a variable to the hash of all files below these paths.
+fn name(variable: &str, paths: &[&str]) -> io::Result<()> {
+    let mut files = Vec::new();
+    for path in paths {
+        println!("cargo::rerun-if-changed={path}");
+        collect(Path::new(path), &mut files)?;
+    }
     files.sort();
+    files.dedup();
     let mut hash = Sha256::new();
     for file in &files {
         let bytes = std::fs::read(file)?;
@@ -15,18 +38,17 @@ fn main() -> io::Result<()> {
         hash.update((bytes.len() as u64).to_le_bytes());
         hash.update(&bytes);
     }
-    for path in ["src", "Cargo.lock", "Cargo.toml"] {
-        println!("cargo::rerun-if-changed={path}");
-    }
-    let digest: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    println!("cargo::rustc-env=FINGER_OPT_SOURCE_SHA256={digest}");
+    println!("cargo::rustc-env={variable}={:x}", hash.finalize());
     Ok(())
 }
 
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_dir() { collect(&path, files)? } else { files.push(path) }
+fn collect(path: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
+    if !path.is_dir() {
+        files.push(path.to_owned());
+        return Ok(());
+    }
+    for entry in std::fs::read_dir(path)? {
+        collect(&entry?.path(), files)?;
     }
     Ok(())
 }

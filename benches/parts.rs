@@ -1,31 +1,31 @@
 //! Times of the parts that a study is made of: `cargo bench`.
 
+use ask_tell::{Grid, Observation, OptimizerKind, build};
+use contact::Engine;
+use contact::direct::Direct;
 use criterion::{Criterion, criterion_group, criterion_main};
-use finger_opt::evaluation::evaluator::Evaluator;
-use finger_opt::evaluation::objective::{Measure, Objectives};
-use finger_opt::evaluation::robustness::Plan;
-use finger_opt::evaluation::template::Template;
-use finger_opt::evaluation::tolerance::{self, Search};
-use finger_opt::finger::Finger;
-use finger_opt::finger::model::{FingerModelKind, FingerSource};
-use finger_opt::input::printed::PrintedFinger;
-use finger_opt::input::robot::Robot;
-use finger_opt::input::shipped::{FINGERS, ROBOTS, SPACES, STIFFNESS, TASKS};
-use finger_opt::input::space::Space;
-use finger_opt::input::stiffness;
-use finger_opt::input::task::Task;
-use finger_opt::optimizer::{Grid, Observation, OptimizerKind, build};
-use finger_opt::physics::Engine;
-use finger_opt::physics::direct::Direct;
 use finger_opt::study::{
     FileStore, IfChanged, Inputs, JOURNAL_FILE, Journal, Provenance, Runner, Simulated, Study,
     StudyConfig,
 };
-use finger_opt::surrogate::{self, Model};
-use finger_opt::trial::engine::EngineKind;
-use finger_opt::trial::run::EngineRig;
-use finger_opt::trial::{Rig, cell};
-use finger_opt::units::N_PER_MM;
+use finray::printed::PrintedFinger;
+use input::shipped::{FINGERS, ROBOTS, SPACES, STIFFNESS, TASKS};
+use input::units::N_PER_MM;
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::objective::{Measure, Objectives};
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::template::Template;
+use insertion::evaluation::tolerance::{self, Search};
+use insertion::finger::Finger;
+use insertion::finger::model::{FingerModelKind, FingerSource};
+use insertion::robot::Robot;
+use insertion::space::Space;
+use insertion::stiffness;
+use insertion::surrogate::{self, Model};
+use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
+use insertion::trial::run::EngineRig;
+use insertion::trial::{Rig, cell};
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::path::Path;
@@ -69,7 +69,7 @@ fn proposals(c: &mut Criterion) {
     // As many designs known as in the middle of a study of 100.
     let mut gp = build(OptimizerKind::Gp, Grid::new(space().levels()), 0);
     for _ in 0..12 {
-        let observed = |point: finger_opt::input::space::GridPoint| {
+        let observed = |point: ask_tell::GridPoint| {
             let value = space().design(&point).get("infill_density_percent");
             Observation::new(point, value)
         };

@@ -4,11 +4,11 @@
 mod common;
 
 use common::{Studies, optimize, read};
-use finger_opt::finger::export::prism::Prism;
-use finger_opt::finger::export::{slicer, stl, three_mf};
-use finger_opt::finger::printed::geometry::Geometry;
-use finger_opt::finger::printed::infill::Design;
-use finger_opt::input::printed::PrintedFinger;
+use finray::export::prism::Prism;
+use finray::export::{slicer, stl, three_mf};
+use finray::geometry::Geometry;
+use finray::infill::Design;
+use finray::printed::PrintedFinger;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;

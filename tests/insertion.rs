@@ -1,30 +1,30 @@
 //! The contact simulation on the four shipped tasks: does the physics hold, not the code.
 
-use finger_opt::evaluation::robustness::{self, Plan};
-use finger_opt::evaluation::tolerance::{Search, evaluate};
-use finger_opt::evaluation::uncertainty::Uncertainty;
-use finger_opt::finger::Finger;
-use finger_opt::finger::computed::{AtPad, Touching};
-use finger_opt::finger::model::{ComputedFingers, FingerSource};
-use finger_opt::input::finger_file::FingerFile;
-use finger_opt::input::printed::PrintedFinger;
-use finger_opt::input::robot::Robot;
-use finger_opt::input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
-use finger_opt::input::space::Design;
-use finger_opt::input::stiffness;
-use finger_opt::input::task::{PadTorsion, Task};
-use finger_opt::outcome::{FailureClass, Outcome};
-use finger_opt::physics::direct::Direct;
-use finger_opt::physics::rapier::Rapier;
-use finger_opt::physics::{Engine, World};
-use finger_opt::scene::{
+use contact::direct::Direct;
+use contact::rapier::Rapier;
+use contact::scene::{
     Body, BodyId, Friction, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Springs,
 };
-use finger_opt::surrogate::{self, Estimate, Prediction};
-use finger_opt::trial::cell;
-use finger_opt::trial::run::EngineRig;
-use finger_opt::trial::{Conditions, Rig, Trial, picture};
-use finger_opt::units::{DEG, MM, N_PER_MM};
+use contact::{Engine, World};
+use finray::printed::PrintedFinger;
+use input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
+use input::units::{DEG, MM, N_PER_MM};
+use insertion::evaluation::robustness::{self, Plan};
+use insertion::evaluation::tolerance::{Search, evaluate};
+use insertion::evaluation::uncertainty::Uncertainty;
+use insertion::finger::Finger;
+use insertion::finger::computed::{AtPad, Touching};
+use insertion::finger::file::FingerFile;
+use insertion::finger::model::{ComputedFingers, FingerSource};
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::robot::Robot;
+use insertion::space::Design;
+use insertion::stiffness;
+use insertion::surrogate::{self, Estimate, Prediction};
+use insertion::task::{PadTorsion, Task};
+use insertion::trial::cell;
+use insertion::trial::run::EngineRig;
+use insertion::trial::{Conditions, Rig, Trial, picture};
 use nalgebra::Vector3;
 
 fn task(name: &str) -> Task {
@@ -152,7 +152,7 @@ fn a_socket_that_is_too_narrow_is_not_entered() {
     let mut rig = direct("ket8");
     // The key grows by 0.3 mm in y; the slot has 0.15 mm to spare.
     for part in &mut rig.task.plug.parts {
-        if let finger_opt::input::task::Solid::Box { min, max } = &mut part.solid {
+        if let insertion::task::Solid::Box { min, max } = &mut part.solid {
             min.y -= 0.15 * MM;
             max.y += 0.15 * MM;
         }
@@ -316,7 +316,7 @@ fn mounted(scene: &mut Scene, finger: &Finger, side: f64, inward: f64, geoms: Ve
         pose: Pose::translation(0.0, -side * inward, 0.0),
         geoms: Vec::new(),
     };
-    let motion = Motion::Free(finger_opt::finger::inertia(finger, side));
+    let motion = Motion::Free(insertion::finger::inertia(finger, side));
     let body = Body { motion, geoms, pose: Pose::identity(), name: "finger".into() };
     let (jaw, body) = (scene.body(jaw), scene.body(body));
     let centre = Pose::translation(0.0, finger.centre(side).y, finger.centre(side).z);

@@ -2,24 +2,25 @@
 
 mod common;
 
+use ask_tell::GridPoint;
+use ask_tell::{Grid, Observation, Optimizer, StopReason};
 use common::{Studies, read, resealed};
-use finger_opt::evaluation::evaluator::{Evaluate, Measured};
-use finger_opt::evaluation::objective::Score;
-use finger_opt::evaluation::template::{Impossible, Template};
-use finger_opt::evaluation::tolerance::{Search, evaluate};
-use finger_opt::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
-use finger_opt::finger::Finger;
-use finger_opt::finger::computed::AtPad;
-use finger_opt::finger::model::{FingerSource, Made};
-use finger_opt::input::space::{Design, GridPoint, Space};
-use finger_opt::optimizer::{Grid, Observation, Optimizer, StopReason};
-use finger_opt::outcome::{FailureClass, Outcome};
 use finger_opt::study::{
     Ending, Recorded, Runner, Store, Study, StudyError, StudyRecord, Timing, decode, encode,
     strip_times,
 };
-use finger_opt::surrogate::{Estimate, Prediction};
-use finger_opt::trial::fake::FakeRig;
+use insertion::evaluation::evaluator::{Evaluate, Measured};
+use insertion::evaluation::objective::Score;
+use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::tolerance::{Search, evaluate};
+use insertion::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
+use insertion::finger::Finger;
+use insertion::finger::computed::AtPad;
+use insertion::finger::model::{FingerSource, Made};
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::space::{Design, Space};
+use insertion::surrogate::{Estimate, Prediction};
+use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
 use std::io;
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! What the trait states, checked for every optimizer.
 
-use finger_opt::evaluation::pareto::hypervolume;
-use finger_opt::input::space::GridPoint;
-use finger_opt::optimizer::{Grid, Observation, Optimizer, OptimizerKind, StopReason, build};
+use ask_tell::GridPoint;
+use ask_tell::pareto::hypervolume;
+use ask_tell::{Grid, Observation, Optimizer, OptimizerKind, StopReason, build};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 

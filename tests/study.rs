@@ -2,8 +2,8 @@
 
 mod common;
 
+use ask_tell::stream::stream;
 use common::{Studies, command, optimize, read, run};
-use finger_opt::stream::stream;
 use rand::RngExt;
 use std::fs;
 use std::io::Write;

@@ -3,19 +3,19 @@
 mod common;
 
 use common::optimize;
+use contact::direct::Direct;
 use finger_opt::connector::check::problems;
 use finger_opt::connector::draft::{Dimensions, draft};
 use finger_opt::connector::nominal::explain;
 use finger_opt::connector::write::{self, Notes};
-use finger_opt::finger::Finger;
-use finger_opt::input::robot::Robot;
-use finger_opt::input::shipped::{ROBOTS, TASKS};
-use finger_opt::input::task::Task;
-use finger_opt::outcome::Outcome;
-use finger_opt::physics::direct::Direct;
-use finger_opt::trial::run::EngineRig;
-use finger_opt::trial::{Rig, Trial};
-use finger_opt::units::{MM, N_PER_MM};
+use input::shipped::{ROBOTS, TASKS};
+use input::units::{MM, N_PER_MM};
+use insertion::finger::Finger;
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::task::Task;
+use insertion::trial::run::EngineRig;
+use insertion::trial::{Rig, Trial};
 
 fn shipped(name: &str) -> &'static str {
     TASKS.iter().find(|file| file.name == name).unwrap().text
@@ -398,7 +398,8 @@ fn a_check_says_what_a_reader_finds() {
 }
 
 fn surface(name: &str) -> finger_opt::connector::mesh::import::Mesh {
-    use finger_opt::connector::mesh::{Surface, import::Mesh, read};
+    use finger_opt::connector::mesh::import::Mesh;
+    use finger_opt::connector::mesh::{Surface, read};
     let file = format!("{}/examples/meshes/{name}.stl", env!("CARGO_MANIFEST_DIR"));
     let triangles = read(&std::fs::read(&file).unwrap(), name).unwrap();
     Mesh { file: name.to_owned(), surface: Surface::new(&triangles, MM, name).unwrap() }

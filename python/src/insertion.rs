@@ -3,7 +3,7 @@
 use crate::errors::{InputError, raise};
 use crate::measure::{Files, sources};
 use finger_opt::cli::driven;
-use finger_opt::trial::State;
+use insertion::trial::State;
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -2,7 +2,7 @@
 
 use crate::errors::{InputError, raise};
 use finger_opt::cli::call;
-use finger_opt::input::shipped::Source;
+use input::shipped::Source;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -72,7 +72,7 @@ pub fn trial<'py>(
     let found = interruptible(py, |_| call::trial(&words, &tasks, every_s))?;
     let (fields, samples) = found.map_err(raise)?;
     let columns = PyDict::new(py);
-    let column = |name: &str, of: &dyn Fn(&finger_opt::trial::Sample) -> Vec<f64>| {
+    let column = |name: &str, of: &dyn Fn(&insertion::trial::Sample) -> Vec<f64>| {
         let bytes: Vec<u8> = samples.iter().flat_map(of).flat_map(f64::to_le_bytes).collect();
         columns.set_item(name, PyBytes::new(py, &bytes))
     };

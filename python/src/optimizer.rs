@@ -1,6 +1,6 @@
 //! An optimizer behind the lines of `optimize ask-tell`.
 
-use finger_opt::optimizer::ask_tell;
+use ask_tell::protocol;
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 

@@ -3,7 +3,7 @@
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
 use super::sampler::{Effort, sample};
-use crate::optimizer::gp::log_normal_cdf;
+use ask_tell::gp::log_normal_cdf;
 use rand::Rng;
 use std::cell::RefCell;
 

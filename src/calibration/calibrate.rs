@@ -7,7 +7,7 @@ use super::prior::Parameter;
 use super::process::COORDINATES;
 use super::sampler::Settings;
 use super::subject::Subject;
-use crate::stream::stream;
+use ask_tell::stream::stream;
 
 /// Joint draws per sample of the posterior.
 const DRAWS: usize = 3;

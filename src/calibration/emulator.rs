@@ -3,11 +3,11 @@
 //! doi:10.1214/ss/1177012413), its error measured on simulations that it has not seen.
 
 use super::simulation::Simulation;
-use crate::evaluation::template::Impossible;
-use crate::input::space::{Design, Space};
-use crate::optimizer::SobolSequence;
-use crate::optimizer::gp::{FitEffort, Gp, fit};
-use crate::outcome::FailureClass;
+use ask_tell::SobolSequence;
+use ask_tell::gp::{FitEffort, Gp, fit};
+use insertion::evaluation::template::Impossible;
+use insertion::outcome::FailureClass;
+use insertion::space::{Design, Space};
 use rayon::prelude::*;
 
 /// One simulation in this many is kept to measure the error.
@@ -76,8 +76,8 @@ impl Emulator {
             let (design, shares) = at.split_at(space.parameters().len());
             let evaluation = simulation.window(&design_at(space, design), Some(shares))?;
             let window = &evaluation.window;
-            let class = |end: Option<crate::outcome::Outcome>| {
-                end.and_then(crate::outcome::Outcome::failure)
+            let class = |end: Option<insertion::outcome::Outcome>| {
+                end.and_then(insertion::outcome::Outcome::failure)
                     .and_then(|n| FailureClass::try_from(n).ok())
             };
             Ok(Run {
@@ -154,7 +154,7 @@ pub(super) fn most(classes: impl Iterator<Item = FailureClass>) -> Option<Failur
 
 /// The design at shares of a space.
 fn design_at(space: &Space, shares: &[f64]) -> Design {
-    let value = |(parameter, share): (&crate::input::space::Parameter, &f64)| {
+    let value = |(parameter, share): (&insertion::space::Parameter, &f64)| {
         (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
     };
     Design(space.parameters().iter().zip(shares).map(value).collect())

@@ -3,8 +3,8 @@
 use super::bench::{Bench, Posterior};
 use super::predict::{Of, Predicted, predict};
 use super::sampler::Settings;
-use crate::stream::stream;
-use crate::verify::compare::statistics::{mean, spearman};
+use crate::calibration::statistics::{mean, spearman};
+use ask_tell::stream::stream;
 use rayon::prelude::*;
 
 /// A measured finger, predicted without it.

@@ -4,8 +4,8 @@ use super::calibrate::{Prediction, TaskResult};
 use super::loo::Accuracy;
 use super::subject::Subject;
 use super::table::warnings;
-use crate::evaluation::Evaluation;
 use crate::study::{BenchEffort, BenchFinger, OnBench, Provenance, Trust};
+use insertion::evaluation::Evaluation;
 
 /// Fingers that are kept.
 const KEPT: usize = 5;

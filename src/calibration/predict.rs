@@ -2,7 +2,7 @@
 
 use super::bench::{At, Bench, Posterior};
 use super::process::{Finger, Hyperparameters, TERMS};
-use crate::stream::stream;
+use ask_tell::stream::stream;
 use rand::{Rng, RngExt};
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use rayon::prelude::*;

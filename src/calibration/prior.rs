@@ -1,6 +1,6 @@
 //! What nobody measured in a cell, and within which bounds it lies: `priors/bench.toml`.
 
-use crate::input::{Check, InputError, read};
+use input::{Check, InputError, read};
 use serde::{Deserialize, Serialize};
 
 /// A checked file of priors.
@@ -180,7 +180,7 @@ impl Priors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::shipped::PRIORS;
+    use input::shipped::PRIORS;
 
     #[test]
     fn every_shipped_row_has_bounds_and_a_source() {

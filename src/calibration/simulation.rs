@@ -1,18 +1,18 @@
 //! Simulated windows under values of what nobody measured.
 
 use super::prior::{Parameter, Target};
-use crate::evaluation::Evaluation;
-use crate::evaluation::evaluator::{Evaluator, Specimen};
-use crate::evaluation::robustness::Plan;
-use crate::evaluation::template::{Impossible, Template};
-use crate::evaluation::tolerance::{self, Search};
-use crate::finger::Finger;
-use crate::input::robot::{Drive, Robot};
-use crate::input::space::Design;
-use crate::outcome::Outcome;
 use crate::study::Cache;
-use crate::trial::Conditions;
-use crate::units::MM;
+use input::units::MM;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::tolerance::{self, Search};
+use insertion::finger::Finger;
+use insertion::outcome::Outcome;
+use insertion::robot::{Drive, Robot};
+use insertion::space::Design;
+use insertion::trial::Conditions;
 use std::path::PathBuf;
 
 /// Starts that are tried in turn where the task's own does not insert, mm from it: a person

@@ -3,12 +3,13 @@
 use super::bench::{Bench, Observation, Simulator};
 use super::emulator::{Emulator, EmulatorError, most};
 use super::process::Place;
-use crate::evaluation::evaluator::Evaluator;
-use crate::evaluation::template::Template;
-use crate::input::experiments::{Experiment, Extent};
-use crate::input::space::{Design, GridPoint, Parameter, Space};
-use crate::optimizer::SobolSequence;
-use crate::outcome::FailureClass;
+use crate::calibration::experiments::{Experiment, Extent};
+use ask_tell::GridPoint;
+use ask_tell::SobolSequence;
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::template::Template;
+use insertion::outcome::FailureClass;
+use insertion::space::{Design, Parameter, Space};
 
 /// Most fingers of a space that are predicted; of a larger space it is a designed set.
 const MOST_FINGERS: u64 = 4000;

@@ -4,9 +4,9 @@ use super::calibrate::{Calibration, Coordinate, TaskResult};
 use super::loo::{Accuracy, LeftOut};
 use super::predict::INTERVAL;
 use super::subject::Subject;
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use crate::outcome::FailureClass;
-use crate::verify::compare::statistics::mean;
+use crate::calibration::statistics::mean;
+use insertion::outcome::FailureClass;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde_json::{Map, Value, json};
 
 /// Standard deviation and mean of a coordinate, whose prior has 1 and 0, at which it moved.

@@ -4,7 +4,7 @@ use super::bench::{Bench, Observation, Posterior, Simulator, share};
 use super::predict::{Of, Predicted, draws, predict};
 use super::process::{COORDINATES, Place};
 use super::sampler::Effort;
-use crate::stream::stream;
+use ask_tell::stream::stream;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 

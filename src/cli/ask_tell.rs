@@ -1,7 +1,7 @@
 //! `optimize ask-tell`: an optimizer on standard input and output.
 
 use super::{Failure, print};
-use crate::optimizer::ask_tell::{LONGEST_LINE, Session};
+use ask_tell::protocol::{LONGEST_LINE, Session};
 use clap::Args;
 use std::io::{self, BufRead, Read};
 

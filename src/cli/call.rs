@@ -3,14 +3,14 @@
 
 use super::setup;
 use super::{Failure, evaluate, recommended, resume, stiffness, study, summary, trial};
-use crate::input::shipped::{SPACES, Source, TASKS};
-use crate::input::space::{Parameter, Space};
-use crate::input::task::Task;
 use crate::report;
 use crate::study::{StudyRecord, evaluations_csv};
-use crate::surrogate::Prediction;
-use crate::trial::Sample;
 use clap::{Args, Parser};
+use input::shipped::{SPACES, Source, TASKS};
+use insertion::space::{Parameter, Space};
+use insertion::surrogate::Prediction;
+use insertion::task::Task;
+use insertion::trial::Sample;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -119,8 +119,7 @@ pub fn space(name: &str) -> Result<Value, Failure> {
 /// If it cannot be used.
 pub fn task_fields(source: &Source) -> Result<Value, Failure> {
     check_task(source)?;
-    let table: toml::Table =
-        crate::input::read(&source.text, &source.file).map_err(Failure::input)?;
+    let table: toml::Table = input::read(&source.text, &source.file).map_err(Failure::input)?;
     Ok(json!(table))
 }
 

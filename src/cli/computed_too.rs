@@ -4,9 +4,9 @@
 use super::Failure;
 use super::setup::{Setup, SetupArguments};
 use super::specimen::FingerArguments;
-use crate::evaluation::robustness::Plan;
-use crate::evaluation::tolerance::Search;
 use crate::study::ByRibs;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::tolerance::Search;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 

@@ -4,11 +4,11 @@ use super::Failure;
 use super::call::read;
 use super::setup::{Setup, SetupArguments};
 use super::specimen::FingerArguments;
-use crate::evaluation::tolerance::offset;
-use crate::input::shipped::Source;
-use crate::trial::{Driven, NEVER, State};
-use crate::units::MM;
 use clap::Args;
+use input::shipped::Source;
+use input::units::MM;
+use insertion::evaluation::tolerance::offset;
+use insertion::trial::{Driven, NEVER, State};
 use nalgebra::Vector3;
 
 /// Task, robot and finger.

@@ -3,14 +3,14 @@
 
 use super::Failure;
 use super::setup::Setup;
-use crate::evaluation::evaluator::Specimen;
-use crate::evaluation::tolerance::offset;
-use crate::evaluation::{Evaluation, OffsetStep, grid_mm};
-use crate::outcome::Outcome;
 use crate::report::replay::{self, Film, PairEnd};
 use crate::study::{StudyRecord, write_file, write_own_file};
-use crate::trial::{Recording, Rig};
 use clap::Args;
+use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::tolerance::offset;
+use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
+use insertion::outcome::Outcome;
+use insertion::trial::{Recording, Rig};
 use rayon::ThreadPool;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ impl FilmArguments {
         if self.record.is_none() && self.plot.is_none() {
             return Ok(None);
         }
-        let recording = rig.record(&specimen.finger, offset_mm * crate::units::MM);
+        let recording = rig.record(&specimen.finger, offset_mm * input::units::MM);
         let recording = recording.ok_or_else(|| {
             Failure::usage("--record and --plot need an engine that simulates: --engine direct")
         })?;

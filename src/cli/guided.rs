@@ -5,17 +5,17 @@ use super::progress::Progress;
 use super::session::{self, SessionArguments};
 use super::setup::Setup;
 use super::{Failure, call, resume, study, summary, unusable};
-use crate::evaluation::evaluator::Evaluate;
-use crate::evaluation::objective::Measure;
-use crate::evaluation::robustness::Plan;
-use crate::evaluation::tolerance::Search;
-use crate::input::shipped::Source;
-use crate::optimizer::Optimizer;
 use crate::study::{
     Arrived, Cache, Course, Ending, Next, Simulated, Study, StudyError, Timing, Wanted, Work,
     WorkError, now,
 };
-use crate::trial::NEVER;
+use ask_tell::Optimizer;
+use input::shipped::Source;
+use insertion::evaluation::evaluator::Evaluate;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::tolerance::Search;
+use insertion::trial::NEVER;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,12 +1,12 @@
 //! What was measured on the bench, and the bounds of what nobody measured, as commands read it.
 
 use super::Failure;
+use crate::calibration::experiments::{self, Experiment, Extent};
 use crate::calibration::prior::Priors;
 use crate::calibration::subject::whole;
-use crate::evaluation::template::Template;
-use crate::input::experiments::{self, Experiment, Extent};
-use crate::input::shipped::{Source, TASKS};
-use crate::input::space::Space;
+use input::shipped::{Source, TASKS};
+use insertion::evaluation::template::Template;
+use insertion::space::Space;
 
 /// Measurements from the bench, and the bounds of what nobody measured.
 pub struct Measured {

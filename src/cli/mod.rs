@@ -1,16 +1,11 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
 mod ask_tell;
-mod bench;
-mod bench_next;
-mod bench_optimizers;
 mod calibrate;
-mod calibrated;
+pub mod calibrated;
 pub mod call;
-mod check;
 mod compare;
 mod computed_too;
-mod cross_check;
 pub mod driven;
 mod evaluate;
 mod executor;
@@ -31,17 +26,16 @@ mod report;
 mod resume;
 mod sensitivity;
 mod session;
-mod setup;
+pub mod setup;
 mod specimen;
 mod stiffness;
 mod study;
 mod summary;
 mod task;
 mod tasks;
-mod terminal;
+pub mod terminal;
 mod trial;
 mod unusable;
-mod validate;
 mod words;
 
 pub use failure::Failure;
@@ -141,16 +135,10 @@ enum Command {
         after_help = "Example: optimize compare results/usb-gp-seed0 results/usb-sobol-seed0"
     )]
     Compare(compare::Arguments),
-    #[command(after_help = "Example: optimize check")]
-    Check(check::Arguments),
-    #[command(after_help = "Example: optimize cross-check --against mujoco --reduced")]
-    CrossCheck(cross_check::Arguments),
     #[command(
         after_help = "Example: optimize sensitivity --task usb --space codesign --svg usb.svg"
     )]
     Sensitivity(sensitivity::Arguments),
-    #[command(after_help = "Example: optimize validate --task ket8 --strides")]
-    Validate(validate::Arguments),
     #[command(
         after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
     )]
@@ -159,8 +147,6 @@ enum Command {
     Next(next::Arguments),
     #[command(after_help = "Example: optimize measure check published")]
     Measure(measure::Arguments),
-    #[command(after_help = "Example: optimize bench --repeats 8")]
-    Bench(bench::Arguments),
     #[command(after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 \
                             --out scene.xml")]
     Export(export::Arguments),
@@ -189,6 +175,10 @@ enum Command {
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     survive_size_limit();
     let words: Vec<OsString> = arguments.into_iter().collect();
+    if let Some(now) = moved(&words) {
+        say(&format!("error: this command is now `{now}` (cargo run --release -p lab -- ...)"));
+        return ExitCode::from(2);
+    }
     let cli = match Cli::try_parse_from(&words) {
         Ok(cli) => cli,
         Err(usage) if usage.use_stderr() => {
@@ -205,6 +195,20 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     done.unwrap_or_else(|failure| {
         say(&format!("error: {failure}"));
         ExitCode::from(failure.exit_code())
+    })
+}
+
+/// What a command of version 0.3.0 is called in the program `lab`; `None` of all others.
+fn moved(words: &[OsString]) -> Option<&'static str> {
+    let word = |at: usize| words.get(at).and_then(|word| word.to_str()).unwrap_or_default();
+    Some(match (word(1), word(2)) {
+        ("check", _) => "lab check",
+        ("validate", _) => "lab validate",
+        ("cross-check", _) => "lab cross-check",
+        ("bench", "optimizers") => "lab optimizers",
+        ("bench", "next") => "lab prints",
+        ("bench", _) => "lab benchmark",
+        _ => return None,
     })
 }
 
@@ -231,14 +235,10 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Stiffness(arguments)) => stiffness::run(&arguments),
         Some(Command::Finger(arguments)) => finger::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
-        Some(Command::Check(arguments)) => check::run(&arguments),
-        Some(Command::CrossCheck(arguments)) => cross_check::run(&arguments),
         Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
-        Some(Command::Validate(arguments)) => validate::run(&arguments),
         Some(Command::Calibrate(arguments)) => calibrate::run(&arguments),
         Some(Command::Next(arguments)) => next::run(&arguments),
         Some(Command::Measure(arguments)) => measure::run(&arguments),
-        Some(Command::Bench(arguments)) => bench::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::AskTell(arguments)) => ask_tell::run(&arguments),
         Some(Command::Tasks(arguments)) => tasks::run(&arguments),

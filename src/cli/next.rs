@@ -5,12 +5,12 @@ use super::setup::SetupArguments;
 use super::{Failure, print, print_json};
 use crate::calibration::bench::Posterior;
 use crate::calibration::next::{Advice, Question, advise};
+use crate::calibration::published;
 use crate::calibration::subject::Subject;
 use crate::calibration::table::design_json;
-use crate::input::published;
-use crate::input::space::Design;
-use crate::stream::stream;
+use ask_tell::stream::stream;
 use clap::{Args, ValueEnum};
+use insertion::space::Design;
 use serde_json::{Value, json};
 
 /// Joint draws per sample of the posterior.

@@ -9,11 +9,11 @@ use crate::calibration::calibrate::Calibration;
 use crate::calibration::on_bench::{by_range, on_bench};
 use crate::calibration::simulation::Simulation;
 use crate::calibration::table;
-use crate::evaluation::Evaluation;
-use crate::evaluation::objective::{Measure, Objectives};
 use crate::study::{
     BenchEffort, OnBench, Provenance, Study, StudyConfig, StudyRecord, write_own_file,
 };
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::{Measure, Objectives};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::path::PathBuf;

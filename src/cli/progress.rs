@@ -1,10 +1,10 @@
 //! Progress of a study on standard error: a bar on a terminal, lines elsewhere.
 
 use super::say;
-use crate::evaluation::objective::Goals;
-use crate::evaluation::pareto::Archive;
 use crate::study::{Recorded, Study};
+use ask_tell::pareto::Archive;
 use indicatif::{ProgressBar, ProgressStyle};
+use insertion::evaluation::objective::Goals;
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 

@@ -2,12 +2,12 @@
 
 use super::on_bench;
 use super::words::{self, merge};
-use crate::evaluation::objective::Measure;
-use crate::evaluation::robustness::firm::{Firm, REPEATS};
+use crate::calibration::order::{Order, order_on_bench};
 use crate::report::beyond_chance;
 use crate::study::{ByRibs, Recommendation, Recorded, StudyRecord};
-use crate::units::N_PER_MM;
-use crate::verify::compare::published::{Order, order_on_bench};
+use input::units::N_PER_MM;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::firm::{Firm, REPEATS};
 use serde_json::{Value, json};
 
 /// The recommended finger, what it tolerates and how firm that is, what is as good, and whether

@@ -3,10 +3,10 @@
 use super::Failure;
 use super::setup::Setup;
 use super::specimen::Chosen;
-use crate::evaluation::robustness::repeat::{Band, Bands, Repeats};
-use crate::evaluation::{Evaluation, OffsetStep};
-use crate::outcome::Outcome;
 use clap::Args;
+use insertion::evaluation::robustness::repeat::{Band, Bands, Repeats};
+use insertion::evaluation::{Evaluation, OffsetStep};
+use insertion::outcome::Outcome;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 

@@ -2,12 +2,12 @@
 
 use super::setup;
 use super::{Failure, print};
-use crate::files::{self, LARGEST_OWN};
 use crate::report::replay::PairEnd;
 use crate::report::{self, Beside, Replay, printer};
 use crate::study::{StudyRecord, write_evaluations_csv, write_own_file};
-use crate::surrogate::Model;
 use clap::Args;
+use input::files::{self, LARGEST_OWN};
+use insertion::surrogate::Model;
 use std::path::{Path, PathBuf};
 
 /// Report on a study.

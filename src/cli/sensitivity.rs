@@ -2,14 +2,14 @@
 
 use super::setup::{self, Setup, SetupArguments};
 use super::{Failure, print, print_json};
-use crate::evaluation::objective::Measure;
-use crate::evaluation::template::Impossible;
-use crate::input::shipped::UNCERTAINTIES;
 use crate::report::sensitivity as shown;
 use crate::sensitivity::factors::Factors;
 use crate::sensitivity::sobol::Sample;
 use crate::study::write_file;
 use clap::Args;
+use input::shipped::UNCERTAINTIES;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::template::Impossible;
 use rayon::prelude::*;
 use std::path::PathBuf;
 

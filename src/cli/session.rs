@@ -4,21 +4,22 @@ use super::calibrated::EffortArguments;
 use super::progress::Progress;
 use super::setup::Setup;
 use super::{Failure, export, film, on_bench, report, say, summary, unusable};
-use crate::evaluation::objective::Measure;
-use crate::evaluation::robustness::Plan;
-use crate::evaluation::tolerance::Search;
-use crate::evaluation::uncertainty::Uncertainty;
-use crate::finger::model::FingerSource;
-use crate::input::finger_file::is_shape;
-use crate::input::space::{Design, GridPoint, Parameter};
-use crate::input::stiffness::Measurement;
-use crate::optimizer::gp::DEFAULT_NOISE_FLOOR;
-use crate::optimizer::{self, Grid, Informed, Optimizer, OptimizerKind, Polished};
 use crate::study::{
     Cache, Confirmer, Ending, IfChanged, Runner, Simulated, Study, StudyConfig, StudyError,
     StudyRecord,
 };
+use ask_tell::GridPoint;
+use ask_tell::gp::DEFAULT_NOISE_FLOOR;
+use ask_tell::{self, Grid, Informed, Optimizer, OptimizerKind, Polished};
 use clap::Args;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::tolerance::Search;
+use insertion::evaluation::uncertainty::Uncertainty;
+use insertion::finger::file::is_shape;
+use insertion::finger::model::FingerSource;
+use insertion::space::{Design, Parameter};
+use insertion::stiffness::Measurement;
 use rayon::ThreadPool;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -156,7 +157,7 @@ pub fn optimizer(
     let measures = config.objective.measures().iter();
     let floors: Vec<f64> =
         measures.map(|&measure| noise_floor(measure, setup.uncertainty.as_ref())).collect();
-    let search = optimizer::build_for(kind, grid.clone(), config.seed, &floors);
+    let search = ask_tell::build_for(kind, grid.clone(), config.seed, &floors);
     let search = match measured_points(setup) {
         points if kind == OptimizerKind::Gp && !points.is_empty() => {
             let own = setup.space.parameters().len() + 1;

@@ -2,30 +2,30 @@
 
 use super::Failure;
 use super::measured::{self, Measured};
-use crate::evaluation::evaluator::Evaluator;
-use crate::evaluation::objective::Measure;
-use crate::evaluation::robustness::Plan;
-use crate::evaluation::sprung;
-use crate::evaluation::template::{Template, printable};
-use crate::evaluation::uncertainty::Uncertainty;
-use crate::finger::Finger;
-use crate::finger::computed::Touching;
-use crate::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
-use crate::input::finger_file::{FingerFile, is_shape};
-use crate::input::printed::PrintedFinger;
-use crate::input::robot::Robot;
-use crate::input::shipped::{self, FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
-use crate::input::space::{Parameter, Space};
-use crate::input::stiffness;
-use crate::input::task::{StartRule, Task};
 use crate::study::{BENCH_ROLES, FINGER, Inputs, Provenance, sha256};
-use crate::surrogate::{self, FitError, Model};
-use crate::trial::Rig;
-use crate::trial::run::RigError;
+use finray::printed::PrintedFinger;
+use input::shipped::{self, FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, Source, TASKS};
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::sprung;
+use insertion::evaluation::template::{Template, printable};
+use insertion::evaluation::uncertainty::Uncertainty;
+use insertion::finger::Finger;
+use insertion::finger::computed::Touching;
+use insertion::finger::file::{FingerFile, is_shape};
+use insertion::finger::model::{ComputedFingers, FingerModelKind, FingerSource};
+use insertion::robot::Robot;
+use insertion::space::{Parameter, Space};
+use insertion::stiffness;
+use insertion::surrogate::{self, FitError, Model};
+use insertion::task::{StartRule, Task};
+use insertion::trial::Rig;
+use insertion::trial::run::RigError;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use crate::trial::engine::EngineKind;
+pub use insertion::trial::engine::EngineKind;
 
 /// Robot used unless another is named.
 pub const DEFAULT_ROBOT: &str = "servo";

@@ -3,13 +3,13 @@
 use super::Failure;
 use super::setup::Setup;
 use super::words;
-use crate::evaluation::evaluator::{Evaluator, Specimen};
-use crate::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
-use crate::input::shown;
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use crate::surrogate::Prediction;
-use crate::units::{MM, N_PER_MM};
 use clap::Args;
+use input::shown;
+use input::units::{MM, N_PER_MM};
+use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::surrogate::Prediction;
 use serde_json::{Value, json};
 
 /// Which finger, and on what task.

@@ -4,8 +4,8 @@ use super::setup::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
 use super::{Failure, print, print_json};
 use crate::report::stiffness;
 use crate::study::write_file;
-use crate::surrogate::Model;
 use clap::Args;
+use insertion::surrogate::Model;
 use serde_json::Value;
 use std::path::PathBuf;
 

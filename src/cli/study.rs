@@ -4,11 +4,11 @@ use super::calibrated::DEFAULT_PRIORS;
 use super::session::{self, SessionArguments};
 use super::setup::{self, Setup, SetupArguments};
 use super::{Failure, measure, on_bench};
-use crate::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
-use crate::input::shipped::{PRIORS, UNCERTAINTIES};
-use crate::optimizer::OptimizerKind;
 use crate::study::{LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, read_config, study_name};
+use ask_tell::OptimizerKind;
 use clap::{Args, ValueEnum};
+use input::shipped::{PRIORS, UNCERTAINTIES};
+use insertion::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
 use std::path::{Path, PathBuf};
 
 /// Largest seed: TOML, in which studies keep theirs, has no larger whole numbers.

@@ -2,10 +2,10 @@
 
 use super::words::merge;
 use super::{Failure, on_bench, print, recommended};
-use crate::evaluation::objective::Measure;
-use crate::evaluation::robustness::firm::Firm;
 use crate::report::volume_unit;
 use crate::study::{Ending, Recorded, StudyRecord, Walked, nearest, volume};
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::firm::Firm;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -1,13 +1,13 @@
 //! `optimize tasks`: what is shipped.
 
 use super::{Failure, print, print_json};
-use crate::evaluation::uncertainty::Uncertainty;
-use crate::input::InputError;
-use crate::input::robot::Robot;
-use crate::input::shipped::{ROBOTS, SPACES, Shipped, TASKS, UNCERTAINTIES};
-use crate::input::space::Space;
-use crate::input::task::Task;
 use clap::Args;
+use input::InputError;
+use input::shipped::{ROBOTS, SPACES, Shipped, TASKS, UNCERTAINTIES};
+use insertion::evaluation::uncertainty::Uncertainty;
+use insertion::robot::Robot;
+use insertion::space::Space;
+use insertion::task::Task;
 use serde_json::json;
 
 /// List what is shipped.

@@ -1,7 +1,7 @@
 //! What is printed: standard output, standard error, and what a terminal must not see.
 
 use super::Failure;
-use crate::files::visible;
+use input::files::visible;
 use std::io::{self, Write};
 
 /// Prints to standard output; a reader that has gone away (`| head`) is no error.

@@ -6,12 +6,12 @@ use super::setup::{Setup, SetupArguments};
 use super::specimen::{Chosen, FingerArguments};
 use super::words::{self, merge, number};
 use super::{Failure, print, print_json};
-use crate::evaluation::{OffsetStep, grid_mm};
-use crate::outcome::Outcome;
 use crate::study::write_file;
-use crate::trial::{NEVER, Sample, Trial, picture};
-use crate::units::MM;
 use clap::Args;
+use input::units::MM;
+use insertion::evaluation::{OffsetStep, grid_mm};
+use insertion::outcome::Outcome;
+use insertion::trial::{NEVER, Sample, Trial, picture};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 

@@ -2,9 +2,9 @@
 
 use super::Failure;
 use super::setup::Setup;
-use crate::outcome::Outcome;
 use crate::study::{StudyRecord, write_own_file};
-use crate::trial::picture;
+use insertion::outcome::Outcome;
+use insertion::trial::picture;
 use std::path::Path;
 
 /// Picture of the nominal trial in the study's folder.

@@ -1,11 +1,11 @@
 //! What is printed of an evaluation.
 
-use crate::evaluation::objective::Measure;
-use crate::evaluation::{Evaluation, OffsetStep, grid_mm};
-use crate::outcome::Outcome;
 use crate::study::ByRibs;
-use crate::surrogate::Prediction;
-use crate::units::N_PER_MM;
+use input::units::N_PER_MM;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
+use insertion::outcome::Outcome;
+use insertion::surrogate::Prediction;
 use serde_json::Value;
 use std::fmt::Write;
 

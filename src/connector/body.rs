@@ -1,9 +1,9 @@
 //! A plug or a socket as a set of convex parts, and what can be asked of it.
 
-use crate::input::task::{Part, Plug};
-use crate::physics::shapes;
-use crate::scene::Pose;
-use crate::units::MM;
+use contact::scene::Pose;
+use contact::shapes;
+use input::units::MM;
+use insertion::task::{Part, Plug};
 use nalgebra::{Point3, Vector3};
 use parry::query;
 use parry::shape::SharedShape;
@@ -197,7 +197,7 @@ fn outline(mut points: Vec<Point3<f64>>, axis: usize) -> Vec<Point3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::task::Solid;
+    use insertion::task::Solid;
 
     fn cube(name: &str, low: [f64; 3], high: [f64; 3]) -> Part {
         let solid = Solid::Box { min: Vector3::from(low) * MM, max: Vector3::from(high) * MM };

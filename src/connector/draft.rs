@@ -2,13 +2,13 @@
 
 use super::plan::{self, PlanError};
 use super::round::{self, Hole};
-use crate::finger::Pad;
-use crate::input::finger::FingerModel;
-use crate::input::task::{
+use input::units::MM;
+use insertion::finger::Pad;
+use insertion::task::finger::FingerModel;
+use insertion::task::{
     Friction, Grip, Hold, PadTorsion, Part, Plug, Solid, StartRule, Strategy, Success, Task,
     geometry,
 };
-use crate::units::MM;
 use nalgebra::Vector3;
 use std::str::FromStr;
 

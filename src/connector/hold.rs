@@ -1,9 +1,9 @@
 //! What a pair of fingertips finds of a plug between them.
 
 use super::body::{ConvexBody, clipped, span};
-use crate::finger::{Pad, ROOF_GAP};
-use crate::input::task::Part;
-use crate::units::MM;
+use input::units::MM;
+use insertion::finger::{Pad, ROOF_GAP};
+use insertion::task::Part;
 use nalgebra::Point3;
 
 /// A surface that is this near to where it should be is there, m.
@@ -128,8 +128,8 @@ fn is_flat(part: &Part, y: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::shipped::TASKS;
-    use crate::input::task::Task;
+    use input::shipped::TASKS;
+    use insertion::task::Task;
 
     /// The grasp that the shipped files state is the one that is found in their plugs.
     #[test]

@@ -2,10 +2,10 @@
 
 use super::body::ConvexBody;
 use super::path;
-use crate::input::task::{Stage, Task};
-use crate::outcome::{FailureClass, Outcome};
-use crate::trial::Trial;
-use crate::units::{DEG, MM};
+use input::units::{DEG, MM};
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::task::{Stage, Task};
+use insertion::trial::Trial;
 
 /// What happened, in plain words, with what to try.
 pub fn explain(task: &Task, trial: &Trial) -> String {
@@ -106,7 +106,7 @@ fn searched(task: &Task, trial: &Trial) -> Vec<(String, [f64; 3])> {
     let in_search = |name: &str| {
         commanded.iter().any(|point| point.name == name && point.stage == Stage::Search)
     };
-    let lowest = |phase: &crate::trial::PhaseEnd| {
+    let lowest = |phase: &insertion::trial::PhaseEnd| {
         let corners = plug.corners().map(|p| phase.poses.plug * p);
         let edge = corners.min_by(|a, b| a.z.total_cmp(&b.z))?;
         Some((phase.name.clone(), (edge.coords / MM).into()))

@@ -1,8 +1,8 @@
 //! The search path as it is commanded: where the plug would be if nothing gave way.
 
 use super::body::ConvexBody;
-use crate::input::task::{Ending, Stage, Task};
-use crate::scene::Pose;
+use contact::scene::Pose;
+use insertion::task::{Ending, Stage, Task};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
 /// The end of one commanded move.
@@ -73,8 +73,8 @@ pub fn commanded_depth(task: &Task, waypoints: &[Waypoint]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::shipped::TASKS;
-    use crate::units::MM;
+    use input::shipped::TASKS;
+    use input::units::MM;
 
     /// usb: the lower edge over the opening's middle, touch to 0.3 mm below the top.
     #[test]

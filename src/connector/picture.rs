@@ -3,11 +3,11 @@
 use super::body::{ConvexBody, span};
 use super::path::{self, Waypoint};
 use super::seat::{Seat, Seating, section};
-use crate::finger::Pad;
-use crate::input::task::{Part, Task};
-use crate::scene::{Geom, Pose};
-use crate::trial::picture::{convex_outline, escape};
-use crate::units::MM;
+use contact::scene::{Geom, Pose};
+use input::units::MM;
+use insertion::finger::Pad;
+use insertion::task::{Part, Task};
+use insertion::trial::picture::{convex_outline, escape};
 use nalgebra::{Point2, Point3};
 use std::fmt::Write;
 

@@ -10,9 +10,9 @@ use super::body::ConvexBody;
 use super::path;
 use super::round::stands_on_cylinder;
 use super::seat::{Seat, Seating, section};
-use crate::finger::Pad;
-use crate::input::task::{Ending, Phase, Sensed, Stage, Task};
-use crate::units::{DEG, MM};
+use input::units::{DEG, MM};
+use insertion::finger::Pad;
+use insertion::task::{Ending, Phase, Sensed, Stage, Task};
 
 /// The TCP lies this far below the shoulder, m, as in the shipped tasks.
 const BELOW_SHOULDER: f64 = 3.5 * MM;

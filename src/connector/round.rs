@@ -1,6 +1,6 @@
 //! A round peg and its hole: a cylinder, and a ring of flat-sided prisms.
 
-use crate::input::task::{Part, Solid};
+use insertion::task::{Part, Solid};
 use std::f64::consts::PI;
 
 /// Share of the clearance by which the hole's diameter may be off, if so many flats do.
@@ -65,8 +65,8 @@ pub fn stands_on_cylinder(parts: &[Part]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::task::geometry;
-    use crate::units::MM;
+    use input::units::MM;
+    use insertion::task::geometry;
 
     /// The flats' ring has the volume of its rectangle less the circle, and keeps the clearance
     /// within a twentieth where the flats suffice.

@@ -1,9 +1,9 @@
 //! How deep a plug goes into its socket upright, whatever the search does.
 
 use super::body::{ConvexBody, clipped, span};
-use crate::input::task::Task;
-use crate::scene::Pose;
-use crate::units::MM;
+use contact::scene::Pose;
+use input::units::MM;
+use insertion::task::Task;
 
 /// Overlap that does not count, m: what rounding to 0.01 mm leaves.
 const TOLERANCE: f64 = 0.02 * MM;
@@ -161,7 +161,7 @@ pub fn section(plug: &ConvexBody, depth: f64) -> [[f64; 2]; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::shipped::TASKS;
+    use input::shipped::TASKS;
 
     fn seat(name: &str, change: impl Fn(String) -> String) -> (Seat, Task) {
         let file = TASKS.iter().find(|file| file.name == name).unwrap();

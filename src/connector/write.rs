@@ -1,10 +1,10 @@
 //! A task as a commented TOML file.
 
 use super::hold;
-use crate::input::task::{
+use input::units::{DEG, GRAM, MM};
+use insertion::task::{
     Ending, Hold, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
 };
-use crate::units::{DEG, GRAM, MM};
 use nalgebra::Point3;
 use std::fmt::Write;
 
@@ -206,7 +206,7 @@ fn text(value: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::shipped::TASKS;
+    use input::shipped::TASKS;
 
     /// What is written reads back as the same task, to a tenth of a micrometre.
     #[test]

@@ -1,9 +1,9 @@
 //! The command that runs a study again, option by option.
 
-use crate::evaluation::objective::Aggregate;
-use crate::input::shipped::{FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
 use crate::study::{FINGER, Inputs, Provenance, StudyRecord, input_path, sha256};
-use crate::trial::engine::EngineKind;
+use input::shipped::{FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
+use insertion::evaluation::objective::Aggregate;
+use insertion::trial::engine::EngineKind;
 use std::path::Path;
 
 /// The command, to be given in the study's folder; what is as shipped goes by its name, other

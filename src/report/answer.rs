@@ -2,13 +2,13 @@
 //! ends it, what is as good, and how much the choice matters.
 
 use super::text::outcome;
-use crate::evaluation::objective::Measure;
-use crate::evaluation::robustness::firm::{Firm, REPEATS};
-use crate::evaluation::{Evaluation, Window, grid_mm};
-use crate::outcome::Outcome;
+use crate::calibration::order::{Order, order_on_bench};
 use crate::study::{ByRibs, Recommendation, Recorded, StudyRecord};
-use crate::units::N_PER_MM;
-use crate::verify::compare::published::{Order, order_on_bench};
+use input::units::N_PER_MM;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::firm::{Firm, REPEATS};
+use insertion::evaluation::{Evaluation, Window, grid_mm};
+use insertion::outcome::Outcome;
 use maud::{Markup, html};
 
 /// A number to be seen at a glance: its name, itself, and what is to be known of it.

@@ -2,9 +2,9 @@
 
 use super::elements::table;
 use super::text::infill;
-use crate::evaluation::objective::Measure;
-use crate::outcome::FailureClass;
 use crate::study::{BenchFinger, OnBench, StudyRecord, Trust};
+use insertion::evaluation::objective::Measure;
+use insertion::outcome::FailureClass;
 use maud::{Markup, html};
 
 /// Every finger of the space as predicted, beside the page.

@@ -3,10 +3,10 @@
 use super::elements::definitions;
 use super::text::{design, outcome, stiffness, values};
 use super::{again, answer};
-use crate::evaluation::objective::Measure;
-use crate::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
-use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Recorded, StudyRecord, nearest};
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
+use insertion::outcome::{FailureClass, Outcome};
 use maud::{Markup, html};
 
 /// The section; says so if no design can be recommended.

@@ -2,8 +2,8 @@
 
 use super::convergence::best_so_far;
 use super::quartiles::Quartiles;
-use crate::evaluation::objective::{Aggregate, Constraint};
 use crate::study::{StudyConfig, StudyRecord};
+use insertion::evaluation::objective::{Aggregate, Constraint};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

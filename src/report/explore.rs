@@ -4,10 +4,10 @@
 use super::drawn::drawn;
 use super::surface;
 use super::text::outcome;
-use crate::evaluation::objective::Measure;
-use crate::input::space::label;
-use crate::outcome::Outcome;
 use crate::study::{Recorded, StudyRecord};
+use insertion::evaluation::objective::Measure;
+use insertion::outcome::Outcome;
+use insertion::space::label;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 

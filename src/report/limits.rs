@@ -1,10 +1,10 @@
 //! What the numbers of a study do not say.
 
-use crate::evaluation::objective::Measure;
-use crate::input::stiffness::Axis;
+use crate::calibration::order::{Order, OrderSource, order_on_bench, rank_correlation};
 use crate::study::StudyRecord;
-use crate::surrogate::Model;
-use crate::verify::compare::published::{Order, OrderSource, order_on_bench, rank_correlation};
+use insertion::evaluation::objective::Measure;
+use insertion::stiffness::Axis;
+use insertion::surrogate::Model;
 use maud::{Markup, html};
 
 /// Key of the remote centre, where a space has it among its parameters.

@@ -6,7 +6,7 @@ use super::{
     published, shape, windows,
 };
 use crate::study::StudyRecord;
-use crate::surrogate::Model;
+use insertion::surrogate::Model;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Pixels of a plot in the page: narrow, so that its text stays readable when

@@ -1,11 +1,10 @@
 //! The recommended finger for the printer: links to the two files that the study wrote beside the page.
 
-use crate::finger::export::title;
-use crate::finger::printed::geometry::Geometry;
-use crate::finger::printed::infill::Design;
-use crate::input::finger_file::FingerFile;
-use crate::input::shipped::FINGERS;
 use crate::study::StudyRecord;
+use finray::export::title;
+use finray::geometry::Geometry;
+use input::shipped::FINGERS;
+use insertion::finger::file::FingerFile;
 use maud::{Markup, html};
 
 /// The surface of the recommended finger, in the folder of its study.
@@ -38,5 +37,5 @@ pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
 pub fn recommended(record: &StudyRecord) -> Option<Geometry> {
     let design = record.to_print()?;
     let finger = finger_file(record)?.with(design).ok()?;
-    Geometry::new(&finger, &Design::of(design, None)).ok()
+    Geometry::new(&finger, &design.printed(None)).ok()
 }

@@ -2,9 +2,9 @@
 
 use super::elements::{definitions, table};
 use super::text;
-use crate::evaluation::Evaluation;
-use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Provenance, Recorded, StudyRecord};
+use insertion::evaluation::Evaluation;
+use insertion::outcome::{FailureClass, Outcome};
 use maud::{Markup, html};
 
 /// How the trials of the study ended.
@@ -74,7 +74,7 @@ pub(super) fn provenance(record: &StudyRecord) -> Markup {
             1 => String::new(),
             _ => format!(", segment {} (from evaluation {})", i + 1, segment.first),
         };
-        let Provenance { program, source_sha256, input_sha256, engine } = &segment.provenance;
+        let Provenance { program, source_sha256, input_sha256, engine, .. } = &segment.provenance;
         add(&format!("finger-opt{of}"), format!("{program}, sources {source_sha256}"));
         add(&format!("contact engine{of}"), engine.version.clone());
         let settings = engine.settings.iter().map(|(key, value)| format!("{key} = {value}"));

@@ -3,10 +3,10 @@
 use super::ReportError;
 use super::chart::{Area, Drawn, font, message, sheet, tick, words};
 use super::theme::{BLUE, INK, LINES, MUTED};
-use crate::evaluation::objective::Measure;
 use crate::sensitivity::Interval;
 use crate::sensitivity::factors::Factor;
 use crate::sensitivity::sobol::Indices;
+use insertion::evaluation::objective::Measure;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use serde_json::{Value, json};

@@ -3,9 +3,9 @@
 use super::elements::table;
 use super::printer::finger_file;
 use super::text::{design, stiffness};
-use crate::input::finger_file::is_shape;
-use crate::input::space::{Design, Parameter, label};
 use crate::study::{Recorded, StudyRecord};
+use insertion::finger::file::is_shape;
+use insertion::space::{Design, Parameter, label};
 use maud::{Markup, html};
 
 /// The section; `None` if the space has no such parameter.

@@ -1,7 +1,7 @@
 //! `optimize stiffness`: how well the stiffness model fits, as table, JSON and plot.
 
-use crate::input::stiffness::Axis;
-use crate::surrogate::Model;
+use insertion::stiffness::Axis;
+use insertion::surrogate::Model;
 use serde_json::{Value, json};
 use std::fmt::Write;
 

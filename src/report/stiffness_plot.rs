@@ -4,9 +4,9 @@ use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet, words};
 use super::marks::{PointMark, dashed, line, points};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
-use crate::input::stiffness::{Axis, Measurement};
-use crate::surrogate::{Estimate, Model};
-use crate::units::N_PER_MM;
+use input::units::N_PER_MM;
+use insertion::stiffness::{Axis, Measurement};
+use insertion::surrogate::{Estimate, Model};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 

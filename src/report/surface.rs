@@ -1,9 +1,9 @@
 //! A model of the first objective over the space, for the report alone: a Gaussian process
 //! through the evaluations, as the optimizer `gp` has one.
 
-use crate::input::space::{Parameter, label};
-use crate::optimizer::gp::{FitEffort, Gp, fit};
 use crate::study::StudyRecord;
+use ask_tell::gp::{FitEffort, Gp, fit};
+use insertion::space::{Parameter, label};
 use serde_json::{Value, json};
 
 /// Most evaluations that the model goes through; of more, evenly taken ones.

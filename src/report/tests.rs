@@ -1,19 +1,19 @@
 use super::*;
-use crate::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
-use crate::evaluation::tolerance::{Search, evaluate};
-use crate::evaluation::{Evaluation, Window};
-use crate::finger::Finger;
-use crate::input::printed::PrintedFinger;
-use crate::input::shipped::FINGERS;
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use crate::input::stiffness::{Axis, SHIPPED_CSV, SHIPPED_FILE, parse};
-use crate::outcome::{FailureClass, Outcome};
 use crate::study::{Provenance, Recorded, Segment, StudyConfig, Timing};
-use crate::surrogate::{Model, fit};
-use crate::trial::engine::EngineKind;
-use crate::trial::fake::FakeRig;
-use crate::trial::{Conditions, Grasped, Rig, Trial};
-use crate::units::{MM, N_PER_MM};
+use finray::printed::PrintedFinger;
+use input::shipped::FINGERS;
+use input::units::{MM, N_PER_MM};
+use insertion::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
+use insertion::evaluation::tolerance::{Search, evaluate};
+use insertion::evaluation::{Evaluation, Window};
+use insertion::finger::Finger;
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use insertion::stiffness::{Axis, SHIPPED_CSV, SHIPPED_FILE, parse};
+use insertion::surrogate::{Model, fit};
+use insertion::trial::engine::EngineKind;
+use insertion::trial::fake::FakeRig;
+use insertion::trial::{Conditions, Grasped, Rig, Trial};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
@@ -83,7 +83,7 @@ fn study() -> StudyRecord {
 fn recorded(
     index: u64,
     infill: [f64; 2],
-    stiffness: crate::surrogate::Prediction,
+    stiffness: insertion::surrogate::Prediction,
     evaluation: Evaluation,
 ) -> Recorded {
     let score = Goals::of(Measure::Range).score(&[&evaluation]);
@@ -430,10 +430,10 @@ fn the_command_that_repeats_a_study_names_all_that_decides() {
     let mut study = study();
     let text = |name: &str, text: &str| (name.to_owned(), text.to_owned());
     let inputs = crate::study::Inputs::from([
-        text("task_1", crate::input::shipped::TASKS[3].text),
+        text("task_1", input::shipped::TASKS[3].text),
         text("task_2", "mine"),
-        text("space", crate::input::shipped::SPACES[0].text),
-        text("robot", crate::input::shipped::ROBOTS[1].text),
+        text("space", input::shipped::SPACES[0].text),
+        text("robot", input::shipped::ROBOTS[1].text),
         text("stiffness", "my measurements"),
         text("finger", FINGERS[0].text),
     ]);
@@ -441,7 +441,7 @@ fn the_command_that_repeats_a_study_names_all_that_decides() {
     study.segments[0].provenance = provenance;
     study.config.tasks.push("mine".to_owned());
     study.config.aggregate = Some(Aggregate::weighted(vec![2.0, 1.0], 2).unwrap());
-    study.config.finger_model = crate::finger::model::FingerModelKind::Computed;
+    study.config.finger_model = insertion::finger::model::FingerModelKind::Computed;
     let command = again::words(&study).join(" ");
     assert_eq!(
         command,

@@ -1,10 +1,10 @@
 //! Words and numbers of reports; every number with its unit.
 
-use crate::evaluation::objective::Objectives;
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use crate::outcome::Outcome;
-use crate::surrogate::Estimate;
-use crate::units::N_PER_MM;
+use input::units::N_PER_MM;
+use insertion::evaluation::objective::Objectives;
+use insertion::outcome::Outcome;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::surrogate::Estimate;
 
 /// A stiffness with its standard deviation, N/mm.
 pub(super) fn stiffness(estimate: Estimate) -> String {

@@ -1,13 +1,13 @@
 //! What may differ between two insertions: the keys of a space, and the errors of a cell.
 
-use crate::evaluation::Evaluation;
-use crate::evaluation::evaluator::Evaluator;
-use crate::evaluation::template::{Impossible, Template};
-use crate::evaluation::tolerance::{self, Search};
-use crate::evaluation::uncertainty::{Draw, Errors};
-use crate::input::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use crate::trial::{Conditions, NEVER};
-use crate::units::{DEG, MM};
+use input::units::{DEG, MM};
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::tolerance::{self, Search};
+use insertion::evaluation::uncertainty::{Draw, Errors};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use insertion::trial::{Conditions, NEVER};
 
 /// Half the width over which a normal error is varied, in standard deviations: 95 % of it.
 const NORMAL_WIDTH_SD: f64 = 2.0;
@@ -125,8 +125,8 @@ fn cell(errors: &Errors) -> Vec<CellError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::uncertainty::Uncertainty;
-    use crate::input::shipped::{SPACES, UNCERTAINTIES};
+    use input::shipped::{SPACES, UNCERTAINTIES};
+    use insertion::evaluation::uncertainty::Uncertainty;
 
     #[test]
     fn a_space_and_a_cell_are_varied_together_and_what_is_certain_is_not() {

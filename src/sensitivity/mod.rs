@@ -6,7 +6,7 @@
 pub mod factors;
 pub mod sobol;
 
-use crate::stream::stream;
+use ask_tell::stream::stream;
 use rand::RngExt;
 
 /// Resamples of a bootstrap: enough for the ends of a 95 % interval.

@@ -5,7 +5,7 @@
 //! independent samples A and B, and for each input A with that input from B.
 
 use super::{Interval, bootstrap};
-use crate::optimizer::SobolSequence;
+use ask_tell::SobolSequence;
 
 /// Shares of the variance, without unit; estimates may leave 0 .. 1 by their error.
 #[derive(Debug, Clone, Copy, PartialEq)]

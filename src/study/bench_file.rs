@@ -3,8 +3,8 @@
 use super::fits;
 use super::on_bench::{BenchFinger, OnBench};
 use super::provenance::Provenance;
-use crate::files::{self, LARGEST_OWN};
-use crate::input::space::Space;
+use input::files::{self, LARGEST_OWN};
+use insertion::space::Space;
 use std::path::Path;
 
 /// Name of the file.

@@ -10,14 +10,13 @@
 //! that is torn or damaged fails its check and is measured and written again.
 
 use super::fits;
-use super::provenance::SOURCES;
-use super::seal::{seal, unseal};
-use crate::evaluation::Evaluation;
-use crate::files::{self, LARGEST_OWN};
-use crate::input::robot::Robot;
-use crate::trial::engine::EngineRecord;
+use super::provenance::SIMULATION_SOURCES;
+use super::seal::{seal, sha256_hex, unseal};
+use input::files::{self, LARGEST_OWN};
+use insertion::evaluation::Evaluation;
+use insertion::robot::Robot;
+use insertion::trial::engine::EngineRecord;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -53,7 +52,7 @@ impl Cache {
     pub fn new(dir: &Path, robot: &Robot, engine: &EngineRecord) -> Self {
         Cache {
             dir: dir.to_owned(),
-            context: format!("sources {SOURCES}\nengine {engine:?}\nrobot {robot:?}\n"),
+            context: format!("sources {SIMULATION_SOURCES}\nengine {engine:?}\nrobot {robot:?}\n"),
             found: AtomicU64::new(0),
             problem: Mutex::new(None),
         }
@@ -63,7 +62,7 @@ impl Cache {
     /// `Debug` must show all of them; it shows numbers so that they read back as the same bits.
     pub fn key(&self, inputs: &impl Debug) -> Key {
         let text = format!("{}inputs {inputs:?}\n", self.context);
-        Key(sha256(&text))
+        Key(sha256_hex(text.as_bytes()))
     }
 
     /// The evaluation of that name, if a whole one is there.
@@ -72,7 +71,7 @@ impl Cache {
         let (content, _) = unseal(text.strip_suffix('\n')?).ok()?;
         let entry: Entry = serde_json::from_str(&content).ok()?;
         let whole = serde_json::to_string(&entry.measured).ok()?;
-        if entry.key != key.0 || entry.measured_sha256 != sha256(&whole) {
+        if entry.key != key.0 || entry.measured_sha256 != sha256_hex(whole.as_bytes()) {
             return None;
         }
         if !fits::plausible(&entry.measured) {
@@ -109,7 +108,7 @@ impl Cache {
     }
 
     fn write(&self, key: &Key, measured: &Evaluation) -> io::Result<()> {
-        let measured_sha256 = sha256(&serde_json::to_string(measured)?);
+        let measured_sha256 = sha256_hex(serde_json::to_string(measured)?.as_bytes());
         let entry = Entry { key: key.0.clone(), measured_sha256, measured: measured.clone() };
         let text = seal(&entry, None::<&()>)?;
         let path = self.path(key);
@@ -119,18 +118,14 @@ impl Cache {
     }
 }
 
-fn sha256(text: &str) -> String {
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::tolerance::{Search, evaluate};
-    use crate::finger::Finger;
-    use crate::input::shipped::ROBOTS;
-    use crate::trial::engine::EngineKind;
-    use crate::trial::fake::FakeRig;
+    use input::shipped::ROBOTS;
+    use insertion::evaluation::tolerance::{Search, evaluate};
+    use insertion::finger::Finger;
+    use insertion::trial::engine::EngineKind;
+    use insertion::trial::fake::FakeRig;
 
     fn cache(dir: &Path) -> Cache {
         let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();

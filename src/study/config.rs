@@ -2,10 +2,10 @@
 
 use super::differences::differences;
 use super::provenance::Provenance;
-use crate::evaluation::objective::{Aggregate, Constraint, Goals, Objectives};
-use crate::finger::model::FingerModelKind;
-use crate::input::space::Space;
-use crate::optimizer::OptimizerKind;
+use ask_tell::OptimizerKind;
+use insertion::evaluation::objective::{Aggregate, Constraint, Goals, Objectives};
+use insertion::finger::model::FingerModelKind;
+use insertion::space::Space;
 use serde::{Deserialize, Serialize};
 
 /// Most evaluations of a study, and of a polish.

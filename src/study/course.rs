@@ -27,10 +27,11 @@ use super::error::StudyError;
 use super::fits;
 use super::folder::Study;
 use super::record::{Recorded, Timing};
-use crate::evaluation::evaluator::Measured;
-use crate::evaluation::objective::Goals;
-use crate::input::space::{Design, GridPoint};
-use crate::optimizer::{Observation, Optimizer, StopReason};
+use ask_tell::GridPoint;
+use ask_tell::{Observation, Optimizer, StopReason};
+use insertion::evaluation::evaluator::Measured;
+use insertion::evaluation::objective::Goals;
+use insertion::space::Design;
 use std::collections::BTreeMap;
 
 /// Why a run of a study ended.

@@ -1,6 +1,6 @@
 //! What can go wrong with a study's folder, said so that it can be mended.
 
-use crate::evaluation::template::Impossible;
+use insertion::evaluation::template::Impossible;
 use std::io;
 use std::path::{Path, PathBuf};
 

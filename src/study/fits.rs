@@ -4,10 +4,10 @@
 use super::config::StudyConfig;
 use super::error::LineError;
 use super::record::Recorded;
-use crate::evaluation::Evaluation;
-use crate::evaluation::objective::Score;
-use crate::input::space::{Design, Space};
-use crate::surrogate::Prediction;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::Score;
+use insertion::space::{Design, Space};
+use insertion::surrogate::Prediction;
 
 /// Farthest end of a window, grid steps: 100 mm, ten times what is looked at.
 const FARTHEST_STEPS: u32 = 1000;
@@ -103,9 +103,9 @@ pub fn plausible(evaluation: &Evaluation) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::tolerance::{Search, evaluate};
-    use crate::finger::Finger;
-    use crate::trial::fake::FakeRig;
+    use insertion::evaluation::tolerance::{Search, evaluate};
+    use insertion::finger::Finger;
+    use insertion::trial::fake::FakeRig;
 
     #[test]
     fn an_evaluation_is_plausible_until_a_number_is_none() {

@@ -21,12 +21,12 @@ use super::on_bench::OnBench;
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
+use super::seal::sha256_hex;
 use super::store::{FileStore, Store};
 use super::walked;
-use crate::files::{self, LARGEST_INPUT, LARGEST_OWN};
-use crate::input::control_character;
-use crate::input::finger_file::FingerFile;
-use sha2::{Digest, Sha256};
+use input::control_character;
+use input::files::{self, LARGEST_INPUT, LARGEST_OWN};
+use insertion::finger::file::FingerFile;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
@@ -49,9 +49,7 @@ pub type Inputs = BTreeMap<String, String>;
 
 /// SHA-256 of each input, in hexadecimal.
 pub fn sha256(inputs: &Inputs) -> BTreeMap<String, String> {
-    let hash = |text: &String| {
-        Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
-    };
+    let hash = |text: &String| sha256_hex(text.as_bytes());
     inputs.iter().map(|(role, text)| (role.clone(), hash(text))).collect()
 }
 

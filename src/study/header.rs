@@ -6,7 +6,7 @@ use super::error::LineError;
 use super::line::WORKER;
 use super::provenance::Segment;
 use super::seal::{seal, unseal};
-use crate::evaluation::objective::Measure;
+use insertion::evaluation::objective::Measure;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

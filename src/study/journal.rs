@@ -10,7 +10,7 @@ use super::provenance::Segment;
 use super::record::Recorded;
 use super::store::Store;
 use super::{fits, header, line};
-use crate::files::{self, LARGEST_JOURNAL};
+use input::files::{self, LARGEST_JOURNAL};
 use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

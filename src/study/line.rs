@@ -15,10 +15,10 @@ use super::error::LineError;
 use super::record::{Recorded, Timing};
 use super::seal::{seal, unseal};
 use super::time::is_timestamp;
-use crate::evaluation::Evaluation;
-use crate::evaluation::objective::Score;
-use crate::input::space::{Design, Parameter, Space};
-use crate::surrogate::Prediction;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::Score;
+use insertion::space::{Design, Parameter, Space};
+use insertion::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -2,9 +2,9 @@
 //! `bench.json`. It is found after the search, which does not know of it, and can be found again.
 
 use super::provenance::Provenance;
-use crate::evaluation::Evaluation;
-use crate::input::space::Design;
-use crate::outcome::FailureClass;
+use insertion::evaluation::Evaluation;
+use insertion::outcome::FailureClass;
+use insertion::space::Design;
 use serde::{Deserialize, Serialize};
 
 /// The prediction of a calibration for the fingers of a study.

@@ -1,12 +1,14 @@
 //! What a study's values were measured with.
 
 use super::differences::differences;
-use crate::trial::engine::{EngineKind, EngineRecord};
+use insertion::trial::engine::{EngineKind, EngineRecord};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The sources that this program was built from.
-pub const SOURCES: &str = env!("FINGER_OPT_SOURCE_SHA256");
+/// The sources of this program that decide what a study finds.
+pub const SOURCES: &str = env!("FINGER_OPT_STUDY_SHA256");
+/// Those of them that decide the evaluation of a design.
+pub const SIMULATION_SOURCES: &str = env!("FINGER_OPT_SIMULATION_SHA256");
 
 /// What computed the values, and from which inputs: values of different provenance do not
 /// belong into one study unless the user says so.
@@ -15,8 +17,12 @@ pub const SOURCES: &str = env!("FINGER_OPT_SOURCE_SHA256");
 pub struct Provenance {
     /// Version of this program.
     pub program: String,
-    /// SHA-256 of the program's sources, in hexadecimal.
+    /// SHA-256 of the sources that decide what a study finds, in hexadecimal; up to version 0.3.0 of
+    /// all sources.
     pub source_sha256: String,
+    /// SHA-256 of those of them that decide the evaluation of a design; `None` up to version 0.3.0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub simulation_sha256: Option<String>,
     /// SHA-256 of each input file by its role (`task_1` and so on, `space`, `robot`,
     /// `stiffness`; `uncertainty`, the `finger` of computed ones, `measurements` and `priors` where
     /// there is one), in hexadecimal.
@@ -45,6 +51,7 @@ impl Provenance {
         Provenance {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             source_sha256: SOURCES.to_owned(),
+            simulation_sha256: Some(SIMULATION_SOURCES.to_owned()),
             input_sha256,
             engine: engine.record(),
         }
@@ -54,6 +61,9 @@ impl Provenance {
     pub fn simulates_like(&self, other: &Provenance) -> bool {
         let simulated = |provenance: &Provenance| {
             let mut provenance = provenance.clone();
+            if provenance.simulation_sha256.is_some() {
+                provenance.source_sha256.clear();
+            }
             provenance.input_sha256.retain(|role, _| !BENCH_ROLES.contains(&&**role));
             provenance
         };

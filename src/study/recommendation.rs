@@ -2,9 +2,9 @@
 
 use super::record::{ByRibs, Recorded, StudyRecord};
 use super::rule::Rule;
-use crate::evaluation::objective::Measure;
-use crate::evaluation::robustness::firm::Firm;
-use crate::outcome::Outcome;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::firm::Firm;
+use insertion::outcome::Outcome;
 
 /// The design of a study with one objective that is recommended.
 #[derive(Debug, Clone, PartialEq)]

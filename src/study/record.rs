@@ -3,13 +3,13 @@
 use super::StudyConfig;
 use super::on_bench::OnBench;
 use super::provenance::Segment;
-use crate::evaluation::Evaluation;
-use crate::evaluation::objective::{Goals, Measure, Score};
-use crate::evaluation::pareto;
-use crate::evaluation::robustness::firm::Firm;
-use crate::input::finger_file::FingerFile;
-use crate::input::space::Design;
-use crate::surrogate::Prediction;
+use ask_tell::pareto;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::{Goals, Measure, Score};
+use insertion::evaluation::robustness::firm::Firm;
+use insertion::finger::file::FingerFile;
+use insertion::space::Design;
+use insertion::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -10,9 +10,9 @@
 //! 6. Then the earlier one.
 
 use super::record::Recorded;
-use crate::evaluation::objective::{Goals, Measure};
-use crate::evaluation::{Evaluation, Window};
-use crate::input::space::{Design, Space};
+use insertion::evaluation::objective::{Goals, Measure};
+use insertion::evaluation::{Evaluation, Window};
+use insertion::space::{Design, Space};
 use std::cmp::Ordering;
 
 /// What a study asks for, and where its designs lie.
@@ -83,7 +83,7 @@ impl Rule<'_> {
     /// Distance from the nearest bound of a parameter, as a share of its span; 0 to 0.5. A
     /// parameter of one value has no bounds to be near to.
     fn edge_distance(&self, design: &Design) -> f64 {
-        let of = |parameter: &crate::input::space::Parameter| {
+        let of = |parameter: &insertion::space::Parameter| {
             let (value, span) = (design.get(&parameter.key)?, parameter.high - parameter.low);
             (span > 0.0).then(|| (value - parameter.low).min(parameter.high - value) / span)
         };
@@ -105,12 +105,12 @@ impl Standing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::objective::Constraint;
-    use crate::evaluation::tolerance::{Search, evaluate};
-    use crate::finger::Finger;
-    use crate::input::shipped::SPACES;
-    use crate::surrogate::Prediction;
-    use crate::trial::fake::FakeRig;
+    use input::shipped::SPACES;
+    use insertion::evaluation::objective::Constraint;
+    use insertion::evaluation::tolerance::{Search, evaluate};
+    use insertion::finger::Finger;
+    use insertion::surrogate::Prediction;
+    use insertion::trial::fake::FakeRig;
 
     /// A design with a window, mm, and a force, N.
     fn recorded(index: u64, density: f64, window: [i32; 2], force_n: f64) -> Recorded {

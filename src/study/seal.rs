@@ -55,6 +55,10 @@ pub fn unseal(line: &str) -> Result<(String, String), LineError> {
 }
 
 fn check(content: &str) -> String {
-    let digest = Sha256::digest(content.as_bytes());
-    digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+    sha256_hex(content.as_bytes())[..16].to_owned()
+}
+
+/// SHA-256 in hexadecimal.
+pub fn sha256_hex(bytes: &[u8]) -> String {
+    format!("{:x}", Sha256::digest(bytes))
 }

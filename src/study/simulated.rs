@@ -1,13 +1,13 @@
 //! What a study measures a design with: the evaluator, a cache, and a flag that stops it.
 
 use super::cache::{Cache, Key};
-use crate::evaluation::Evaluation;
-use crate::evaluation::evaluator::{Evaluate, Evaluator, Measured, Specimen};
-use crate::evaluation::robustness::Plan;
-use crate::evaluation::template::Impossible;
-use crate::evaluation::tolerance::Search;
-use crate::input::space::Design;
-use crate::trial::run::RigError;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::evaluator::{Evaluate, Evaluator, Measured, Specimen};
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::template::Impossible;
+use insertion::evaluation::tolerance::Search;
+use insertion::space::Design;
+use insertion::trial::run::RigError;
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,6 +1,6 @@
 //! Where a journal's bytes are kept: a file, or in tests one that fails on purpose.
 
-use crate::files::{self, LARGEST_JOURNAL};
+use input::files::{self, LARGEST_JOURNAL};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};

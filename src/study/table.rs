@@ -4,7 +4,7 @@
 use super::error::StudyError;
 use super::folder::write_own_file;
 use super::record::{Recorded, StudyRecord};
-use crate::evaluation::objective::Score;
+use insertion::evaluation::objective::Score;
 use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;

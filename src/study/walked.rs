@@ -5,7 +5,7 @@
 //! hang on a corner that catches or not. So before one is recommended
 //!
 //! 1. the ends of the first nine designs, by the [`Rule`] on what the search found, are
-//!    repeated with friction, start and step varied ([`firm`](crate::evaluation::robustness::firm));
+//!    repeated with friction, start and step varied ([`firm`](insertion::evaluation::robustness::firm));
 //! 2. the first three of these, by the rule on their firm windows, are walked; where that gives
 //!    another window, its ends are repeated, too.
 //!
@@ -19,9 +19,9 @@ use super::fits;
 use super::provenance::Provenance;
 use super::record::{ByRibs, Recorded, Walked};
 use super::rule::{Rule, Standing};
-use crate::evaluation::robustness::firm::Firm;
-use crate::evaluation::{Evaluation, Window};
-use crate::files::{self, LARGEST_OWN};
+use input::files::{self, LARGEST_OWN};
+use insertion::evaluation::robustness::firm::Firm;
+use insertion::evaluation::{Evaluation, Window};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -11,16 +11,15 @@ use super::course::{Arrived, Wanted};
 use super::folder::Inputs;
 use super::provenance::Provenance;
 use super::record::Timing;
-use super::seal::{seal, unseal};
+use super::seal::{seal, sha256_hex, unseal};
 use super::time::is_timestamp;
-use crate::evaluation::Evaluation;
-use crate::evaluation::evaluator::Measured;
-use crate::input::space::Design;
-use crate::outcome::Outcome;
-use crate::surrogate::Prediction;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::evaluator::Measured;
+use insertion::outcome::Outcome;
+use insertion::space::Design;
+use insertion::surrogate::Prediction;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 /// A design, and all that decides what is measured of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -96,10 +95,6 @@ pub enum WorkError {
     },
 }
 
-fn hexadecimal(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 /// Contents and times of a sealed line; `again` writes them anew, and must give the same bytes.
 fn read<T: DeserializeOwned, U: DeserializeOwned>(
     bytes: &[u8],
@@ -154,10 +149,10 @@ impl Work {
     /// If it may not; the text says in what they differ.
     pub fn admit(&self, own: &Provenance, worker: &str) -> Result<(), WorkError> {
         match self.provenance.differences(own) {
-            None => Ok(()),
-            Some(differences) => {
+            Some(differences) if !self.provenance.simulates_like(own) => {
                 Err(WorkError::OtherSources { worker: worker.to_owned(), differences })
             }
+            _ => Ok(()),
         }
     }
 
@@ -172,7 +167,7 @@ impl Work {
         worker: &str,
     ) -> Result<Vec<u8>, WorkError> {
         let done = Done {
-            work_sha256: hexadecimal(&self.encode()?),
+            work_sha256: sha256_hex(&self.encode()?),
             source_sha256: self.provenance.source_sha256.clone(),
             worker: worker.to_owned(),
             design: self.design.clone(),
@@ -218,7 +213,7 @@ impl Work {
             format!("it was measured by the sources {}, not by {sources}", done.source_sha256)
         } else if done.design != self.design {
             format!("it is of the design {}, not of {}", done.design, self.design)
-        } else if done.work_sha256 != hexadecimal(&self.encode()?) {
+        } else if done.work_sha256 != sha256_hex(&self.encode()?) {
             "it is of another work".to_owned()
         } else if json(&done.stiffness) != json(stiffness) {
             "its stiffness is not the one that the study's model predicts".to_owned()

@@ -1,53 +1,19 @@
 //! Runs the real binary on the fake engine.
 #![allow(dead_code, reason = "each test file uses its own part of this")]
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+mod ran;
+
+pub use ran::{Ran, read, run};
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
-
-/// What a finished command left.
-pub struct Ran {
-    pub code: Option<i32>,
-    pub stdout: String,
-    pub stderr: String,
-}
-
-impl Ran {
-    /// Fails unless the exit code is this and standard error holds all of `parts`.
-    pub fn fails(&self, code: i32, parts: &[&str]) {
-        assert_eq!(self.code, Some(code), "{}{}", self.stdout, self.stderr);
-        for part in parts {
-            assert!(self.stderr.contains(part), "`{part}` is not in: {}", self.stderr);
-        }
-    }
-
-    /// Fails unless the command succeeded; gives its standard output.
-    pub fn succeeds(&self) -> &str {
-        assert_eq!(self.code, Some(0), "{}{}", self.stdout, self.stderr);
-        &self.stdout
-    }
-
-    /// Standard output as JSON.
-    pub fn json(&self) -> serde_json::Value {
-        serde_json::from_str(self.succeeds()).expect("JSON on standard output")
-    }
-}
 
 /// The binary with these arguments, not yet started.
 pub fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_optimize"));
     command.args(arguments).stdin(Stdio::null());
     command
-}
-
-/// Runs a command to its end.
-pub fn run(command: &mut Command) -> Ran {
-    let Output { status, stdout, stderr } = command.output().expect("the command starts");
-    Ran {
-        code: status.code(),
-        stdout: String::from_utf8(stdout).expect("UTF-8"),
-        stderr: String::from_utf8(stderr).expect("UTF-8"),
-    }
 }
 
 /// Runs the binary to its end.
@@ -93,11 +59,6 @@ impl Studies {
     pub fn journal(&self, name: &str) -> String {
         finger_opt::study::strip_times(&read(&self.dir(name).join("journal.jsonl")))
     }
-}
-
-/// A text file that must be there.
-pub fn read(path: &Path) -> String {
-    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 /// A journal whose second line has a check that fits again.

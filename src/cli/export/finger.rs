@@ -2,15 +2,15 @@
 
 use crate::cli::setup::find;
 use crate::cli::{Failure, print};
-use crate::finger::export::{self, drawing, dxf, prism::Prism, sheet, slicer, stl, three_mf};
-use crate::finger::printed::geometry::Geometry;
-use crate::finger::printed::infill;
-use crate::finger::printed::mechanics;
-use crate::input::finger_file::FingerFile;
-use crate::input::shipped::FINGERS;
-use crate::input::space::Design;
 use crate::study::{StudyRecord, write_file};
 use clap::{Args, ValueEnum};
+use finray::export::prism::Prism;
+use finray::export::{self, drawing, dxf, sheet, slicer, stl, three_mf};
+use finray::geometry::Geometry;
+use finray::mechanics;
+use input::shipped::FINGERS;
+use insertion::finger::file::FingerFile;
+use insertion::space::Design;
 use std::path::{Path, PathBuf};
 
 /// A finger for the printer: the best of a study, or of an infill
@@ -103,7 +103,7 @@ fn geometry(arguments: &Arguments) -> Result<Geometry, Failure> {
         }
     };
     let finger = file.with(&design).map_err(Failure::input)?;
-    let infill = infill::Design::of(&design, arguments.phase_mm);
+    let infill = design.printed(arguments.phase_mm);
     Geometry::new(&finger, &infill).map_err(Failure::input)
 }
 

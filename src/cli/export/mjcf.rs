@@ -3,11 +3,11 @@
 use crate::cli::setup::{Setup, SetupArguments};
 use crate::cli::specimen::FingerArguments;
 use crate::cli::{Failure, print};
-use crate::evaluation::evaluator::Specimen;
-use crate::physics::mjcf::{self, MjcfSettings};
 use crate::study::write_file;
-use crate::trial::cell;
 use clap::Args;
+use contact::mjcf::{self, MjcfSettings};
+use insertion::evaluation::evaluator::Specimen;
+use insertion::trial::cell;
 use std::path::PathBuf;
 
 /// The scene of a trial as MJCF, the model format of MuJoCo and its viewer

@@ -1,11 +1,11 @@
 //! The recommended finger of a study for the printer, written into its folder when it ends.
 
 use crate::cli::Failure;
-use crate::finger::export::prism::Prism;
-use crate::finger::export::{sheet, stl, title};
-use crate::finger::printed::mechanics;
 use crate::report::printer::{SHEET, SURFACE, recommended};
 use crate::study::{StudyRecord, write_own_file};
+use finray::export::prism::Prism;
+use finray::export::{sheet, stl, title};
+use finray::mechanics;
 use std::path::Path;
 
 /// Writes surface and sheet; nothing if nothing is recommended or its finger cannot be printed.

@@ -1,11 +1,11 @@
 //! `optimize measure add`.
 
 use super::task_name;
+use crate::calibration::experiments::{COLUMNS, Column, NOT_MEASURABLE, appended, parse};
 use crate::cli::{Failure, print, say};
-use crate::input::experiments::{COLUMNS, Column, NOT_MEASURABLE, appended, parse};
-use crate::input::shipped::MEASUREMENTS;
 use crate::study::write_file;
 use clap::Args;
+use input::shipped::MEASUREMENTS;
 use std::io::{self, BufRead};
 use std::path::Path;
 

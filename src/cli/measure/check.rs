@@ -1,8 +1,8 @@
 //! `optimize measure check`.
 
 use super::{read, task_name};
+use crate::calibration::experiments::{Experiment, Extent};
 use crate::cli::{Failure, print, print_json};
-use crate::input::experiments::{Experiment, Extent};
 use clap::Args;
 use serde_json::json;
 use std::collections::BTreeMap;

@@ -5,10 +5,10 @@ mod check;
 
 use super::Failure;
 use super::{measured, setup};
-use crate::input::experiments::Experiment;
-use crate::input::shipped::{self, MEASUREMENTS, Source, TASKS};
-use crate::input::task::Task;
+use crate::calibration::experiments::Experiment;
 use clap::{Args, Subcommand};
+use input::shipped::{self, MEASUREMENTS, Source, TASKS};
+use insertion::task::Task;
 
 /// Add measurements from the bench to a file, or check such a file.
 ///

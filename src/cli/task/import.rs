@@ -8,11 +8,11 @@ use crate::connector::mesh::import::{
 };
 use crate::connector::mesh::{Surface, read};
 use crate::connector::write::{self, Notes};
-use crate::input::shipped::{Source, TASKS};
-use crate::input::task::Task;
 use crate::study::write_file;
-use crate::units::MM;
 use clap::{Args, ValueEnum};
+use input::shipped::{Source, TASKS};
+use input::units::MM;
+use insertion::task::Task;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -119,7 +119,7 @@ fn mesh(path: &Path, unit: Unit) -> Result<Mesh, Failure> {
     let unreadable =
         |error: std::io::Error| Failure::usage(format!("{file}: cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;
-    let bytes = crate::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
+    let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
     let triangles = read(&bytes, &file).map_err(Failure::input)?;
     let surface = Surface::new(&triangles, unit.metres(), &file).map_err(Failure::input)?;
     Ok(Mesh { file, surface })

@@ -6,11 +6,11 @@ mod new;
 mod show;
 
 use super::Failure;
-use crate::finger::Finger;
-use crate::input::shipped::STIFFNESS;
-use crate::input::stiffness;
-use crate::verify::compare::three;
+use crate::calibration::published::three;
 use clap::{Args, Subcommand};
+use input::shipped::STIFFNESS;
+use insertion::finger::Finger;
+use insertion::stiffness;
 
 /// Make, show and check a task
 #[derive(Debug, Args)]

@@ -6,11 +6,11 @@ use super::check;
 use crate::connector::draft::{DENSITY, Dimensions, Size, draft};
 use crate::connector::round::Hole;
 use crate::connector::write::{self, Notes};
-use crate::input::shipped::{Source, TASKS};
-use crate::input::task::Task;
 use crate::study::write_file;
-use crate::units::MM;
 use clap::Args;
+use input::shipped::{Source, TASKS};
+use input::units::MM;
+use insertion::task::Task;
 use std::path::PathBuf;
 
 /// Dimensions of the example that is written if none are given: a USB-C plug.

@@ -2,8 +2,8 @@
 
 use super::super::setup::find;
 use super::super::{Failure, print};
-use crate::input::shipped::TASKS;
 use clap::Args;
+use input::shipped::TASKS;
 
 /// Print a shipped task file
 #[derive(Debug, Args)]

@@ -2,7 +2,7 @@
 
 use super::{Case, Problem, mm};
 use crate::connector::hold::{Held, SEAM, find, held};
-use crate::units::MM;
+use input::units::MM;
 
 /// Least height of a pad that must press a face, m.
 const LEAST_COVER: f64 = 1.0 * MM;

@@ -2,8 +2,8 @@
 
 use super::{Case, Problem, mm, part_key};
 use crate::connector::body::span;
-use crate::input::task::Ending;
-use crate::units::MM;
+use input::units::MM;
+use insertion::task::Ending;
 use nalgebra::Vector3;
 
 /// Units that are mistaken for millimetres, and how many millimetres they are.

@@ -8,9 +8,9 @@ mod strategy;
 
 use super::body::ConvexBody;
 use super::seat::{Seat, Seating};
-use crate::input::InputError;
-use crate::input::task::Task;
-use crate::units::MM;
+use input::InputError;
+use input::units::MM;
+use insertion::task::Task;
 use serde::Serialize;
 
 /// Something in a task file that cannot work.
@@ -90,8 +90,8 @@ fn part_key(body: &str, name: &str, field: &str) -> String {
 }
 
 /// The field of a part that has its extent along an axis.
-fn field(solid: &crate::input::task::Solid, axis: usize) -> &'static str {
-    use crate::input::task::Solid;
+fn field(solid: &insertion::task::Solid, axis: usize) -> &'static str {
+    use insertion::task::Solid;
     match solid {
         Solid::Box { .. } => ["x_mm", "y_mm", "z_mm"][axis],
         Solid::Cylinder { .. } => ["diameter_mm", "diameter_mm", "z_mm"][axis],

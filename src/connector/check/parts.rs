@@ -3,8 +3,8 @@
 use super::{Case, Problem, field, mm, part_key};
 use crate::connector::body::{ConvexBody, span};
 use crate::connector::hold::SEAM;
-use crate::input::task::{Part, geometry};
-use crate::units::{GRAM, MM};
+use input::units::{GRAM, MM};
+use insertion::task::{Part, geometry};
 
 /// Parts that lie in one another by more than this, m, are not only joined.
 const OVERLAP: f64 = 0.5 * MM;

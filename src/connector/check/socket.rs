@@ -3,7 +3,7 @@
 use super::{Case, Problem, field, mm, pair, part_key};
 use crate::connector::body::{clipped, span};
 use crate::connector::seat::{Seat, section};
-use crate::units::MM;
+use input::units::MM;
 use nalgebra::Point3;
 
 /// How far below the top the walls are looked for, m.
@@ -114,7 +114,7 @@ fn wide(case: &Case, seat: &Seat, axis: usize) -> Option<Problem> {
     if to - from <= high - low || seat.depth > case.task.success.depth / 2.0 {
         return None;
     }
-    let width = |part: &crate::input::task::Part| {
+    let width = |part: &insertion::task::Part| {
         let below = clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]);
         let [from, to] = span(below.iter().map(|p| p[axis]));
         to - from

@@ -4,9 +4,9 @@ use super::{Case, Problem, mm, pair};
 use crate::connector::body::span;
 use crate::connector::path::{self, Waypoint};
 use crate::connector::seat::section;
-use crate::input::task::{Ending, Phase, Stage};
-use crate::scene::Pose;
-use crate::units::MM;
+use contact::scene::Pose;
+use input::units::MM;
+use insertion::task::{Ending, Phase, Stage};
 use nalgebra::Vector3;
 
 /// Overlap that is rounding, m.

@@ -3,7 +3,7 @@
 //! every height.
 
 use super::surface::Surface;
-use crate::units::MM;
+use input::units::MM;
 use nalgebra::{Point2, Point3};
 use spade::{ConstrainedDelaunayTriangulation, Point2 as Place, Triangulation};
 use std::collections::BTreeMap;

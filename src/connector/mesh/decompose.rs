@@ -2,9 +2,9 @@
 
 use super::surface::Surface;
 use super::{cut, intrusion, merge};
-use crate::input::task::{Part, Solid, geometry};
-use crate::physics::shapes;
-use crate::units::MM;
+use contact::shapes;
+use input::units::MM;
+use insertion::task::{Part, Solid, geometry};
 use nalgebra::Point3;
 use parry::transformation::vhacd::{VHACD, VHACDParameters};
 use rapier3d_f64::parry;

@@ -8,8 +8,8 @@ use super::{MeshError, cut};
 use crate::connector::body::{ConvexBody, span};
 use crate::connector::seat::{Seating, section};
 use crate::connector::{draft, hold, plan};
-use crate::input::task::{Part, Task, geometry};
-use crate::units::MM;
+use input::units::MM;
+use insertion::task::{Part, Task, geometry};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// How far below the top the opening is looked at, m: as in the check of the walls.
@@ -118,7 +118,7 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     task.opening = opening;
     let task = match request.like {
         Some(like) => Task {
-            plug: crate::input::task::Plug {
+            plug: insertion::task::Plug {
                 mass: like.plug.mass,
                 parts: task.plug.parts,
                 latch: None,
@@ -166,7 +166,7 @@ fn file_name(path: &str) -> String {
 }
 
 fn parts(body: &str, decomposed: &Decomposed) -> Vec<Part> {
-    let part = |(i, solid): (usize, &crate::input::task::Solid)| Part {
+    let part = |(i, solid): (usize, &insertion::task::Solid)| Part {
         name: format!("{body} {}", i + 1),
         solid: solid.clone(),
         friction: None,

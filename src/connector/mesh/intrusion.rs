@@ -1,9 +1,9 @@
 //! How far convex parts reach beyond the surface that they stand for.
 
 use super::surface::Surface;
-use crate::input::task::{Part, geometry};
-use crate::physics::shapes;
-use crate::units::MM;
+use contact::shapes;
+use input::units::MM;
+use insertion::task::{Part, geometry};
 use nalgebra::Point3;
 use parry::query::PointQuery;
 use parry::shape::{TriMesh, TriMeshFlags};

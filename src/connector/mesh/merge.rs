@@ -2,8 +2,8 @@
 
 use super::cut::Piece;
 use crate::connector::body::span;
-use crate::input::task::{Solid, geometry};
-use crate::units::MM;
+use input::units::MM;
+use insertion::task::{Solid, geometry};
 use nalgebra::{Point3, Vector3};
 
 /// Two volumes that differ by less than this share are one.

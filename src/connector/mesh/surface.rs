@@ -2,8 +2,8 @@
 
 use super::MeshError;
 use super::read::Triangle;
-use crate::input::task::geometry::surface_moments;
-use crate::units::MM;
+use input::units::MM;
+use insertion::task::geometry::surface_moments;
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
 

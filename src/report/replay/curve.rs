@@ -1,11 +1,11 @@
 //! Force against depth of a trial.
 
 use super::Film;
-use crate::outcome::Outcome;
 use crate::report::ReportError;
 use crate::report::chart::{Area, AxisOf, Drawn, around, axes, legend, sheet};
 use crate::report::marks::{PointMark, line, points};
 use crate::report::theme::{BLUE, MUTED, RED};
+use insertion::outcome::Outcome;
 use plotters::prelude::{Color, SeriesLabelPosition};
 
 /// Force of the socket on the plug against the depth of its tip, from the search on, as an SVG.
@@ -26,7 +26,7 @@ fn draw(area: &Area<'_>, film: &Film) -> Drawn {
         .filter(|frame| frame.time_s >= from)
         .map(|frame| (frame.depth_mm(), frame.force.norm()))
         .collect();
-    let needed = film.task.success.depth / crate::units::MM;
+    let needed = film.task.success.depth / input::units::MM;
     let x = AxisOf {
         label: "depth of the plug's tip below the socket's top (mm)",
         range: around(path.iter().map(|p| p.0).chain([needed]), 0.06),

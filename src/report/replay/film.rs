@@ -1,11 +1,11 @@
 //! A film as JSON for the page: mm, s, N.
 
 use super::Film;
-use crate::outcome::Outcome;
-use crate::physics::{ContactPoint, surface};
-use crate::scene::{Geom, Pose};
-use crate::trial::record::Frame;
-use crate::units::MM;
+use contact::scene::{Geom, Pose};
+use contact::{ContactPoint, surface};
+use input::units::MM;
+use insertion::outcome::Outcome;
+use insertion::trial::record::Frame;
 use serde_json::{Value, json};
 
 /// Time between two frames of a page, s, unless there would be too many.

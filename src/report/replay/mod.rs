@@ -7,9 +7,9 @@ mod table;
 pub use curve::svg as curve_svg;
 pub use table::csv;
 
-use crate::finger::Pad;
-use crate::input::task::Task;
-use crate::trial::Recording;
+use insertion::finger::Pad;
+use insertion::task::Task;
+use insertion::trial::Recording;
 use maud::{DOCTYPE, PreEscaped, html};
 
 /// A recorded trial of a task, and what it is called.

@@ -1,7 +1,7 @@
 //! A recording as a table: one line each millisecond, units in the header.
 
-use crate::trial::Recording;
-use crate::units::MM;
+use input::units::MM;
+use insertion::trial::Recording;
 use std::fmt::Write;
 
 /// Columns of the table.

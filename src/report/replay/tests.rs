@@ -1,14 +1,14 @@
 //! Films of made-up recordings: what a page, a table and a glTF file hold.
 
 use super::*;
-use crate::input::shipped::TASKS;
-use crate::input::task::Stage;
-use crate::outcome::{FailureClass, Outcome};
-use crate::physics::ContactPoint;
-use crate::scene::Pose;
-use crate::trial::record::Frame;
-use crate::trial::{PhaseEnd, Poses, Trial};
-use crate::units::MM;
+use contact::ContactPoint;
+use contact::scene::Pose;
+use input::shipped::TASKS;
+use input::units::MM;
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::task::Stage;
+use insertion::trial::record::Frame;
+use insertion::trial::{PhaseEnd, Poses, Trial};
 use nalgebra::{Point3, Vector3};
 
 pub fn task() -> Task {

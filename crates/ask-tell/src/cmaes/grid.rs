@@ -1,0 +1,197 @@
+//! CMA-ES on a grid.
+
+use super::core::Solution;
+use super::restarts::{Restarts, StartBox, Strategy};
+use super::stop::Tolerances;
+use crate::GridPoint;
+use crate::{Grid, Observation, Optimizer, Proposed, StopReason};
+use std::collections::BTreeMap;
+
+/// Initial step size in units of the cube's edge (the tutorial advises 0.3 of the range).
+const SIGMA: f64 = 0.3;
+/// Least standard deviation of an axis, in grid steps: one candidate in ten leaves the level
+/// of the mean along that axis.
+const MIN_STD_STEPS: f64 = 0.3;
+/// Generations without a new point after which the run is restarted.
+const BARREN_GENERATIONS: u32 = 8;
+/// Restarts without a new point after which an unseen point is taken instead.
+const BARREN_RESTARTS: u32 = 3;
+/// Draws for one place of a batch that the generation has no candidate for.
+const EXTRA_DRAWS: u32 = 50;
+
+/// BIPOP-CMA-ES over a grid. **Maximises**: it minimises the negated values.
+///
+/// - *Bounds*: the search space R^n is folded onto the unit cube by reflection at its faces
+///   (`x -> |x - 2 round(x / 2)|`), so no candidate is infeasible and a best point on a face
+///   is an ordinary minimum of the folded function. Axes with one level are left out.
+/// - *Steps*: the folded candidate is snapped to the nearest grid point. A standard deviation
+///   never falls below 0.3 steps of its axis.
+/// - *Duplicates* are answered from memory. Eight generations that bring nothing new end
+///   the run; three runs that bring nothing new make way for one unseen point.
+/// - *No value* (`None`, NaN, infinite) ranks behind every value.
+/// - *Batches* that end within a generation enlarge it: the distribution is updated with all its
+///   candidates and the constants of its true size.
+#[derive(Debug, Clone)]
+pub struct CmaEsOptimizer {
+    proposed: Proposed,
+    restarts: Restarts,
+    generation: Vec<Candidate>,
+    /// Negated values; infinite for points without one.
+    values: BTreeMap<GridPoint, f64>,
+    /// Whether the present generation proposed a new point.
+    fruitful: bool,
+    barren_generations: u32,
+    barren_restarts: u32,
+}
+
+#[derive(Debug, Clone)]
+struct Candidate {
+    x: Vec<f64>,
+    point: GridPoint,
+}
+
+impl CmaEsOptimizer {
+    /// CMA-ES over `grid`.
+    pub fn new(grid: Grid, seed: u64) -> Self {
+        let free = grid.free_axes();
+        let step = |&i: &usize| MIN_STD_STEPS / f64::from(grid.levels()[i] - 1);
+        let start = StartBox {
+            low: vec![0.0; free.len()],
+            high: vec![1.0; free.len()],
+            sigma: SIGMA,
+            min_std: free.iter().map(step).collect(),
+            active: true,
+            max_lambda: (grid.size() / 10).clamp(8, 512) as usize,
+            // On a grid equal values are common and no sign of convergence.
+            tolerances: Tolerances {
+                fun: 0.0,
+                fun_hist: 0.0,
+                x: 0.0,
+                x_up: 1e2,
+                max_generations: None,
+            },
+        };
+        CmaEsOptimizer {
+            restarts: Restarts::new(Strategy::Bipop, start, seed),
+            proposed: Proposed::new(grid, seed),
+            generation: Vec::new(),
+            values: BTreeMap::new(),
+            fruitful: false,
+            barren_generations: 0,
+            barren_restarts: 0,
+        }
+    }
+
+    fn draw(&mut self) -> Candidate {
+        let x = self.restarts.sample();
+        let point = self.proposed.grid().folded(&x);
+        Candidate { x, point }
+    }
+
+    /// The next unseen candidate of the search, or `None` if it has none to offer.
+    fn next(&mut self) -> Option<GridPoint> {
+        let lambda = |s: &Self| s.restarts.current().parameters().lambda;
+        let mut extra = 0;
+        while self.barren_restarts < BARREN_RESTARTS && extra < EXTRA_DRAWS {
+            let full = self.generation.len() >= lambda(self);
+            if full && self.generation.iter().all(|c| self.values.contains_key(&c.point)) {
+                self.finish_generation();
+                continue;
+            }
+            let candidate = self.draw();
+            let new = self.proposed.insert(&candidate.point);
+            // A full generation that waits for values grows by new points only.
+            if new || !full {
+                self.generation.push(candidate.clone());
+            }
+            if new {
+                self.fruitful = true;
+                return Some(candidate.point);
+            }
+            extra += u32::from(full);
+        }
+        None
+    }
+
+    fn finish_generation(&mut self) {
+        let solution = |c: Candidate| {
+            let value = self.values.get(&c.point).copied().unwrap_or(f64::INFINITY);
+            Solution { x: c.x, value }
+        };
+        let told: Vec<Solution> =
+            std::mem::take(&mut self.generation).into_iter().map(solution).collect();
+        self.restarts.tell(&told);
+        if std::mem::take(&mut self.fruitful) {
+            self.barren_generations = 0;
+            self.barren_restarts = 0;
+            return;
+        }
+        self.barren_generations += 1;
+        if self.barren_generations >= BARREN_GENERATIONS {
+            self.barren_generations = 0;
+            self.barren_restarts += 1;
+            self.restarts.restart();
+        }
+    }
+}
+
+impl Optimizer for CmaEsOptimizer {
+    fn ask(&mut self, n: usize) -> Vec<GridPoint> {
+        let mut points = Vec::new();
+        while points.len() < n && !self.proposed.exhausted() {
+            let found = if self.restarts.current().mean().is_empty() { None } else { self.next() };
+            let Some(point) = found.or_else(|| self.proposed.next_unseen()) else { break };
+            self.barren_restarts = 0;
+            points.push(point);
+        }
+        points
+    }
+
+    fn tell(&mut self, observations: &[Observation]) {
+        for o in observations {
+            if !self.proposed.grid().contains(&o.point) {
+                continue;
+            }
+            let value = o.merit().filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
+            self.proposed.insert(&o.point);
+            self.values.insert(o.point.clone(), value);
+        }
+        // Known results before the first ask: the search begins at the best of them.
+        if self.generation.is_empty() && self.restarts.current().generation() == 0 {
+            let finite = self.values.iter().filter(|(_, value)| value.is_finite());
+            if let Some((point, _)) = finite.min_by(|a, b| a.1.total_cmp(b.1)) {
+                let (grid, unit) = (self.proposed.grid(), self.proposed.grid().unit(point));
+                let mean = grid.free_axes().into_iter().map(|axis| unit[axis]).collect();
+                self.restarts.begin_at(mean);
+            }
+        }
+        // A candidate that was asked and not told would keep its generation waiting for ever.
+        self.generation.retain(|c| self.values.contains_key(&c.point));
+    }
+
+    fn stop(&self) -> Option<StopReason> {
+        self.proposed.stop()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_leads_to_its_corner() {
+        let mut cma = CmaEsOptimizer::new(Grid::new(vec![101, 1, 101]), 5);
+        let mut best = 0;
+        for _ in 0..30 {
+            let points = cma.ask(4);
+            let value = |p: &GridPoint| p.0[0] + p.0[2];
+            best = points.iter().map(value).max().unwrap_or(0).max(best);
+            let tell = |p: GridPoint| {
+                let value = f64::from(value(&p));
+                Observation::new(p, Some(value))
+            };
+            cma.tell(&points.into_iter().map(tell).collect::<Vec<_>>());
+        }
+        assert_eq!(best, 200);
+    }
+}

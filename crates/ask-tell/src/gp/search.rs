@@ -1,0 +1,262 @@
+//! Where on the grid the acquisition is largest.
+
+use super::lbfgs::{Limits, minimise};
+use super::trained::Trained;
+use crate::GridPoint;
+use crate::sobol::SobolSequence;
+use crate::stream::stream;
+use crate::{Grid, Proposed};
+use rand::RngExt;
+use rand_distr::StandardNormal;
+use std::collections::BTreeMap;
+
+/// Grids up to this size are searched completely.
+const EXHAUSTIVE: u64 = 20_000;
+/// ... as long as grid size times observations stays below this (some ten milliseconds).
+const EXHAUSTIVE_WORK: u64 = 1_000_000;
+/// Starts of the local search.
+const STARTS: usize = 4;
+/// What an acquisition with its derivatives costs, in acquisitions.
+const COST_OF_SLOPE: usize = 3;
+/// Most of them from one start.
+const MOST_SLOPES: usize = 40;
+
+/// Where to search.
+#[derive(Clone, Copy)]
+pub(super) struct Room<'a> {
+    pub proposed: &'a Proposed,
+    /// Axes with more than one level: the model's axes.
+    pub free: &'a [usize],
+    /// Good points to start from, best first.
+    pub incumbents: &'a [GridPoint],
+    /// Names the streams.
+    pub seed: u64,
+}
+
+/// One search for the best unseen point.
+pub(super) struct Search<'a> {
+    pub trained: &'a Trained,
+    pub room: Room<'a>,
+}
+
+/// The values that were computed.
+pub(super) type Memory = BTreeMap<GridPoint, f64>;
+
+impl Search<'_> {
+    /// The unseen grid point found with the largest acquisition; `None` if no unseen point
+    /// was met or none has a finite one.
+    pub fn maximise(&self) -> Option<GridPoint> {
+        let (size, known) = (self.room.grid().size(), self.trained.len() * self.trained.models());
+        if size <= EXHAUSTIVE && size.saturating_mul(known as u64) <= EXHAUSTIVE_WORK {
+            return self.exhaustive();
+        }
+        self.sampled()
+    }
+
+    /// Every unseen point, exactly: log expected improvement grows with the variance, so a bound
+    /// of the variance bounds it, and constraints only take away from it. Points are taken by falling bound until the bound is
+    /// below the best found, and few need the triangular solve.
+    fn exhaustive(&self) -> Option<GridPoint> {
+        let unseen = self.room.every_point().filter(|point| !self.room.proposed.contains(point));
+        let bound = |point: GridPoint| (self.trained.bound(&self.room.unit(&point)), point);
+        let mut bounds: Vec<(f64, GridPoint)> = unseen.map(bound).collect();
+        // Equal bounds stay in lexicographic order: the sort is stable.
+        bounds.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut best: Option<(f64, GridPoint)> = None;
+        for (bound, point) in bounds {
+            let record = best.as_ref().map_or(f64::NEG_INFINITY, |b| b.0);
+            if bound <= record {
+                break;
+            }
+            let value = self.trained.acquisition(&self.room.unit(&point));
+            if value > record {
+                best = Some((value, point));
+            }
+        }
+        best.map(|(_, point)| point)
+    }
+
+    /// Sobol points and perturbations of the incumbents, the best of them improved by L-BFGS
+    /// within the cube and by single levels about the grid point nearest to where it ends.
+    fn sampled(&self) -> Option<GridPoint> {
+        let (n, models) = (self.trained.len(), self.trained.models().max(1));
+        // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
+        let budget = (6_000_000 / models / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
+        let mut memory = Memory::new();
+        let candidates = self.room.candidates(budget / 3);
+        let value = |point| (self.value(&point, &mut memory), point);
+        let mut ranked: Vec<(f64, GridPoint)> = candidates.into_iter().map(value).collect();
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        ranked.truncate(STARTS);
+        let share = (budget - budget / 3) / ranked.len().max(1);
+        for (_, point) in ranked {
+            let top = self.ascend(&point, (share / 2 / COST_OF_SLOPE).min(MOST_SLOPES));
+            self.step_uphill(top, share / 2, &mut memory);
+        }
+        self.room.best_unseen(memory).map(|(point, _)| point)
+    }
+
+    /// The grid point nearest to where L-BFGS ends within the cube.
+    fn ascend(&self, from: &GridPoint, evaluations: usize) -> GridPoint {
+        let axes = self.room.free.len();
+        let limits = Limits { low: &vec![0.0; axes], high: &vec![1.0; axes], evaluations };
+        self.ascend_within(from, &limits)
+    }
+
+    /// The grid point nearest to where L-BFGS ends within a box.
+    pub(super) fn ascend_within(&self, from: &GridPoint, limits: &Limits) -> GridPoint {
+        let negated = |x: &[f64]| {
+            let (value, slope) = self.trained.sloped_acquisition(x)?;
+            Some((-value, slope.into_iter().map(|g| -g).collect()))
+        };
+        let Some((top, _)) = minimise(negated, &self.room.unit(from), limits) else {
+            return from.clone();
+        };
+        self.room.grid().folded(&top)
+    }
+
+    pub fn value(&self, point: &GridPoint, memory: &mut Memory) -> f64 {
+        if let Some(&value) = memory.get(point) {
+            return value;
+        }
+        let value = self.trained.acquisition(&self.room.unit(point));
+        memory.insert(point.clone(), value);
+        value
+    }
+
+    /// Single levels along each axis while they improve and `budget` lasts. Leaves every point
+    /// it tried in `memory`.
+    pub fn step_uphill(&self, mut at: GridPoint, mut budget: usize, memory: &mut Memory) {
+        let mut value = self.value(&at, memory);
+        let mut axes_left = self.room.free.len();
+        for &axis in self.room.free.iter().cycle() {
+            let beside = [at.0[axis].checked_add(1), at.0[axis].checked_sub(1)];
+            let mut improved = false;
+            for level in
+                beside.into_iter().flatten().filter(|&k| k < self.room.grid().levels()[axis])
+            {
+                if budget == 0 {
+                    return;
+                }
+                budget -= 1;
+                let mut next = at.clone();
+                next.0[axis] = level;
+                let there = self.value(&next, memory);
+                if there > value {
+                    (at, value, improved) = (next, there, true);
+                    break;
+                }
+            }
+            axes_left = if improved { self.room.free.len() } else { axes_left - 1 };
+            if axes_left == 0 {
+                return;
+            }
+        }
+    }
+}
+
+impl Room<'_> {
+    pub fn grid(&self) -> &Grid {
+        self.proposed.grid()
+    }
+
+    /// The model's coordinates of a point.
+    pub fn unit(&self, point: &GridPoint) -> Vec<f64> {
+        let unit = self.grid().unit(point);
+        self.free.iter().map(|&a| unit[a]).collect()
+    }
+
+    /// The unseen point of the largest finite value.
+    pub fn best_unseen(&self, memory: Memory) -> Option<(GridPoint, f64)> {
+        let unseen = memory.into_iter().filter(|(p, _)| !self.proposed.contains(p));
+        let finite = unseen.filter(|(_, v)| *v > f64::NEG_INFINITY);
+        finite.reduce(|a, b| if b.1 > a.1 { b } else { a })
+    }
+
+    /// Every point in lexicographic order.
+    pub fn every_point(&self) -> impl Iterator<Item = GridPoint> {
+        let mut next = Some(GridPoint(vec![0; self.grid().dimension()]));
+        std::iter::from_fn(move || {
+            let point = next.take()?;
+            let mut after = point.clone();
+            if advance(&mut after, self.grid().levels()) {
+                next = Some(after);
+            }
+            Some(point)
+        })
+    }
+
+    /// Sobol points and perturbations of the incumbents, half and half; ascending.
+    pub fn candidates(&self, count: usize) -> Vec<GridPoint> {
+        let (grid, call) = (self.grid(), self.proposed.len());
+        let half = count / 2;
+        let sobol = SobolSequence::new(grid.dimension(), self.seed, call, "gp candidates");
+        let mut points: Vec<GridPoint> = sobol.take(half).map(|u| grid.cell(&u)).collect();
+        let mut random = stream(self.seed, call, "gp perturbations");
+        for i in 0..if self.incumbents.is_empty() { 0 } else { half } {
+            let mut unit = grid.unit(&self.incumbents[i % self.incumbents.len()]);
+            // Radii from a twohundredth of the edge to a third, on a logarithmic scale.
+            let radius = libm::exp(-5.3 + 4.2 * random.random::<f64>());
+            for u in &mut unit {
+                *u += 0.7 * radius * random.sample::<f64, _>(StandardNormal);
+            }
+            points.push(grid.snap(&unit));
+        }
+        points.sort();
+        points.dedup();
+        points
+    }
+}
+
+/// The next point in lexicographic order; false, and the first point again, after the last.
+fn advance(point: &mut GridPoint, levels: &[u32]) -> bool {
+    for (k, &n) in point.0.iter_mut().zip(levels).rev() {
+        if *k + 1 < n {
+            *k += 1;
+            return true;
+        }
+        *k = 0;
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::kernel::Hyperparameters;
+    use super::super::model::Gp;
+    use super::super::trained::Goal;
+    use super::*;
+
+    #[test]
+    fn the_bounded_search_finds_what_trying_every_point_finds() {
+        let x: Vec<Vec<f64>> = (0..40)
+            .map(|i| vec![f64::from(i * 7 % 40) / 39.0, f64::from(i * 11 % 40) / 39.0])
+            .collect();
+        let y: Vec<f64> = x.iter().map(|p| (7.0 * p[0]).sin() * (5.0 * p[1]).cos()).collect();
+        let theta =
+            Hyperparameters { log_length: vec![-1.2, -1.0], log_signal: 0.0, log_noise: -12.0 };
+        let gp = Gp::new(&x, &y, 1e-6, theta).unwrap();
+        let mut proposed = Proposed::new(Grid::new(vec![31, 1, 29]), 0);
+        for k in 0..15 {
+            proposed.insert(&GridPoint(vec![2 * k, 0, k]));
+        }
+        let best = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let free = [0, 2];
+        let trained =
+            Trained { objectives: vec![gp], margins: Vec::new(), goal: Goal::Improve(best) };
+        let (proposed, free) = (&proposed, &free);
+        let room = Room { proposed, free, incumbents: &[], seed: 0 };
+        let search = Search { trained: &trained, room };
+        let found = search.exhaustive().unwrap();
+        let mut memory = BTreeMap::new();
+        let value = search.value(&found, &mut memory);
+        assert!(!proposed.contains(&found));
+        let mut point = GridPoint(vec![0; 3]);
+        while advance(&mut point, proposed.grid().levels()) {
+            let other = search.value(&point, &mut memory);
+            assert!(proposed.contains(&point) || other <= value + 1e-9);
+        }
+        let sampled = search.sampled().unwrap();
+        assert!(search.value(&sampled, &mut memory) > value - 1e-6);
+    }
+}

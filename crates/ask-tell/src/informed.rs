@@ -1,0 +1,92 @@
+//! An optimizer that is given the values of chosen points.
+
+use super::{Observation, Optimizer, StopReason};
+use crate::GridPoint;
+use std::collections::VecDeque;
+
+/// Asks another optimizer for a number of points first, so that it has its own first design, then
+/// proposes chosen points, and leaves the rest to the other, which is told of all.
+///
+/// The other one must take observations of points that it has not proposed, and not propose
+/// those again.
+pub struct Informed {
+    inner: Box<dyn Optimizer + Send>,
+    /// Points that `inner` is to be asked for before the chosen ones.
+    before: usize,
+    chosen: VecDeque<GridPoint>,
+    /// Points proposed so far, of which `inner` may want a chosen one, too.
+    proposed: Vec<GridPoint>,
+}
+
+impl Informed {
+    /// `inner`, new, first for `before` points; the chosen points lie on its grid.
+    pub fn new(
+        inner: Box<dyn Optimizer + Send>,
+        before: usize,
+        chosen: impl IntoIterator<Item = GridPoint>,
+    ) -> Self {
+        let mut unique = VecDeque::new();
+        for point in chosen {
+            if !unique.contains(&point) {
+                unique.push_back(point);
+            }
+        }
+        Informed { inner, before, chosen: unique, proposed: Vec::new() }
+    }
+}
+
+impl Optimizer for Informed {
+    fn ask(&mut self, n: usize) -> Vec<GridPoint> {
+        let own = if self.chosen.is_empty() { n } else { n.min(self.before) };
+        let mut points = if own > 0 { self.inner.ask(own) } else { Vec::new() };
+        self.before = self.before.saturating_sub(points.len());
+        if !self.chosen.is_empty() {
+            self.proposed.extend(points.iter().cloned());
+            self.chosen.retain(|point| !self.proposed.contains(point));
+        }
+        let more = self.chosen.len().min(n - points.len());
+        points.extend(self.chosen.drain(..more));
+        points
+    }
+
+    fn tell(&mut self, observations: &[Observation]) {
+        self.inner.tell(observations);
+    }
+
+    fn stop(&self) -> Option<StopReason> {
+        self.inner.stop()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+    use crate::gp::GpOptimizer;
+
+    #[test]
+    fn chosen_points_come_once_after_the_first_ones_and_are_told() {
+        let grid = Grid::new(vec![5, 5]);
+        let chosen = [[0, 0], [4, 4], [0, 0], [2, 3]].map(|levels| GridPoint(levels.to_vec()));
+        let inner = Box::new(GpOptimizer::new(grid, 1));
+        let mut optimizer = Informed::new(inner, 3, chosen.clone());
+        let mut seen = Vec::new();
+        loop {
+            let points = optimizer.ask(2);
+            if points.is_empty() {
+                break;
+            }
+            let value = |p: &GridPoint| Some(f64::from(p.0[0]) - f64::from(p.0[1]));
+            let told: Vec<_> =
+                points.iter().map(|p| Observation::new(p.clone(), value(p))).collect();
+            optimizer.tell(&told);
+            seen.extend(points);
+        }
+        for point in &chosen {
+            assert_eq!(seen.iter().filter(|p| *p == point).count(), 1, "{point:?}");
+            assert!(seen[..7].contains(point), "{seen:?}");
+        }
+        assert_eq!(seen.len(), 25, "every point once");
+        assert_eq!(optimizer.stop(), Some(StopReason::GridExhausted));
+    }
+}

@@ -1,0 +1,215 @@
+//! Optimizers behind one ask / tell trait.
+//!
+//! They maximise. They know the unit cube, the number of levels per axis and
+//! the numbers they are told, and nothing of fingers or tasks.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+// A panic is a defect; what input can reach is an error with a message.
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod cmaes;
+pub mod gp;
+mod informed;
+mod kind;
+mod lattice;
+mod nelder_mead;
+pub mod pareto;
+mod polish;
+mod proposed;
+pub mod protocol;
+mod random;
+mod sobol;
+pub mod stream;
+
+pub use informed::Informed;
+pub use kind::{OptimizerKind, UnknownOptimizer, build, build_for};
+pub use lattice::GridSearch;
+pub use polish::Polished;
+pub use proposed::Proposed;
+pub use random::RandomSearch;
+pub use sobol::{SobolSearch, SobolSequence};
+
+use serde::{Deserialize, Serialize};
+
+/// One point of a grid: a level per axis, in the order of the axes.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct GridPoint(pub Vec<u32>);
+
+/// The grid of the unit cube: axis `i` has `levels[i]` values
+/// `k / (levels[i] - 1)`, `k = 0 .. levels[i]`. An axis with one level is fixed at 0.5.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Grid {
+    levels: Vec<u32>,
+}
+
+impl Grid {
+    /// A grid with at least one level on each axis (zero counts as one).
+    pub fn new(levels: Vec<u32>) -> Self {
+        Grid { levels: levels.into_iter().map(|n| n.max(1)).collect() }
+    }
+
+    /// Levels per axis.
+    pub fn levels(&self) -> &[u32] {
+        &self.levels
+    }
+
+    /// Number of axes.
+    pub fn dimension(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Number of points; saturates.
+    pub fn size(&self) -> u64 {
+        self.levels.iter().fold(1, |n, &l| n.saturating_mul(u64::from(l)))
+    }
+
+    /// Unit-cube coordinates of a grid point.
+    pub fn unit(&self, point: &GridPoint) -> Vec<f64> {
+        let coordinate = |(&k, &n): (&u32, &u32)| {
+            if n == 1 { 0.5 } else { f64::from(k) / f64::from(n - 1) }
+        };
+        point.0.iter().zip(&self.levels).map(coordinate).collect()
+    }
+
+    /// Whether `point` has one level per axis, each below the axis' count.
+    pub fn contains(&self, point: &GridPoint) -> bool {
+        point.0.len() == self.levels.len() && point.0.iter().zip(&self.levels).all(|(k, n)| k < n)
+    }
+
+    /// The grid point whose cell holds `unit`: each axis is cut into `levels[i]` equal cells,
+    /// so that a uniform `unit` gives every level the same chance ([`snap`](Self::snap) gives
+    /// the two end levels half of one). Coordinates outside [0, 1] are clamped.
+    pub fn cell(&self, unit: &[f64]) -> GridPoint {
+        let level = |(&u, &n): (&f64, &u32)| ((u.max(0.0) * f64::from(n)) as u32).min(n - 1);
+        GridPoint(unit.iter().zip(&self.levels).map(level).collect())
+    }
+
+    /// The axes with more than one level.
+    pub fn free_axes(&self) -> Vec<usize> {
+        (0..self.dimension()).filter(|&axis| self.levels[axis] > 1).collect()
+    }
+
+    /// The grid point nearest to a point of R^n, one coordinate for each free axis, folded onto
+    /// the cube by reflection at its faces (`x -> |x - 2 round(x / 2)|`).
+    pub fn folded(&self, x: &[f64]) -> GridPoint {
+        let mut unit = vec![0.5; self.dimension()];
+        for (axis, x) in self.free_axes().into_iter().zip(x) {
+            unit[axis] = (x - 2.0 * (x / 2.0).round()).abs();
+        }
+        self.snap(&unit)
+    }
+
+    /// The grid point nearest to `unit`; coordinates outside [0, 1] are clamped.
+    pub fn snap(&self, unit: &[f64]) -> GridPoint {
+        let level = |(&u, &n): (&f64, &u32)| (u.clamp(0.0, 1.0) * f64::from(n - 1)).round() as u32;
+        GridPoint(unit.iter().zip(&self.levels).map(level).collect())
+    }
+}
+
+/// What an optimizer is told of one point it asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observation {
+    /// The point.
+    pub point: GridPoint,
+    /// The objectives, larger is better; none if the evaluation gave no value
+    /// (it diverged, or broke): known to be bad, not known how bad.
+    pub values: Vec<f64>,
+    /// How far each constraint is violated; 0 or below where it is kept.
+    pub violations: Vec<f64>,
+}
+
+/// Merit of what violates constraints, before its violation is taken off: below
+/// whatever an objective may be.
+const INFEASIBLE: f64 = -1e9;
+
+impl Observation {
+    /// Of one objective without constraints.
+    pub fn new(point: GridPoint, value: Option<f64>) -> Self {
+        Observation { point, values: value.into_iter().collect(), violations: Vec::new() }
+    }
+
+    /// The only objective, or the first of several.
+    pub fn value(&self) -> Option<f64> {
+        self.values.first().copied()
+    }
+
+    /// Whether it has a value and keeps all constraints.
+    pub fn feasible(&self) -> bool {
+        !self.values.is_empty() && self.violations.iter().all(|&violation| violation <= 0.0)
+    }
+
+    /// One number for optimizers that know no constraints (K. Deb 2000, Comput. Methods
+    /// Appl. Mech. Eng. 186:311): of two feasible points the one with the larger value is
+    /// better, a feasible one is better than one that is not, and of two that are not the one
+    /// that violates less, all constraints added up.
+    pub fn merit(&self) -> Option<f64> {
+        let violation: f64 = self.violations.iter().map(|violation| violation.max(0.0)).sum();
+        let value = self.value()?;
+        Some(if violation > 0.0 { INFEASIBLE - violation } else { value })
+    }
+}
+
+/// Why an optimizer has nothing more to propose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StopReason {
+    /// Every point of the grid has been proposed.
+    GridExhausted,
+    /// It has found what it can find.
+    Converged,
+}
+
+/// A sequential optimizer over a [`Grid`].
+///
+/// Contract, checked for every implementation by `tests/optimizers.rs`:
+/// proposals depend only on the constructor's arguments and the sequence of
+/// calls; every proposed point lies on the grid and is proposed once; fewer
+/// than `n` points come back only when the grid is exhausted (or, of [`Polished`],
+/// where its search or its polish ends).
+pub trait Optimizer {
+    /// Proposes up to `n` new points.
+    fn ask(&mut self, n: usize) -> Vec<GridPoint>;
+
+    /// Reports the values of all points of the last [`ask`](Self::ask), in its order; or,
+    /// when no point waits for its value, those of points that were measured elsewhere, which
+    /// are then not proposed any more.
+    fn tell(&mut self, observations: &[Observation]);
+
+    /// Why there is nothing more to ask for, if so.
+    fn stop(&self) -> Option<StopReason>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folding_reflects_at_both_faces() {
+        let grid = Grid::new(vec![101, 1]);
+        for (x, level) in [(0.3, 30), (-0.3, 30), (1.25, 75), (2.5, 50), (-1.75, 25)] {
+            assert_eq!(grid.folded(&[x]), GridPoint(vec![level, 0]));
+        }
+    }
+
+    #[test]
+    fn merit_puts_feasible_points_first_and_then_the_smaller_violation() {
+        let of = |value: Option<f64>, violations: &[f64]| Observation {
+            violations: violations.to_vec(),
+            ..Observation::new(GridPoint(vec![0]), value)
+        };
+        let ordered = [
+            of(Some(3.0), &[-1.0, 0.0]),
+            of(Some(-1e6), &[]),
+            of(Some(9.0), &[0.1, -5.0]),
+            of(Some(9.0), &[0.1, 0.1]),
+        ];
+        let merits: Vec<f64> = ordered.iter().filter_map(Observation::merit).collect();
+        assert_eq!(merits.len(), 4);
+        assert!(merits.windows(2).all(|pair| pair[0] > pair[1]), "{merits:?}");
+        assert_eq!(merits[0], 3.0);
+        assert_eq!(of(None, &[]).merit(), None);
+        let feasible: Vec<bool> = ordered.iter().map(Observation::feasible).collect();
+        assert_eq!(feasible, [true, true, false, false]);
+        assert!(!of(None, &[-1.0]).feasible());
+    }
+}

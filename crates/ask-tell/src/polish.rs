@@ -1,0 +1,154 @@
+//! Local polish of the best point that another optimizer has found.
+
+use super::nelder_mead::NelderMead;
+use super::{Grid, Observation, Optimizer, StopReason};
+use crate::GridPoint;
+
+/// Asks another optimizer for a number of points, then Nelder-Mead for up to a number of
+/// points more, which starts at the best of them and stays about it.
+///
+/// It may propose fewer points than it is asked for: where the one ends and the other
+/// begins, and in the polish, where only points that Nelder-Mead wants are proposed.
+pub struct Polished {
+    inner: Box<dyn Optimizer + Send>,
+    grid: Grid,
+    /// Points that `inner` is still to be asked for.
+    search_left: u64,
+    /// Points that the polish may still have.
+    polish_left: u64,
+    told: Vec<Observation>,
+    polish: Option<NelderMead>,
+    converged: bool,
+}
+
+impl Polished {
+    /// `inner`, new, over `grid` for `search` points, then a polish of up to `polish` points.
+    pub fn new(inner: Box<dyn Optimizer + Send>, grid: Grid, search: u64, polish: u64) -> Self {
+        Polished {
+            inner,
+            grid,
+            search_left: search,
+            polish_left: polish,
+            told: Vec::new(),
+            polish: None,
+            converged: false,
+        }
+    }
+}
+
+/// The smaller of the two, for a number of points.
+fn at_most(n: usize, left: u64) -> usize {
+    usize::try_from(left).map_or(n, |left| n.min(left))
+}
+
+impl Optimizer for Polished {
+    fn ask(&mut self, n: usize) -> Vec<GridPoint> {
+        if self.search_left > 0 {
+            let points = self.inner.ask(at_most(n, self.search_left));
+            if !points.is_empty() {
+                self.search_left = self.search_left.saturating_sub(points.len() as u64);
+                return points;
+            }
+            self.search_left = 0;
+        }
+        let (grid, told) = (&self.grid, &self.told);
+        let start = || NelderMead::new(grid.clone(), told);
+        let points = self.polish.get_or_insert_with(start).ask(at_most(n, self.polish_left));
+        self.polish_left = self.polish_left.saturating_sub(points.len() as u64);
+        self.converged = points.is_empty();
+        points
+    }
+
+    fn tell(&mut self, observations: &[Observation]) {
+        match &mut self.polish {
+            Some(polish) => polish.tell(observations),
+            None => {
+                self.inner.tell(observations);
+                self.told.extend_from_slice(observations);
+            }
+        }
+    }
+
+    fn stop(&self) -> Option<StopReason> {
+        let exhausted = self.polish.as_ref().map_or_else(|| self.inner.stop(), NelderMead::stop);
+        exhausted.or_else(|| self.converged.then_some(StopReason::Converged))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{OptimizerKind, build};
+    use std::collections::BTreeSet;
+
+    /// A narrow curved valley with its top at (0.6, 0.36) of the first and the last axis.
+    fn valley(grid: &Grid, point: &GridPoint) -> f64 {
+        let u = grid.unit(point);
+        -(0.6 - u[0]).powi(2) - 10.0 * (u[2] - u[0] * u[0]).powi(2)
+    }
+
+    fn grid() -> Grid {
+        Grid::new(vec![201, 1, 201])
+    }
+
+    /// All points in order, with the value told for each.
+    fn run(kind: OptimizerKind, search: u64, polish: u64, n: usize) -> Vec<(GridPoint, f64)> {
+        let mut optimizer = Polished::new(build(kind, grid(), 5), grid(), search, polish);
+        let mut all = Vec::new();
+        loop {
+            let points = optimizer.ask(n);
+            if points.is_empty() {
+                return all;
+            }
+            let tell = |p: &GridPoint| Observation::new(p.clone(), Some(valley(&grid(), p)));
+            let told: Vec<Observation> = points.iter().map(tell).collect();
+            optimizer.tell(&told);
+            all.extend(points.into_iter().zip(told.iter().filter_map(Observation::value)));
+        }
+    }
+
+    fn best(of: &[(GridPoint, f64)]) -> f64 {
+        of.iter().map(|(_, value)| *value).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    #[test]
+    fn the_search_is_what_it_is_without_a_polish_and_the_polish_betters_it() {
+        for n in [1, 4] {
+            let alone = build(OptimizerKind::Sobol, grid(), 5).ask(22);
+            let all = run(OptimizerKind::Sobol, 22, 60, n);
+            let points: Vec<&GridPoint> = all.iter().map(|(point, _)| point).collect();
+            assert!(points.iter().zip(&alone).all(|(a, b)| **a == *b));
+            assert!(all.len() > 30 && all.len() <= 82, "{} points", all.len());
+            assert_eq!(points.iter().collect::<BTreeSet<_>>().len(), all.len(), "a point twice");
+            let (found, polished) = (best(&all[..22]), best(&all));
+            assert!(polished > found / 4.0, "batches of {n}: {found} to {polished}");
+        }
+    }
+
+    #[test]
+    fn the_polish_keeps_to_its_budget_and_ends_when_nothing_new_is_wanted() {
+        assert_eq!(run(OptimizerKind::Random, 10, 5, 4).len(), 15);
+        assert_eq!(run(OptimizerKind::Random, 10, 0, 4).len(), 10);
+        let mut all = Polished::new(build(OptimizerKind::Random, grid(), 5), grid(), 10, 100_000);
+        let mut asked = 0;
+        while all.stop().is_none() && asked < 10_000 {
+            let points = all.ask(4);
+            asked += points.len();
+            let tell = |p: &GridPoint| Observation::new(p.clone(), Some(valley(&grid(), p)));
+            let told: Vec<Observation> = points.iter().map(tell).collect();
+            all.tell(&told);
+        }
+        assert_eq!(all.stop(), Some(StopReason::Converged));
+        assert!(asked < 300, "{asked} points");
+    }
+
+    #[test]
+    fn without_any_value_there_is_nothing_to_polish() {
+        let mut none = Polished::new(build(OptimizerKind::Random, grid(), 5), grid(), 4, 20);
+        let points = none.ask(4);
+        let told: Vec<_> = points.into_iter().map(|point| Observation::new(point, None)).collect();
+        none.tell(&told);
+        assert!(none.ask(4).is_empty());
+        assert_eq!(none.stop(), Some(StopReason::Converged));
+    }
+}

@@ -1,0 +1,124 @@
+//! The points an optimizer has already proposed, and a way to any that are left.
+
+use super::{Grid, StopReason};
+use crate::GridPoint;
+use crate::stream::stream;
+use rand::RngExt;
+use std::collections::BTreeSet;
+
+/// Random draws tried before the lattice is walked in order.
+const DRAWS: usize = 64;
+
+/// The memory that keeps an optimizer from proposing a point twice.
+#[derive(Debug, Clone)]
+pub struct Proposed {
+    grid: Grid,
+    seed: u64,
+    points: BTreeSet<GridPoint>,
+    /// Every point before this one in lexicographic order is in `points`.
+    cursor: Option<GridPoint>,
+}
+
+impl Proposed {
+    /// Nothing proposed yet; `seed` names the stream of [`next_unseen`](Self::next_unseen).
+    pub fn new(grid: Grid, seed: u64) -> Self {
+        let cursor = Some(GridPoint(vec![0; grid.dimension()]));
+        Proposed { grid, seed, points: BTreeSet::new(), cursor }
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Number of points proposed.
+    pub fn len(&self) -> u64 {
+        self.points.len() as u64
+    }
+
+    /// Whether nothing has been proposed.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Whether `point` has been proposed.
+    pub fn contains(&self, point: &GridPoint) -> bool {
+        self.points.contains(point)
+    }
+
+    /// Marks `point`; false if it was marked before or does not lie on the grid.
+    pub fn insert(&mut self, point: &GridPoint) -> bool {
+        self.grid.contains(point) && self.points.insert(point.clone())
+    }
+
+    /// Whether every grid point has been proposed.
+    pub fn exhausted(&self) -> bool {
+        self.len() >= self.grid.size()
+    }
+
+    /// The stop reason that goes with [`exhausted`](Self::exhausted).
+    pub fn stop(&self) -> Option<StopReason> {
+        self.exhausted().then_some(StopReason::GridExhausted)
+    }
+
+    /// Marks and returns a point not proposed before: a uniformly drawn one while draws hit
+    /// unseen points often enough, then the first in lexicographic order. `None` if there is none.
+    pub fn next_unseen(&mut self) -> Option<GridPoint> {
+        if self.exhausted() {
+            return None;
+        }
+        let mut random = stream(self.seed, self.len(), "unseen grid point");
+        for _ in 0..DRAWS {
+            let point =
+                GridPoint(self.grid.levels().iter().map(|&n| random.random_range(0..n)).collect());
+            if self.points.insert(point.clone()) {
+                return Some(point);
+            }
+        }
+        while let Some(point) = self.cursor.take() {
+            self.cursor = self.successor(&point);
+            if self.points.insert(point.clone()) {
+                return Some(point);
+            }
+        }
+        None
+    }
+
+    fn successor(&self, point: &GridPoint) -> Option<GridPoint> {
+        let mut next = point.clone();
+        for (k, &n) in next.0.iter_mut().zip(self.grid.levels()).rev() {
+            if *k + 1 < n {
+                *k += 1;
+                return Some(next);
+            }
+            *k = 0;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_comes_once_and_then_none() {
+        let mut proposed = Proposed::new(Grid::new(vec![7, 1, 5]), 3);
+        let mut all = BTreeSet::new();
+        while let Some(point) = proposed.next_unseen() {
+            assert!(proposed.grid().contains(&point) && all.insert(point));
+        }
+        assert_eq!(all.len(), 35);
+        assert_eq!(proposed.stop(), Some(StopReason::GridExhausted));
+    }
+
+    #[test]
+    fn points_off_the_grid_are_not_marked() {
+        let mut proposed = Proposed::new(Grid::new(vec![2, 2]), 0);
+        assert!(!proposed.insert(&GridPoint(vec![2, 0])));
+        assert!(!proposed.insert(&GridPoint(vec![0])));
+        assert!(
+            proposed.insert(&GridPoint(vec![1, 1])) && !proposed.insert(&GridPoint(vec![1, 1]))
+        );
+    }
+}

@@ -1,0 +1,85 @@
+//! The points of one batch on their way out and their values on the way back.
+
+use super::AskTellError;
+use super::message::PointValue;
+use crate::GridPoint;
+use crate::Observation;
+use std::collections::BTreeMap;
+
+/// A batch: the optimizer proposes it whole and is told of it whole and in order; in between
+/// its points may be asked in parts and told one by one in any order.
+#[derive(Debug, Default)]
+pub(super) struct Batch {
+    /// The id of its first point; the others follow.
+    first: u64,
+    points: Vec<GridPoint>,
+    asked: usize,
+    values: BTreeMap<u64, Option<f64>>,
+}
+
+impl Batch {
+    /// The batch after this one.
+    pub fn next(&self, points: Vec<GridPoint>) -> Batch {
+        let first = self.first + self.points.len() as u64;
+        Batch { first, points, ..Batch::default() }
+    }
+
+    /// Its points with their ids.
+    pub fn points(&self) -> impl Iterator<Item = (u64, &GridPoint)> {
+        (self.first..).zip(&self.points)
+    }
+
+    /// Whether every point has its value.
+    pub fn complete(&self) -> bool {
+        self.values.len() == self.points.len()
+    }
+
+    /// Hands out up to `n` points that were not asked before.
+    pub fn hand_out(&mut self, n: usize) -> Vec<(u64, GridPoint)> {
+        let end = self.points.len().min(self.asked.saturating_add(n));
+        let part = self.points[self.asked..end].iter().cloned();
+        let asked = (self.first + self.asked as u64..).zip(part).collect();
+        self.asked = end;
+        asked
+    }
+
+    /// The ids asked and not told.
+    pub fn untold(&self) -> Vec<u64> {
+        let asked = self.first..self.first + self.asked as u64;
+        asked.filter(|id| !self.values.contains_key(id)).collect()
+    }
+
+    /// Whether these can all be told.
+    pub fn check(&self, told: &[PointValue]) -> Result<(), AskTellError> {
+        let mut seen: Vec<u64> = Vec::with_capacity(told.len());
+        for PointValue { id, .. } in told {
+            if *id >= self.first + self.asked as u64 {
+                return Err(AskTellError::UnknownId(*id));
+            }
+            // All ids before this batch have their values.
+            if *id < self.first || self.values.contains_key(id) {
+                return Err(AskTellError::ToldTwice(*id));
+            }
+            seen.push(*id);
+        }
+        seen.sort_unstable();
+        match seen.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(AskTellError::ToldTwice(pair[0])),
+            None => Ok(()),
+        }
+    }
+
+    /// Keeps the value (larger is better) of a point that [`check`](Self::check) passed; gives
+    /// the point.
+    pub fn keep(&mut self, id: u64, value: Option<f64>) -> &GridPoint {
+        self.values.insert(id, value);
+        &self.points[(id - self.first) as usize]
+    }
+
+    /// All points with their values, in order.
+    pub fn observations(&self) -> Vec<Observation> {
+        let value = |id| self.values.get(&id).copied().flatten();
+        let numbered = (self.first..).zip(&self.points);
+        numbered.map(|(id, point)| Observation::new(point.clone(), value(id))).collect()
+    }
+}

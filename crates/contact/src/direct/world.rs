@@ -1,0 +1,291 @@
+//! The world: one step from poses and velocities to the next.
+
+use super::DirectSettings;
+use super::blocks::{Blocks, Vector6};
+use super::body::{Kind, MovingBody};
+use super::cone::{Compliance, Cone};
+use super::contacts::{Detector, Touch};
+use super::joints::SprungJoint;
+use super::patch::Patch;
+use super::solver::{Contact, Solver, lever, moved_aside, relative};
+use crate::scene::{BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Torsion};
+use crate::{ContactForce, ContactPoint, Diverged, World};
+use nalgebra::{Vector3, Vector4};
+
+/// Tries at finding which servos are at their limits.
+const TRIES: usize = 5;
+
+/// A scene in motion; a clone continues bit for bit alike.
+#[derive(Clone)]
+pub(super) struct DirectWorld {
+    settings: DirectSettings,
+    gravity: Vector3<f64>,
+    pub bodies: Vec<MovingBody>,
+    joints: Vec<SprungJoint>,
+    /// The bodies that may touch.
+    pairs: Vec<ContactPair>,
+    /// Their forces over the last step.
+    forces: Vec<ContactForce>,
+    detector: Detector,
+    system: Blocks,
+    /// Right-hand side, then solution; by place.
+    values: Vec<Vector6>,
+    /// Force at the centre of mass and moment applied to each body, N, N m.
+    pushes: Vec<Vector6>,
+    /// Places before this one are eliminated before contacts are solved.
+    eliminated: usize,
+    solver: Solver,
+    touches: Vec<Touch>,
+    contacts: Vec<Contact>,
+    /// The pressed patch of each pair of geoms that touch, if friction knows any.
+    patches: Vec<Option<Patch>>,
+}
+
+impl DirectWorld {
+    pub fn new(scene: &Scene, settings: &DirectSettings) -> Self {
+        let (places, eliminated, size) = places(scene);
+        let dynamic = scene.bodies.iter().zip(&places);
+        let bodies: Vec<MovingBody> =
+            dynamic.map(|(body, &place)| MovingBody::new(body, place)).collect();
+        let ends =
+            |joint: &Joint| Some((bodies[joint.parent.0].place()?, bodies[joint.child.0].place()?));
+        let detector = Detector::new(scene, settings.prediction);
+        let coupled: Vec<_> = scene.joints.iter().filter_map(ends).collect();
+        DirectWorld {
+            settings: *settings,
+            gravity: scene.gravity,
+            joints: scene.joints.iter().map(SprungJoint::new).collect(),
+            pairs: scene.contacts.clone(),
+            forces: vec![ContactForce::default(); scene.contacts.len()],
+            patches: vec![None; if scene.patched().is_some() { detector.pairs() } else { 0 }],
+            detector,
+            system: Blocks::new(size, eliminated, &coupled),
+            values: vec![Vector6::zeros(); size],
+            pushes: vec![Vector6::zeros(); scene.bodies.len()],
+            eliminated,
+            solver: Solver::new(size - eliminated),
+            touches: Vec::new(),
+            contacts: Vec::new(),
+            bodies,
+        }
+    }
+
+    /// Finds the contacts, and puts them as the solver wants them.
+    fn find_contacts(&mut self) {
+        let step = self.settings.step_s;
+        self.detector.detect(&self.bodies, &mut self.touches);
+        self.contacts.clear();
+        // Of a contact's force at the end of the step, k gap + c rate, what the gap
+        // at its start makes, and how the impulse answers to the velocity.
+        let spring = self.settings.contact_stiffness * step;
+        let share = spring / (spring + self.settings.contact_damping);
+        let compliance = Compliance {
+            normal: share / (spring * step),
+            tangent: 1.0 / (self.settings.stick_damping * step),
+        };
+        self.press(None);
+        for touch in &self.touches {
+            let pair = &self.pairs[touch.pair];
+            let ends = [&self.bodies[pair.first.0], &self.bodies[pair.second.0]];
+            let place = ends.map(|body| body.place().map(|place| place - self.eliminated));
+            let arm = ends.map(|body| touch.point - body.centre);
+            let cone = Cone { mu: touch.friction.coefficient, compliance };
+            let lever = match touch.friction.torsion {
+                Torsion::Radius(radius) => arm.map(|arm| lever(&arm, &(touch.normal * radius))),
+                Torsion::Patch => {
+                    let aside = self.aside(touch, ends[0]);
+                    arm.map(|arm| lever(&arm, &Vector3::zeros()))
+                        .map(|lever| moved_aside(&lever, &aside, &touch.normal))
+                }
+            };
+            let mut drift = Vector4::zeros();
+            for (body, lever, sign) in [(ends[0], &lever[0], -1.0), (ends[1], &lever[1], 1.0)] {
+                if let Kind::Driven(_) = body.kind {
+                    drift += relative(lever, body.velocity.as_ref()) * sign;
+                }
+            }
+            let closing = touch.gap / step;
+            let bias = if touch.gap > 0.0 { closing } else { closing * share };
+            let bias = bias.max(-self.settings.push_out);
+            self.contacts.push(Contact::new(place, lever, touch.normal, drift, bias, cone));
+        }
+    }
+
+    /// From a point of a patch to where its friction acts; `first` is its pair's first body.
+    fn aside(&self, touch: &Touch, first: &MovingBody) -> Vector3<f64> {
+        let patch = self.patches[touch.geoms].as_ref();
+        patch
+            .map_or(Vector3::zeros(), |patch| patch.aside(&first.pose, &touch.point, &touch.normal))
+    }
+
+    /// The patches as these contacts load them; without, those that are new, evenly.
+    fn press(&mut self, contacts: Option<&[Contact]>) {
+        if self.patches.is_empty() {
+            return;
+        }
+        let mut from = 0;
+        for touches in self.touches.chunk_by(|a, b| a.geoms == b.geoms) {
+            let Touch { geoms, pair, normal, friction, .. } = touches[0];
+            let load = |i: usize| contacts.map_or(0.0, |all| all[i].impulse.dot(&all[i].normal));
+            if friction.torsion == Torsion::Patch
+                && (contacts.is_some() || self.patches[geoms].is_none())
+            {
+                let frame = self.bodies[self.pairs[pair].first.0].pose.inverse();
+                let loaded = |(i, touch): (usize, &Touch)| (frame * touch.point, load(from + i));
+                let points: Vec<_> = touches.iter().enumerate().map(loaded).collect();
+                self.patches[geoms] = Some(Patch::new(&points, &(frame * normal)));
+            }
+            from += touches.len();
+        }
+    }
+
+    /// Velocities at the end of the step, with the servos as they are assumed.
+    fn solve(&mut self) -> Option<()> {
+        let step = self.settings.step_s;
+        self.system.clear();
+        for (body, push) in self.bodies.iter().zip(&self.pushes) {
+            if let Some(place) = body.place() {
+                self.system.add(place, place, &body.mass());
+                self.values[place] = body.momentum(&self.gravity, step) + push * step;
+            }
+        }
+        for joint in &self.joints {
+            joint.assemble(&self.bodies, step, &mut self.system, &mut self.values);
+        }
+        self.system.eliminate()?;
+        self.system.reduce(&mut self.values);
+        self.system.remainder(&mut self.solver.system);
+        let free = &mut self.values[self.eliminated..];
+        for (rhs, value) in self.solver.rhs.iter_mut().zip(&*free) {
+            *rhs = (*value).into();
+        }
+        self.solver.solve(&mut self.contacts, step)?;
+        for (value, velocity) in free.iter_mut().zip(&self.solver.velocities) {
+            *value = (*velocity).into();
+        }
+        self.system.expand(&mut self.values);
+        Some(())
+    }
+
+    fn add_forces(&mut self) {
+        self.forces.fill(ContactForce::default());
+        let per_step = 1.0 / self.settings.step_s;
+        for (touch, contact) in self.touches.iter().zip(&self.contacts) {
+            let force = &mut self.forces[touch.pair];
+            force.net += contact.impulse.xyz() * per_step;
+            force.normal_sum += contact.impulse.dot(&contact.normal) * per_step;
+        }
+    }
+
+    fn try_step(&mut self) -> Option<()> {
+        let step = self.settings.step_s;
+        for body in &mut self.bodies {
+            body.steer(step);
+            if let Some(free) = body.place().and_then(|place| place.checked_sub(self.eliminated)) {
+                self.solver.velocities[free] = body.velocity.into();
+            }
+        }
+        for joint in &mut self.joints {
+            joint.locate(&self.bodies);
+        }
+        self.find_contacts();
+        for _ in 0..TRIES {
+            self.solve()?;
+            for body in &mut self.bodies {
+                if let Some(place) = body.place() {
+                    body.velocity = self.values[place];
+                }
+            }
+            let update =
+                |all: bool, joint: &mut SprungJoint| joint.update_limits(&self.bodies, step) && all;
+            if self.joints.iter_mut().fold(true, update) {
+                break;
+            }
+        }
+        self.add_forces();
+        self.patches.fill(None);
+        let contacts = std::mem::take(&mut self.contacts);
+        self.press(Some(&contacts));
+        self.contacts = contacts;
+        for body in &mut self.bodies {
+            body.advance(step);
+        }
+        self.bodies.iter().all(MovingBody::is_finite).then_some(())
+    }
+}
+
+/// The place of each dynamic body in the system, how many of them are
+/// eliminated before contacts, and how many there are. Those that touch nothing
+/// come first, the ones with the fewest joints first of all: little fill-in.
+fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
+    let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
+    let touching = |i: &usize| scene.contacts.iter().any(|pair| pair.has(BodyId(*i)));
+    let joints =
+        |i: &usize| scene.joints.iter().filter(|j| j.parent.0 == *i || j.child.0 == *i).count();
+    let mut order: Vec<usize> = (0..scene.bodies.len()).filter(dynamic).collect();
+    order.sort_by_key(|i| (touching(i), joints(i)));
+    let eliminated = order.iter().filter(|i| !touching(i)).count();
+    let mut places = vec![0; scene.bodies.len()];
+    for (place, &body) in order.iter().enumerate() {
+        places[body] = place;
+    }
+    (places, eliminated, order.len())
+}
+
+impl World for DirectWorld {
+    fn step(&mut self) -> Result<(), Diverged> {
+        self.try_step().ok_or(Diverged)
+    }
+
+    fn step_s(&self) -> f64 {
+        self.settings.step_s
+    }
+
+    fn pose(&self, body: BodyId) -> Pose {
+        self.bodies[body.0].pose
+    }
+
+    fn drive(&mut self, body: BodyId, pose: Pose) {
+        if let Kind::Driven(target) = &mut self.bodies[body.0].kind {
+            *target = pose;
+        }
+    }
+
+    fn place(&mut self, body: BodyId, pose: Pose) {
+        self.bodies[body.0].put(pose);
+    }
+
+    fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring) {
+        self.joints[joint.0].set(axis, spring);
+    }
+
+    fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>) {
+        let push = &mut self.pushes[body.0];
+        push.fixed_rows_mut::<3>(0).copy_from(&force);
+        push.fixed_rows_mut::<3>(3).copy_from(&moment);
+    }
+
+    fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
+        let mut sum = ContactForce::default();
+        for (pair, force) in self.pairs.iter().zip(&self.forces) {
+            let Some(sign) = pair.sign(first, second) else { continue };
+            sum.net += force.net * sign;
+            sum.normal_sum += force.normal_sum;
+        }
+        sum
+    }
+
+    fn contact_points(&self, first: BodyId, second: BodyId) -> Vec<ContactPoint> {
+        let per_step = 1.0 / self.settings.step_s;
+        let point = |(touch, contact): (&Touch, &Contact)| {
+            let sign = self.pairs.get(touch.pair)?.sign(first, second)?;
+            let force = contact.impulse.xyz() * (sign * per_step);
+            (force != Vector3::zeros()).then_some(ContactPoint { point: touch.point, force })
+        };
+        self.touches.iter().zip(&self.contacts).filter_map(point).collect()
+    }
+
+    fn snapshot(&self) -> Box<dyn World> {
+        Box::new(self.clone())
+    }
+}

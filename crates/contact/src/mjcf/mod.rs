@@ -1,0 +1,217 @@
+//! A scene as MJCF, the model format of MuJoCo (<https://mujoco.readthedocs.io>): for its
+//! viewer, and for the engine `mujoco`.
+//!
+//! | scene | MJCF |
+//! | --- | --- |
+//! | fixed body | `mocap` body, so that it can be put elsewhere |
+//! | driven body | a heavy body on three slides and three hinges, with position actuators |
+//! | free, carried body | free joint; `gravcomp` if its weight is carried |
+//! | joint | the child inside the parent, a slide or hinge for each axis that is not locked |
+//! | spring, servo | the joint's own stiffness and damping; a `position` actuator with its limit |
+//! | contacts of two bodies | a `pair` for each two of their geoms, and no others |
+//!
+//! Rotations are turned one after the other (about x, then y, then z), where the
+//! scene has a rotation vector: the same for one axis, and to first order for all.
+
+mod body;
+mod contact;
+mod xml;
+
+use super::PRESSED_PATCH;
+use crate::scene::{Body, Joint, JointAxis, Motion, Scene, Spring, Springs};
+use xml::Element;
+
+/// How finely and how stiffly MuJoCo is to simulate.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct MjcfSettings {
+    /// Length of a step, s: the published one. MuJoCo knows a contact only once
+    /// the surfaces overlap; at twice the step a light plug that is suddenly pressed
+    /// with 70 N has by then sunk too far (check T10).
+    pub step_s: f64,
+    /// Stiffness of a contact point, N/m: that of the engine `direct`.
+    pub contact_stiffness: f64,
+    /// Damping of a contact point, N s/m: that of the engine `direct`.
+    pub contact_damping: f64,
+    /// How friction holds a sticking point, N s/m: that of the engine `direct`.
+    pub stick_damping: f64,
+    /// What a contact adds to the mass of the bodies that it brakes, kg: so little
+    /// that T10 holds. With less the contact's damper would be too stiff for the
+    /// length of a step, beyond about `damping * step / mass = 1`.
+    pub contact_mass: f64,
+    /// Rate at which the friction of plug and socket brakes a point that is to stick,
+    /// 1/s. The higher it is, the higher a sliding point floats (see `contact.rs`, check
+    /// T12); the lower, the more of the contact's sinking is taken for sliding (T10).
+    pub friction_rate: f64,
+    /// Where MuJoCo's solver ends.
+    pub tolerance: f64,
+}
+
+impl Default for MjcfSettings {
+    fn default() -> Self {
+        MjcfSettings {
+            step_s: 5e-5,
+            contact_stiffness: 5.5e5,
+            contact_damping: 1500.0,
+            stick_damping: 2e6,
+            contact_mass: 0.1,
+            friction_rate: 3000.0,
+            tolerance: 1e-10,
+        }
+    }
+}
+
+/// Mass of a driven body, kg, and its moments of inertia, kg m2: 100 N against it
+/// for a step of 50 us move it by 0.25 nm.
+pub const HEAVY: f64 = 1000.0;
+/// Natural frequency and damping ratio with which a driven body follows its
+/// actuators in MuJoCo's own viewer, 1/s.
+const VIEWER_FREQUENCY: f64 = 100.0;
+
+/// What a scene has that MJCF cannot say.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{part}` cannot be written as MJCF: it has no {lacking}")]
+pub struct NotMjcf {
+    /// Body or joint of the scene.
+    pub part: String,
+    /// What is needed.
+    pub lacking: &'static str,
+}
+
+/// Whether a scene can be written.
+pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
+    let refuse = |part: &str, lacking| Err(NotMjcf { part: part.to_owned(), lacking });
+    for body in &scene.bodies {
+        if matches!(body.motion, Motion::Mechanism(_)) {
+            return refuse(&body.name, "mass that depends on the direction");
+        }
+    }
+    if let Some(pair) = scene.patched() {
+        return refuse(&scene.bodies[pair.first.0].name, PRESSED_PATCH);
+    }
+    for (i, joint) in scene.joints.iter().enumerate() {
+        let child = &scene.bodies[joint.child.0];
+        if matches!(joint.springs, Springs::Coupled(_)) {
+            return refuse(&joint.name, "springs that couple the axes of a joint");
+        }
+        if matches!(child.motion, Motion::Fixed | Motion::Driven) {
+            return refuse(&joint.name, "joints that carry a fixed or driven body");
+        }
+        if scene.joints[..i].iter().any(|other| other.child == joint.child) {
+            return refuse(&joint.name, "bodies on two joints");
+        }
+        if !body::at_zero(scene, joint) {
+            return refuse(&joint.name, "joints that start off their zero");
+        }
+    }
+    Ok(())
+}
+
+/// The scene as the text of a model; `name` is shown by viewers.
+pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<String, NotMjcf> {
+    supports(scene)?;
+    let g = scene.gravity;
+    let option = Element::new("option")
+        .with("timestep", settings.step_s)
+        .numbers("gravity", [g.x, g.y, g.z])
+        // Springs and dampers are solved for together with the contacts.
+        .with("integrator", "discrete")
+        .with("cone", "elliptic")
+        .with("impratio", contact::impratio(settings))
+        .with("solver", "Newton")
+        .with("tolerance", settings.tolerance)
+        // A diverged state is to be seen, not to be reset.
+        .holding([Element::new("flag").with("autoreset", "disable")]);
+    let geom = Element::new("geom").with("contype", 0).with("conaffinity", 0);
+    let model = Element::new("mujoco").with("model", name).holding([
+        Element::new("compiler").with("angle", "radian").with("autolimits", "true"),
+        option,
+        Element::new("visual").holding([Element::new("map").with("znear", 0.01)]),
+        Element::new("statistic").numbers("center", [0.0; 3]).with("extent", 0.15),
+        // Only the listed pairs touch.
+        Element::new("default").holding([geom]),
+        body::assets(scene),
+        body::world(scene),
+        contact::pairs(scene, settings),
+        actuators(scene),
+    ]);
+    let mut text = "<!-- Lengths in m, masses in kg, forces in N, angles in rad. -->\n".to_owned();
+    model.write(0, &mut text);
+    Ok(text)
+}
+
+/// Commands of the driven bodies, and the servos.
+fn actuators(scene: &Scene) -> Element {
+    let driven = scene.bodies.iter().filter(|body| body.motion == Motion::Driven);
+    let stiffness = HEAVY * VIEWER_FREQUENCY * VIEWER_FREQUENCY;
+    let damping = 2.0 * HEAVY * VIEWER_FREQUENCY;
+    let follows = Spring { limit: f64::INFINITY, ..Spring::new(stiffness, damping) };
+    let commands = driven.flat_map(|body| {
+        (0..6).map(move |axis| {
+            // As far as the sliders of a viewer reach: 0.1 m, 0.5 rad.
+            let reach = if axis < 3 { 0.1 } else { 0.5 };
+            actuator(&driven_axis_name(body, axis), &follows, reach)
+        })
+    });
+    let servos = scene.joints.iter().flat_map(|joint| {
+        (0..6).filter_map(move |axis| {
+            let spring = servo(joint, axis)?;
+            Some(actuator(&axis_name(joint, axis), spring, 0.02))
+        })
+    });
+    Element::new("actuator").holding(commands).holding(servos)
+}
+
+fn actuator(joint: &str, spring: &Spring, reach: f64) -> Element {
+    let element = Element::new("position")
+        .with("name", joint)
+        .with("joint", joint)
+        .with("kp", spring.stiffness)
+        .with("kv", spring.damping)
+        .numbers("ctrlrange", [-reach, reach]);
+    if spring.limit.is_infinite() {
+        return element;
+    }
+    element.numbers("forcerange", [-spring.limit, spring.limit])
+}
+
+/// The spring of an axis that is a servo: one with a limit.
+pub(crate) fn servo(joint: &Joint, axis: usize) -> Option<&Spring> {
+    match &joint.springs {
+        Springs::Axes(axes) => match &axes[axis] {
+            JointAxis::Sprung(spring) if spring.limit.is_finite() => Some(spring),
+            _ => None,
+        },
+        Springs::Coupled(_) => None,
+    }
+}
+
+const AXES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+
+/// Name of an axis of a joint, and of its servo.
+pub(crate) fn axis_name(joint: &Joint, axis: usize) -> String {
+    format!("{} {}", joint.name, AXES[axis])
+}
+
+/// Name of a joint of a driven body, and of its actuator.
+pub(crate) fn driven_axis_name(body: &Body, axis: usize) -> String {
+    format!("drive {} {}", body.name, AXES[axis])
+}
+
+/// Names of all geoms by body, each unique in the scene.
+pub fn geom_names(scene: &Scene) -> Vec<Vec<String>> {
+    let of_body = |body: &Body| {
+        let mut names: Vec<String> = Vec::new();
+        for geom in &body.geoms {
+            let name = format!("{}: {}", body.name, geom.name);
+            let unique = (1..).map(|n| if n == 1 { name.clone() } else { format!("{name} {n}") });
+            let free = unique.into_iter().find(|name| !names.contains(name));
+            names.extend(free);
+        }
+        names
+    };
+    scene.bodies.iter().map(of_body).collect()
+}
+
+fn mesh_name(geom: &str) -> String {
+    format!("hull of {geom}")
+}

@@ -1,0 +1,284 @@
+//! A scene in motion in MuJoCo.
+
+use crate::mjcf::{HEAVY, axis_name, driven_axis_name, geom_names, servo};
+use crate::scene::{
+    Body, BodyId, ContactPair, Joint, JointAxis, JointId, Motion, Pose, Scene, Spring, Springs,
+};
+use crate::{ContactForce, Diverged, World};
+use mujoco_rs::prelude::{MjData, MjModel, MjtObjBase};
+use nalgebra::{Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
+use std::sync::Arc;
+
+/// A speed or coordinate beyond this, SI, has left the finite numbers.
+const HUGE: f64 = 1e6;
+
+/// A scene in motion.
+#[derive(Clone)]
+pub(super) struct MujocoWorld {
+    /// State and model; the model is shared by snapshots until a spring is replaced.
+    data: MjData<Arc<MjModel>>,
+    bodies: Vec<BodyPlaces>,
+    joints: Vec<[AxisPlace; 6]>,
+    /// Body of the scene that a geom belongs to.
+    owners: Vec<BodyId>,
+    pairs: Vec<ContactPair>,
+    /// Their forces over the last step.
+    forces: Vec<ContactForce>,
+}
+
+/// A body's places in MuJoCo's arrays.
+#[derive(Clone)]
+struct BodyPlaces {
+    id: usize,
+    mocap: Option<usize>,
+    driven: Option<Driven>,
+}
+
+/// A driven body's coordinates, from its first pose.
+#[derive(Clone)]
+struct Driven {
+    start: Pose,
+    /// Of its six joints in MuJoCo's positions and velocities.
+    position: [usize; 6],
+    velocity: [usize; 6],
+    now: [f64; 6],
+    next: [f64; 6],
+}
+
+/// One axis of a joint in MuJoCo's arrays.
+#[derive(Clone, Copy)]
+enum AxisPlace {
+    Locked,
+    /// A spring of the joint itself.
+    Passive {
+        joint: usize,
+        position: usize,
+        velocity: usize,
+    },
+    /// An actuator, and its gain, which stays as it is.
+    Servo {
+        actuator: usize,
+        gain: f64,
+        spring: Spring,
+    },
+}
+
+impl MujocoWorld {
+    pub fn new(scene: &Scene, mut model: MjModel) -> Self {
+        // The sliders' ranges are for people.
+        model.actuator_ctrllimited_mut().fill(false);
+        // So are the driven bodies' actuators: here they go where they are told.
+        for body in scene.bodies.iter().filter(|body| body.motion == Motion::Driven) {
+            for axis in 0..6 {
+                let name = driven_axis_name(body, axis);
+                let actuator = id(&model, MjtObjBase::mjOBJ_ACTUATOR, &name);
+                model.actuator_biasprm_mut()[actuator].fill(0.0);
+            }
+        }
+        let bodies = scene.bodies.iter().map(|body| body_places(&model, body)).collect();
+        let joints = scene
+            .joints
+            .iter()
+            .map(|joint| std::array::from_fn(|axis| axis_place(&model, joint, axis)))
+            .collect();
+        let mut owners = vec![BodyId(usize::MAX); model.geom_bodyid().len()];
+        for (body, names) in geom_names(scene).iter().enumerate() {
+            for name in names {
+                owners[id(&model, MjtObjBase::mjOBJ_GEOM, name)] = BodyId(body);
+            }
+        }
+        let mut data = MjData::new(Arc::new(model));
+        data.kinematics();
+        MujocoWorld {
+            data,
+            bodies,
+            joints,
+            owners,
+            pairs: scene.contacts.clone(),
+            forces: vec![ContactForce::default(); scene.contacts.len()],
+        }
+    }
+
+    /// Sends the driven bodies on their way. MuJoCo's coordinates are relative: a velocity
+    /// that is merely set takes along all that hangs on the body, as if it weighed nothing.
+    /// So a force brings it to its velocity, against a mass beside which the rest is light.
+    fn steer(&mut self) {
+        let step = self.step_s();
+        for driven in self.bodies.iter().filter_map(|body| body.driven.as_ref()) {
+            for axis in 0..6 {
+                let rate = (driven.next[axis] - driven.now[axis]) / step;
+                let dof = driven.velocity[axis];
+                let push = HEAVY * (rate - self.data.qvel()[dof]) / step;
+                self.data.qfrc_applied_mut()[dof] = push;
+            }
+        }
+    }
+
+    /// Takes the rounding out of where the driven bodies have come.
+    fn arrive(&mut self) {
+        for driven in self.bodies.iter_mut().filter_map(|body| body.driven.as_mut()) {
+            driven.now = driven.next;
+            for axis in 0..6 {
+                self.data.qpos_mut()[driven.position[axis]] = driven.now[axis];
+            }
+        }
+    }
+
+    fn add_forces(&mut self) {
+        self.forces.fill(ContactForce::default());
+        for (i, contact) in self.data.contact().iter().enumerate() {
+            // MuJoCo's normal points from the first geom to the second.
+            let [from, to] = contact.geom.map(|geom| self.owners[geom as usize]);
+            let signs = self.pairs.iter().enumerate();
+            let mut signs = signs.filter_map(|(place, pair)| Some((place, pair.sign(from, to)?)));
+            let Some((place, sign)) = signs.next() else { continue };
+            let [normal, first, second, ..] = self.data.contact_force(i);
+            let axes = Matrix3::from_column_slice(&contact.frame);
+            self.forces[place].net += axes * Vector3::new(normal, first, second) * sign;
+            self.forces[place].normal_sum += normal;
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        // Written so that a NaN is outside.
+        self.data.qpos().iter().chain(self.data.qvel()).all(|value| value.abs() < HUGE)
+    }
+
+    /// Changes the model; snapshots keep the one they have.
+    fn change(&mut self, change: impl FnOnce(&mut MjModel)) {
+        let mut model = self.data.model().clone();
+        change(&mut model);
+        self.data.swap_model(Arc::new(model));
+    }
+}
+
+impl World for MujocoWorld {
+    fn step(&mut self) -> Result<(), Diverged> {
+        self.steer();
+        self.data.step();
+        self.add_forces();
+        self.arrive();
+        // Poses of the end of the step, where MuJoCo's are of its start.
+        self.data.kinematics();
+        if self.is_finite() { Ok(()) } else { Err(Diverged) }
+    }
+
+    fn step_s(&self) -> f64 {
+        self.data.model().opt().timestep
+    }
+
+    fn pose(&self, body: BodyId) -> Pose {
+        let id = self.bodies[body.0].id;
+        let [w, i, j, k] = self.data.xquat()[id];
+        let turn = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
+        Pose::from_parts(Translation3::from(self.data.xpos()[id]), turn)
+    }
+
+    fn drive(&mut self, body: BodyId, pose: Pose) {
+        if let Some(driven) = &mut self.bodies[body.0].driven {
+            driven.next = coordinates(&driven.start.inv_mul(&pose));
+        }
+    }
+
+    fn place(&mut self, body: BodyId, pose: Pose) {
+        let Some(mocap) = self.bodies[body.0].mocap else { return };
+        let q = pose.rotation.coords;
+        self.data.mocap_pos_mut()[mocap] = pose.translation.vector.into();
+        self.data.mocap_quat_mut()[mocap] = [q.w, q.x, q.y, q.z];
+        self.data.kinematics();
+    }
+
+    /// # Panics
+    /// If a plain spring, without a limit from the start, is given one.
+    fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring) {
+        match self.joints[joint.0][axis] {
+            AxisPlace::Locked => {}
+            AxisPlace::Passive { joint, position, velocity } => {
+                assert!(spring.limit.is_infinite(), "a plain spring has no limit");
+                self.change(|model| {
+                    model.jnt_stiffness_mut()[joint] = spring.stiffness;
+                    model.dof_damping_mut()[velocity] = spring.damping;
+                    model.qpos_spring_mut()[position] = spring.target;
+                });
+            }
+            AxisPlace::Servo { actuator, gain, spring: old } => {
+                if (Spring { target: old.target, ..spring }) != old {
+                    self.change(|model| {
+                        let bias = &mut model.actuator_biasprm_mut()[actuator];
+                        (bias[1], bias[2]) = (-spring.stiffness, -spring.damping);
+                        model.actuator_forcerange_mut()[actuator] = [-spring.limit, spring.limit];
+                        model.actuator_forcelimited_mut()[actuator] = spring.limit.is_finite();
+                    });
+                    self.joints[joint.0][axis] = AxisPlace::Servo { actuator, gain, spring };
+                }
+                // force = gain * control - stiffness * position - damping * rate
+                self.data.ctrl_mut()[actuator] = spring.stiffness / gain * spring.target;
+            }
+        }
+    }
+
+    fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>) {
+        let (f, m) = (force, moment);
+        self.data.xfrc_applied_mut()[self.bodies[body.0].id] = [f.x, f.y, f.z, m.x, m.y, m.z];
+    }
+
+    fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
+        let signed = |(pair, force): (&ContactPair, &ContactForce)| {
+            Some(ContactForce { net: force.net * pair.sign(first, second)?, ..*force })
+        };
+        self.pairs.iter().zip(&self.forces).find_map(signed).unwrap_or_default()
+    }
+
+    fn snapshot(&self) -> Box<dyn World> {
+        Box::new(self.clone())
+    }
+}
+
+/// # Panics
+/// If there is none: the model was written from the scene.
+pub(super) fn id(model: &MjModel, kind: MjtObjBase, name: &str) -> usize {
+    model.name_to_id(kind, name).unwrap_or_else(|| panic!("the model has no `{name}`"))
+}
+
+fn body_places(model: &MjModel, body: &Body) -> BodyPlaces {
+    let index = id(model, MjtObjBase::mjOBJ_BODY, &body.name);
+    let driven = (body.motion == Motion::Driven).then(|| {
+        let name = |axis| driven_axis_name(body, axis);
+        let joint = |axis| id(model, MjtObjBase::mjOBJ_JOINT, &name(axis));
+        let joints: [usize; 6] = std::array::from_fn(joint);
+        Driven {
+            start: body.pose,
+            position: joints.map(|joint| model.jnt_qposadr()[joint] as usize),
+            velocity: joints.map(|joint| model.jnt_dofadr()[joint] as usize),
+            now: [0.0; 6],
+            next: [0.0; 6],
+        }
+    });
+    BodyPlaces { id: index, mocap: usize::try_from(model.body_mocapid()[index]).ok(), driven }
+}
+
+fn axis_place(model: &MjModel, joint: &Joint, axis: usize) -> AxisPlace {
+    let Springs::Axes(axes) = &joint.springs else { return AxisPlace::Locked };
+    let JointAxis::Sprung(_) = axes[axis] else { return AxisPlace::Locked };
+    let name = axis_name(joint, axis);
+    if let Some(&spring) = servo(joint, axis) {
+        let actuator = id(model, MjtObjBase::mjOBJ_ACTUATOR, &name);
+        return AxisPlace::Servo { actuator, gain: model.actuator_gainprm()[actuator][0], spring };
+    }
+    let joint = id(model, MjtObjBase::mjOBJ_JOINT, &name);
+    AxisPlace::Passive {
+        joint,
+        position: model.jnt_qposadr()[joint] as usize,
+        velocity: model.jnt_dofadr()[joint] as usize,
+    }
+}
+
+/// Translations, and the angles of turns about x, then y, then z.
+fn coordinates(pose: &Pose) -> [f64; 6] {
+    let at = pose.translation.vector;
+    let turn: Rotation3<f64> = pose.rotation.to_rotation_matrix();
+    let about_x = f64::atan2(-turn[(1, 2)], turn[(2, 2)]);
+    let about_y = turn[(0, 2)].clamp(-1.0, 1.0).asin();
+    let about_z = f64::atan2(-turn[(0, 1)], turn[(0, 0)]);
+    [at.x, at.y, at.z, about_x, about_y, about_z]
+}

@@ -1,0 +1,134 @@
+//! A scene's bodies and joints as rapier's.
+
+use super::RapierSettings;
+use crate::scene::{Body, BodyId, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs};
+use crate::shapes;
+use nalgebra::{Translation3, UnitQuaternion};
+use rapier3d_f64::math as rm;
+use rapier3d_f64::prelude as rp;
+
+/// The engine's settings as rapier's.
+pub(super) fn parameters(settings: &RapierSettings) -> rp::IntegrationParameters {
+    let softness = rp::SpringCoefficients {
+        natural_frequency: settings.contact_hz,
+        damping_ratio: settings.contact_damping_ratio,
+    };
+    rp::IntegrationParameters {
+        dt: settings.step_s,
+        num_solver_iterations: settings.substeps,
+        contact_softness: softness,
+        static_contact_softness: softness,
+        normalized_prediction_distance: settings.prediction,
+        normalized_max_corrective_velocity: settings.corrective_velocity,
+        normalized_allowed_linear_error: settings.allowed_error,
+        // Recycled contacts let a block slide 34 mm past an edge before it drops.
+        contact_recycling: false,
+        contact_clustering: false,
+        max_ccd_substeps: 0,
+        warmstart_joints: true,
+        // `Coulomb` lost 2.8 % of friction on a rotating four-point face.
+        friction_model: rp::FrictionModel::Simplified,
+        ..Default::default()
+    }
+}
+
+/// One collision group per body, filtered to the bodies it may touch.
+fn groups(scene: &Scene) -> Vec<rp::InteractionGroups> {
+    let bit = |i: usize| rp::Group::from_bits_truncate(1 << i);
+    (0..scene.bodies.len())
+        .map(|i| {
+            let own = scene.contacts.iter().filter(|pair| pair.has(BodyId(i)));
+            let both = own.map(|pair| bit(pair.first.0) | bit(pair.second.0));
+            let filter = both.fold(rp::Group::empty(), |all, two| all | two).difference(bit(i));
+            rp::InteractionGroups::new(bit(i), filter, rp::InteractionTestMode::And)
+        })
+        .collect()
+}
+
+/// Puts the bodies with their colliders into a world.
+pub(super) fn insert_bodies(
+    world: &mut rp::PhysicsWorld,
+    scene: &Scene,
+) -> Vec<rp::RigidBodyHandle> {
+    let bodies = scene.bodies.iter().zip(groups(scene));
+    bodies.map(|(body, group)| insert_body(world, body, group)).collect()
+}
+
+fn insert_body(
+    world: &mut rp::PhysicsWorld,
+    body: &Body,
+    group: rp::InteractionGroups,
+) -> rp::RigidBodyHandle {
+    let builder = match &body.motion {
+        // A mechanism's end is refused before; see `supports`.
+        Motion::Fixed | Motion::Mechanism(_) => rp::RigidBodyBuilder::fixed(),
+        Motion::Driven => rp::RigidBodyBuilder::kinematic_position_based(),
+        Motion::Free(inertia) | Motion::Carried(inertia) => {
+            let centre = shapes::vector(&inertia.centre.coords);
+            let moments = shapes::vector(&inertia.moments);
+            rp::RigidBodyBuilder::dynamic().additional_mass_properties(rp::MassProperties::new(
+                centre,
+                inertia.mass,
+                moments,
+            ))
+        }
+    };
+    let weight = if matches!(body.motion, Motion::Carried(_)) { 0.0 } else { 1.0 };
+    let builder =
+        builder.gravity_scale(weight).pose(shapes::pose(&body.pose, 1.0)).can_sleep(false);
+    let handle = world.insert_body(builder);
+    for geom in &body.geoms {
+        let (shape, turn) = shapes::shared(&geom.shape, 1.0);
+        let collider = rp::ColliderBuilder::new(shape)
+            .position(shapes::pose(&(geom.pose * turn), 1.0))
+            .density(0.0)
+            .user_data(world.colliders.len() as u128)
+            .active_hooks(rp::ActiveHooks::MODIFY_SOLVER_CONTACTS)
+            .collision_groups(group);
+        world.insert_collider(collider, Some(handle));
+    }
+    handle
+}
+
+/// rapier's names of a joint's axes, in our order.
+pub(super) const JOINT_AXES: [rp::JointAxis; 6] = [
+    rp::JointAxis::LinX,
+    rp::JointAxis::LinY,
+    rp::JointAxis::LinZ,
+    rp::JointAxis::AngX,
+    rp::JointAxis::AngY,
+    rp::JointAxis::AngZ,
+];
+
+/// A joint with its springs.
+pub(super) fn generic_joint(joint: &Joint) -> rp::GenericJoint {
+    let mut made = rp::GenericJoint::new(rp::JointAxesMask::empty());
+    made.set_local_frame1(shapes::pose(&joint.in_parent, 1.0));
+    made.set_local_frame2(shapes::pose(&joint.in_child, 1.0));
+    made.set_contacts_enabled(false);
+    // Coupled springs are refused before; see `supports`.
+    let Springs::Axes(axes) = &joint.springs else { return made };
+    for (axis, spring) in JOINT_AXES.into_iter().zip(axes) {
+        match spring {
+            JointAxis::Locked => {
+                made.lock_axes(axis.into());
+            }
+            JointAxis::Sprung(spring) => set_motor(&mut made, axis, spring),
+        }
+    }
+    made
+}
+
+/// Gives an axis its spring.
+pub(super) fn set_motor(joint: &mut rp::GenericJoint, axis: rp::JointAxis, spring: &Spring) {
+    joint.set_motor_model(axis, rp::MotorModel::ForceBased);
+    joint.set_motor(axis, spring.target, 0.0, spring.stiffness, spring.damping);
+    joint.set_motor_max_force(axis, if spring.limit.is_finite() { spring.limit } else { f64::MAX });
+}
+
+/// From rapier's pose.
+pub(super) fn from_rapier(pose: &rm::Pose) -> Pose {
+    let (t, q) = (pose.translation, pose.rotation);
+    let quaternion = nalgebra::Quaternion::new(q.w, q.x, q.y, q.z);
+    Pose::from_parts(Translation3::new(t.x, t.y, t.z), UnitQuaternion::new_unchecked(quaternion))
+}

@@ -1,0 +1,203 @@
+//! The print sheet: one page that says what to print, how, and how to check it.
+
+use super::dimension::{View, line};
+use super::drawing;
+use super::title;
+use crate::geometry::Geometry;
+use crate::mechanics::FingerStiffness;
+use crate::printed::{Outline, PrintedFinger};
+use input::units::{DEG, GRAM, MM, N_PER_MM};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use nalgebra::{Point2, Vector2};
+
+/// A4, lying, mm.
+const PAPER: [f64; 2] = [297.0, 210.0];
+/// Room for the drawing, mm on paper.
+const ROOM: [f64; 2] = [215.0, 80.0];
+/// Left and upper edge of the drawing, mm on paper.
+const CORNER: [f64; 2] = [38.0, 58.0];
+
+/// The sheet as a page of HTML that prints on one sheet of paper.
+pub fn html(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                title { "Print sheet: " (title(geometry)) }
+                style { (PreEscaped("@page{size:A4 landscape;margin:0}body{margin:0}svg{width:100%;max-height:100vh}")) }
+            }
+            body { (PreEscaped(svg(geometry, stiffness))) }
+        }
+    };
+    page.into_string()
+}
+
+/// The sheet as an SVG of an A4 page.
+pub fn svg(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
+    let [width, height] = PAPER;
+    let outline = &geometry.finger.outline;
+    let fits = (ROOM[0] / (outline.length / MM)).min(ROOM[1] / (outline.width / MM));
+    let scale = if fits >= 1.0 { fits.floor() } else { 1.0 / (1.0 / fits).ceil() };
+    let view = View { origin: Point2::from(CORNER), scale };
+    let words = if scale >= 1.0 { format!("{scale} : 1") } else { format!("1 : {}", 1.0 / scale) };
+    let svg = html! {
+        svg xmlns="http://www.w3.org/2000/svg" width={ (width) "mm" } height={ (height) "mm" }
+            viewBox={ "0 0 " (width) " " (height) } font-family="sans-serif" font-size="3.6" {
+            rect width="100%" height="100%" fill="#fff" {}
+            text x="15" y="17" font-size="7" { (title(geometry)) }
+            text x="15" y="24" fill="#444" {
+                (geometry.finger.description) ". Both fingers of a gripper are this part: print two."
+            }
+            text x="282" y="17" text-anchor="end" fill="#444" { "lengths in mm, drawn " (words) }
+            (profile(geometry, view))
+            (lengths(outline, view))
+            (direction(geometry, view))
+            (column(15.0, "Finger", &finger(geometry)))
+            (column(108.0, "Print", &print(geometry)))
+            (column(205.0, "Check the print", &check(geometry, stiffness)))
+        }
+    };
+    svg.into_string() + "\n"
+}
+
+/// The profile, and what the gripper holds of it.
+fn profile(geometry: &Geometry, view: View) -> Markup {
+    let outline = &geometry.finger.outline;
+    let place = |[x, y]: [f64; 2]| view.place(Point2::new(x, y)).into();
+    let at = view.place(Point2::new((outline.length - outline.clamped) / MM, 0.0));
+    let [width, height] = [outline.clamped, outline.width].map(|value| value / MM * view.scale);
+    html! {
+        path d=(drawing::path(geometry, place)) fill="#aab7c9" stroke="#223" stroke-width="0.15"
+            fill-rule="evenodd" {}
+        rect x=(at.x) y=(at.y) width=(width) height=(height) fill="none" stroke="#a33"
+            stroke-width="0.4" stroke-dasharray="2 1" {}
+        text x=(at.x + width / 2.0) y=(at.y + height / 2.0) text-anchor="middle" fill="#a33" {
+            "held by the gripper"
+        }
+    }
+}
+
+fn mm(length: f64) -> String {
+    // To a micrometre, without zeros that say nothing.
+    format!("{}", (length / MM * 1e3).round() / 1e3)
+}
+
+/// To a hundredth of a degree.
+fn degrees(angle: f64) -> f64 {
+    (angle / DEG * 100.0).round() / 100.0
+}
+
+/// The lengths of the outline.
+fn lengths(outline: &Outline, view: View) -> Markup {
+    let at = |x: f64, y: f64| Point2::new(x, y) / MM;
+    let Outline { length, width, tip, solid, clamped, .. } = *outline;
+    let arc = outline.arc_end();
+    let [pad, roof] = [outline.pad, outline.roof_length()].map(mm);
+    let pad = format!("pad {pad} at {}°, roof {roof}", degrees(outline.pad_angle));
+    let middle = view.place(at(arc / 2.0, -width));
+    html! {
+        g font-size="3.2" fill="#222" {
+            (view.length(at(0.0, -width), at(length, -width), -16.0, &mm(length)))
+            (view.length(at(arc, -width), at(length, -width), -8.0, &mm(length - arc)))
+            (view.length(at(length, -width), at(length, 0.0), -8.0, &mm(width)))
+            (view.length(at(length - solid, 0.0), at(length, 0.0), 7.0, &format!("solid {}", mm(solid))))
+            (view.length(at(length - clamped, 0.0), at(length, 0.0), 14.0, &format!("held {}", mm(clamped))))
+            (view.length(at(0.0, -tip), at(0.0, 0.0), 12.0, &mm(tip)))
+            (view.length(outline.tip_point() / MM, outline.corner() / MM, 5.0, &pad))
+            text x=(middle.x - 12.0) y=(middle.y - 1.0) text-anchor="middle" {
+                "R " (mm(outline.back_radius))
+            }
+        }
+    }
+}
+
+/// Which way 0 degrees is, and the design's direction.
+fn direction(geometry: &Geometry, view: View) -> Markup {
+    let PrintedFinger { outline, .. } = &geometry.finger;
+    let design = geometry.design.direction_deg;
+    let foot =
+        Point2::new((outline.arc_end() + outline.length - outline.solid) / 2.0, -outline.width);
+    let reach = outline.width / MM + 14.0 / view.scale;
+    let up = |angle: f64| Vector2::new((angle * DEG).sin(), (angle * DEG).cos());
+    let end = |angle: f64| view.place(foot / MM + up(angle) * reach);
+    let from = view.place(foot / MM);
+    let label = |angle: f64| {
+        let at = view.place(foot / MM + up(angle) * (reach + 2.0 / view.scale));
+        html! { text x=(at.x) y=(at.y) text-anchor="middle" { (angle) "°" } }
+    };
+    html! {
+        g stroke="#c60" stroke-width="0.4" fill="#c60" {
+            g stroke-dasharray="2 1" { (line(from, end(0.0))) }
+            (line(from, end(design)))
+        }
+        g fill="#a40" font-size="4" {
+            (label(0.0))
+            @if design != 0.0 { (label(design)) }
+        }
+    }
+}
+
+/// A heading, and names with their values below it.
+fn column(x: f64, heading: &str, rows: &[(&str, String)]) -> Markup {
+    html! {
+        g transform={ "translate(" (x) ",152)" } font-size="3.4" {
+            text font-size="4.4" font-weight="bold" { (heading) }
+            @for (i, (name, value)) in rows.iter().enumerate() {
+                text y=(7.0 + 5.2 * i as f64) fill="#555" { (name) }
+                text x="27" y=(7.0 + 5.2 * i as f64) { (value) }
+            }
+        }
+    }
+}
+
+fn finger(geometry: &Geometry) -> Vec<(&'static str, String)> {
+    let PrintedFinger { material, outline, skin, ribs, .. } = &geometry.finger;
+    let design = &geometry.design;
+    vec![
+        ("material", format!("{}, {} GPa", material.name, material.modulus / 1e9)),
+        ("infill", format!("{} %, {}°", design.density_percent, design.direction_deg)),
+        (
+            "ribs",
+            format!(
+                "{} of {}, {} apart",
+                geometry.ribs(),
+                mm(ribs.thickness),
+                mm(geometry.pitch())
+            ),
+        ),
+        (
+            "first rib",
+            format!("{} from ({}, {})", mm(geometry.phase()), mm(ribs.origin.x), mm(ribs.origin.y)),
+        ),
+        ("skin", mm(*skin)),
+        ("depth", mm(outline.depth)),
+        ("mount", format!("{}° to the assembly", degrees(geometry.finger.tilt))),
+    ]
+}
+
+fn print(geometry: &Geometry) -> Vec<(&'static str, String)> {
+    let line = mm(geometry.finger.line_width);
+    vec![
+        ("lies", "flat, as drawn; layers along the depth".to_owned()),
+        ("0°", "ribs straight across the finger".to_owned()),
+        ("above 0°", "front (upper) ends lean to the base".to_owned()),
+        ("line width", line),
+        ("STL, 3MF", "ribs are in the file: thin walls on,".to_owned()),
+        ("", "solid infill, no other".to_owned()),
+        ("own infill", "parallel lines, ends not connected, one wall,".to_owned()),
+        ("", "no top, no bottom; the base solid".to_owned()),
+    ]
+}
+
+fn check(geometry: &Geometry, stiffness: &FingerStiffness) -> Vec<(&'static str, String)> {
+    let computed = |value: f64| format!("{:.2} N/mm, computed", value / N_PER_MM);
+    vec![
+        ("mass", format!("{:.2} g", geometry.mass() / GRAM)),
+        ("profile", format!("{:.1} mm2", geometry.area() / (MM * MM))),
+        ("across pad", computed(stiffness.pad.in_compliance())),
+        ("along pad", computed(stiffness.pad.in_assembly())),
+        ("", "force on the pad's middle, free to turn;".to_owned()),
+        ("", format!("from {} GPa: measure yours", geometry.finger.material.modulus / 1e9)),
+    ]
+}

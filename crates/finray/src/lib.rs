@@ -1,0 +1,105 @@
+//! The printed finger: its profile, its stiffness from its ribs, its picture.
+//!
+//! ```text
+//! geometry (outline, fit, polygon) -> mesh -> model -> condense (halving, front)
+//!     elements: elasticity (in the plane), plate (across it) -> stiffness, mechanics, picture
+//! ```
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+// A panic is a defect; what input can reach is an error with a message.
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+pub mod condense;
+pub mod elasticity;
+pub mod export;
+mod fit;
+mod front;
+pub mod geometry;
+mod halving;
+pub mod infill;
+pub mod known;
+pub mod mechanics;
+pub mod mesh;
+pub mod model;
+mod outline;
+pub mod phases;
+pub mod picture;
+pub mod plate;
+pub mod polygon;
+pub mod printed;
+pub mod stiffness;
+#[cfg(test)]
+mod tests;
+
+/// What is wrong with a printed finger.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FingerError {
+    /// A number of the finger file that a design sets to what cannot be.
+    #[error(transparent)]
+    Value(#[from] input::InputError),
+    /// Parts that do not fit one another.
+    #[error("{file}: {key}: {problem}")]
+    Geometry {
+        /// The finger file.
+        file: String,
+        /// The key in it, or the design's parameter.
+        key: String,
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+    /// A profile that no mesh fits.
+    #[error("{file}: the profile cannot be meshed: {problem}")]
+    Mesh {
+        /// The finger file.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A stiffness that no such finger has.
+    #[error(
+        "{file}: the units look wrong: the compliance stiffness comes out as {compliance:.3e} N/mm, \
+         a finger has 0.05 to 100; check that lengths are in mm and material.modulus_gpa in GPa \
+         (PETG has 2)"
+    )]
+    Units {
+        /// The finger file.
+        file: String,
+        /// Computed compliance stiffness, N/mm.
+        compliance: f64,
+    },
+    /// Springs that cannot be about this remote centre.
+    #[error(
+        "{file}: a finger of {at_pad:.2} N/mm in {axis} at its pad cannot turn about a centre \
+         {lever:.1} mm beside it at {tilting:.2} N m/rad: that alone gives way at {turning:.2} N/mm; \
+         bring finger.rcc_mm nearer to the pad, or use --finger-model paper"
+    )]
+    Springs {
+        /// The finger file.
+        file: String,
+        /// `compliance` or `assembly`.
+        axis: &'static str,
+        /// Stiffness at the pad, N/mm.
+        at_pad: f64,
+        /// Distance of the remote centre across that direction, mm.
+        lever: f64,
+        /// Tilting stiffness, N m/rad.
+        tilting: f64,
+        /// Stiffness at the pad of the tilting spring alone, N/mm.
+        turning: f64,
+    },
+    /// A task whose file couples springs that are computed.
+    #[error(
+        "the task `{task}`: finger.coupling goes with --finger-model paper; the springs of a \
+         computed finger are coupled as its ribs say"
+    )]
+    Coupled {
+        /// The task.
+        task: String,
+    },
+}
+
+impl FingerError {
+    fn mesh(geometry: &geometry::Geometry, problem: &dyn std::fmt::Display) -> Self {
+        FingerError::Mesh { file: geometry.finger.file.clone(), problem: problem.to_string() }
+    }
+}

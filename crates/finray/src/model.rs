@@ -1,0 +1,164 @@
+//! A finger as finite elements: its mesh, what is clamped, and the pad as a rigid body.
+
+use super::condense::{Condensed, Element, Role, condense};
+use super::front::Loose;
+use super::geometry::Geometry;
+use super::mesh::{Mesh, MeshError};
+use super::polygon::{Ring, edges};
+use crate::printed::Outline;
+use input::units::MM;
+use nalgebra::{DMatrix, DVector, Matrix3, Point2, Vector3};
+
+/// Distance within which a node lies on a line, m.
+const ON: f64 = 1e-6 * MM;
+/// Where the rigid part ends the stress is singular: triangles there are this share of the others.
+const FINEST: f64 = 0.3;
+
+/// Mesh of the part of a finger that its clamp leaves free. What the gripper holds does
+/// not deform, and is left out.
+pub struct Model {
+    /// The triangles.
+    pub mesh: Mesh,
+    outline: Outline,
+    roles: Vec<Role>,
+}
+
+/// A face that moves as one body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Body {
+    /// The pad.
+    Pad,
+    /// The pad and the part of the roof that rests on a part.
+    PadAndRoof,
+}
+
+/// How a node's degrees of freedom follow a rigid body: one row each.
+pub trait Follow: Element {
+    /// Rows for a node at a distance along y and z from the body's origin.
+    fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
+}
+
+impl Model {
+    /// A mesh with triangles of about this length of side, m.
+    pub fn new(geometry: &Geometry, size: f64) -> Result<Self, MeshError> {
+        let outline = geometry.finger.outline;
+        let roof_end = outline.corner() + outline.out_of_pad() * outline.roof;
+        let ends = [outline.tip_point(), outline.corner(), roof_end];
+        let ring = graded(&geometry.free_ring(), &ends, size);
+        let mesh = Mesh::new(&ring, geometry.rings().1, size)?;
+        let mut model = Model { mesh, outline, roles: Vec::new() };
+        let clamp = outline.length - outline.clamped;
+        let role = |p: &Point2<f64>| match () {
+            () if p.x > clamp - ON => Role::Fixed,
+            () if model.holds(Body::PadAndRoof, p) => Role::Kept,
+            () => Role::Free,
+        };
+        model.roles = model.mesh.nodes.iter().map(role).collect();
+        Ok(model)
+    }
+
+    /// The stiffness of pad and roof; `remember` what [`Condensed::expand`] needs.
+    pub fn condense<E: Element>(&self, element: &E, remember: bool) -> Result<Condensed, Loose> {
+        condense(&self.mesh, element, &self.roles, remember)
+    }
+
+    /// Coordinates y and z of a point, from the pad's middle, m.
+    pub fn local(&self, point: &Point2<f64>) -> [f64; 2] {
+        let from_middle = point - self.outline.pad_middle();
+        [self.outline.out_of_pad(), self.outline.along_pad()].map(|axis| axis.dot(&from_middle))
+    }
+
+    fn holds(&self, body: Body, point: &Point2<f64>) -> bool {
+        let [y, z] = self.local(point);
+        let half = self.outline.pad / 2.0;
+        let on_pad = y.abs() < ON && z.abs() < half + ON;
+        let on_roof = (z - half).abs() < ON && y > -ON && y < self.outline.roof + ON;
+        on_pad || (body == Body::PadAndRoof && on_roof)
+    }
+
+    /// Holds a body rigid and leaves the other kept nodes free.
+    pub fn hold<E: Follow>(
+        &self,
+        condensed: &Condensed,
+        element: &E,
+        body: Body,
+    ) -> Result<Held, Loose> {
+        let places: Vec<_> =
+            condensed.nodes.iter().map(|&node| self.mesh.nodes[node as usize]).collect();
+        let freedoms = E::FREEDOMS;
+        let (held, free): (Vec<usize>, Vec<usize>) =
+            (0..places.len()).partition(|&i| self.holds(body, &places[i]));
+        // Columns: the body's three motions, then the free nodes' degrees of freedom.
+        let rows = places.len() * freedoms;
+        let mut follow = DMatrix::zeros(rows, 3 + free.len() * freedoms);
+        for i in held {
+            let rows = element.follow(&self.outline, self.local(&places[i]));
+            for (d, row) in rows.iter().enumerate() {
+                follow.fixed_view_mut::<1, 3>(i * freedoms + d, 0).copy_from_slice(row);
+            }
+        }
+        for (k, i) in free.iter().enumerate() {
+            for d in 0..freedoms {
+                follow[(i * freedoms + d, 3 + k * freedoms + d)] = 1.0;
+            }
+        }
+        let stiffness = follow.transpose() * &condensed.stiffness * &follow;
+        Held::new(stiffness, follow)
+    }
+}
+
+/// A mesh whose pad is a rigid body.
+pub struct Held {
+    /// Forces and moments on the body by its motions.
+    pub stiffness: Matrix3<f64>,
+    /// Displacements of the kept nodes by the body's motions.
+    follow: DMatrix<f64>,
+}
+
+impl Held {
+    fn new(stiffness: DMatrix<f64>, follow: DMatrix<f64>) -> Result<Self, Loose> {
+        let free = stiffness.nrows() - 3;
+        let own: Matrix3<f64> = stiffness.fixed_view::<3, 3>(0, 0).into_owned();
+        if free == 0 {
+            return Ok(Held { stiffness: own, follow });
+        }
+        let mixed = stiffness.view((3, 0), (free, 3)).into_owned();
+        let among = stiffness.view((3, 3), (free, free)).into_owned();
+        let answer = -among.cholesky().ok_or(Loose)?.solve(&mixed);
+        let condensed = own + mixed.transpose() * &answer;
+        let motion =
+            follow.columns(0, 3).into_owned() + follow.columns(3, free).into_owned() * answer;
+        let stiffness = condensed.fixed_view::<3, 3>(0, 0).into_owned();
+        Ok(Held { stiffness, follow: motion })
+    }
+
+    /// Displacements of the kept nodes for a motion of the body.
+    pub fn kept(&self, motion: &Vector3<f64>) -> DVector<f64> {
+        &self.follow * motion
+    }
+}
+
+/// The ring with its edges divided finely near some of its corners.
+fn graded(ring: &Ring, corners: &[Point2<f64>], size: f64) -> Ring {
+    let near = |p: Point2<f64>| corners.iter().any(|corner| (p - corner).norm() < ON);
+    let steps = |length: f64| {
+        let reach = size.min(length / 2.0);
+        std::iter::successors(Some(FINEST * size), |step| Some(2.0 * step))
+            .take_while(move |step| *step < reach)
+    };
+    let mut finer = Ring::new();
+    for (from, to) in edges(ring) {
+        let length = (to - from).norm();
+        let along = (to - from) / length;
+        finer.push(from);
+        if near(from) {
+            finer.extend(steps(length).map(|step| from + along * step));
+        }
+        if near(to) {
+            let mut last: Ring = steps(length).map(|step| to - along * step).collect();
+            last.reverse();
+            finer.append(&mut last);
+        }
+    }
+    finer
+}

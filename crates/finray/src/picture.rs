@@ -1,0 +1,168 @@
+//! A picture of a finger that bends under a load on its pad.
+
+use super::FingerError;
+use super::elasticity::PlaneStress;
+use super::geometry::Geometry;
+use super::mechanics::SIZE;
+use super::model::{Body, Model};
+use super::stiffness::PlanarStiffness;
+use crate::printed::Outline;
+use input::units::MM;
+use nalgebra::{Point2, Vector2, Vector3};
+use std::fmt::Write;
+
+/// Pixels per millimetre.
+const SCALE: f64 = 12.0;
+/// Room around the finger, mm: left, top, right, bottom.
+const MARGIN: [f64; 4] = [9.0, 12.0, 4.0, 11.0];
+/// The largest displacement is drawn at most this long, mm.
+const LONGEST: f64 = 5.0;
+/// Length of the scale bar, mm.
+const BAR: f64 = 10.0;
+
+/// Draws the finger at rest (light) and under a force on its pad, y and z in N (dark), as a
+/// stand-alone SVG. The part touches the pad alone and does not hold it from turning.
+///
+/// # Errors
+/// If the finger's stiffness cannot be computed.
+pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> {
+    let bent = Bent::new(geometry, force)?;
+    let outline = &geometry.finger.outline;
+    let [left, top, right, bottom] = MARGIN;
+    let (width, height) = (outline.length / MM + left + right, outline.width / MM + top + bottom);
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0} {:.0}\" \
+         font-family=\"sans-serif\" font-size=\"14\">\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+        width * SCALE,
+        height * SCALE,
+    );
+    words(&mut out, geometry, force, bent.exaggeration, height);
+    let rings = |at: &dyn Fn(usize) -> Point2<f64>| {
+        bent.rings.iter().map(|ring| path(ring.iter().map(|&node| at(node)))).collect::<String>()
+    };
+    shape(&mut out, &rings(&|node| bent.model.mesh.nodes[node]), "#d9dde3");
+    shape(&mut out, &rings(&|node| bent.moved(node)), "#33507a");
+    shape(&mut out, &path(base(outline).into_iter()), "#8a8f98");
+    let pad: Vec<String> = [outline.tip_point(), outline.corner()]
+        .iter()
+        .map(|p| pixels(p + bent.rigid(p) * bent.exaggeration))
+        .collect();
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        out,
+        "<polyline points=\"{}\" fill=\"none\" stroke=\"#e8a33d\" stroke-width=\"4\"/>\n</svg>",
+        pad.join(" ")
+    );
+    Ok(out)
+}
+
+/// A finger under load.
+struct Bent {
+    model: Model,
+    /// Two numbers for each node, m.
+    displacements: Vec<f64>,
+    exaggeration: f64,
+    outline: Outline,
+    motion: Vector3<f64>,
+    /// Nodes around the solid and its openings.
+    rings: Vec<Vec<usize>>,
+}
+
+impl Bent {
+    fn new(geometry: &Geometry, [y, z]: [f64; 2]) -> Result<Self, FingerError> {
+        let fails = |problem: &dyn std::fmt::Display| FingerError::mesh(geometry, problem);
+        let model = Model::new(geometry, SIZE).map_err(|error| fails(&error))?;
+        let element = PlaneStress::of(&geometry.finger);
+        let condensed = model.condense(&element, true).map_err(|error| fails(&error))?;
+        let held = model.hold(&condensed, &element, Body::Pad).map_err(|error| fails(&error))?;
+        let stiffness =
+            PlanarStiffness::new(held.stiffness).ok_or_else(|| fails(&"it is not stiff"))?;
+        let motion = stiffness.displacement(&Vector3::new(y, z, 0.0));
+        let displacements = condensed.expand(&held.kept(&motion));
+        let largest = displacements.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+        Ok(Bent {
+            rings: model.mesh.boundary(),
+            model,
+            displacements,
+            exaggeration: round(LONGEST * MM / largest),
+            outline: geometry.finger.outline,
+            motion,
+        })
+    }
+
+    fn moved(&self, node: usize) -> Point2<f64> {
+        let by = Vector2::new(self.displacements[2 * node], self.displacements[2 * node + 1]);
+        self.model.mesh.nodes[node] + by * self.exaggeration
+    }
+
+    /// Displacement of a point of the pad, m.
+    fn rigid(&self, point: &Point2<f64>) -> Vector2<f64> {
+        let [y, z] = self.model.local(point);
+        let turn = self.motion.z;
+        self.outline.out_of_pad() * (self.motion.x - turn * z)
+            + self.outline.along_pad() * (self.motion.y + turn * y)
+    }
+}
+
+/// The largest of 1, 2, 5, 10, ... that is not above a number; 0 for what is no number.
+fn round(value: f64) -> f64 {
+    if !(value.is_finite() && value > 0.0) {
+        return 0.0;
+    }
+    let decade = 10f64.powf(value.log10().floor());
+    [5.0, 2.0, 1.0].map(|step| step * decade).into_iter().find(|&n| n <= value).unwrap_or(decade)
+}
+
+fn words(out: &mut String, geometry: &Geometry, [y, z]: [f64; 2], factor: f64, height: f64) {
+    let design = &geometry.design;
+    let title = format!(
+        "{}: infill {} %, {}°; {:.1} N in y and {:.1} N in z on the pad",
+        geometry.finger.name, design.density_percent, design.direction_deg, y, z
+    );
+    let note = format!(
+        "light: at rest; dark: under load, displacements × {factor}; orange: pad, rigid; \
+         grey: clamped"
+    );
+    let [left, _, _, bottom] = MARGIN;
+    let (x, bar) = (left * SCALE, (height - bottom + 6.0) * SCALE);
+    let _ = write!(
+        out,
+        "<text x=\"{x:.0}\" y=\"28\" font-size=\"18\">{}</text>\n\
+         <text x=\"{x:.0}\" y=\"50\" fill=\"#555\">{note}</text>\n\
+         <path d=\"M{x:.0} {bar:.0} h{:.0}\" stroke=\"#000\" stroke-width=\"3\"/>\n\
+         <text x=\"{x:.0}\" y=\"{:.0}\">{BAR} mm</text>\n",
+        escape(&title),
+        BAR * SCALE,
+        bar + 20.0,
+    );
+}
+
+fn shape(out: &mut String, path: &str, fill: &str) {
+    let _ = writeln!(out, "<path d=\"{path}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>");
+}
+
+/// The clamped base.
+fn base(outline: &Outline) -> [Point2<f64>; 4] {
+    let start = outline.length - outline.clamped;
+    [
+        Point2::new(start, 0.0),
+        Point2::new(outline.length, 0.0),
+        Point2::new(outline.length, -outline.width),
+        Point2::new(start, -outline.width),
+    ]
+}
+
+fn path(points: impl Iterator<Item = Point2<f64>>) -> String {
+    let points: Vec<String> = points.map(pixels).collect();
+    format!("M{}Z", points.join("L"))
+}
+
+fn pixels(point: Point2<f64>) -> String {
+    let [left, top, ..] = MARGIN;
+    format!("{:.1},{:.1}", (point.x / MM + left) * SCALE, (top - point.y / MM) * SCALE)
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}

@@ -1,0 +1,322 @@
+//! A printed finger: outline, skin, ribs and material, from a file.
+
+use input::units::{DEG, MM};
+use input::{Check, InputError, read};
+use nalgebra::Point2;
+use serde::Deserialize;
+
+/// A finger as its file describes it, SI units; a design adds the infill.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PrintedFinger {
+    /// Name, as used on the command line.
+    pub name: String,
+    /// One line for lists.
+    pub description: String,
+    /// The file, for messages.
+    pub file: String,
+    /// Table of measured fingers of this shape and material.
+    pub measured: Option<String>,
+    /// Its sides.
+    pub outline: Outline,
+    /// Thickness of the skin all round, m.
+    pub skin: f64,
+    /// What fills the inside.
+    pub ribs: Ribs,
+    /// What it is printed of.
+    pub material: Material,
+    /// Angle between the finger's axis and the assembly direction, rad.
+    pub tilt: f64,
+    /// Width of a printed line, m.
+    pub line_width: f64,
+    /// Width of the narrowest gap between ribs that stays open, m.
+    pub smallest_gap: f64,
+}
+
+/// The sides of a finger, m; X along it from the tip, Y across it from the front.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outline {
+    /// From tip to end.
+    pub length: f64,
+    /// From front to back.
+    pub width: f64,
+    /// Of the extruded profile.
+    pub depth: f64,
+    /// How far the tip lies behind the front.
+    pub tip: f64,
+    /// Radius of the arc between back and tip.
+    pub back_radius: f64,
+    /// Length of the pad, from the tip to the notch's corner.
+    pub pad: f64,
+    /// Angle between pad and axis, rad.
+    pub pad_angle: f64,
+    /// Length of the roof that rests on a part.
+    pub roof: f64,
+    /// Length of the base without ribs.
+    pub solid: f64,
+    /// Length of the base that the gripper holds.
+    pub clamped: f64,
+}
+
+/// The rule by which ribs fill a finger.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ribs {
+    /// Thickness of a rib, m.
+    pub thickness: f64,
+    /// Pitch across the ribs times the density (a share), m.
+    pub line_spacing: f64,
+    /// From where ribs are counted, m.
+    pub origin: Point2<f64>,
+    /// Distance of the first centre line from the origin, m.
+    pub phase: f64,
+}
+
+/// A linearly elastic material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Its name.
+    pub name: String,
+    /// Young's modulus, N/m2.
+    pub modulus: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Density, kg/m3.
+    pub density: f64,
+    /// Where the values come from.
+    pub source: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawFinger {
+    name: String,
+    description: String,
+    measured: Option<String>,
+    outline: RawOutline,
+    notch: RawNotch,
+    skin: RawSkin,
+    ribs: RawRibs,
+    base: RawBase,
+    mount: RawMount,
+    material: RawMaterial,
+    print: RawPrint,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawOutline {
+    length_mm: f64,
+    width_mm: f64,
+    depth_mm: f64,
+    tip_mm: f64,
+    back_radius_mm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawNotch {
+    pad_mm: f64,
+    pad_deg: f64,
+    roof_mm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSkin {
+    thickness_mm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRibs {
+    thickness_mm: f64,
+    line_spacing_mm: f64,
+    origin_mm: [f64; 2],
+    phase_mm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawBase {
+    solid_mm: f64,
+    clamped_mm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawMount {
+    tilt_deg: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawMaterial {
+    name: String,
+    modulus_gpa: f64,
+    poisson: f64,
+    density_kg_per_m3: f64,
+    source: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawPrint {
+    line_width_mm: f64,
+    smallest_gap_mm: f64,
+}
+
+impl PrintedFinger {
+    /// Reads and checks a finger; `file` is named in errors. Whether the parts fit one
+    /// another is checked with each design: see [`crate::geometry::Geometry::new`].
+    ///
+    /// # Errors
+    /// If the text is not such a file, or a value cannot be used.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        PrintedFinger::checked(read(text, file)?, file)
+    }
+
+    /// The same of a file that was read as TOML already.
+    ///
+    /// # Errors
+    /// As of [`PrintedFinger::parse`].
+    pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
+        let raw = table.try_into().map_err(|error: toml::de::Error| InputError::Syntax {
+            file: file.to_owned(),
+            message: error.to_string().trim_end().to_owned(),
+        })?;
+        PrintedFinger::checked(raw, file)
+    }
+
+    fn checked(raw: RawFinger, file: &str) -> Result<Self, InputError> {
+        let check = Check { file };
+        Ok(PrintedFinger {
+            outline: finger_outline(check, &raw)?,
+            skin: length(check, "skin.thickness_mm", raw.skin.thickness_mm)?,
+            ribs: ribs(check, &raw.ribs)?,
+            material: material(check, raw.material)?,
+            tilt: angle(check, "mount.tilt_deg", raw.mount.tilt_deg)?,
+            line_width: length(check, "print.line_width_mm", raw.print.line_width_mm)?,
+            smallest_gap: length(check, "print.smallest_gap_mm", raw.print.smallest_gap_mm)?,
+            name: raw.name,
+            description: raw.description,
+            file: file.to_owned(),
+            measured: raw.measured,
+        })
+    }
+}
+
+/// Longest length that a finger may have, mm: beyond it the units are wrong.
+const LONGEST_MM: f64 = 500.0;
+/// Highest modulus, GPa: steel has 210.
+const STIFFEST_GPA: f64 = 500.0;
+/// Softest modulus, GPa: silicone has about 0.001.
+const SOFTEST_GPA: f64 = 1e-4;
+/// Largest angle, degrees: beyond it the notch is no notch.
+const STEEPEST_DEG: f64 = 60.0;
+
+fn length(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
+    if check.positive(key, value)? > LONGEST_MM {
+        let problem = format!("is {value}; it must be at most {LONGEST_MM} (millimetres)");
+        return check.fail(key, problem);
+    }
+    Ok(value * MM)
+}
+
+fn angle(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
+    if check.not_negative(key, value)? > STEEPEST_DEG {
+        let problem = format!("is {value}; it must be from 0 to {STEEPEST_DEG} (degrees)");
+        return check.fail(key, problem);
+    }
+    Ok(value * DEG)
+}
+
+fn finger_outline(check: Check<'_>, raw: &RawFinger) -> Result<Outline, InputError> {
+    let RawFinger { outline, notch, base, .. } = raw;
+    Ok(Outline {
+        length: length(check, "outline.length_mm", outline.length_mm)?,
+        width: length(check, "outline.width_mm", outline.width_mm)?,
+        depth: length(check, "outline.depth_mm", outline.depth_mm)?,
+        tip: length(check, "outline.tip_mm", outline.tip_mm)?,
+        back_radius: length(check, "outline.back_radius_mm", outline.back_radius_mm)?,
+        pad: length(check, "notch.pad_mm", notch.pad_mm)?,
+        pad_angle: angle(check, "notch.pad_deg", notch.pad_deg)?,
+        roof: length(check, "notch.roof_mm", notch.roof_mm)?,
+        solid: length(check, "base.solid_mm", base.solid_mm)?,
+        clamped: length(check, "base.clamped_mm", base.clamped_mm)?,
+    })
+}
+
+fn ribs(check: Check<'_>, raw: &RawRibs) -> Result<Ribs, InputError> {
+    let place = |value| check.finite("ribs.origin_mm", value).map(|value| value * MM);
+    let [x, y] = raw.origin_mm;
+    Ok(Ribs {
+        thickness: length(check, "ribs.thickness_mm", raw.thickness_mm)?,
+        line_spacing: length(check, "ribs.line_spacing_mm", raw.line_spacing_mm)?,
+        origin: Point2::new(place(x)?, place(y)?),
+        phase: check.finite("ribs.phase_mm", raw.phase_mm)? * MM,
+    })
+}
+
+fn material(check: Check<'_>, raw: RawMaterial) -> Result<Material, InputError> {
+    let modulus = check.positive("material.modulus_gpa", raw.modulus_gpa)?;
+    if !(SOFTEST_GPA..=STIFFEST_GPA).contains(&modulus) {
+        let problem = format!(
+            "is {modulus}; it must be from {SOFTEST_GPA} to {STIFFEST_GPA} (gigapascals; \
+                 PETG has 2)"
+        );
+        return check.fail("material.modulus_gpa", problem);
+    }
+    let poisson = check.not_negative("material.poisson", raw.poisson)?;
+    if poisson >= 0.5 {
+        let problem = format!("is {poisson}; it must be at least 0 and below 0.5");
+        return check.fail("material.poisson", problem);
+    }
+    Ok(Material {
+        modulus: modulus * 1e9,
+        poisson,
+        density: check.positive("material.density_kg_per_m3", raw.density_kg_per_m3)?,
+        name: raw.name,
+        source: raw.source,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FILE: &str = "fingers/finray9.toml";
+    const TEXT: &str = include_str!("../../../fingers/finray9.toml");
+
+    fn error(from: &str, to: &str) -> String {
+        assert!(TEXT.contains(from), "{from}");
+        PrintedFinger::parse(&TEXT.replace(from, to), FILE).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn the_shipped_finger_is_read_in_si_units() {
+        let finger = PrintedFinger::parse(TEXT, FILE).unwrap();
+        assert_eq!(finger.name, "finray9");
+        assert_eq!(finger.material.modulus, 2e9);
+        assert_eq!(finger.outline.length, 52.8 * MM);
+        assert_eq!(finger.tilt, 10.0 * DEG);
+        assert_eq!(finger.measured.as_deref(), Some("data/measured_stiffness.csv"));
+    }
+
+    #[test]
+    fn errors_name_file_key_and_what_would_be_right() {
+        for (from, to, parts) in [
+            ("modulus_gpa = 2.0", "modulus_gpa = 0.0", ["material.modulus_gpa", "above 0"]),
+            ("modulus_gpa = 2.0", "modulus_gpa = 2000.0", ["material.modulus_gpa", "gigapascals"]),
+            ("pad_mm = 9.0", "pad_mm = 0.0", ["notch.pad_mm", "above 0"]),
+            ("length_mm = 52.8", "length_mm = 52800.0", ["outline.length_mm", "millimetres"]),
+            ("poisson = 0.4", "poisson = 0.5", ["material.poisson", "below 0.5"]),
+            ("pad_deg = 10.0", "pad_deg = 80.0", ["notch.pad_deg", "degrees"]),
+            ("pad_mm = 9.0", "pad = 9.0", ["unknown field", "pad_mm"]),
+            ("tilt_deg = 10.0", "tilt_deg = -1.0", ["mount.tilt_deg", "0 or above"]),
+        ] {
+            let error = error(from, to);
+            for part in parts.into_iter().chain([FILE]) {
+                assert!(error.contains(part), "{error}");
+            }
+        }
+    }
+}

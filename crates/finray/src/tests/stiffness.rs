@@ -1,0 +1,43 @@
+//! What the stiffness of a finger must have beside the right values.
+
+use super::infill;
+use crate::condense::{Role, condense};
+use crate::elasticity::PlaneStress;
+use crate::mechanics::compute;
+use crate::mesh::Mesh;
+use nalgebra::Point2;
+
+#[test]
+fn the_same_design_has_the_same_bits() {
+    assert_eq!(compute(&infill(20.0, 20.0)), compute(&infill(20.0, 20.0)));
+}
+
+#[test]
+fn stiffness_is_proportional_to_the_modulus() {
+    let soft = infill(20.0, 20.0);
+    let mut stiff = soft.clone();
+    stiff.finger.material.modulus *= 2.0;
+    let [soft, stiff] = [&soft, &stiff].map(|geometry| compute(geometry).unwrap());
+    for (soft, stiff) in
+        [(soft.pad.matrix(), stiff.pad.matrix()), (soft.cross.matrix(), stiff.cross.matrix())]
+    {
+        assert!((soft * 2.0 - stiff).norm() < 1e-9 * stiff.norm());
+    }
+}
+
+#[test]
+fn a_modulus_in_other_units_is_asked_about() {
+    let mut geometry = infill(20.0, 20.0);
+    geometry.finger.material.modulus *= 1e-3;
+    let error = compute(&geometry).unwrap_err().to_string();
+    assert!(error.contains("units look wrong") && error.contains("modulus_gpa"), "{error}");
+}
+
+#[test]
+fn what_is_held_by_nothing_is_an_error() {
+    let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point2::new(x, y));
+    let mesh = Mesh::new(&square.to_vec(), &[], 0.3).unwrap();
+    let roles = vec![Role::Free; mesh.nodes.len()];
+    let element = PlaneStress { modulus: 2e9, poisson: 0.4, thickness: 0.012 };
+    assert!(condense(&mesh, &element, &roles, false).is_err());
+}

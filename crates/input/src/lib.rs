@@ -1,0 +1,136 @@
+//! Input files: how they are read up to a limit and checked, what may be wrong with them, and the
+//! units in them. Inside, every quantity is in SI units; millimetres, newtons per millimetre and
+//! degrees appear only in names that say so ([`units`]).
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+// A panic is a defect; what input can reach is an error with a message.
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod files;
+pub mod numbers;
+pub mod shipped;
+pub mod units;
+
+use serde::de::DeserializeOwned;
+
+/// What is wrong with a task, space or robot file.
+#[derive(Debug, Clone, thiserror::Error, PartialEq)]
+pub enum InputError {
+    /// Not TOML, an unknown key or a missing field; the text names the line.
+    #[error("{file}: {message}")]
+    Syntax {
+        /// The file as given.
+        file: String,
+        /// The parser's message, with line and column.
+        message: String,
+    },
+    /// A field with a value that cannot be used.
+    #[error("{file}: {key}: {problem}")]
+    Value {
+        /// The file as given.
+        file: String,
+        /// The field.
+        key: String,
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+}
+
+/// Largest size of any number in a file: beyond it the unit is wrong, and sums and products
+/// would leave what floating point holds.
+const LARGEST: f64 = 1e9;
+/// Smallest number where one must be above 0.
+const SMALLEST: f64 = 1e-9;
+/// Longest length and largest coordinate, mm.
+const LONGEST_MM: f64 = 1000.0;
+
+/// Reads TOML; `file` is named in errors.
+pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError> {
+    let syntax = |error: toml::de::Error| InputError::Syntax {
+        file: file.to_owned(),
+        message: error.to_string().trim_end().to_owned(),
+    };
+    let found = toml::from_str(text).map_err(syntax)?;
+    let table: toml::Table = toml::from_str(text).map_err(syntax)?;
+    match control_character(&table) {
+        Some(key) => Check { file }.fail(&key, "has a control character, such as \\u001b"),
+        None => Ok(found),
+    }
+}
+
+/// The key of a text with a control character in it: such texts reach terminals and pages.
+pub fn control_character(table: &toml::Table) -> Option<String> {
+    fn within(value: &toml::Value) -> bool {
+        match value {
+            toml::Value::String(text) => text.chars().any(|c| c.is_control() && c != '\n'),
+            toml::Value::Array(items) => items.iter().any(within),
+            toml::Value::Table(table) => control_character(table).is_some(),
+            _ => false,
+        }
+    }
+    let plain = |key: &str| !key.chars().any(char::is_control);
+    let found = table.iter().find(|(key, value)| within(value) || !plain(key))?;
+    Some(if plain(found.0) { found.0.clone() } else { "a key".to_owned() })
+}
+
+/// A number as messages show it: never hundreds of digits.
+pub fn shown(value: f64) -> String {
+    let plain = value == 0.0 || (1e-6..1e12).contains(&value.abs()) || !value.is_finite();
+    if plain { value.to_string() } else { format!("{value:e}") }
+}
+
+/// Checks the values of one file.
+#[derive(Debug, Clone, Copy)]
+pub struct Check<'a> {
+    /// The file as given.
+    pub file: &'a str,
+}
+
+impl Check<'_> {
+    /// The error of a field.
+    pub fn fail<T>(&self, key: &str, problem: impl Into<String>) -> Result<T, InputError> {
+        Err(InputError::Value {
+            file: self.file.to_owned(),
+            key: key.to_owned(),
+            problem: problem.into(),
+        })
+    }
+
+    /// The value, if it is finite and not beyond [`LARGEST`].
+    pub fn finite(&self, key: &str, value: f64) -> Result<f64, InputError> {
+        // Written so that a NaN is outside.
+        if value.abs() <= LARGEST {
+            return Ok(value);
+        }
+        let value = shown(value);
+        self.fail(key, format!("is {value}; it must be a finite number of size 1e9 or less"))
+    }
+
+    /// The value, if it is above 0: from [`SMALLEST`] to [`LARGEST`].
+    pub fn positive(&self, key: &str, value: f64) -> Result<f64, InputError> {
+        if (SMALLEST..=LARGEST).contains(&value) {
+            return Ok(value);
+        }
+        let value = shown(value);
+        self.fail(key, format!("is {value}; it must be a finite number above 0, 1e-9 to 1e9"))
+    }
+
+    /// The value, if it is not below 0 and not beyond [`LARGEST`].
+    pub fn not_negative(&self, key: &str, value: f64) -> Result<f64, InputError> {
+        if (0.0..=LARGEST).contains(&value) {
+            return Ok(value);
+        }
+        let value = shown(value);
+        self.fail(key, format!("is {value}; it must be a finite number, 0 or above, 1e9 at most"))
+    }
+
+    /// A coordinate or a difference of two, mm.
+    pub fn distance(&self, key: &str, mm: f64) -> Result<f64, InputError> {
+        if self.finite(key, mm)?.abs() <= LONGEST_MM {
+            return Ok(mm);
+        }
+        let mm = shown(mm);
+        self.fail(key, format!("is {mm}; it must lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))
+    }
+}

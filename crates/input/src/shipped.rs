@@ -1,0 +1,153 @@
+//! The files shipped within the program, so that it runs from any folder.
+
+use crate::files::{self, LARGEST_INPUT};
+use std::path::Path;
+use strsim::levenshtein;
+
+/// One shipped file.
+#[derive(Debug, Clone, Copy)]
+pub struct Shipped {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// Its path in the project, for messages.
+    pub file: &'static str,
+    /// Its contents.
+    pub text: &'static str,
+}
+
+macro_rules! shipped {
+    ($($name:literal: $file:literal),* $(,)?) => {
+        &[$(Shipped {
+            name: $name,
+            file: $file,
+            text: include_str!(concat!("../../../", $file)),
+        }),*]
+    };
+}
+
+/// Tasks.
+pub const TASKS: &[Shipped] = shipped! {
+    "ket8": "tasks/ket8.toml",
+    "ket12": "tasks/ket12.toml",
+    "rj45": "tasks/rj45.toml",
+    "usb": "tasks/usb.toml",
+};
+
+/// Search spaces.
+pub const SPACES: &[Shipped] = shipped! {
+    "infill": "spaces/infill.toml",
+    "codesign": "spaces/codesign.toml",
+    "finger": "spaces/finger.toml",
+};
+
+/// Robots.
+pub const ROBOTS: &[Shipped] = shipped! {
+    "servo": "robots/servo.toml",
+    "rigid": "robots/rigid.toml",
+    "ur5e": "robots/ur5e.toml",
+    "ur5e_position": "robots/ur5e_position.toml",
+};
+
+/// Printed fingers.
+pub const FINGERS: &[Shipped] = shipped! { "finray9": "fingers/finray9.toml" };
+
+/// Distributions of the errors under which a finger is to work.
+pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typical.toml" };
+
+/// Distributions of what nobody measured in a cell, for `calibrate`.
+pub const PRIORS: &[Shipped] = shipped! { "bench": "priors/bench.toml" };
+
+/// Measured stiffness of printed fingers.
+pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffness.csv" };
+
+/// Measurements on a bench.
+pub const MEASUREMENTS: &[Shipped] = shipped! { "published": "data/published_bench.csv" };
+
+/// A text and what to call it in messages.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// File name as the user knows it.
+    pub file: String,
+    /// Contents.
+    pub text: String,
+}
+
+/// Why a name or path gives no text.
+#[derive(Debug, thiserror::Error)]
+pub enum ShippedError {
+    /// Not a shipped name.
+    #[error(
+        "no {kind} is called `{name}`{}; there are {names}, or give the path of a file",
+        hint(nearest)
+    )]
+    Unknown {
+        /// "task", "space", ...
+        kind: &'static str,
+        /// What was given.
+        name: String,
+        /// The shipped name most like it.
+        nearest: Option<&'static str>,
+        /// All shipped names.
+        names: String,
+    },
+    /// A path that cannot be read.
+    #[error("{file}: cannot read the {kind}: {source}")]
+    Unreadable {
+        /// The path.
+        file: String,
+        /// "task", "space", ...
+        kind: &'static str,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+}
+
+fn hint(nearest: &Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!(" (did you mean `{name}`?)"))
+}
+
+/// The shipped file of that name or, if `name` looks like a path (it has a
+/// separator or an extension), the file there.
+pub fn resolve(
+    kind: &'static str,
+    shipped: &[Shipped],
+    name: &str,
+) -> Result<Source, ShippedError> {
+    if let Some(found) = shipped.iter().find(|shipped| shipped.name == name) {
+        return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
+    }
+    if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
+        return match files::read_named(Path::new(name), LARGEST_INPUT) {
+            Ok(text) => Ok(Source { file: name.to_owned(), text }),
+            Err(source) => Err(ShippedError::Unreadable { file: name.to_owned(), kind, source }),
+        };
+    }
+    let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
+    Err(ShippedError::Unknown {
+        kind,
+        name: name.to_owned(),
+        nearest: nearest(name, &names),
+        names: names.join(", "),
+    })
+}
+
+/// The name that differs least from `name`, if less than half of it differs.
+pub fn nearest<'a>(name: &str, names: &[&'a str]) -> Option<&'a str> {
+    let distance = |other: &&&str| levenshtein(name, other);
+    let best = names.iter().min_by_key(distance)?;
+    (2 * levenshtein(name, best) <= name.chars().count()).then_some(*best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_name_is_answered_with_the_nearest_and_all() {
+        let error = resolve("task", TASKS, "rj54").unwrap_err().to_string();
+        for part in ["rj54", "did you mean `rj45`", "ket8, ket12, rj45, usb"] {
+            assert!(error.contains(part), "{error}");
+        }
+        assert_eq!(nearest("hexapod", &["usb", "rj45"]), None);
+    }
+}

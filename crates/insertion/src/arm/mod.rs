@@ -1,0 +1,84 @@
+//! A six-joint arm with position servos, and what it feels like at its TCP.
+//!
+//! Each joint is a servo `tau = k (q_command - q) - c dq/dt`. Its damper acts on the
+//! joint's speed, so the arm trails its command by c/k; or, with the commanded speed
+//! fed forward, on the error's rate, `c d/dt (q_command - q)`. A blocked arm of the
+//! first kind pushes with its spring alone. The links carry their own weight.
+//!
+//! With six joints and six directions at the TCP, displacements `x = J q` are only
+//! another set of coordinates: near a pose the arm *is* one body at the TCP with the
+//! coupled 6x6 spring, damper and mass of [`Reduced`]. What that leaves out is how
+//! `J` changes with the pose.
+
+mod dynamics;
+mod inverse;
+mod kinematics;
+mod raw;
+mod reduced;
+
+pub use inverse::displacement;
+pub use kinematics::Posture;
+pub(crate) use raw::{RawArm, arm};
+pub use reduced::Reduced;
+
+use contact::scene::{Inertia, Pose};
+use nalgebra::{Unit, Vector3};
+
+/// Number of joints.
+pub const JOINTS: usize = 6;
+
+/// Joint angles, rad.
+pub type Angles = nalgebra::SVector<f64, JOINTS>;
+
+/// A checked arm, SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arm {
+    /// From the base to the tool.
+    pub joints: [Joint; JOINTS],
+    /// The TCP in the last link's frame.
+    pub tool: Pose,
+    /// Angles with the TCP at the nominal start of a task.
+    pub home: Angles,
+    /// Whether the servos' dampers act on the error's rate, not on the joint's speed.
+    pub feed_forward: bool,
+    /// Force with which the assembly move ends on a part that does not give way, N.
+    pub assembly_force: f64,
+}
+
+/// One joint and the link that it moves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Name in messages.
+    pub name: String,
+    /// Joint frame in the frame of the link before.
+    pub frame: Pose,
+    /// Its axis in that frame.
+    pub axis: Unit<Vector3<f64>>,
+    /// Gain of its servo, N m/rad.
+    pub stiffness: f64,
+    /// Damping of its servo, N m s/rad.
+    pub damping: f64,
+    /// Largest torque, N m.
+    pub limit: f64,
+    /// Of its link, in the frame that turns with it.
+    pub link: Inertia,
+}
+
+/// Why an arm cannot work at a pose.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ArmError {
+    /// The inverse kinematics ends elsewhere.
+    #[error(
+        "the arm does not reach the start from its home_deg: it misses by {miss_mm:.1} mm and \
+         {miss_deg:.1} degrees; give home_deg near the start, with the tool pointing down"
+    )]
+    Unreachable {
+        /// Distance of the TCP from its target, mm.
+        miss_mm: f64,
+        /// Angle between the two, degrees.
+        miss_deg: f64,
+    },
+    /// A direction in which no joint moves the TCP.
+    #[error("the arm is in a singular pose at the start: choose another home_deg")]
+    Singular,
+}

@@ -1,0 +1,247 @@
+//! Design in, evaluation out: the one way from a design to what is measured of it.
+
+use super::leaving;
+use super::robustness::firm::{self, Firm};
+use super::robustness::repeat::Repeats;
+use super::robustness::{self, Plan};
+use super::stoppable::Stoppable;
+use super::taught::{Moved, teach};
+use super::template::{Impossible, Template};
+use super::tolerance::Search;
+use super::{Evaluation, OffsetStep};
+use crate::finger::Finger;
+use crate::finger::computed::AtPad;
+use crate::finger::model::{CentreFrom, FingerSource, Made};
+use crate::outcome::Outcome;
+use crate::robot::Robot;
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::surrogate::{Model, Prediction};
+use crate::task::{StartRule, Task};
+use crate::trial::Rig;
+use crate::trial::engine::EngineKind;
+use crate::trial::run::RigError;
+use input::units::N_PER_MM;
+use input::{Check, InputError, shown};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// What a stiffness is called in errors.
+const DESIGN: &str = "design";
+/// Stiffest finger, N/mm: a thousand times that of a solid one.
+const STIFFEST_N_PER_MM: f64 = 1e6;
+
+/// Stiffness model, tasks, robot and engine: all that decides what a design measures.
+pub struct Evaluator {
+    /// Predicts a finger's stiffness from its infill.
+    pub surrogate: Arc<Model>,
+    /// Makes a finger of a stiffness and a design.
+    pub fingers: FingerSource,
+    /// The tasks, whose numbers a design may set; at least one.
+    pub templates: Vec<Template>,
+    /// The robot.
+    pub robot: Robot,
+    /// What computes the contacts.
+    pub engine: EngineKind,
+}
+
+/// A design on one task: what is simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Specimen {
+    /// The task, with the numbers that the design sets.
+    pub task: Task,
+    /// The finger.
+    pub finger: Finger,
+    /// What places its remote centre.
+    pub centre: CentreFrom,
+    /// The stiffness that the finger was given, with its error.
+    pub stiffness: Prediction,
+}
+
+/// Whether a finger of this stiffness, N/mm, can be simulated: the model may give none far
+/// from what was measured.
+fn check_stiffness(key: &str, n_per_mm: f64) -> Result<(), InputError> {
+    let check = Check { file: DESIGN };
+    match check.positive(key, n_per_mm)? <= STIFFEST_N_PER_MM {
+        true => Ok(()),
+        false => {
+            let found = shown(n_per_mm);
+            let problem = format!("is {found} N/mm; it may be {STIFFEST_N_PER_MM} at most");
+            check.fail(key, problem)
+        }
+    }
+}
+
+/// What is known of one design after its evaluation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Stiffness predicted for it.
+    pub stiffness: Prediction,
+    /// What was measured on each task, in their order.
+    pub tasks: Vec<Evaluation>,
+    /// For each task whether it was not simulated now but known from before; empty where
+    /// nothing could be.
+    pub cached: Vec<bool>,
+}
+
+/// Evaluates designs, several at a time.
+pub trait Evaluate: Sync {
+    /// Measures one design; equal designs measure equal.
+    ///
+    /// # Errors
+    /// If the design cannot be simulated.
+    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible>;
+}
+
+impl Evaluator {
+    /// The stiffness predicted for a design, which must name the infill.
+    ///
+    /// # Errors
+    /// If it rests on the computed stiffness and the finger cannot be computed.
+    pub fn predict(&self, design: &Design) -> Result<Prediction, Impossible> {
+        let value = |key| design.get(key).unwrap_or(f64::NAN);
+        let plain = self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?;
+        match &self.fingers {
+            FingerSource::Paper => Ok(plain),
+            FingerSource::Computed(fingers) => {
+                let measured = self.surrogate.measurements();
+                Ok(leaving::predict(fingers, measured, design, plain)?)
+            }
+        }
+    }
+
+    /// A design of this stiffness on one of the tasks.
+    ///
+    /// # Errors
+    /// If it sets what does not exist, or to what cannot be.
+    pub fn specimen(
+        &self,
+        template: &Template,
+        design: &Design,
+        stiffness: Prediction,
+    ) -> Result<Specimen, Impossible> {
+        for (key, axis) in [
+            ("compliance stiffness", stiffness.compliance),
+            ("assembly stiffness", stiffness.assembly),
+        ] {
+            check_stiffness(key, axis.mean / N_PER_MM)?;
+            Check { file: DESIGN }.not_negative(key, axis.sd / N_PER_MM)?;
+        }
+        let (compliance, assembly) = (stiffness.compliance.mean, stiffness.assembly.mean);
+        let at_pad = AtPad { compliance, assembly };
+        let (task, Made { finger, centre }) = template.apply(design, &self.fingers, at_pad)?;
+        Ok(Specimen { task, finger, centre, stiffness })
+    }
+
+    /// By how much the start of a specimen is moved, in grid steps; `None` if its task has no
+    /// taught start, 0 if no start inserts. Ends early, with a worthless result, once `stop` is set.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn taught(
+        &self,
+        specimen: &Specimen,
+        stop: &AtomicBool,
+    ) -> Result<Option<OffsetStep>, RigError> {
+        if specimen.task.strategy.rule == StartRule::Given {
+            return Ok(None);
+        }
+        let rig = self.rig(specimen, None, 1.0)?;
+        Ok(Some(teach(&*rig, &specimen.finger, stop).unwrap_or(0)))
+    }
+
+    /// Where trials of a specimen are run, with the engine's step times `step_factor`; from
+    /// the start that was [`taught`](Self::taught), if it was.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn rig(
+        &self,
+        specimen: &Specimen,
+        taught: Option<OffsetStep>,
+        step_factor: f64,
+    ) -> Result<Box<dyn Rig>, RigError> {
+        let Specimen { task, finger, .. } = specimen;
+        let rig = self.engine.rig(task, &self.robot, finger, step_factor)?;
+        Ok(match taught {
+            None | Some(0) => rig,
+            Some(by) => Box::new(Moved { rig, by }),
+        })
+    }
+
+    /// Measures the window of a specimen, looked for by `search`, and what the plan adds; ends
+    /// early, with a worthless result, once `stop` is set.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn measure(
+        &self,
+        specimen: &Specimen,
+        search: Search,
+        plan: &Plan,
+        stop: &AtomicBool,
+    ) -> Result<Evaluation, RigError> {
+        let taught = self.taught(specimen, stop)?;
+        let rig = self.rig(specimen, taught, 1.0)?;
+        let rig = Stoppable { rig: &*rig, stop };
+        let Specimen { finger, stiffness, .. } = specimen;
+        let evaluation = robustness::evaluate(&rig, finger, stiffness, search, plan);
+        Ok(Evaluation { taught, ..evaluation })
+    }
+
+    /// The same; if the nominal start does not insert, once more with the start taught.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn measure_or_teach(
+        &self,
+        specimen: &Specimen,
+        search: Search,
+        plan: &Plan,
+        stop: &AtomicBool,
+    ) -> Result<Evaluation, RigError> {
+        let found = self.measure(specimen, search, plan, stop)?;
+        if found.window.nominal == Outcome::Inserted {
+            return Ok(found);
+        }
+        let mut taught = specimen.clone();
+        taught.task.strategy.rule = StartRule::Taught;
+        self.measure(&taught, search, plan, stop)
+    }
+
+    /// The firm part of the window that was measured of a specimen, from the start that was taught then, by [`firm::REPEATS`] repeats that this seed names;
+    /// ends early, with a worthless result, once `stop` is set.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
+    pub fn firm(
+        &self,
+        specimen: &Specimen,
+        measured: &Evaluation,
+        seed: u64,
+        stop: &AtomicBool,
+    ) -> Result<Firm, RigError> {
+        if measured.window.nominal != Outcome::Inserted {
+            return Ok(Firm::NONE);
+        }
+        let rig = |factor| self.rig(specimen, measured.taught, factor);
+        let (whole, half) = (rig(1.0)?, rig(0.5)?);
+        let [whole, half] = [&whole, &half].map(|rig| Stoppable { rig: &**rig, stop });
+        let repeats = Repeats::new([&whole, &half], &specimen.finger, seed, firm::REPEATS);
+        Ok(firm::measure(&repeats, &measured.window))
+    }
+
+    /// Measures a design on every task by `measure`, which may know the answer already.
+    ///
+    /// # Errors
+    /// If the design cannot be simulated.
+    pub fn evaluate_by(
+        &self,
+        design: &Design,
+        measure: impl Fn(&Specimen) -> Result<Evaluation, RigError>,
+    ) -> Result<Measured, Impossible> {
+        let stiffness = self.predict(design)?;
+        let on = |template| Ok(measure(&self.specimen(template, design, stiffness)?)?);
+        let tasks = self.templates.iter().map(on).collect::<Result<_, Impossible>>()?;
+        Ok(Measured { stiffness, tasks, cached: Vec::new() })
+    }
+}

@@ -1,0 +1,147 @@
+//! The stiffness of a finger whose shape or material is not that of the measured ones.
+//!
+//! The prediction for its infill is multiplied by what its ribs say of the change: computed
+//! stiffness of this finger over that of the finger file, with the same infill. So measured values
+//! keep their place. What the computed stiffness gets wrong differs from finger to finger; the
+//! standard deviation of ln(measured / computed) over the measured fingers is added to the error.
+
+use crate::finger::computed::Touching;
+use crate::finger::file::is_shape;
+use crate::finger::model::ComputedFingers;
+use crate::space::Design;
+use crate::stiffness::Measurement;
+use crate::surrogate::{Estimate, Prediction};
+use finray::FingerError;
+use finray::mechanics::FingerStiffness;
+
+/// The prediction for a design whose infill has the prediction `plain`.
+///
+/// The distance from the measured designs grows by the changed numbers: each counts as the
+/// logarithm of its change, and all are added by their squares.
+///
+/// # Errors
+/// If a finger cannot be computed.
+pub fn predict(
+    fingers: &ComputedFingers,
+    measured: &[Measurement],
+    design: &Design,
+    plain: Prediction,
+) -> Result<Prediction, FingerError> {
+    let change = |(key, value): (&String, &f64)| {
+        fingers.file.value(key).map_or(0.0, |from| libm::log(value / from))
+    };
+    let shape = design.0.iter().filter(|(key, _)| is_shape(key));
+    let far: f64 = shape.map(change).map(|change| change * change).sum();
+    if far == 0.0 {
+        return Ok(plain);
+    }
+    let infill = design.0.iter().filter(|(key, _)| !is_shape(key));
+    let infill = Design(infill.map(|(key, value)| (key.clone(), *value)).collect());
+    let now = springs(fingers.touching, &fingers.stiffness(design)?);
+    let before = springs(fingers.touching, &fingers.stiffness(&infill)?);
+    let scatter = scatter(fingers, measured)?;
+    let scaled = |axis: usize, Estimate { mean, sd }: Estimate| {
+        let factor = now[axis] / before[axis];
+        let mean = mean * factor;
+        Estimate { mean, sd: (sd * factor).hypot(mean * scatter[axis]) }
+    };
+    Ok(Prediction {
+        compliance: scaled(0, plain.compliance),
+        assembly: scaled(1, plain.assembly),
+        hull_distance: (plain.hull_distance.powi(2) + far).sqrt(),
+    })
+}
+
+/// Computed stiffness in the compliance and in the assembly direction, N/m.
+fn springs(touching: Touching, computed: &FingerStiffness) -> [f64; 2] {
+    let plane = touching.of(computed);
+    [plane.in_compliance(), plane.in_assembly()]
+}
+
+/// Standard deviation of ln(measured / computed) over the measured fingers, by axis; of fewer
+/// than two there is none, and the whole of the change counts as error.
+fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 2], FingerError> {
+    let ratios = measured.iter().map(|m| {
+        let [density, direction] = m.infill();
+        let computed = fingers.stiffness(&Design::infill(density, direction))?;
+        let [compliance, assembly] = springs(fingers.touching, &computed);
+        Ok([libm::log(m.compliance / compliance), libm::log(m.assembly / assembly)])
+    });
+    let ratios: Vec<[f64; 2]> = ratios.collect::<Result<_, FingerError>>()?;
+    let count = ratios.len() as f64;
+    Ok([0, 1].map(|axis| {
+        let mean = ratios.iter().map(|ratio| ratio[axis]).sum::<f64>() / count;
+        let squares = ratios.iter().map(|ratio| (ratio[axis] - mean).powi(2));
+        if count > 1.0 { (squares.sum::<f64>() / (count - 1.0)).sqrt() } else { 1.0 }
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finger::file::FingerFile;
+    use crate::space::{DENSITY_KEY, DIRECTION_KEY};
+    use input::shipped::FINGERS;
+    use input::units::N_PER_MM;
+
+    const MODULUS: &str = "finger.material.modulus_gpa";
+
+    fn fingers() -> ComputedFingers {
+        let file = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
+        ComputedFingers::new(file, Touching::Pad)
+    }
+
+    fn plain() -> Prediction {
+        let estimate = |mean: f64, sd: f64| Estimate { mean: mean * N_PER_MM, sd: sd * N_PER_MM };
+        Prediction {
+            compliance: estimate(2.4, 0.1),
+            assembly: estimate(40.0, 1.0),
+            hull_distance: 0.0,
+        }
+    }
+
+    fn design(more: &[(&str, f64)]) -> Design {
+        let infill = [(DENSITY_KEY, 20.0), (DIRECTION_KEY, 20.0)];
+        Design(infill.iter().chain(more).map(|&(key, value)| (key.to_owned(), value)).collect())
+    }
+
+    /// Measured fingers that are twice and half as stiff as computed.
+    fn measured(fingers: &ComputedFingers) -> Vec<Measurement> {
+        [(10.0, 2.0), (30.0, 0.5)]
+            .map(|(density, factor)| {
+                let computed = fingers.stiffness(&Design::infill(density, 0.0)).unwrap();
+                let [compliance, assembly] = springs(Touching::Pad, &computed);
+                Measurement {
+                    design: 1,
+                    density_percent: density,
+                    direction_deg: 0.0,
+                    assembly,
+                    compliance: compliance * factor,
+                }
+            })
+            .to_vec()
+    }
+
+    #[test]
+    fn the_file_itself_keeps_its_prediction() {
+        let fingers = fingers();
+        for design in [design(&[]), design(&[(MODULUS, 2.0)])] {
+            assert_eq!(predict(&fingers, &[], &design, plain()), Ok(plain()));
+        }
+    }
+
+    #[test]
+    fn half_the_modulus_is_half_the_stiffness_with_the_scatter_of_the_ratio() {
+        let fingers = fingers();
+        let found =
+            predict(&fingers, &measured(&fingers), &design(&[(MODULUS, 1.0)]), plain()).unwrap();
+        let close = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-9;
+        assert!(close(found.compliance.mean, 1.2 * N_PER_MM), "{found:?}");
+        assert!(close(found.assembly.mean, 20.0 * N_PER_MM), "{found:?}");
+        // ln 2 and -ln 2 scatter by sqrt(2) ln 2.
+        let sd = (0.05f64).hypot(1.2 * 2f64.sqrt() * 2f64.ln());
+        assert!(close(found.compliance.sd, sd * N_PER_MM), "{found:?}");
+        assert!(close(found.assembly.sd, 0.5 * N_PER_MM), "its ratio does not scatter: {found:?}");
+        assert!(close(found.hull_distance, 2f64.ln()), "{found:?}");
+    }
+}

@@ -1,0 +1,218 @@
+//! What a trial, a window search and an evaluation report.
+
+pub mod evaluator;
+mod leaving;
+pub mod objective;
+pub mod robustness;
+mod schema;
+pub mod sprung;
+mod stoppable;
+pub mod taught;
+pub mod template;
+pub mod tolerance;
+pub mod uncertainty;
+
+use crate::outcome::Outcome;
+use serde::{Deserialize, Serialize};
+
+/// A shift of the start position along y, as a number of 0.1 mm grid steps.
+pub type OffsetStep = i32;
+
+/// Width of the offset grid: the paper shifts the start by 0.1 mm.
+pub const OFFSET_STEP_MM: f64 = 0.1;
+
+/// The offsets that insert around the nominal start, on the 0.1 mm grid, and
+/// what stopped the search at each end.
+///
+/// Invariant of a window with `nominal == Inserted`: `negative_steps <= 0 <=
+/// positive_steps`, and both were found to insert. By the step-by-step walk every grid
+/// offset between them was; by strides a gap between the offsets tried stays unseen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Window {
+    /// Outcome at the nominal start; anything but inserted makes the range 0.
+    pub nominal: Outcome,
+    /// Most negative inserting offset, in grid steps.
+    pub negative_steps: OffsetStep,
+    /// Most positive inserting offset, in grid steps.
+    pub positive_steps: OffsetStep,
+    /// What the first failing offset below `negative_steps` did; `None` if the
+    /// search reached its limit without a failure.
+    pub end_negative: Option<Outcome>,
+    /// The same above `positive_steps`.
+    pub end_positive: Option<Outcome>,
+}
+
+impl Window {
+    /// Width in mm: 0 when the nominal start fails.
+    pub fn range_mm(&self) -> f64 {
+        if self.nominal != Outcome::Inserted {
+            return 0.0;
+        }
+        grid_mm(self.positive_steps - self.negative_steps)
+    }
+
+    /// Most negative inserting offset in mm (0 or below).
+    pub fn negative_mm(&self) -> f64 {
+        grid_mm(self.negative_steps)
+    }
+
+    /// Most positive inserting offset in mm (0 or above).
+    pub fn positive_mm(&self) -> f64 {
+        grid_mm(self.positive_steps)
+    }
+}
+
+/// A number of grid steps in mm, without the rounding noise of `n * 0.1`.
+pub fn grid_mm(steps: OffsetStep) -> f64 {
+    f64::from(steps) / 10.0
+}
+
+/// Everything measured for one design on one task. The counts and times are those
+/// of the window search. Written in the one form of `schema.rs`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "schema::EvaluationRow", try_from = "schema::EvaluationRow")]
+pub struct Evaluation {
+    /// The tolerance window.
+    pub window: Window,
+    /// Trials that failed with class 1 to 4, over all trials run.
+    pub failure_counts: [u32; 4],
+    /// Trials that diverged.
+    pub diverged: u32,
+    /// Trials run.
+    pub trials: u32,
+    /// Largest contact force between plug and socket over the inserted trials, N.
+    pub peak_force_n: f64,
+    /// Largest slip of the part in the grasp over the inserted trials, mm.
+    pub slip_mm: f64,
+    /// Simulated time over all trials, s.
+    pub simulated_s: f64,
+    /// Where the outcome turns within the grid step beyond each end (negative, positive), as
+    /// a share of it, 0 to 1: interpolated over [`Trial::margin`](crate::trial::Trial::margin).
+    /// If the nominal start fails, its margin, -1 to 0.
+    pub end_shares: [f64; 2],
+    /// By how much the start was moved from that of the task file, in grid steps, if it was taught.
+    pub taught: Option<OffsetStep>,
+    /// How often the design inserts under errors, if that was measured.
+    pub success: Option<SuccessRate>,
+    /// How its range holds under errors, if that was measured.
+    pub robust: Option<RobustRange>,
+}
+
+/// How trials under drawn errors ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SuccessRate {
+    /// Trials that inserted.
+    pub inserted: u32,
+    /// Trials that failed with class 1 to 4.
+    pub failure_counts: [u32; 4],
+    /// Trials that diverged; they say nothing and count for nothing.
+    pub diverged: u32,
+    /// Probability with which [`interval`](Self::interval) holds the true rate, 0 to 1.
+    pub confidence: f64,
+}
+
+impl SuccessRate {
+    /// Trials that ended one way or the other.
+    pub fn counted(&self) -> u32 {
+        self.inserted + self.failure_counts.iter().sum::<u32>()
+    }
+
+    /// Share of the counted trials that inserted, 0 to 1; `None` if none counts.
+    pub fn rate(&self) -> Option<f64> {
+        let counted = self.counted();
+        (counted > 0).then(|| f64::from(self.inserted) / f64::from(counted))
+    }
+
+    /// Wilson's score interval of the true rate (E. B. Wilson 1927, J. Am. Stat.
+    /// Assoc. 22:209), `[0, 1]` if no trial counts.
+    pub fn interval(&self) -> [f64; 2] {
+        let Some(rate) = self.rate() else { return [0.0, 1.0] };
+        let n = f64::from(self.counted());
+        let z = normal_quantile(0.5 + self.confidence / 2.0);
+        let centre = (rate + z * z / (2.0 * n)) / (1.0 + z * z / n);
+        let half = z / (1.0 + z * z / n) * (rate * (1.0 - rate) / n + z * z / (4.0 * n * n)).sqrt();
+        [(centre - half).max(0.0), (centre + half).min(1.0)]
+    }
+}
+
+/// The number that a standard normal one stays below with this probability, by bisection.
+fn normal_quantile(probability: f64) -> f64 {
+    let (mut low, mut high) = (-40.0, 40.0);
+    for _ in 0..100 {
+        let middle = (low + high) / 2.0;
+        let below = 0.5 * libm::erfc(-middle * std::f64::consts::FRAC_1_SQRT_2);
+        *(if below < probability { &mut low } else { &mut high }) = middle;
+    }
+    low
+}
+
+/// Ranges of one design under drawn errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobustRange {
+    /// The range of each draw, mm; a draw whose nominal start diverged has none.
+    pub ranges_mm: Vec<f64>,
+    /// Draws whose nominal start diverged.
+    pub diverged: u32,
+    /// The statistic the settings ask for, mm; `None` with fewer than two ranges.
+    pub value_mm: Option<f64>,
+    /// Trials run for all windows.
+    pub trials: u32,
+}
+
+impl RobustRange {
+    /// Mean of the ranges, mm; NaN if there are none.
+    pub fn mean_mm(&self) -> f64 {
+        self.ranges_mm.iter().sum::<f64>() / self.ranges_mm.len() as f64
+    }
+
+    /// Standard deviation of the ranges (with n - 1), mm; NaN for fewer than two.
+    pub fn sd_mm(&self) -> f64 {
+        let mean = self.mean_mm();
+        let squares: f64 = self.ranges_mm.iter().map(|range| (range - mean).powi(2)).sum();
+        match self.ranges_mm.len() {
+            0 | 1 => f64::NAN,
+            n => (squares / (n - 1) as f64).sqrt(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn success(inserted: u32, failed: u32) -> SuccessRate {
+        let failure_counts = [0, 0, failed, 0];
+        SuccessRate { inserted, failure_counts, diverged: 3, confidence: 0.95 }
+    }
+
+    /// The formula worked apart, to seven digits.
+    #[test]
+    fn the_interval_is_wilsons() {
+        for (inserted, failed, low, high) in [
+            (87, 13, 0.790_196_5, 0.922_428_3),
+            (0, 10, 0.0, 0.277_532_8),
+            (10, 0, 0.722_467_2, 1.0),
+        ] {
+            let [a, b] = success(inserted, failed).interval();
+            assert!((a - low).abs() < 1e-7 && (b - high).abs() < 1e-7, "[{a}, {b}]");
+        }
+        assert_eq!(success(0, 0).interval(), [0.0, 1.0]);
+        assert_eq!(success(0, 0).rate(), None);
+        assert_eq!(success(3, 1).rate(), Some(0.75));
+    }
+
+    #[test]
+    fn quantiles_of_the_normal_distribution() {
+        for (probability, quantile) in [(0.5, 0.0), (0.975, 1.959_963_985), (0.05, -1.644_853_627)]
+        {
+            assert!((normal_quantile(probability) - quantile).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn the_spread_of_ranges() {
+        let robust =
+            RobustRange { ranges_mm: vec![3.0, 5.0, 7.0], diverged: 0, value_mm: None, trials: 30 };
+        assert_eq!((robust.mean_mm(), robust.sd_mm()), (5.0, 2.0));
+    }
+}

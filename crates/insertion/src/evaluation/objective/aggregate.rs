@@ -1,0 +1,113 @@
+//! One value for the values of several tasks.
+
+use input::shown;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// How the values of several tasks become one. They are not scaled first: in a mean
+/// a task with wide windows counts for more than one with narrow ones.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub enum Aggregate {
+    /// The worst: the smallest, or the largest of what is to be small.
+    #[default]
+    Min,
+    /// The mean.
+    Mean,
+    /// The mean with a weight for each task, above 0.
+    Weighted(Vec<f64>),
+}
+
+impl Aggregate {
+    /// Weights for so many tasks.
+    ///
+    /// # Errors
+    /// If there is not one for each, or one is not above 0.
+    pub fn weighted(weights: Vec<f64>, tasks: usize) -> Result<Self, String> {
+        if weights.len() != tasks {
+            return Err(format!(
+                "there are {} weights for {tasks} tasks; give one for each",
+                weights.len()
+            ));
+        }
+        match weights.iter().find(|weight| !(1e-6..=1e6).contains(*weight)) {
+            Some(bad) => {
+                let bad = shown(*bad);
+                Err(format!("{bad} is no weight; it must be a number above 0, 1e-6 to 1e6"))
+            }
+            None => Ok(Aggregate::Weighted(weights)),
+        }
+    }
+
+    /// One value for those of the tasks, at least one; `sense` is 1 if larger is better, else -1.
+    pub fn of(&self, sense: f64, values: &[f64]) -> f64 {
+        let mean = |weights: &mut dyn Iterator<Item = f64>| {
+            let terms = values.iter().zip(weights);
+            let (sum, whole) =
+                terms.fold((0.0, 0.0), |(sum, whole), (v, w)| (sum + v * w, whole + w));
+            sum / whole
+        };
+        match self {
+            // A mean of one would differ from it in the last digit.
+            _ if values.len() == 1 => values[0],
+            Aggregate::Min => {
+                sense * values.iter().map(|value| sense * value).fold(f64::INFINITY, f64::min)
+            }
+            Aggregate::Mean => mean(&mut std::iter::repeat(1.0)),
+            Aggregate::Weighted(weights) => mean(&mut weights.iter().copied()),
+        }
+    }
+}
+
+impl fmt::Display for Aggregate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Aggregate::Min => f.write_str("min"),
+            Aggregate::Mean => f.write_str("mean"),
+            Aggregate::Weighted(weights) => {
+                let weights: Vec<String> = weights.iter().map(f64::to_string).collect();
+                write!(f, "weighted {}", weights.join(","))
+            }
+        }
+    }
+}
+
+impl FromStr for Aggregate {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once(' ') {
+            None if text == "min" => Ok(Aggregate::Min),
+            None if text == "mean" => Ok(Aggregate::Mean),
+            Some(("weighted", weights)) => {
+                let weights: Result<Vec<f64>, _> = weights.split(',').map(str::parse).collect();
+                let weights = weights.map_err(|error| format!("weights: {error}"))?;
+                let tasks = weights.len();
+                Aggregate::weighted(weights, tasks)
+            }
+            _ => Err(format!("`{text}` is not min, mean or weighted W,W..")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_value_for_several() {
+        let two = Aggregate::weighted(vec![2.0, 1.0], 2).unwrap();
+        assert_eq!(two.of(1.0, &[3.0, 6.0]), 4.0);
+        assert_eq!(Aggregate::Mean.of(1.0, &[3.0, 6.0]), 4.5);
+        assert_eq!(Aggregate::Min.of(1.0, &[3.0, 6.0]), 3.0);
+        assert_eq!(Aggregate::Min.of(-1.0, &[3.0, 6.0]), 6.0, "the worse force is the larger");
+        for aggregate in [two, Aggregate::Mean, Aggregate::Min] {
+            assert_eq!(aggregate.to_string().parse(), Ok(aggregate.clone()));
+            assert_eq!(aggregate.of(1.0, &[0.1]), 0.1);
+        }
+        assert!(Aggregate::weighted(vec![1.0], 2).unwrap_err().contains("1 weights for 2 tasks"));
+        assert!(Aggregate::weighted(vec![0.0, 1.0], 2).unwrap_err().contains("above 0"));
+        assert!(Aggregate::weighted(vec![1e308, 1.0], 2).unwrap_err().contains("1e308 is no"));
+        assert!("weighted".parse::<Aggregate>().is_err());
+    }
+}

@@ -1,0 +1,138 @@
+//! The firm window: the part of a window that is left when friction, start and step vary a
+//! little, as nobody controls them.
+//!
+//! Each end is followed inward from the window's own, 0.1 mm at a time, to the first offset at
+//! which all repeats insert. What lies between the two ends is not tried again.
+
+use super::repeat::Repeats;
+use crate::evaluation::{OffsetStep, Window, grid_mm};
+use crate::outcome::Outcome;
+use serde::{Deserialize, Serialize};
+
+/// How often both ends are repeated.
+pub const REPEATS: u32 = 6;
+
+/// The outermost offsets at which all repeats insert, in grid steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FirmWindow {
+    /// At the negative end.
+    pub negative_steps: OffsetStep,
+    /// At the positive end.
+    pub positive_steps: OffsetStep,
+}
+
+impl FirmWindow {
+    /// Its width, mm.
+    pub fn range_mm(&self) -> f64 {
+        grid_mm(self.positive_steps - self.negative_steps)
+    }
+}
+
+/// What the repeats at both ends of a window found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Firm {
+    /// The firm window; `None` if there is no offset from an end to the nominal start, or no
+    /// window at all, at which all repeats insert.
+    pub window: Option<FirmWindow>,
+    /// Trials run.
+    pub trials: u32,
+}
+
+impl Firm {
+    /// Nothing inserts, and nothing was tried.
+    pub const NONE: Firm = Firm { window: None, trials: 0 };
+
+    /// The firm range, mm; 0 without a firm window.
+    pub fn range_mm(&self) -> f64 {
+        self.window.map_or(0.0, |window| window.range_mm())
+    }
+
+    /// The firm window, mm.
+    pub fn window_mm(&self) -> Option<[f64; 2]> {
+        self.window.map(|window| [window.negative_steps, window.positive_steps].map(grid_mm))
+    }
+
+    /// The firm part of a window: what was found there, less wide.
+    pub fn of(&self, window: &Window) -> Window {
+        let firm = self.window.unwrap_or(FirmWindow { negative_steps: 0, positive_steps: 0 });
+        let FirmWindow { negative_steps, positive_steps } = firm;
+        Window { negative_steps, positive_steps, ..window.clone() }
+    }
+}
+
+/// Follows both ends of a window inward.
+pub fn measure(repeats: &Repeats, window: &Window) -> Firm {
+    if window.nominal != Outcome::Inserted {
+        return Firm::NONE;
+    }
+    let ((negative, below), (positive, above)) = rayon::join(
+        || end(repeats, -window.negative_steps, -1),
+        || end(repeats, window.positive_steps, 1),
+    );
+    let found = negative.zip(positive).map(|(negative, positive)| FirmWindow {
+        negative_steps: -negative,
+        positive_steps: positive,
+    });
+    Firm { window: found, trials: below + above }
+}
+
+/// The outermost of the steps `from` to 0 at which all repeats insert, and the trials run. The
+/// repeat that failed last is asked first: it is the likeliest to fail again, and one failure is
+/// enough.
+fn end(repeats: &Repeats, from: OffsetStep, sign: OffsetStep) -> (Option<OffsetStep>, u32) {
+    let (count, mut doubtful, mut trials) = (repeats.count(), 0, 0);
+    for step in (0..=from).rev() {
+        let mut fails = |run: &usize| {
+            trials += 1;
+            !repeats.inserts(*run, sign * step)
+        };
+        match (0..count).map(|run| (doubtful + run) % count).find(|run| fails(run)) {
+            None => return (Some(step), trials),
+            Some(run) => doubtful = run,
+        }
+    }
+    (None, trials)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::tolerance::{Search, evaluate, offset};
+    use crate::finger::Finger;
+    use crate::trial::fake::FakeRig;
+    use input::units::N_PER_MM;
+
+    /// The lower end of the closed form, -3.33 mm, moves with friction to as near as -3.03 mm;
+    /// the upper one, 1.40 mm, with the start alone, by 0.02 mm.
+    #[test]
+    fn the_firm_window_is_the_innermost_of_the_repeats() {
+        let (rig, finger) = (FakeRig::default(), Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM));
+        let window = evaluate(&rig, &finger, Search::Walk).window;
+        let repeats = Repeats::new([&rig, &rig], &finger, 0, 100);
+        let found = measure(&repeats, &window);
+        let firm = found.window.unwrap();
+        assert!((-31..=-30).contains(&firm.negative_steps), "{firm:?}");
+        assert_eq!(firm.positive_steps, 13);
+        let all = |step| {
+            repeats.outcomes(offset(step)).iter().all(|&outcome| outcome == Outcome::Inserted)
+        };
+        assert!(all(firm.negative_steps) && all(firm.positive_steps));
+        assert!(!all(firm.negative_steps - 1) && !all(firm.positive_steps + 1));
+        // One trial at most steps that fail, a hundred at the two that hold.
+        assert!((200..320).contains(&found.trials), "{}", found.trials);
+        let part = found.of(&window);
+        assert_eq!(
+            (part.negative_steps, part.end_positive),
+            (firm.negative_steps, window.end_positive)
+        );
+    }
+
+    #[test]
+    fn nothing_is_firm_where_nothing_inserts() {
+        let (rig, finger) = (FakeRig::default(), Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM));
+        let mut window = evaluate(&rig, &finger, Search::Walk).window;
+        window.nominal = Outcome::Diverged;
+        let found = measure(&Repeats::new([&rig, &rig], &finger, 0, 6), &window);
+        assert_eq!((found, found.range_mm()), (Firm::NONE, 0.0));
+    }
+}

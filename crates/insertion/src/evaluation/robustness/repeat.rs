@@ -1,0 +1,172 @@
+//! The same trial again, with small changes that no one controls: does it end alike?
+
+use crate::evaluation::tolerance;
+use crate::evaluation::{OffsetStep, Window, grid_mm};
+use crate::finger::Finger;
+use crate::outcome::Outcome;
+use crate::trial::{Conditions, Grasped, Rig};
+use ask_tell::stream::stream;
+use input::units::MM;
+use rand::RngExt;
+use rayon::prelude::*;
+
+/// Share by which both coefficients of friction vary, each by itself.
+pub const FRICTION_SHARE: f64 = 0.1;
+/// How far the start varies, m.
+pub const START: f64 = 0.02 * MM;
+/// Names the stream of the changes.
+const PURPOSE: &str = "repeat";
+/// How far from an end its band is followed, in grid steps.
+const REACH: OffsetStep = 20;
+/// Distance of the offsets looked at between the bands, in grid steps.
+const INSIDE_STRIDE: OffsetStep = 5;
+
+/// One finger grasped again and again under slightly different conditions.
+pub struct Repeats<'a> {
+    runs: Vec<(Box<dyn Grasped + 'a>, f64)>,
+}
+
+impl<'a> Repeats<'a> {
+    /// Grasps `count` times: friction within 10 %, start within 0.02 mm, both uniform; the
+    /// rigs by turns, the first with the production step, the second with half of it.
+    pub fn new(rigs: [&'a dyn Rig; 2], finger: &Finger, seed: u64, count: u32) -> Self {
+        let run = |index: u32| {
+            let mut random = stream(seed, u64::from(index), PURPOSE);
+            let mut around = |half_width: f64| half_width * random.random_range(-1.0..1.0);
+            let conditions = Conditions {
+                friction_finger: 1.0 + around(FRICTION_SHARE),
+                friction_socket: 1.0 + around(FRICTION_SHARE),
+                ..Conditions::NOMINAL
+            };
+            let rig = rigs[index as usize % rigs.len()];
+            (rig.grasp_in(finger, &conditions), around(START))
+        };
+        Repeats { runs: (0..count).into_par_iter().map(run).collect() }
+    }
+
+    /// How each ends with the start shifted by `offset` metres beside its own change.
+    pub fn outcomes(&self, offset: f64) -> Vec<Outcome> {
+        self.runs.par_iter().map(|(grasped, shift)| grasped.trial(offset + shift).outcome).collect()
+    }
+
+    /// How many runs there are.
+    pub(super) fn count(&self) -> usize {
+        self.runs.len()
+    }
+
+    /// Whether one of the runs inserts at a grid step.
+    pub(super) fn inserts(&self, run: usize, step: OffsetStep) -> bool {
+        let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
+            grasped.trial(tolerance::offset(step) + shift).outcome
+        };
+        self.runs.get(run).map(trial) == Some(Outcome::Inserted)
+    }
+
+    /// How many of them insert at a grid step.
+    fn inserted(&self, step: OffsetStep) -> usize {
+        let outcomes = self.outcomes(tolerance::offset(step));
+        outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()
+    }
+
+    /// Where the outcome near one end of a window hangs on such changes; `sign` is
+    /// the direction of the end, -1 or 1.
+    fn band(&self, window: &Window, sign: OffsetStep) -> Band {
+        let end = if sign < 0 { -window.negative_steps } else { window.positive_steps };
+        let inserted = |step: OffsetStep| self.inserted(sign * step);
+        let inward = (0..=REACH.min(end)).map(|away| end - away);
+        // Beyond the end some may insert again, where none did nearer by.
+        let outward = (1..=REACH).rev().map(|away| end + away);
+        let mut still = outward.skip_while(|&step| inserted(step) == 0);
+        let last = still.next().unwrap_or(end);
+        Band {
+            surely_inserts: inward.into_iter().find(|&step| inserted(step) == self.runs.len()),
+            surely_fails: (last < end + REACH).then_some(last + 1),
+        }
+    }
+
+    /// Both bands of a window, and what lies between them.
+    pub fn bands(&self, window: &Window) -> Bands {
+        let [negative, positive] = [-1, 1].map(|sign| self.band(window, sign));
+        let inside = negative.surely_inserts.zip(positive.surely_inserts);
+        let looked_at: Vec<OffsetStep> = inside
+            .map(|(below, above)| (-below..=above).step_by(INSIDE_STRIDE as usize).collect())
+            .unwrap_or_default();
+        let unsure = |step: &&OffsetStep| self.inserted(**step) < self.runs.len();
+        Bands {
+            negative,
+            positive,
+            looked_at_inside: looked_at.len(),
+            unsure_inside: looked_at.iter().filter(unsure).map(|&step| grid_mm(step)).collect(),
+        }
+    }
+}
+
+/// The offsets near one end where the outcome changes with small changes; grid steps
+/// outward from the nominal start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// The outermost offset at which all repeats insert.
+    surely_inserts: Option<OffsetStep>,
+    /// The innermost offset from which, as far as 2 mm beyond the end, no repeat inserts.
+    surely_fails: Option<OffsetStep>,
+}
+
+impl Band {
+    /// Width between the two, less the 0.1 mm that the grid leaves open anyway, mm;
+    /// `None` if it is wider than 2 mm to one side.
+    pub fn width_mm(&self) -> Option<f64> {
+        Some(grid_mm(self.surely_fails? - self.surely_inserts? - 1))
+    }
+}
+
+/// Both ends of one window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bands {
+    /// Near the negative end.
+    pub negative: Band,
+    /// Near the positive end.
+    pub positive: Band,
+    /// Offsets tried between the two, every 0.5 mm.
+    pub looked_at_inside: usize,
+    /// Those of them at which not all repeats insert, mm.
+    pub unsure_inside: Vec<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::tolerance::Search;
+    use crate::outcome::Outcome;
+    use crate::trial::fake::FakeRig;
+    use input::units::N_PER_MM;
+
+    fn finger() -> Finger {
+        Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM)
+    }
+
+    /// The lower end of the closed form, -3.33 mm, moves by a tenth with friction, to
+    /// -3.03 and -3.70; the upper one, 1.40 mm, with the start alone.
+    #[test]
+    fn the_bands_are_as_wide_as_the_closed_form_says() {
+        let rig = FakeRig::default();
+        let repeats = Repeats::new([&rig, &rig], &finger(), 7, 200);
+        let window = tolerance::evaluate(&rig, &finger(), Search::Walk).window;
+        let bands = repeats.bands(&window);
+        let below = bands.negative.width_mm().unwrap();
+        assert!((0.5..=0.7).contains(&below), "{bands:?}");
+        let above = bands.positive.width_mm().unwrap();
+        assert!((0.0..=0.1).contains(&above), "{bands:?}");
+        assert_eq!(bands.unsure_inside, Vec::<f64>::new());
+        assert!(bands.looked_at_inside >= 8, "{bands:?}");
+    }
+
+    #[test]
+    fn repeats_are_a_function_of_the_seed() {
+        let rig = FakeRig::default();
+        let of = |seed| Repeats::new([&rig, &rig], &finger(), seed, 60).outcomes(-3.33 * MM);
+        assert_eq!(of(1), of(1));
+        assert_ne!(of(1), of(2));
+        let inserted = of(1).iter().filter(|&&outcome| outcome == Outcome::Inserted).count();
+        assert!((15..45).contains(&inserted), "{inserted} of 60");
+    }
+}

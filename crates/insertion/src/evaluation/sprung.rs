@@ -1,0 +1,48 @@
+//! Whether every computed finger of a space has springs, asked before the first one is simulated.
+
+use super::evaluator::Evaluator;
+use super::template::{Impossible, is_infill, space::extremes};
+use crate::finger::computed::AtPad;
+use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
+use crate::space::{Design, Space};
+use input::{Check, InputError};
+
+/// A space read from `file` that sets a computed finger's remote centre or tilting stiffness may ask
+/// for what no springs give: a centre so far away that turning about it alone is softer than measured.
+/// The more so the farther and the softer, so the extreme values are tried, of the infill, too.
+///
+/// # Errors
+/// The first combination that has no springs.
+pub fn check(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), InputError> {
+    let sets = |key: &str| [RCC_KEY, TILTING_KEY].contains(&key);
+    let computed = matches!(evaluator.fingers, FingerSource::Computed(_));
+    let Some(first) = space.parameters().iter().find(|p| computed && sets(&p.key)) else {
+        return Ok(());
+    };
+    let mut designs = vec![Design::default()];
+    for parameter in space.parameters().iter().filter(|p| sets(&p.key) || is_infill(&p.key)) {
+        let with = |(design, value): (&Design, f64)| {
+            let mut design = design.clone();
+            design.0.insert(parameter.key.clone(), value);
+            design
+        };
+        let values = extremes(parameter);
+        let each = |design| values.iter().map(move |&value| with((design, value)));
+        designs = designs.iter().flat_map(each).collect();
+    }
+    for design in designs {
+        if let Err(error) = springs(evaluator, &design) {
+            return Check { file }.fail(&first.key, format!("{design} has no springs: {error}"));
+        }
+    }
+    Ok(())
+}
+
+fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), Impossible> {
+    let stiffness = evaluator.predict(design)?;
+    let at_pad = AtPad { compliance: stiffness.compliance.mean, assembly: stiffness.assembly.mean };
+    for template in &evaluator.templates {
+        evaluator.fingers.make(at_pad, design, template.task())?;
+    }
+    Ok(())
+}

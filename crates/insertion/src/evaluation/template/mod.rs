@@ -1,0 +1,285 @@
+//! Co-design: what a design may set beside the infill.
+//!
+//! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path
+//! to one number:
+//!
+//! - `task.`, then the path in the task file: tables and keys as they stand there; one
+//!   of several tables by its `name` (`task.strategy.phase.side.speed_mm_per_s`); a number of
+//!   a vector by `x`, `y`, `z` (`task.strategy.phase.side.move_mm.y`), of any other list by
+//!   its place, counted from 0;
+//! - `finger.`, then one of [`finger_keys`] (`finger.rcc_mm`).
+//!
+//! Values are in the unit that the key carries. They are put into the task as read,
+//! before its checks, so that no design escapes them.
+
+pub mod printable;
+pub(super) mod space;
+
+use crate::finger::Finger;
+use crate::finger::computed::AtPad;
+use crate::finger::file::is_shape;
+use crate::finger::model::{FingerSource, Made, RCC_KEY, TILTING_KEY};
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::task::Task;
+use crate::trial::run::RigError;
+use finray::FingerError;
+use input::numbers::{self, numbers};
+use input::units::{GRAM, MM, N_PER_MM};
+use input::{Check, InputError, read};
+
+const TASK: &str = "task";
+/// What values are called in errors that concern no file.
+const DESIGN: &str = "design";
+
+/// A task file, the numbers of which a design may set.
+#[derive(Debug, Clone)]
+pub struct Template {
+    file: String,
+    table: toml::Value,
+    task: Task,
+}
+
+/// Why a design cannot be simulated.
+#[derive(Debug, thiserror::Error)]
+pub enum Impossible {
+    /// It sets what does not exist, or to what cannot be.
+    #[error(transparent)]
+    Value(#[from] InputError),
+    /// Its finger cannot be printed, or cannot be so stiff.
+    #[error(transparent)]
+    Finger(#[from] FingerError),
+    /// The robot or the engine cannot do the task that it makes.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+}
+
+/// One number of a finger: its key, where it is, and the SI value of its unit.
+type FingerNumber = (&'static str, fn(&mut Finger) -> &mut f64, f64);
+
+/// Compliance and assembly stiffness are not among them: the infill decides those.
+const FINGER: [FingerNumber; 8] = [
+    (RCC_KEY, |finger| &mut finger.rcc, MM),
+    ("finger.depth_n_per_mm", |finger| &mut finger.depth, N_PER_MM),
+    (TILTING_KEY, |finger| &mut finger.rotation[0], 1.0),
+    ("finger.rotation_y_nm_per_rad", |finger| &mut finger.rotation[1], 1.0),
+    ("finger.rotation_z_nm_per_rad", |finger| &mut finger.rotation[2], 1.0),
+    ("finger.mass_g", |finger| &mut finger.mass, GRAM),
+    ("finger.damping_n_s_per_m", |finger| &mut finger.damping, 1.0),
+    ("finger.rotational_damping_nm_s_per_rad", |finger| &mut finger.rotational_damping, 1.0),
+];
+
+/// The keys that set a number of the finger.
+pub fn finger_keys() -> [&'static str; 8] {
+    FINGER.map(|(key, _, _)| key)
+}
+
+pub(super) fn is_infill(key: &str) -> bool {
+    [DENSITY_KEY, DIRECTION_KEY].contains(&key)
+}
+
+impl Template {
+    /// Reads and checks a task file; `file` is named in errors.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let task = Task::parse(text, file)?;
+        let table = toml::Value::Table(read(text, file)?);
+        Ok(Template { file: file.to_owned(), table, task })
+    }
+
+    /// The task as the file has it.
+    pub fn task(&self) -> &Task {
+        &self.task
+    }
+
+    /// The keys that set a number of the task, in alphabetical order.
+    pub fn task_keys(&self) -> Vec<String> {
+        let mut table = self.table.clone();
+        let mut keys: Vec<String> =
+            numbers(TASK, &mut table).into_iter().map(|(key, _)| key).collect();
+        keys.sort();
+        keys
+    }
+
+    /// The number that the task file has under a key, in the unit of the key.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        let mut table = self.table.clone();
+        let number = numbers(TASK, &mut table).into_iter().find(|(name, _)| name == key)?.1;
+        number.as_float().or_else(|| number.as_integer().map(|whole| whole as f64))
+    }
+
+    /// The task, and the finger of this stiffness at its pad, with the values that the design
+    /// gives; what it does not name stays as in the task file and as `fingers` makes it.
+    pub fn apply(
+        &self,
+        design: &Design,
+        fingers: &FingerSource,
+        at_pad: AtPad,
+    ) -> Result<(Task, Made), Impossible> {
+        let (of_finger, of_task): (Vec<_>, Vec<_>) = design
+            .0
+            .iter()
+            .map(|(key, &value)| (key.as_str(), value))
+            .filter(|(key, _)| !is_infill(key) && !is_shape(key))
+            .partition(|(key, _)| finger_keys().contains(key));
+        let shaped = design.0.keys().find(|key| is_shape(key));
+        if let (FingerSource::Paper, Some(key)) = (fingers, shaped) {
+            let problem = "is a number of a printed finger, which the paper's model does not know; \
+                           --finger-model computed does";
+            return Ok(Check { file: DESIGN }.fail(key, problem)?);
+        }
+        let task = self.changed(&of_task)?;
+        let direction = design.get(DIRECTION_KEY);
+        if task.finger.rcc.is_some_and(|rcc| rcc.varies()) && direction.is_none() {
+            let problem = "is missing: the task's finger.rcc_mm depends on it";
+            return Ok(Check { file: DESIGN }.fail(DIRECTION_KEY, problem)?);
+        }
+        for (key, value) in &of_finger {
+            checked(key, *value)?;
+        }
+        let mut made = fingers.make(at_pad, design, &task)?;
+        for (key, number, unit) in FINGER {
+            if let Some((_, value)) = of_finger.iter().find(|(name, _)| *name == key) {
+                *number(&mut made.finger) = value * unit;
+            }
+        }
+        Ok((task, made))
+    }
+
+    /// The task with these numbers in place of its own.
+    fn changed(&self, of_task: &[(&str, f64)]) -> Result<Task, InputError> {
+        if of_task.is_empty() {
+            return Ok(self.task.clone());
+        }
+        let mut table = self.table.clone();
+        let mut numbers = numbers(TASK, &mut table);
+        for &(key, value) in of_task {
+            let mut found = numbers.iter_mut().filter(|(name, _)| name == key);
+            match (found.next(), found.next()) {
+                (Some((_, number)), None) => **number = toml::Value::Float(value),
+                (Some(_), Some(_)) => {
+                    let problem = "is two numbers: two tables have the same name; rename one";
+                    return Check { file: &self.file }.fail(key, problem);
+                }
+                (None, _) => return self.unknown(key),
+            }
+        }
+        let toml::Value::Table(table) = table else { return Ok(self.task.clone()) };
+        Task::from_table(table, &self.file)
+    }
+
+    fn unknown<T>(&self, key: &str) -> Result<T, InputError> {
+        let keys = self.task_keys();
+        let infill = [DENSITY_KEY, DIRECTION_KEY];
+        let keys = keys.iter().map(String::as_str).chain(finger_keys()).chain(infill);
+        Check { file: DESIGN }.fail(key, numbers::unknown(key, &keys.collect::<Vec<_>>()))
+    }
+}
+
+/// A number of a finger that can be simulated: the remote centre may lie on either side.
+fn checked(key: &str, value: f64) -> Result<f64, InputError> {
+    let check = Check { file: DESIGN };
+    if key == RCC_KEY { check.finite(key, value) } else { check.positive(key, value) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::task::{Ending, Sensed};
+    use input::shipped::TASKS;
+    use input::units::DEG;
+    use std::collections::BTreeMap;
+
+    fn usb() -> Template {
+        let file = TASKS.iter().find(|task| task.name == "usb").unwrap();
+        Template::parse(file.text, file.file).unwrap()
+    }
+
+    const AT_PAD: AtPad = AtPad { compliance: 2e3, assembly: 4e4 };
+
+    fn finger() -> Finger {
+        Finger::new(AT_PAD.compliance, AT_PAD.assembly)
+    }
+
+    fn apply(values: &[(&str, f64)]) -> Result<(Task, Finger), Impossible> {
+        let values = values.iter().map(|&(key, value)| (key.to_owned(), value));
+        let design = Design(BTreeMap::from_iter(values));
+        usb().apply(&design, &FingerSource::Paper, AT_PAD).map(|(task, made)| (task, made.finger))
+    }
+
+    #[test]
+    fn each_value_arrives_in_si_units_and_nothing_else_changes() {
+        let (task, changed) = apply(&[
+            ("task.strategy.tilt_deg", 8.0),
+            ("task.strategy.phase.touch.preload_mm", 0.5),
+            ("task.strategy.phase.side.move_mm.y", -9.0),
+            ("task.grip.force_n", 7.0),
+            ("task.plug.part.metal shell.x_mm.0", -2.0),
+            ("finger.rcc_mm", 15.0),
+            ("finger.rotation_x_nm_per_rad", 1.5),
+        ])
+        .unwrap();
+        let mut expected = usb().task().clone();
+        expected.strategy.tilt = 8.0 * DEG;
+        expected.strategy.phases[1].ending =
+            Ending::Touch { preload: 0.5 * MM, sensed: Sensed::FIRST };
+        expected.strategy.phases[4].displacement[1] = -9.0 * MM;
+        expected.grip.force = 7.0;
+        let crate::task::Solid::Box { min, .. } = &mut expected.plug.parts[0].solid else {
+            panic!("the shell is a box")
+        };
+        min.x = -2.0 * MM;
+        assert_eq!(task, expected);
+        let [_, ry, rz] = finger().rotation;
+        assert_eq!(changed, Finger { rcc: 15.0 * MM, rotation: [1.5, ry, rz], ..finger() });
+    }
+
+    #[test]
+    fn every_key_that_is_listed_can_be_set_to_what_it_is() {
+        for file in TASKS {
+            let template = Template::parse(file.text, file.file).unwrap();
+            let mut table = template.table.clone();
+            let values: Vec<(String, f64)> = numbers(TASK, &mut table)
+                .into_iter()
+                .map(|(key, value)| (key, value.as_float().unwrap()))
+                .collect();
+            assert!(values.len() > 50, "{}", file.name);
+            let (task, _) = template
+                .apply(&Design(values.into_iter().collect()), &FingerSource::Paper, AT_PAD)
+                .unwrap();
+            assert_eq!(&task, template.task());
+        }
+    }
+
+    #[test]
+    fn impossible_values_and_unknown_keys_are_named() {
+        for (key, value, words) in [
+            ("task.strategy.tilt_deg", 60.0, "strategy.tilt_deg: must lie in -45 .. 45"),
+            ("task.grip.force_n", f64::NAN, "grip.force_n: is NaN"),
+            ("task.strategy.phase.side.move_mm.y", 0.0, "\"side\" move_mm: is zero"),
+            ("finger.mass_g", 0.0, "finger.mass_g: is 0; it must be"),
+            ("finger.rcc_mm", f64::INFINITY, "finger.rcc_mm: is inf"),
+            ("finger.rcc", 1.0, "`finger.` goes on with damping_n_s_per_m, depth_n_per_mm"),
+            ("task.strategy.tild_deg", 1.0, "`task.strategy.` goes on with phase, start_mm, tilt_"),
+            ("task.strategy.start_mm", 1.0, "`task.strategy.start_mm.` goes on with x, y, z"),
+            ("task.strategy.phase.side.motion", 1.0, "goes on with move_mm, settle_s, speed_mm_"),
+            (
+                "tilt",
+                1.0,
+                "begins with finger, infill_density_percent, infill_direction_deg or task",
+            ),
+        ] {
+            let error = apply(&[(key, value)]).unwrap_err().to_string();
+            assert!(error.contains(words), "{key}: {error}");
+        }
+    }
+
+    #[test]
+    fn two_tables_of_one_name_are_told_apart_before_one_is_set() {
+        let file = TASKS.iter().find(|task| task.name == "usb").unwrap();
+        let text = file.text.replace("name = \"front\"", "name = \"back\"");
+        let template = Template::parse(&text, "my.toml").unwrap();
+        let key = "task.strategy.phase.back.settle_s".to_owned();
+        let error =
+            template.apply(&Design([(key, 0.1)].into()), &FingerSource::Paper, AT_PAD).unwrap_err();
+        assert!(error.to_string().contains("same name"), "{error}");
+    }
+}

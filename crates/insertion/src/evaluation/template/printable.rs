@@ -1,0 +1,80 @@
+//! Whether every finger of a space can be printed, asked before the first one is simulated.
+
+use super::space::extremes;
+use crate::finger::file::{FingerFile, is_shape};
+use crate::space::{Design, Space};
+use finray::geometry::Geometry;
+use input::{Check, InputError};
+
+/// Checks that a space read from `file` has none but printable fingers: every combination of
+/// extreme values of infill and finger must have a profile, its walls no thinner and its gaps no
+/// narrower than a printer's. Thickness and gaps rise or fall with each number alone, so what lies
+/// between is printable, too.
+///
+/// # Errors
+/// If a key sets nothing in the finger file, or a combination cannot be printed.
+pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), InputError> {
+    let check = Check { file };
+    let mut designs = vec![Design::default()];
+    for parameter in space.parameters() {
+        let shape = is_shape(&parameter.key);
+        if !shape && !super::is_infill(&parameter.key) {
+            continue;
+        }
+        let values = extremes(parameter);
+        for &value in values.iter().filter(|_| shape) {
+            let alone = Design([(parameter.key.clone(), value)].into());
+            if let Err(error) = finger.with(&alone) {
+                return check.fail(&parameter.key, format!("cannot be {value}: {error}"));
+            }
+        }
+        let with = |(design, value): (&Design, f64)| {
+            let mut design = design.clone();
+            design.0.insert(parameter.key.clone(), value);
+            design
+        };
+        let each = |design| values.iter().map(move |&value| with((design, value)));
+        designs = designs.iter().flat_map(each).collect();
+    }
+    for design in designs {
+        let finger = finger.with(&design)?;
+        if let Err(error) = Geometry::new(&finger, &design.printed(None)) {
+            return check.fail("parameter", format!("{design} cannot be printed: {error}"));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use input::shipped::{FINGERS, SPACES};
+
+    fn shipped(change: [&str; 2]) -> Result<(), InputError> {
+        let file = SPACES.iter().find(|space| space.name == "finger").unwrap();
+        assert!(file.text.contains(change[0]));
+        let space = Space::parse(&file.text.replace(change[0], change[1]), file.file).unwrap();
+        let finger = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
+        check(&space, file.file, &finger)
+    }
+
+    #[test]
+    fn every_finger_of_the_shipped_space_can_be_printed() {
+        assert_eq!(shipped(["", ""]), Ok(()));
+    }
+
+    #[test]
+    fn what_cannot_be_printed_is_told_by_its_key() {
+        for (change, words) in [
+            (["high = 0.76", "high = 1.14"], "ribs.thickness_mm"),
+            (["high = 12.0", "high = 20.0"], "notch.roof_mm"),
+            (["low = 15.0", "low = 9.0"], "outline.back_radius_mm"),
+            (["low = 0.4\n", "low = 0.1\n"], "skin.thickness_mm"),
+            (["finger.skin.thickness_mm", "finger.skin.width_mm"], "goes on with thickness_mm"),
+        ] {
+            let error = shipped(change).unwrap_err().to_string();
+            assert!(error.starts_with("spaces/finger.toml: "), "{error}");
+            assert!(error.contains(words), "{change:?}: {error}");
+        }
+    }
+}

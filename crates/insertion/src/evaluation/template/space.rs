@@ -1,0 +1,157 @@
+//! Whether every design of a space can be simulated, asked before the first one is.
+
+use super::{Impossible, Template, is_infill};
+use crate::finger::computed::AtPad;
+use crate::finger::file::is_shape;
+use crate::finger::model::FingerSource;
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Parameter, Space};
+use crate::task::Task;
+use crate::trial::run::RigError;
+use input::{Check, InputError};
+
+/// Whether robot and engine can do a task.
+pub type Fits<'a> = dyn Fn(&Task) -> Result<(), RigError> + 'a;
+
+/// Most combinations of extreme values that are tried.
+const COMBINATIONS: usize = 4096;
+
+impl Template {
+    /// Checks a space read from `file`: it must have the infill, every other key must set
+    /// something, and no combination of extreme values may be impossible; `fits` says
+    /// whether robot and engine can do a task.
+    ///
+    /// The checks of a task bound single numbers and differences of two, so a space whose
+    /// corners pass has no impossible design; moves may not be zero, so the level nearest to
+    /// zero counts as extreme. With more than 4096 combinations only one value at a time is tried.
+    pub fn check(&self, space: &Space, file: &str, fits: &Fits<'_>) -> Result<(), InputError> {
+        let check = Check { file };
+        let has = |key: &&str| space.parameters().iter().any(|parameter| parameter.key == *key);
+        if let Some(missing) = [DENSITY_KEY, DIRECTION_KEY].into_iter().find(|key| !has(key)) {
+            let problem = "is missing: a space must have it; to hold it fixed let low equal high";
+            return check.fail(missing, problem);
+        }
+        let other = |p: &&Parameter| !is_infill(&p.key) && !is_shape(&p.key);
+        let parameters = || space.parameters().iter().filter(other);
+        let mut designs = vec![Design::default()];
+        for parameter in parameters() {
+            let values = extremes(parameter);
+            for &value in &values {
+                let design = Design([(parameter.key.clone(), value)].into());
+                if let Err(error) = self.possible(&design, fits) {
+                    return match error {
+                        Impossible::Value(InputError::Value { key, problem, .. })
+                            if key == parameter.key =>
+                        {
+                            check.fail(&key, problem)
+                        }
+                        error => check.fail(&parameter.key, format!("cannot be {value}: {error}")),
+                    };
+                }
+            }
+            if designs.len() * values.len() <= COMBINATIONS {
+                let with = |design: &Design, value| {
+                    let mut design = design.clone();
+                    design.0.insert(parameter.key.clone(), value);
+                    design
+                };
+                let each = |design: &Design| values.iter().map(|&v| with(design, v)).collect();
+                designs = designs.iter().flat_map::<Vec<Design>, _>(each).collect();
+            }
+        }
+        for design in designs {
+            if let Err(error) = self.possible(&design, fits) {
+                return check.fail("parameter", format!("{design} is impossible: {error}"));
+            }
+        }
+        Ok(())
+    }
+
+    fn possible(&self, design: &Design, fits: &Fits<'_>) -> Result<(), Impossible> {
+        // Any stiffness: it takes no part in the checks.
+        let mut design = design.clone();
+        design.0.entry(DIRECTION_KEY.to_owned()).or_insert(0.0);
+        let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };
+        let (task, _) = self.apply(&design, &FingerSource::Paper, at_pad)?;
+        Ok(fits(&task)?)
+    }
+}
+
+/// The smallest and the largest value, and the one nearest to zero.
+pub(in crate::evaluation) fn extremes(parameter: &Parameter) -> Vec<f64> {
+    let last = parameter.levels() - 1;
+    let zero = (-parameter.low / parameter.step).round().clamp(0.0, f64::from(last)) as u32;
+    let mut levels = vec![0, zero, last];
+    levels.sort_unstable();
+    levels.dedup();
+    levels.into_iter().map(|level| parameter.value(level)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Robot;
+    use crate::trial::run::EngineRig;
+    use contact::direct::Direct;
+    use input::shipped::{ROBOTS, SPACES, TASKS};
+
+    fn check(parameters: &[(&str, f64, f64)]) -> Result<(), InputError> {
+        let infill = [(DENSITY_KEY, 10.0, 30.0), (DIRECTION_KEY, 0.0, 40.0)];
+        let parameter = |(key, low, high): &(&str, f64, f64)| {
+            format!(
+                "[[parameter]]\nkey = '{key}'\nlow = {low:?}\nhigh = {high:?}\nstep = 1.0\nsource = ''\n"
+            )
+        };
+        let text: String = infill.iter().chain(parameters).map(parameter).collect();
+        let text = format!("name = 's'\ndescription = ''\n{text}");
+        let file = TASKS.iter().find(|task| task.name == "usb").unwrap();
+        let template = Template::parse(file.text, file.file).unwrap();
+        template.check(&Space::parse(&text, "s.toml").unwrap(), "s.toml", &|_| Ok(()))
+    }
+
+    #[test]
+    fn every_shipped_space_fits_every_shipped_task_and_robot() {
+        for space in SPACES {
+            let space = Space::parse(space.text, space.file).unwrap();
+            for task in TASKS {
+                let template = Template::parse(task.text, task.file).unwrap();
+                for robot in ROBOTS {
+                    let robot = Robot::parse(robot.text, robot.file).unwrap();
+                    let fits = |task: &Task| {
+                        let engine = Box::new(Direct::default());
+                        EngineRig::new(task.clone(), &robot, engine).map(|_| ())
+                    };
+                    template.check(&space, "s.toml", &fits).unwrap();
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_impossible_bound_or_combination_is_told_before_anything_is_simulated() {
+        assert_eq!(check(&[("task.strategy.tilt_deg", 0.0, 45.0)]), Ok(()));
+        let side = "task.strategy.phase.side.move_mm";
+        let (x, y) = (format!("{side}.x"), format!("{side}.y"));
+        assert_eq!(check(&[(&x, -5.0, 5.0)]), Ok(()), "y keeps the move from being zero");
+        for (parameters, words) in [
+            (
+                vec![("task.strategy.tilt_deg", 0.0, 46.0)],
+                "s.toml: task.strategy.tilt_deg: cannot be 46",
+            ),
+            (vec![("finger.mass_g", 0.0, 2.0)], "s.toml: finger.mass_g: is 0"),
+            (vec![("speed_mm_per_s", 1.0, 2.0)], "s.toml: speed_mm_per_s: sets nothing"),
+            (vec![(&y, -5.0, 5.0)], "move_mm.y: cannot be 0"),
+            (vec![(&x, -5.0, 5.0), (&y, -5.0, -1.0)], ""),
+            (
+                vec![("task.grip.tcp_z_mm", 40.0, 43.0), ("task.grip.shoulder_z_mm", 42.0, 44.0)],
+                "is impossible",
+            ),
+        ] {
+            match check(&parameters) {
+                Ok(()) => assert_eq!(words, ""),
+                Err(error) => {
+                    assert!(!words.is_empty() && error.to_string().contains(words), "{error}");
+                }
+            }
+        }
+    }
+}

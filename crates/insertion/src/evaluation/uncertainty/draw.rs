@@ -1,0 +1,171 @@
+//! Draws from the distribution.
+
+use super::Errors;
+use crate::finger::Finger;
+use crate::surrogate::{Estimate, Prediction};
+use crate::trial::Conditions;
+use ask_tell::stream::stream;
+use rand::RngExt;
+use rand_distr::StandardNormal;
+
+/// Names the stream of the errors.
+const PURPOSE: &str = "errors";
+
+/// One draw: what one insertion is like. It does not depend on the design, so
+/// that designs are compared under the same errors (common random numbers).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Draw {
+    /// Shift of the start along y, m.
+    pub offset: f64,
+    /// What else differs in the world.
+    pub conditions: Conditions,
+    /// Standard normal deviates of the compliance and the assembly stiffness.
+    stiffness: [f64; 2],
+    /// Standard deviations of the stiffness model to one of the draw.
+    stiffness_sd_factor: f64,
+}
+
+/// `count` draws of a study. Draw `i` is a function of the seed and `i`: more
+/// draws leave the first ones as they were.
+pub fn draws(errors: &Errors, seed: u64, count: u32) -> Vec<Draw> {
+    (0..count).map(|i| draw(errors, seed, u64::from(i))).collect()
+}
+
+/// All numbers are drawn whatever the spreads are, so that switching one error
+/// off leaves the others as they were.
+fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
+    let mut random = stream(seed, index, PURPOSE);
+    let [offset, yaw, compliance, assembly, across]: [f64; 5] =
+        std::array::from_fn(|_| random.sample(StandardNormal));
+    let [finger, socket, clearance] = std::array::from_fn(|_| random.random_range(-1.0..1.0));
+    let low = random.random::<f64>();
+    let factor = |centred: f64| 1.0 + errors.friction_half_width * centred;
+    Draw {
+        offset: offset * errors.offset_sd,
+        conditions: Conditions {
+            yaw: yaw * errors.yaw_sd,
+            friction_finger: factor(finger),
+            friction_socket: factor(socket),
+            clearance: clearance * errors.clearance_half_width,
+            grasp_across: across * errors.grasp_across_sd,
+            grasp_low: low * errors.grasp_low_max,
+        },
+        stiffness: [compliance, assembly],
+        stiffness_sd_factor: errors.stiffness_sd_factor,
+    }
+}
+
+impl Draw {
+    /// An insertion under these conditions, whose finger's compliance and assembly stiffness lie so
+    /// many standard deviations of the stiffness model above their medians.
+    pub fn under(conditions: Conditions, stiffness: [f64; 2]) -> Self {
+        Draw { offset: 0.0, conditions, stiffness, stiffness_sd_factor: 1.0 }
+    }
+
+    /// A finger that was to have the predicted stiffness, as it came out.
+    pub fn finger(&self, nominal: &Finger, predicted: &Prediction) -> Finger {
+        let [compliance, assembly] = self.stiffness;
+        let spread = |estimate: Estimate| self.stiffness_sd_factor * estimate.sd / estimate.mean;
+        Finger {
+            compliance: nominal.compliance * lognormal(spread(predicted.compliance), compliance),
+            assembly: nominal.assembly * lognormal(spread(predicted.assembly), assembly),
+            ..*nominal
+        }
+    }
+}
+
+/// A factor of mean 1 and standard deviation `relative` whose logarithm is normal:
+/// `exp(s z - s^2 / 2)`, `s^2 = ln(1 + relative^2)`. Never negative, unlike a normal one.
+fn lognormal(relative: f64, z: f64) -> f64 {
+    let variance = libm::log1p(relative * relative);
+    libm::exp(variance.sqrt() * z - variance / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::uncertainty::Uncertainty;
+    use input::shipped::UNCERTAINTIES;
+    use input::units::{DEG, MM};
+
+    fn errors() -> Errors {
+        Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap().errors
+    }
+
+    /// Mean and standard deviation.
+    fn moments(values: impl Iterator<Item = f64>) -> (f64, f64) {
+        let values: Vec<f64> = values.collect();
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        (mean, variance.sqrt())
+    }
+
+    fn near((mean, sd): (f64, f64), expected_mean: f64, expected_sd: f64) {
+        // 4000 draws: the mean errs by 1.6 % of a standard deviation.
+        assert!((mean - expected_mean).abs() < 0.06 * expected_sd, "mean {mean}");
+        assert!((sd / expected_sd - 1.0).abs() < 0.06, "standard deviation {sd}");
+    }
+
+    #[test]
+    fn each_error_has_its_mean_and_spread() {
+        let drawn = draws(&errors(), 3, 4000);
+        let of = |value: &dyn Fn(&Draw) -> f64| moments(drawn.iter().map(value));
+        let uniform = 1.0 / 3f64.sqrt();
+        near(of(&|d| d.offset / MM), 0.0, 2.0);
+        near(of(&|d| d.conditions.yaw / DEG), 0.0, 1.0);
+        near(of(&|d| d.conditions.friction_finger), 1.0, 0.2 * uniform);
+        near(of(&|d| d.conditions.friction_socket), 1.0, 0.2 * uniform);
+        near(of(&|d| d.conditions.clearance / MM), 0.0, 0.03 * uniform);
+        near(of(&|d| d.conditions.grasp_across / MM), 0.0, 0.3);
+        near(of(&|d| d.conditions.grasp_low / MM), 0.15, 0.15 * uniform);
+    }
+
+    #[test]
+    fn a_stiffness_has_the_predicted_mean_and_spread_and_is_never_negative() {
+        let estimate = |mean, sd| Estimate { mean, sd };
+        let predicted = Prediction {
+            compliance: estimate(1000.0, 400.0),
+            assembly: estimate(50e3, 1e3),
+            hull_distance: 0.0,
+        };
+        let nominal = Finger::new(1000.0, 50e3);
+        let fingers: Vec<Finger> =
+            draws(&errors(), 0, 4000).iter().map(|d| d.finger(&nominal, &predicted)).collect();
+        near(moments(fingers.iter().map(|f| f.compliance)), 1000.0, 400.0);
+        near(moments(fingers.iter().map(|f| f.assembly)), 50e3, 1e3);
+        assert!(fingers.iter().all(|f| f.compliance > 0.0));
+    }
+
+    #[test]
+    fn more_draws_and_fewer_errors_leave_the_others_as_they_were() {
+        let (few, many) = (draws(&errors(), 1, 5), draws(&errors(), 1, 9));
+        assert_eq!(few, many[..5]);
+        assert_ne!(few, draws(&errors(), 2, 5));
+        let still = draws(&Errors { yaw_sd: 0.0, ..errors() }, 1, 5);
+        for (a, b) in still.iter().zip(&few) {
+            assert_eq!((a.offset, a.conditions.clearance), (b.offset, b.conditions.clearance));
+            assert_eq!(a.conditions.yaw, 0.0);
+        }
+    }
+
+    #[test]
+    fn without_errors_every_draw_is_the_nominal_trial() {
+        let none = Errors {
+            offset_sd: 0.0,
+            yaw_sd: 0.0,
+            friction_half_width: 0.0,
+            stiffness_sd_factor: 0.0,
+            clearance_half_width: 0.0,
+            grasp_across_sd: 0.0,
+            grasp_low_max: 0.0,
+        };
+        let exact = Estimate { mean: 1e3, sd: 0.0 };
+        let predicted = Prediction { compliance: exact, assembly: exact, hull_distance: 0.0 };
+        let finger = Finger::new(1e3, 2e4);
+        for draw in draws(&none, 0, 20) {
+            assert_eq!((draw.offset, draw.conditions), (0.0, Conditions::NOMINAL));
+            assert_eq!(draw.finger(&finger, &predicted), finger);
+        }
+    }
+}

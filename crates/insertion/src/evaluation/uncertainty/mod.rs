@@ -1,0 +1,80 @@
+//! What varies from one insertion to the next, and how often: the errors over
+//! which a success rate and a robust range are taken, from one TOML file.
+
+mod draw;
+mod raw;
+
+pub use draw::{Draw, draws};
+
+use crate::evaluation::tolerance::Search;
+use input::InputError;
+
+/// A checked distribution of errors, and how many draws each measure takes; SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Uncertainty {
+    /// Name, as used on the command line.
+    pub name: String,
+    /// One line for lists.
+    pub description: String,
+    /// The errors.
+    pub errors: Errors,
+    /// Settings of the success rate.
+    pub success: SuccessSettings,
+    /// Settings of the robust range.
+    pub robust: RobustSettings,
+}
+
+/// Spread of each error; 0 switches it off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Errors {
+    /// Start along y, normal: standard deviation, m.
+    pub offset_sd: f64,
+    /// Socket about z, normal: standard deviation, rad.
+    pub yaw_sd: f64,
+    /// Both coefficients of friction, uniform: half the width, as a share.
+    pub friction_half_width: f64,
+    /// Both stiffnesses, lognormal: standard deviations of the stiffness model.
+    pub stiffness_sd_factor: f64,
+    /// Width of the opening, uniform: half the width, m.
+    pub clearance_half_width: f64,
+    /// Part in the gripper along x, normal: standard deviation, m.
+    pub grasp_across_sd: f64,
+    /// Part in the gripper downwards, uniform from 0: largest, m.
+    pub grasp_low_max: f64,
+}
+
+/// How a success rate is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SuccessSettings {
+    /// Trials per design.
+    pub trials: u32,
+    /// Probability with which the interval holds the true rate, 0 to 1.
+    pub confidence: f64,
+}
+
+/// How a robust range is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RobustSettings {
+    /// Windows per design.
+    pub samples: u32,
+    /// What is made of them.
+    pub statistic: Statistic,
+    /// How each window is looked for.
+    pub search: Search,
+}
+
+/// One number for a sample of ranges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Statistic {
+    /// Mean less so many standard deviations.
+    MeanMinusSd(f64),
+    /// Mean of the lowest share (0 to 1) of the samples, at least one of them.
+    LowerTail(f64),
+}
+
+impl Uncertainty {
+    /// Reads and checks a distribution; `file` is named in errors.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        raw::parse(text, file)
+    }
+}

@@ -1,0 +1,255 @@
+//! The file as written, and the checks that turn it into an [`Uncertainty`].
+
+use super::{Errors, RobustSettings, Statistic, SuccessSettings, Uncertainty};
+use crate::evaluation::tolerance::Search;
+use input::units::{DEG, MM, PERCENT};
+use input::{Check, InputError, read};
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawUncertainty {
+    name: String,
+    description: String,
+    offset: RawOffset,
+    yaw: RawYaw,
+    friction: RawFriction,
+    stiffness: RawStiffness,
+    clearance: RawClearance,
+    grasp: RawGrasp,
+    success_rate: RawSuccess,
+    robust_range: RawRobust,
+}
+
+/// An error's fields, and where their values come from.
+macro_rules! raw_error {
+    ($($name:ident { $($field:ident),* })*) => {
+        $(#[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct $name {
+            $($field: f64,)*
+            source: String,
+        })*
+    };
+}
+
+raw_error! {
+    RawOffset { sd_mm }
+    RawYaw { sd_deg }
+    RawFriction { half_width_percent }
+    RawStiffness { sd_factor }
+    RawClearance { half_width_mm }
+    RawGrasp { across_sd_mm, low_max_mm }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSuccess {
+    trials: u32,
+    confidence_percent: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRobust {
+    samples: u32,
+    statistic: RawStatistic,
+    sd_factor: Option<f64>,
+    tail_percent: Option<f64>,
+    search: RawSearch,
+}
+
+#[derive(Deserialize, Clone, Copy)]
+#[serde(rename_all = "kebab-case")]
+enum RawStatistic {
+    MeanMinusSd,
+    LowerTail,
+}
+
+#[derive(Deserialize, Clone, Copy)]
+#[serde(rename_all = "kebab-case")]
+enum RawSearch {
+    Walk,
+    Strides,
+}
+
+/// Largest error of a length, mm: no part is placed so badly.
+const LARGEST_MM: f64 = 20.0;
+/// Largest error of a clearance, mm.
+const LARGEST_CLEARANCE_MM: f64 = 2.0;
+/// Largest error of an angle, degrees.
+const LARGEST_DEG: f64 = 30.0;
+/// Largest factor on the stiffness model's own error.
+const LARGEST_FACTOR: f64 = 10.0;
+/// Most trials or samples a design may take.
+const MOST: u32 = 100_000;
+
+/// Reads and checks a distribution; `file` is named in errors.
+pub fn parse(text: &str, file: &str) -> Result<Uncertainty, InputError> {
+    let raw: RawUncertainty = read(text, file)?;
+    let check = Check { file };
+    sources(check, &raw)?;
+    Ok(Uncertainty {
+        errors: errors(check, &raw)?,
+        success: SuccessSettings {
+            trials: count(check, "success_rate.trials", raw.success_rate.trials, 1)?,
+            confidence: share(
+                check,
+                "success_rate.confidence_percent",
+                raw.success_rate.confidence_percent,
+            )?,
+        },
+        robust: RobustSettings {
+            // A standard deviation needs two.
+            samples: count(check, "robust_range.samples", raw.robust_range.samples, 2)?,
+            statistic: statistic(check, &raw.robust_range)?,
+            search: match raw.robust_range.search {
+                RawSearch::Walk => Search::Walk,
+                RawSearch::Strides => Search::Strides,
+            },
+        },
+        name: raw.name,
+        description: raw.description,
+    })
+}
+
+fn sources(check: Check<'_>, raw: &RawUncertainty) -> Result<(), InputError> {
+    for (key, source) in [
+        ("offset.source", &raw.offset.source),
+        ("yaw.source", &raw.yaw.source),
+        ("friction.source", &raw.friction.source),
+        ("stiffness.source", &raw.stiffness.source),
+        ("clearance.source", &raw.clearance.source),
+        ("grasp.source", &raw.grasp.source),
+    ] {
+        if source.trim().is_empty() {
+            return check.fail(key, "is empty; say where the value comes from");
+        }
+    }
+    Ok(())
+}
+
+fn errors(check: Check<'_>, raw: &RawUncertainty) -> Result<Errors, InputError> {
+    let friction = "friction.half_width_percent";
+    let half_width = check.not_negative(friction, raw.friction.half_width_percent)?;
+    if half_width >= 100.0 {
+        return check.fail(friction, "must be below 100: friction cannot be negative");
+    }
+    Ok(Errors {
+        offset_sd: error(check, "offset.sd_mm", raw.offset.sd_mm, [LARGEST_MM, MM])?,
+        yaw_sd: error(check, "yaw.sd_deg", raw.yaw.sd_deg, [LARGEST_DEG, DEG])?,
+        friction_half_width: half_width * PERCENT,
+        stiffness_sd_factor: error(
+            check,
+            "stiffness.sd_factor",
+            raw.stiffness.sd_factor,
+            [LARGEST_FACTOR, 1.0],
+        )?,
+        clearance_half_width: error(
+            check,
+            "clearance.half_width_mm",
+            raw.clearance.half_width_mm,
+            [LARGEST_CLEARANCE_MM, MM],
+        )?,
+        grasp_across_sd: error(
+            check,
+            "grasp.across_sd_mm",
+            raw.grasp.across_sd_mm,
+            [LARGEST_MM, MM],
+        )?,
+        grasp_low_max: error(check, "grasp.low_max_mm", raw.grasp.low_max_mm, [LARGEST_MM, MM])?,
+    })
+}
+
+/// An error in SI units, at most as `largest` in its own, of which one is `unit`.
+fn error(
+    check: Check<'_>,
+    key: &str,
+    value: f64,
+    [largest, unit]: [f64; 2],
+) -> Result<f64, InputError> {
+    if check.not_negative(key, value)? <= largest {
+        return Ok(value * unit);
+    }
+    check.fail(key, format!("is {value}; it may be {largest} at most"))
+}
+
+fn count(check: Check<'_>, key: &str, count: u32, least: u32) -> Result<u32, InputError> {
+    if (least..=MOST).contains(&count) {
+        return Ok(count);
+    }
+    check.fail(key, format!("is {count}; it must lie in {least} .. {MOST}"))
+}
+
+fn share(check: Check<'_>, key: &str, percent: f64) -> Result<f64, InputError> {
+    if percent > 0.0 && percent < 100.0 {
+        return Ok(percent * PERCENT);
+    }
+    check.fail(key, format!("is {percent}; it must lie between 0 and 100"))
+}
+
+fn statistic(check: Check<'_>, raw: &RawRobust) -> Result<Statistic, InputError> {
+    match (raw.statistic, raw.sd_factor, raw.tail_percent) {
+        (RawStatistic::MeanMinusSd, Some(factor), None) => {
+            Ok(Statistic::MeanMinusSd(check.not_negative("robust_range.sd_factor", factor)?))
+        }
+        (RawStatistic::LowerTail, None, Some(percent)) => {
+            Ok(Statistic::LowerTail(share(check, "robust_range.tail_percent", percent)?))
+        }
+        (RawStatistic::MeanMinusSd, ..) => check.fail(
+            "robust_range.statistic",
+            "\"mean-minus-sd\" goes with sd_factor, and without tail_percent",
+        ),
+        (RawStatistic::LowerTail, ..) => check.fail(
+            "robust_range.statistic",
+            "\"lower-tail\" goes with tail_percent, and without sd_factor",
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use input::shipped::UNCERTAINTIES;
+
+    #[test]
+    fn the_shipped_file_reads_in_si_units() {
+        let file = UNCERTAINTIES[0];
+        let typical = parse(file.text, file.file).unwrap();
+        assert_eq!(typical.name, "typical");
+        assert!((typical.errors.offset_sd - 2e-3).abs() < 1e-15);
+        assert!((typical.errors.friction_half_width - 0.2).abs() < 1e-15);
+        assert_eq!(typical.robust.statistic, Statistic::MeanMinusSd(1.0));
+    }
+
+    #[test]
+    fn each_bad_field_is_named() {
+        let good = UNCERTAINTIES[0].text;
+        for (from, to, key, word) in [
+            ("sd_mm = 2.0", "sd_mm = -2.0", "offset.sd_mm", "0 or above"),
+            ("half_width_percent = 20.0", "half_width_percent = 100.0", "friction", "below 100"),
+            ("trials = 100", "trials = 0", "success_rate.trials", "1 .."),
+            ("samples = 12", "samples = 1", "robust_range.samples", "2 .."),
+            ("confidence_percent = 95.0", "confidence_percent = 100.0", "confidence", "between"),
+            (
+                "\nsd_factor = 1.0\n#",
+                "\ntail_percent = 10.0\n#",
+                "robust_range.statistic",
+                "sd_factor",
+            ),
+            ("sd_deg = 1.0", "sd_rad = 1.0", "sd_rad", "sd_deg"),
+            ("search = \"walk\"", "search = \"run\"", "run", "walk"),
+        ] {
+            let text = good.replacen(from, to, 1);
+            assert_ne!(text, good, "{from}");
+            let error = parse(&text, "u.toml").unwrap_err().to_string();
+            assert!(
+                error.contains(key) && error.contains(word) && error.contains("u.toml"),
+                "{error}"
+            );
+        }
+        let tail =
+            good.replace("mean-minus-sd\"\nsd_factor = 1.0", "lower-tail\"\ntail_percent = 10.0");
+        assert_eq!(parse(&tail, "u").unwrap().robust.statistic, Statistic::LowerTail(0.1));
+    }
+}

@@ -1,0 +1,119 @@
+//! A finger file, the numbers of which a design may set: its shape and its material.
+//!
+//! A key is `finger.`, then the path in the finger file (`finger.skin.thickness_mm`); values are
+//! in the unit that the key carries. They are put into the file as read, before its checks.
+
+use crate::space::Design;
+use finray::printed::PrintedFinger;
+use input::numbers::{self, numbers};
+use input::{Check, InputError, read};
+
+const FINGER: &str = "finger";
+/// What values are called in errors that concern no file.
+const DESIGN: &str = "design";
+
+/// A finger file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FingerFile {
+    file: String,
+    table: toml::Value,
+    finger: PrintedFinger,
+}
+
+/// Whether a key sets a number of a finger file: it names a table of it. (The numbers of a
+/// finger's springs, as `finger.rcc_mm`, stand in no table.)
+pub fn is_shape(key: &str) -> bool {
+    key.strip_prefix("finger.").is_some_and(|path| path.contains('.'))
+}
+
+impl FingerFile {
+    /// Reads and checks a finger file; `file` is named in errors.
+    ///
+    /// # Errors
+    /// As of [`PrintedFinger::parse`].
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let finger = PrintedFinger::parse(text, file)?;
+        Ok(FingerFile {
+            file: file.to_owned(),
+            table: toml::Value::Table(read(text, file)?),
+            finger,
+        })
+    }
+
+    /// The finger as the file has it.
+    pub fn finger(&self) -> &PrintedFinger {
+        &self.finger
+    }
+
+    /// The value that the file has for a key.
+    pub fn value(&self, key: &str) -> Option<f64> {
+        let mut table = self.table.clone();
+        let numbers = numbers(FINGER, &mut table);
+        let (_, value) = numbers.into_iter().find(|(name, _)| name == key)?;
+        value.as_float().or(value.as_integer().map(|value| value as f64))
+    }
+
+    /// The finger with the numbers that a design sets; keys of anything else are left alone.
+    ///
+    /// # Errors
+    /// If a key sets nothing, or a value cannot be used.
+    pub fn with(&self, design: &Design) -> Result<PrintedFinger, InputError> {
+        if !design.0.keys().any(|key| is_shape(key)) {
+            return Ok(self.finger.clone());
+        }
+        let mut table = self.table.clone();
+        let mut found = numbers(FINGER, &mut table);
+        for (key, &value) in design.0.iter().filter(|(key, _)| is_shape(key)) {
+            match found.iter_mut().find(|(name, _)| name == key) {
+                Some((_, number)) => **number = toml::Value::Float(value),
+                None => {
+                    let keys: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+                    return Check { file: DESIGN }.fail(key, numbers::unknown(key, &keys));
+                }
+            }
+        }
+        let toml::Value::Table(table) = table else { return Ok(self.finger.clone()) };
+        PrintedFinger::from_table(table, &self.file)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use input::shipped::FINGERS;
+    use input::units::MM;
+
+    fn finray9() -> FingerFile {
+        FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
+    }
+
+    fn with(key: &str, value: f64) -> Result<PrintedFinger, InputError> {
+        finray9().with(&Design([(key.to_owned(), value)].into()))
+    }
+
+    #[test]
+    fn a_design_sets_what_it_names_and_nothing_else() {
+        let file = finray9();
+        assert_eq!(&file.with(&Design::infill(20.0, 10.0)).unwrap(), file.finger());
+        assert_eq!(&with("finger.rcc_mm", 3.0).unwrap(), file.finger());
+        let mut expected = file.finger().clone();
+        expected.skin = 0.8 * MM;
+        assert_eq!(with("finger.skin.thickness_mm", 0.8).unwrap(), expected);
+        let modulus = with("finger.material.modulus_gpa", 0.5).unwrap().material.modulus;
+        assert_eq!(modulus, 0.5e9);
+        assert_eq!(file.value("finger.outline.back_radius_mm"), Some(23.0));
+        assert_eq!(file.value("finger.outline.radius_mm"), None);
+    }
+
+    #[test]
+    fn impossible_values_and_unknown_keys_are_named() {
+        for (key, value, words) in [
+            ("finger.skin.thickness_mm", 0.0, "fingers/finray9.toml: skin.thickness_mm: is 0"),
+            ("finger.material.modulus_gpa", 2e3, "gigapascals"),
+            ("finger.skin.thick_mm", 1.0, "`finger.skin.` goes on with thickness_mm"),
+        ] {
+            let error = with(key, value).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! One printed finger: six springs about a remote centre of compliance (RCC), a pad and a
+//! roof. As the paper models it (Sec. "Stiffness model" and Table "Simulation Inputs"), or
+//! computed from its ribs.
+
+pub mod computed;
+pub mod file;
+pub mod model;
+
+use crate::task::finger::{Coupling, FingerModel, Rcc};
+use contact::scene::{Coupled, Geom, Inertia, JointAxis, Pose, Shape, Spring, Springs};
+use input::units::{GRAM, MM, N_PER_MM};
+use nalgebra::{Matrix6, Point3, Vector3};
+
+/// One finger, in SI units; both fingers of a gripper are alike.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finger {
+    /// Spring in y at the RCC, the direction in which the jaws close, N/m.
+    pub compliance: f64,
+    /// Spring in z at the RCC, the direction of assembly, N/m.
+    pub assembly: f64,
+    /// Spring in x, across the finger's width, N/m.
+    pub depth: f64,
+    /// Rotational springs about x, y and z through the RCC, N m/rad.
+    pub rotation: [f64; 3],
+    /// Distance of the RCC below the TCP, towards the plug's tip, m.
+    pub rcc: f64,
+    /// Distance of the RCC in front of the pad's face, into the part, m.
+    pub ahead: f64,
+    /// Its pad and roof.
+    pub pad: Pad,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Translational damping of the springs, N s/m.
+    pub damping: f64,
+    /// Rotational damping of the springs, N m s/rad.
+    pub rotational_damping: f64,
+    /// How the springs pull at one another; they do not in the paper.
+    pub coupling: Option<Coupling>,
+}
+
+/// Rotational spring about x, N m/rad: the upper end of the range in the paper's
+/// Table "Simulation Inputs" (0.5 .. 2), of which the paper itself used 1; why is
+/// in `docs/calibration.md`.
+const TILTING: f64 = 2.0;
+
+impl Finger {
+    /// A finger of the given compliance and assembly stiffness (N/m, per
+    /// finger), everything else as in the paper.
+    pub fn new(compliance: f64, assembly: f64) -> Self {
+        Finger {
+            compliance,
+            assembly,
+            depth: 100.0 * N_PER_MM,
+            rotation: [TILTING, 10.0, 10.0],
+            rcc: Rcc::PAPER.at_zero,
+            ahead: 0.0,
+            pad: Pad::PAPER,
+            mass: 2.0 * GRAM,
+            damping: 10.0,
+            rotational_damping: 0.02,
+            coupling: None,
+        }
+    }
+
+    /// The same with what a task file says of its fingers, the infill in this direction, degrees.
+    pub fn shaped(self, model: &FingerModel, direction_deg: f64) -> Self {
+        let rcc = model.rcc.unwrap_or(Rcc::PAPER).at(direction_deg);
+        Finger { rcc, coupling: model.coupling, ..self }
+    }
+}
+
+/// The notch: a vertical pad that presses the part, and a roof above it that
+/// rests on the part's shoulder and carries the assembly force. Dimensions in m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pad {
+    /// Width of pad and roof in x.
+    pub width: f64,
+    /// Height of the pad, downward from the roof.
+    pub height: f64,
+    /// How far the roof reaches over the part in y.
+    pub roof: f64,
+}
+
+impl Pad {
+    /// That of the published simulation.
+    pub const PAPER: Pad = Pad { width: 12.0 * MM, height: 8.4 * MM, roof: 2.5 * MM };
+
+    /// Height of its middle above the TCP, m; `shoulder` as of [`Pad::geoms`].
+    pub fn middle(&self, shoulder: f64) -> f64 {
+        shoulder + ROOF_GAP - self.height / 2.0
+    }
+
+    /// Pad and roof in the finger frame: origin on the pad's face at the height of
+    /// the TCP, `side` -1 for the finger at -y, +1 for the one at +y; `shoulder` is
+    /// the height of the part's shoulder above the TCP, m.
+    pub fn geoms(&self, shoulder: f64, side: f64) -> Vec<Geom> {
+        let roof_z = shoulder + ROOF_GAP;
+        let cuboid = |name: &str, y: [f64; 2], z: [f64; 2]| Geom {
+            name: name.into(),
+            shape: Shape::Box { half: Vector3::new(self.width, y[1] - y[0], z[1] - z[0]) / 2.0 },
+            pose: Pose::translation(0.0, side * (y[0] + y[1]) / 2.0, (z[0] + z[1]) / 2.0),
+            friction: None,
+        };
+        vec![
+            cuboid("pad", [0.0, PAD_THICKNESS], [roof_z - self.height, roof_z]),
+            cuboid("roof", [-self.roof, PAD_THICKNESS], [roof_z, roof_z + ROOF_THICKNESS]),
+        ]
+    }
+}
+
+/// Thickness of the pad behind its face (not decisive), m.
+const PAD_THICKNESS: f64 = 4.0 * MM;
+/// Thickness of the roof (not decisive), m.
+const ROOF_THICKNESS: f64 = 3.0 * MM;
+/// Gap between roof and shoulder at the grasp, m: the roof comes to rest on the shoulder
+/// when the part is first pushed up.
+pub const ROOF_GAP: f64 = 0.05 * MM;
+
+impl Finger {
+    /// The six springs about the RCC: translations x, y, z, rotations x, y, z.
+    pub fn springs(&self) -> [Spring; 6] {
+        let translation = |k: f64| Spring::new(k, self.damping);
+        let rotation = |k: f64| Spring::new(k, self.rotational_damping);
+        let [rx, ry, rz] = self.rotation;
+        [
+            translation(self.depth),
+            translation(self.compliance),
+            translation(self.assembly),
+            rotation(rx),
+            rotation(ry),
+            rotation(rz),
+        ]
+    }
+}
+
+impl Finger {
+    /// Where the RCC is in the finger frame, m; `side` as of [`Pad::geoms`].
+    pub fn centre(&self, side: f64) -> Point3<f64> {
+        Point3::new(0.0, -side * self.ahead, -self.rcc)
+    }
+
+    /// What ties the finger to its jaw at the RCC; `side` as of [`Pad::geoms`].
+    pub fn mounted(&self, side: f64) -> Springs {
+        let springs = self.springs();
+        match &self.coupling {
+            None => Springs::Axes(springs.map(JointAxis::Sprung)),
+            Some(coupling) => Springs::Coupled(Coupled {
+                stiffness: coupling.stiffness(springs.map(|spring| spring.stiffness), side),
+                damping: Matrix6::from_diagonal(&springs.map(|spring| spring.damping).into()),
+            }),
+        }
+    }
+}
+
+/// Radius of gyration of a finger about its centre of mass, m: that of a rod of
+/// the length of a printed finger (70 mm).
+const GYRATION: f64 = 20.0 * MM;
+
+/// Mass properties of a finger, in the finger frame. Its centre of mass is put
+/// on its axis at the RCC, about the middle of a real finger; at the speed of
+/// an insertion 2 g do not matter, but a centre far from the joint would couple
+/// the six springs in the engine and slow its convergence. `side` as of [`Pad::geoms`].
+pub fn inertia(finger: &Finger, side: f64) -> Inertia {
+    Inertia {
+        mass: finger.mass,
+        centre: finger.centre(side),
+        moments: Vector3::repeat(finger.mass * GYRATION * GYRATION),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact::scene::{Spring, Springs};
+
+    #[test]
+    fn the_default_is_the_papers_finger() {
+        let finger = Finger::new(2e3, 4e4).shaped(&FingerModel::default(), f64::NAN);
+        assert_eq!(finger, Finger::new(2e3, 4e4));
+        assert!(matches!(finger.mounted(1.0), Springs::Axes(_)));
+    }
+
+    #[test]
+    fn the_remote_centre_moves_with_the_infill_direction() {
+        let rcc = Rcc { at_zero: 21.0 * MM, per_degree: -0.1 * MM };
+        let model = FingerModel { rcc: Some(rcc), ..FingerModel::default() };
+        assert!((Finger::new(2e3, 4e4).shaped(&model, 30.0).rcc - 18.0 * MM).abs() < 1e-15);
+    }
+
+    /// Turned by 180 degrees about z, a push in y that turned about z turns the other way.
+    #[test]
+    fn the_opposite_finger_is_the_same_part_turned() {
+        let coupling = Coupling::new([(1, 2, 0.3), (1, 5, 0.2), (0, 4, 0.1)]).unwrap();
+        let springs = [1e5, 2e3, 4e4, 1.0, 10.0, 10.0];
+        let [here, there] = [-1.0, 1.0].map(|side| coupling.stiffness(springs, side));
+        assert_eq!(here[(1, 2)], 0.3 * (2e3_f64 * 4e4).sqrt());
+        assert_eq!((there[(1, 2)], there[(1, 5)]), (-here[(1, 2)], -here[(1, 5)]));
+        assert_eq!((there[(0, 4)], there[(1, 1)]), (here[(0, 4)], 2e3));
+        assert_eq!(here, here.transpose());
+    }
+
+    #[test]
+    fn coupling_that_would_push_a_finger_away_is_none() {
+        assert_eq!(Coupling::new([(1, 2, 1.0)]), None);
+        assert_eq!(Coupling::new([(0, 1, 0.8), (1, 2, 0.8), (0, 2, -0.8)]), None);
+        assert!(Coupling::new([(0, 1, 0.8), (1, 2, 0.8), (0, 2, 0.8)]).is_some());
+    }
+
+    #[test]
+    fn a_coupled_finger_keeps_the_damping_of_its_springs() {
+        let coupling = Coupling::new([(1, 3, 0.5)]);
+        let finger = Finger { coupling, ..Finger::new(2e3, 4e4) };
+        let Springs::Coupled(coupled) = finger.mounted(-1.0) else { panic!("coupled") };
+        let damping = finger.springs().map(|Spring { damping, .. }| damping);
+        assert_eq!(coupled.damping, Matrix6::from_diagonal(&damping.into()));
+        assert_eq!(coupled.stiffness[(1, 3)], 0.5 * (2e3 * finger.rotation[0]).sqrt());
+    }
+}

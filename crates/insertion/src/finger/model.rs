@@ -1,0 +1,166 @@
+//! Where the springs of a finger come from that were not measured: the paper, or its ribs.
+
+use super::Finger;
+use super::computed::{AtPad, Computed, Given, Touching};
+use crate::finger::file::{FingerFile, is_shape};
+use crate::space::{DIRECTION_KEY, Design};
+use crate::task::Task;
+use crate::task::finger::{Coupling, Rcc};
+use finray::FingerError;
+use finray::known::Known;
+use finray::mechanics::FingerStiffness;
+use input::units::MM;
+use serde::{Deserialize, Serialize};
+
+/// The key by which a design places the remote centre, mm below the TCP.
+pub const RCC_KEY: &str = "finger.rcc_mm";
+/// The key by which a design sets the tilting stiffness, N m/rad.
+pub const TILTING_KEY: &str = "finger.rotation_x_nm_per_rad";
+
+/// A finger model by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FingerModelKind {
+    /// One remote centre (21 mm) and tilting stiffness (2 N m/rad) for all, springs at the centre
+    #[default]
+    Paper,
+    /// Both from the ribs of each design, its measured stiffness at the pad
+    Computed,
+}
+
+impl FingerModelKind {
+    /// Its name on the command line and in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            FingerModelKind::Paper => "paper",
+            FingerModelKind::Computed => "computed",
+        }
+    }
+}
+
+/// Makes the fingers of designs.
+#[derive(Debug)]
+pub enum FingerSource {
+    /// As the paper models them: the measured springs sit at one remote centre.
+    Paper,
+    /// Computed from their ribs.
+    Computed(Box<ComputedFingers>),
+}
+
+/// FingerSource computed from a finger file.
+#[derive(Debug)]
+pub struct ComputedFingers {
+    /// The finger file.
+    pub file: FingerFile,
+    /// What presses them.
+    pub touching: Touching,
+    known: Known,
+}
+
+/// A finger, and where its remote centre comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Made {
+    /// The finger.
+    pub finger: Finger,
+    /// What places its remote centre.
+    pub centre: CentreFrom,
+}
+
+/// What places a remote centre.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CentreFrom {
+    /// The finger model.
+    Model,
+    /// `rcc_mm` of the task file.
+    TaskFile,
+    /// The design's [`RCC_KEY`].
+    Design,
+}
+
+impl FingerSource {
+    /// Its name.
+    pub fn kind(&self) -> FingerModelKind {
+        match self {
+            FingerSource::Paper => FingerModelKind::Paper,
+            FingerSource::Computed(_) => FingerModelKind::Computed,
+        }
+    }
+
+    /// The finger of a design on a task, so stiff at its pad (or, in the paper, at its
+    /// centre). Numbers of the finger that the design sets beside the remote centre and the
+    /// tilting stiffness are the caller's.
+    ///
+    /// # Errors
+    /// If the printed finger cannot be, or cannot be so stiff.
+    pub fn make(&self, at_pad: AtPad, design: &Design, task: &Task) -> Result<Made, FingerError> {
+        let (set, by_file) = (design.get(RCC_KEY), task.finger.rcc);
+        let centre = match (set, by_file) {
+            (Some(_), _) => CentreFrom::Design,
+            (None, Some(_)) => CentreFrom::TaskFile,
+            (None, None) => CentreFrom::Model,
+        };
+        let direction = design.get(DIRECTION_KEY).unwrap_or_default();
+        let finger = match self {
+            FingerSource::Paper => {
+                let finger = Finger::new(at_pad.compliance, at_pad.assembly);
+                let finger = finger.shaped(&task.finger, direction);
+                Finger { rcc: set.map_or(finger.rcc, |mm| mm * MM), ..finger }
+            }
+            FingerSource::Computed(fingers) => {
+                let given = Given {
+                    rcc: set.map(|mm| mm * MM).or(by_file.map(|rcc: Rcc| rcc.at(direction))),
+                    tilting: design.get(TILTING_KEY),
+                };
+                fingers.finger(at_pad, design, task, given)?
+            }
+        };
+        Ok(Made { finger, centre })
+    }
+
+    /// A finger of this kind, for asking whether an engine can simulate such.
+    pub fn any(&self, task: &Task) -> Finger {
+        let finger = Finger::new(1.0, 1.0).shaped(&task.finger, 0.0);
+        match self {
+            FingerSource::Paper => finger,
+            FingerSource::Computed(_) => Finger { coupling: Coupling::new([]), ..finger },
+        }
+    }
+}
+
+impl ComputedFingers {
+    /// FingerSource of a file, with its rib phase.
+    pub fn new(file: FingerFile, touching: Touching) -> Self {
+        ComputedFingers { file, touching, known: Known::default() }
+    }
+
+    /// The stiffness of a design from its ribs, computed once; NaN of the infill is refused.
+    ///
+    /// # Errors
+    /// If the printed finger cannot be.
+    pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, FingerError> {
+        self.known.stiffness(&self.file.with(design)?, &design.printed(None))
+    }
+
+    fn finger(
+        &self,
+        at_pad: AtPad,
+        design: &Design,
+        task: &Task,
+        given: Given,
+    ) -> Result<Finger, FingerError> {
+        if task.finger.coupling.is_some() {
+            return Err(FingerError::Coupled { task: task.name.clone() });
+        }
+        let mut stiffness = self.stiffness(design)?;
+        if design.0.keys().any(|key| is_shape(key)) {
+            // Fingers that nobody has measured: none may be refused because measured over computed
+            // stiffness of others does not suit its centre.
+            let plane = self.touching.of_mut(&mut stiffness);
+            let corrected = plane.corrected(at_pad.compliance, at_pad.assembly);
+            *plane = corrected.unwrap_or(*plane);
+        }
+        let (printed, touching) = (&self.file.with(design)?, self.touching);
+        let shoulder = task.grip.shoulder();
+        Computed { printed, stiffness: &stiffness, touching, shoulder }.finger(at_pad, given)
+    }
+}

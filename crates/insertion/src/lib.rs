@@ -1,0 +1,25 @@
+//! A simulated insertion: a design in, an evaluation out.
+//!
+//! ```text
+//! task, robot, finger, stiffness -> surrogate -> trial -> evaluation
+//! ```
+//!
+//! A [`task`] is a plug, a socket and a strategy; a [`robot`] carries two fingers; the [`surrogate`]
+//! says how stiff a finger of a design is; a [`trial`] is one attempt from one start; an
+//! [`evaluation`] is all that is measured of a design.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+// A panic is a defect; what input can reach is an error with a message.
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod arm;
+pub mod evaluation;
+pub mod finger;
+pub mod outcome;
+pub mod robot;
+pub mod space;
+pub mod stiffness;
+pub mod surrogate;
+pub mod task;
+pub mod trial;

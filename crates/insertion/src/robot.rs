@@ -1,0 +1,178 @@
+//! The robot as the flange feels it: ideal, soft about its servos, or an arm.
+
+use crate::arm::arm;
+use crate::arm::{Arm, ArmError, RawArm, Reduced};
+use input::units::N_PER_MM;
+use input::{Check, InputError, read};
+use nalgebra::Vector3;
+use serde::Deserialize;
+
+/// A checked robot, SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robot {
+    /// Name, as used on the command line.
+    pub name: String,
+    /// One line for lists.
+    pub description: String,
+    /// What holds the flange.
+    pub drive: Drive,
+    /// Plug-socket contact force at which the robot stops moving, N.
+    pub stop_force: f64,
+}
+
+/// What holds a robot's flange.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Drive {
+    /// Nothing gives.
+    Ideal,
+    /// A spring and damper per Cartesian axis at the TCP.
+    Servo(Servo),
+    /// Six joints with servos.
+    Arm(Box<Arm>),
+}
+
+/// A servo-compliant flange, SI units, axes of the task frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Servo {
+    /// N/m along x, y and z.
+    pub stiffness: [f64; 3],
+    /// N m/rad about x, y and z.
+    pub rotational_stiffness: [f64; 3],
+    /// Mass felt at the TCP, kg.
+    pub mass: f64,
+    /// Moment of inertia felt about each axis, kg m2.
+    pub inertia: f64,
+    /// 1 is critical.
+    pub damping_ratio: f64,
+}
+
+/// A robot in place for a task: what its flange feels like there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mounted {
+    /// How the flange follows its command.
+    pub flange: Flange,
+    stop_force: f64,
+}
+
+/// How a flange follows its command.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Flange {
+    /// Exactly.
+    Ideal,
+    /// Through a spring and damper per Cartesian axis at the TCP.
+    Servo(Servo),
+    /// Through an arm's coupled spring, damper and mass at the TCP.
+    Reduced(Box<Reduced>),
+}
+
+impl Robot {
+    /// The robot at the start of a task whose frame is turned by `turn` about the
+    /// base's z, with the TCP tilted by `tilt` about the task's x, rad.
+    pub fn mount(&self, turn: f64, tilt: f64) -> Result<Mounted, ArmError> {
+        let flange = match &self.drive {
+            Drive::Ideal => Flange::Ideal,
+            Drive::Servo(servo) => Flange::Servo(*servo),
+            Drive::Arm(arm) => Flange::Reduced(Box::new(arm.at_start(turn, tilt)?)),
+        };
+        Ok(Mounted { flange, stop_force: self.stop_force })
+    }
+}
+
+/// Time constants after which a servo has all but reached its command.
+const SETTLED: f64 = 5.0;
+
+impl Mounted {
+    /// How much farther an assembly move along a unit vector is commanded, m: by what
+    /// the arm gives under its assembly force. A soft arm that is sent to where the
+    /// part should be hardly pushes it there.
+    pub fn lead(&self, along: &Vector3<f64>) -> f64 {
+        match &self.flange {
+            Flange::Reduced(arm) => arm.assembly_force * along.dot(&(arm.compliance * along)),
+            Flange::Ideal | Flange::Servo(_) => 0.0,
+        }
+    }
+
+    /// How long the robot takes to follow a command, s.
+    pub fn settling(&self) -> f64 {
+        match &self.flange {
+            Flange::Reduced(arm) => SETTLED * arm.time_constant,
+            Flange::Ideal | Flange::Servo(_) => 0.0,
+        }
+    }
+
+    /// Whether the robot stops at this plug-socket force, N, task axes: a protective
+    /// stop, or a joint at its torque limit.
+    pub fn stops(&self, force: &Vector3<f64>) -> bool {
+        let overloaded = match &self.flange {
+            Flange::Reduced(arm) => arm.overloaded(force),
+            Flange::Ideal | Flange::Servo(_) => false,
+        };
+        overloaded || force.norm() > self.stop_force
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+enum RawRobot {
+    Rigid {
+        name: String,
+        description: String,
+        stop_force_n: f64,
+    },
+    Servo {
+        name: String,
+        description: String,
+        stop_force_n: f64,
+        stiffness_n_per_mm: [f64; 3],
+        rotational_stiffness_nm_per_rad: [f64; 3],
+        mass_kg: f64,
+        inertia_kg_m2: f64,
+        damping_ratio: f64,
+    },
+    Arm(Box<RawArm>),
+}
+
+impl Robot {
+    /// Reads and checks a robot; `file` is named in errors.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let raw: RawRobot = read(text, file)?;
+        let check = Check { file };
+        let positive = |key: &str, value: f64| check.positive(key, value);
+        let (name, description, stop_force_n, drive) = match raw {
+            RawRobot::Rigid { name, description, stop_force_n } => {
+                (name, description, stop_force_n, Drive::Ideal)
+            }
+            RawRobot::Servo {
+                name,
+                description,
+                stop_force_n,
+                stiffness_n_per_mm,
+                rotational_stiffness_nm_per_rad,
+                mass_kg,
+                inertia_kg_m2,
+                damping_ratio,
+            } => {
+                for k in stiffness_n_per_mm {
+                    positive("stiffness_n_per_mm", k)?;
+                }
+                for k in rotational_stiffness_nm_per_rad {
+                    positive("rotational_stiffness_nm_per_rad", k)?;
+                }
+                let servo = Servo {
+                    stiffness: stiffness_n_per_mm.map(|k| k * N_PER_MM),
+                    rotational_stiffness: rotational_stiffness_nm_per_rad,
+                    mass: positive("mass_kg", mass_kg)?,
+                    inertia: positive("inertia_kg_m2", inertia_kg_m2)?,
+                    damping_ratio: positive("damping_ratio", damping_ratio)?,
+                };
+                (name, description, stop_force_n, Drive::Servo(servo))
+            }
+            RawRobot::Arm(raw) => {
+                let arm = Drive::Arm(Box::new(arm(check, &raw)?));
+                (raw.name, raw.description, raw.stop_force_n, arm)
+            }
+        };
+        let stop_force = positive("stop_force_n", stop_force_n)?;
+        Ok(Robot { name, description, drive, stop_force })
+    }
+}

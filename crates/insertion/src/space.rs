@@ -1,0 +1,366 @@
+//! Search spaces: named, bounded, stepped parameters, and the designs in them.
+
+use ask_tell::GridPoint;
+use finray::infill;
+use input::{Check, InputError, read, shown};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Key of the infill density, percent.
+pub const DENSITY_KEY: &str = "infill_density_percent";
+/// Key of the infill direction, degrees.
+pub const DIRECTION_KEY: &str = "infill_direction_deg";
+
+/// How the values of a parameter follow one another.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scale {
+    /// By a difference.
+    #[default]
+    Linear,
+    /// By a factor.
+    Log,
+}
+
+impl Scale {
+    fn is_linear(&self) -> bool {
+        *self == Scale::Linear
+    }
+}
+
+/// One parameter of a space; values are `low + k * step`, on a log scale `low * step^k`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parameter {
+    /// What it sets; carries its unit (`infill_density_percent`).
+    pub key: String,
+    /// Smallest value, in the unit of the key.
+    pub low: f64,
+    /// Largest value, in the unit of the key.
+    pub high: f64,
+    /// Smallest difference that can be made (printed, set), same unit; on a log scale the factor
+    /// between neighbours.
+    pub step: f64,
+    /// How the values follow one another.
+    #[serde(default, skip_serializing_if = "Scale::is_linear")]
+    pub scale: Scale,
+    /// Where the bounds come from.
+    pub source: String,
+}
+
+impl Parameter {
+    /// Number of distinct values.
+    pub fn levels(&self) -> u32 {
+        self.steps().round() as u32 + 1
+    }
+
+    /// Steps from the lowest to the highest value.
+    fn steps(&self) -> f64 {
+        match self.scale {
+            Scale::Linear => (self.high - self.low) / self.step,
+            Scale::Log => libm::log(self.high / self.low) / libm::log(self.step),
+        }
+    }
+
+    /// The level whose value is nearest.
+    pub fn nearest(&self, value: f64) -> u32 {
+        let steps = match self.scale {
+            Scale::Linear => (value - self.low) / self.step,
+            Scale::Log => libm::log(value / self.low) / libm::log(self.step),
+        };
+        steps.round().clamp(0.0, f64::from(self.levels() - 1)) as u32
+    }
+
+    /// The value of level `k`, rounded so that it prints as it was written.
+    pub fn value(&self, level: u32) -> f64 {
+        match self.scale {
+            Scale::Linear => {
+                let value = self.low + f64::from(level) * self.step;
+                (value * 1e9).round() / 1e9
+            }
+            Scale::Log => {
+                let share = f64::from(level) / self.steps().round().max(1.0);
+                let value = self.low * libm::pow(self.high / self.low, share);
+                // Four digits.
+                format!("{value:.3e}").parse().unwrap_or(value)
+            }
+        }
+    }
+}
+
+/// A checked search space.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "RawSpace")]
+pub struct Space {
+    name: String,
+    description: String,
+    #[serde(rename = "parameter")]
+    parameters: Vec<Parameter>,
+}
+
+/// A design: values by key, in the units the keys carry.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Design(pub BTreeMap<String, f64>);
+
+impl Design {
+    /// A design of infill density (percent) and direction (degrees).
+    pub fn infill(density_percent: f64, direction_deg: f64) -> Self {
+        Design(BTreeMap::from([
+            (DENSITY_KEY.to_owned(), density_percent),
+            (DIRECTION_KEY.to_owned(), direction_deg),
+        ]))
+    }
+
+    /// The infill that a finger is printed with, its first rib at `phase_mm`, else where the finger
+    /// file has it; NaN of what the design does not name, which no finger has.
+    pub fn printed(&self, phase_mm: Option<f64>) -> infill::Design {
+        let value = |key| self.get(key).unwrap_or(f64::NAN);
+        infill::Design {
+            density_percent: value(DENSITY_KEY),
+            direction_deg: value(DIRECTION_KEY),
+            phase_mm,
+        }
+    }
+
+    /// The value of a key, in the unit of the key.
+    pub fn get(&self, key: &str) -> Option<f64> {
+        self.0.get(key).copied()
+    }
+}
+
+impl Design {
+    /// `infill density 20 %, infill direction 10°`: for readers.
+    pub fn labelled(&self) -> String {
+        let value = |(key, value): (&String, &f64)| {
+            let (name, unit) = label(key);
+            format!("{name} {value}{unit}")
+        };
+        self.0.iter().map(value).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Ends of keys, and the units they stand for.
+const UNITS: [(&str, &str); 9] = [
+    ("_gpa", " GPa"),
+    ("_percent", " %"),
+    ("_deg", "°"),
+    ("_mm_per_s", " mm/s"),
+    ("_n_per_mm", " N/mm"),
+    ("_mm", " mm"),
+    ("_n", " N"),
+    ("_kg", " kg"),
+    ("_s", " s"),
+];
+/// What a path in a task file begins with and a reader does not need.
+const TABLES: [&str; 5] = ["task", "strategy", "phase", "grip", "finger"];
+
+/// The name of a key in words, and its unit: `task.strategy.tilt_deg` is `tilt`, in `°`.
+pub fn label(key: &str) -> (String, &'static str) {
+    let mut unit = "";
+    let mut words = Vec::new();
+    for part in key.split('.').filter(|part| !TABLES.contains(part)) {
+        let found = UNITS.iter().find_map(|(end, unit)| Some((part.strip_suffix(end)?, *unit)));
+        let (word, of) = found.unwrap_or((part, ""));
+        unit = if of.is_empty() { unit } else { of };
+        words.push(word.replace('_', " "));
+    }
+    (words.join(" "), unit)
+}
+
+impl std::fmt::Display for Design {
+    /// `infill_density_percent = 20, infill_direction_deg = 10`
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let values: Vec<String> = self.0.iter().map(|(k, v)| format!("{k} = {v}")).collect();
+        f.write_str(&values.join(", "))
+    }
+}
+
+/// Most parameters of a space.
+const MOST_PARAMETERS: usize = 100;
+/// Smallest step: a thousand times the digit to which values are rounded.
+const FINEST_STEP: f64 = 1e-6;
+
+/// Between what a parameter's values must lie, in the unit of its key: as in a table of
+/// measured stiffness, or wherever a number may lie.
+fn bounds(key: &str) -> [f64; 2] {
+    match key {
+        // A finger of no density is no finger.
+        DENSITY_KEY => [0.1, 100.0],
+        DIRECTION_KEY => [0.0, 90.0],
+        _ => [-1e6, 1e6],
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSpace {
+    name: String,
+    description: String,
+    parameter: Vec<Parameter>,
+}
+
+/// A space inside another file, which is named by whoever reads that.
+impl TryFrom<RawSpace> for Space {
+    type Error = InputError;
+    fn try_from(raw: RawSpace) -> Result<Self, InputError> {
+        Space::check(raw, "[space]")
+    }
+}
+
+impl Space {
+    /// Reads and checks a space; `file` is named in errors.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let raw: RawSpace = read(text, file)?;
+        Self::check(raw, file)
+    }
+
+    fn check(raw: RawSpace, file: &str) -> Result<Self, InputError> {
+        let fail = |key: &str, problem: &str| Check { file }.fail(key, problem);
+        if !(1..=MOST_PARAMETERS).contains(&raw.parameter.len()) {
+            let problem = format!("a space needs one [[parameter]] to {MOST_PARAMETERS} of them");
+            return fail("parameter", &problem);
+        }
+        for (i, p) in raw.parameter.iter().enumerate() {
+            if raw.parameter[..i].iter().any(|other| other.key == p.key) {
+                return fail(&p.key, "is given twice; each key may stand once");
+            }
+            if ![p.low, p.high, p.step].iter().all(|v| v.is_finite()) {
+                return fail(&p.key, "low, high and step must be finite numbers");
+            }
+            if p.low > p.high {
+                return fail(&p.key, "low must not be above high");
+            }
+            match p.scale {
+                Scale::Linear if p.step <= 0.0 => return fail(&p.key, "step must be above 0"),
+                Scale::Log if p.step <= 1.0 || p.low <= 0.0 => {
+                    return fail(&p.key, "on a log scale step must be above 1 and low above 0");
+                }
+                _ => {}
+            }
+            let [least, most] = bounds(&p.key);
+            if p.low < least || p.high > most {
+                let [least, most] = [least, most].map(shown);
+                return fail(&p.key, &format!("must lie in {least} .. {most}"));
+            }
+            if p.step < FINEST_STEP {
+                return fail(&p.key, "step must be 1e-6 or more");
+            }
+            if p.scale.is_linear() && p.high > p.low && p.step > (p.high - p.low) * (1.0 + 1e-9) {
+                return fail(&p.key, "step must not be larger than high - low");
+            }
+            let levels = p.steps();
+            if (levels - levels.round()).abs() > 1e-6 || levels > 1e6 {
+                return fail(&p.key, "high - low must be a whole number of steps, at most 1e6");
+            }
+        }
+        Ok(Space { name: raw.name, description: raw.description, parameters: raw.parameter })
+    }
+
+    /// Name, as used in study folders.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// One line for lists.
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    /// The parameters in file order: the order of the unit cube's axes.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// Levels per axis: what an optimizer may know of the space.
+    pub fn levels(&self) -> Vec<u32> {
+        self.parameters.iter().map(Parameter::levels).collect()
+    }
+
+    /// The design at a grid point (one level per parameter, each below its count).
+    pub fn design(&self, point: &GridPoint) -> Design {
+        let values = self.parameters.iter().zip(&point.0);
+        Design(values.map(|(p, &level)| (p.key.clone(), p.value(level))).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = r#"
+name = "s"
+description = "d"
+[[parameter]]
+key = "infill_density_percent"
+low = 10.0
+high = 30.0
+step = 1.0
+source = "paper"
+"#;
+
+    #[test]
+    fn the_last_level_is_the_upper_bound() {
+        let space = Space::parse(GOOD, "s.toml").unwrap();
+        assert_eq!(space.levels(), vec![21]);
+        assert_eq!(space.design(&GridPoint(vec![20])).get(DENSITY_KEY), Some(30.0));
+    }
+
+    #[test]
+    fn a_log_scale_has_equal_factors_and_holds_its_ends() {
+        let text = GOOD.replace("low = 10.0", "low = 0.5").replace("high = 30.0", "high = 4.0");
+        let text = text.replace("step = 1.0", "step = 1.189207115\nscale = 'log'");
+        let space = Space::parse(&text, "s.toml").unwrap();
+        let parameter = &space.parameters()[0];
+        assert_eq!(parameter.levels(), 13);
+        let values = [0, 1, 4, 8, 12].map(|level| parameter.value(level));
+        assert_eq!(values, [0.5, 0.5946, 1.0, 2.0, 4.0]);
+        assert_eq!([0.1, 1.03, 2.0, 9.0].map(|value| parameter.nearest(value)), [0, 4, 8, 12]);
+        let error = Space::parse(&text.replace("low = 0.5", "low = 0.0"), "s.toml").unwrap_err();
+        assert!(error.to_string().contains("log scale"), "{error}");
+        let again: Space = toml::from_str(&toml::to_string(&space).unwrap()).unwrap();
+        assert_eq!(again, space);
+    }
+
+    #[test]
+    fn the_nearest_level_of_a_linear_scale() {
+        let space = Space::parse(GOOD, "s.toml").unwrap();
+        let parameter = &space.parameters()[0];
+        assert_eq!([0.0, 12.4, 30.0].map(|value| parameter.nearest(value)), [0, 2, 20]);
+    }
+
+    #[test]
+    fn keys_in_words() {
+        for (key, words, unit) in [
+            (DENSITY_KEY, "infill density", " %"),
+            ("task.strategy.tilt_deg", "tilt", "°"),
+            ("task.strategy.phase.side.move_mm.y", "side move y", " mm"),
+            ("task.strategy.phase.assembly.speed_mm_per_s", "assembly speed", " mm/s"),
+            ("task.grip.force_n", "force", " N"),
+            ("task.opening.0", "opening 0", ""),
+        ] {
+            assert_eq!(label(key), (words.to_owned(), unit));
+        }
+        let label = Design::infill(20.0, 7.5).labelled();
+        assert_eq!(label, "infill density 20 %, infill direction 7.5°");
+    }
+
+    #[test]
+    fn each_bad_field_is_named() {
+        for (from, to, word) in [
+            ("low = 10.0", "low = nan", "finite"),
+            ("low = 10.0", "low = 40.0", "above high"),
+            ("step = 1.0", "step = -1.0", "above 0"),
+            ("step = 1.0", "step = 3.0", "whole number"),
+            ("step = 1.0", "step = 1e9", "larger than high - low"),
+            ("step = 1.0", "step = 1e-7", "1e-6 or more"),
+            ("low = 10.0", "low = 0.0", "must lie in 0.1 .. 100"),
+            ("low = 10.0", "low = -1000.0", "must lie in 0.1 .. 100"),
+            ("high = 30.0", "high = 900.0", "must lie in 0.1 .. 100"),
+            ("step = 1.0", "stepp = 1.0", "stepp"),
+        ] {
+            let error = Space::parse(&GOOD.replace(from, to), "s.toml").unwrap_err().to_string();
+            assert!(error.contains(word) && error.contains("s.toml"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,289 @@
+//! Measured fingers: the CSV file and its checks.
+
+use input::units::N_PER_MM;
+
+/// The measured designs shipped with the program (`data/measured_stiffness.csv`).
+pub const SHIPPED_CSV: &str = include_str!("../../../data/measured_stiffness.csv");
+
+/// Name of the shipped file, for messages.
+pub const SHIPPED_FILE: &str = "data/measured_stiffness.csv";
+
+/// A direction in which a finger yields.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Axis {
+    /// z, the direction of assembly: loads the ribs along their length.
+    Assembly,
+    /// y, the direction in which the jaws close: bends the ribs.
+    Compliance,
+}
+
+impl Axis {
+    /// Both axes, assembly first, as in the measured file.
+    pub const ALL: [Axis; 2] = [Axis::Assembly, Axis::Compliance];
+
+    /// A short name for tables and plots.
+    pub fn label(self) -> &'static str {
+        match self {
+            Axis::Assembly => "assembly (z)",
+            Axis::Compliance => "compliance (y)",
+        }
+    }
+}
+
+/// Infill of a finger: density in percent, direction in degrees.
+pub type Infill = [f64; 2];
+
+/// The header a measurement file must have, exactly.
+pub const HEADER: [&str; 5] = [
+    "design",
+    "infill_density_percent",
+    "infill_direction_deg",
+    "stiffness_assembly_n_per_mm",
+    "stiffness_compliance_n_per_mm",
+];
+
+/// Most designs of a table: the time to leave each out in turn and fit all models anew grows
+/// with the fourth power of their number.
+pub const MOST: usize = 100;
+
+/// Stiffness of one printed finger, as measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measurement {
+    /// Number of the design.
+    pub design: u32,
+    /// Infill density, percent.
+    pub density_percent: f64,
+    /// Infill direction, degrees from the assembly direction.
+    pub direction_deg: f64,
+    /// Stiffness in the assembly direction (z), N/m.
+    pub assembly: f64,
+    /// Stiffness in the compliance direction (y), N/m.
+    pub compliance: f64,
+}
+
+impl Measurement {
+    /// Stiffness along one axis, N/m.
+    pub fn stiffness(&self, axis: Axis) -> f64 {
+        match axis {
+            Axis::Assembly => self.assembly,
+            Axis::Compliance => self.compliance,
+        }
+    }
+
+    pub(crate) fn infill(&self) -> Infill {
+        [self.density_percent, self.direction_deg]
+    }
+
+    /// The first column with a value that cannot be used, and what would be right.
+    fn problem(&self) -> Option<(&'static str, &'static str)> {
+        let within = |value: f64, low: f64, high: f64| value >= low && value <= high;
+        if !(within(self.density_percent, 0.0, 100.0) && self.density_percent > 0.0) {
+            return Some((HEADER[1], "must be a number above 0 and at most 100 (percent)"));
+        }
+        if !within(self.direction_deg, 0.0, 90.0) {
+            return Some((HEADER[2], "must be a number from 0 to 90 (degrees)"));
+        }
+        for (column, stiffness) in [(HEADER[3], self.assembly), (HEADER[4], self.compliance)] {
+            if !(stiffness > 0.0 && stiffness.is_finite()) {
+                return Some((column, "must be a finite number above 0 (N/mm)"));
+            }
+        }
+        None
+    }
+}
+
+/// Why measurements cannot be used.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SurrogateError {
+    /// Not a CSV table with five columns.
+    #[error("{file}: {message}")]
+    Syntax {
+        /// The file as given.
+        file: String,
+        /// What the reader found, with the line.
+        message: String,
+    },
+    /// The first line is not [`HEADER`].
+    #[error("{file}: line 1: the header must be exactly `{}`", HEADER.join(","))]
+    Header {
+        /// The file as given.
+        file: String,
+    },
+    /// A field that cannot be used.
+    #[error("{file}: line {line}: {column}: {problem}")]
+    Field {
+        /// The file as given.
+        file: String,
+        /// Line in the file, from 1.
+        line: u64,
+        /// Column, as in the header.
+        column: &'static str,
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+    /// A column in another unit.
+    #[error(
+        "{file}: {column}: the middle value is {own} N/mm, that of the measured printed fingers is {usual}; \
+         {question}"
+    )]
+    Unit {
+        /// The file as given.
+        file: String,
+        /// Column, as in the header.
+        column: &'static str,
+        /// Its middle value, N/mm.
+        own: f64,
+        /// The same of the shipped measurements, N/mm.
+        usual: f64,
+        /// What it may be.
+        question: &'static str,
+    },
+    /// A measurement, not read from a file, that cannot be used.
+    #[error("design {design}: {column}: {problem}")]
+    Value {
+        /// Number of the design.
+        design: u32,
+        /// Column, as in the header of a file.
+        column: &'static str,
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+    /// No design at all.
+    #[error("no design is measured: give at least one")]
+    None,
+    /// So many designs that leaving each out in turn would take minutes.
+    #[error(
+        "{found} measured designs are too many: {MOST} at most; give the average of fingers that \
+         are nearly alike"
+    )]
+    TooMany {
+        /// Designs given.
+        found: usize,
+    },
+    /// No model could be fitted.
+    #[error(
+        "no stiffness model in the {axis} direction can be fitted: \
+         the designs must differ in density and in direction"
+    )]
+    Unfittable {
+        /// Axis, as [`Axis::label`].
+        axis: &'static str,
+    },
+}
+
+/// Reads and checks a measurement file; `file` is named in errors.
+pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
+    unit(rows(text, file)?, file)
+}
+
+/// Reads a measurement file and checks each value by itself.
+fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
+    // The reader counts a line of a "\r\n" file too few.
+    let text = text.replace("\r\n", "\n");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let syntax = |error: csv::Error| SurrogateError::Syntax {
+        file: file.to_owned(),
+        message: error.to_string(),
+    };
+    if reader.headers().map_err(syntax)?.iter().ne(HEADER) {
+        return Err(SurrogateError::Header { file: file.to_owned() });
+    }
+    let mut found: Vec<Measurement> = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(syntax)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let fail = |(column, problem): (&'static str, String)| SurrogateError::Field {
+            file: file.to_owned(),
+            line,
+            column,
+            problem,
+        };
+        let measurement = row(&record).map_err(fail)?;
+        check(&measurement, &found).map_err(fail)?;
+        found.push(measurement);
+    }
+    enough(&found)?;
+    Ok(found)
+}
+
+/// Stiffnesses that are so many times those of the shipped fingers are in another unit.
+const OTHER_UNIT: f64 = 100.0;
+
+/// Asks about columns that look as if they were in another unit: nobody prints a finger a hundred
+/// times as stiff or as soft as the measured ones.
+fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
+    let shipped = rows(SHIPPED_CSV, SHIPPED_FILE)?;
+    for (axis, column) in [(Axis::Assembly, HEADER[3]), (Axis::Compliance, HEADER[4])] {
+        let [own, usual] = [&found, &shipped].map(|all| median(all, axis) / N_PER_MM);
+        let question = match own / usual {
+            ratio if ratio > OTHER_UNIT => "are these N/m? divide them by 1000",
+            ratio if ratio < 1.0 / OTHER_UNIT => "are these N/um or kN/mm? multiply them by 1000",
+            _ => continue,
+        };
+        return Err(SurrogateError::Unit { file: file.to_owned(), column, own, usual, question });
+    }
+    Ok(found)
+}
+
+fn median(all: &[Measurement], axis: Axis) -> f64 {
+    let mut values: Vec<f64> = all.iter().map(|one| one.stiffness(axis)).collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Checks measurements that were not read from a file.
+pub(crate) fn check_all(measurements: &[Measurement]) -> Result<(), SurrogateError> {
+    for (i, measurement) in measurements.iter().enumerate() {
+        check(measurement, &measurements[..i]).map_err(|(column, problem)| {
+            SurrogateError::Value { design: measurement.design, column, problem }
+        })?;
+    }
+    enough(measurements)
+}
+
+fn enough(measurements: &[Measurement]) -> Result<(), SurrogateError> {
+    match measurements.len() {
+        0 => Err(SurrogateError::None),
+        found if found > MOST => Err(SurrogateError::TooMany { found }),
+        _ => Ok(()),
+    }
+}
+
+fn row(record: &csv::StringRecord) -> Result<Measurement, (&'static str, String)> {
+    let text = |i: usize| record.get(i).unwrap_or("").trim();
+    let number = |i: usize| {
+        text(i).parse::<f64>().map_err(|_| (HEADER[i], format!("`{}` is not a number", text(i))))
+    };
+    let design = text(0)
+        .parse()
+        .map_err(|_| (HEADER[0], format!("`{}` is not a whole number from 0", text(0))))?;
+    Ok(Measurement {
+        design,
+        density_percent: number(1)?,
+        direction_deg: number(2)?,
+        assembly: number(3)? * N_PER_MM,
+        compliance: number(4)? * N_PER_MM,
+    })
+}
+
+/// Checks one measurement by itself and against those before it.
+fn check(new: &Measurement, before: &[Measurement]) -> Result<(), (&'static str, String)> {
+    if let Some((column, problem)) = new.problem() {
+        return Err((column, problem.to_owned()));
+    }
+    for old in before {
+        if old.design == new.design {
+            let problem = format!("design {} is given twice; number each once", new.design);
+            return Err((HEADER[0], problem));
+        }
+        // A replicate would leak into the leave-one-out error of its twin.
+        if old.infill() == new.infill() {
+            let problem = format!(
+                "same density and direction as design {}; give the average of repeated measurements",
+                old.design
+            );
+            return Err((HEADER[1], problem));
+        }
+    }
+    Ok(())
+}

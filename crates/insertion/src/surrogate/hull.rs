@@ -1,0 +1,112 @@
+//! The convex hull of the measured designs, and the distance to it.
+
+use crate::stiffness::Infill;
+
+/// Convex hull in coordinates scaled by the measured spans.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Hull {
+    origin: Infill,
+    span: Infill,
+    /// Corners, counter-clockwise; two for a segment, one for a point.
+    corners: Vec<Infill>,
+}
+
+/// Below this (in units of the spans) a point counts as on the hull.
+const TOLERANCE: f64 = 1e-9;
+
+impl Hull {
+    /// The hull of at least one point.
+    pub fn new(points: &[Infill]) -> Self {
+        let bound = |axis: usize, pick: fn(f64, f64) -> f64| {
+            points.iter().map(|p| p[axis]).reduce(pick).unwrap_or(0.0)
+        };
+        let origin = [bound(0, f64::min), bound(1, f64::min)];
+        let width = |axis: usize| match bound(axis, f64::max) - origin[axis] {
+            0.0 => 1.0,
+            span => span,
+        };
+        let span = [width(0), width(1)];
+        let mut hull = Hull { origin, span, corners: Vec::new() };
+        let mut scaled: Vec<Infill> = points.iter().map(|&p| hull.scale(p)).collect();
+        scaled.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        scaled.dedup();
+        hull.corners = chain(&scaled);
+        hull
+    }
+
+    /// Distance in units of the spans; 0 inside and on the edge.
+    pub fn distance(&self, point: Infill) -> f64 {
+        let p = self.scale(point);
+        let edges =
+            || self.corners.iter().zip(self.corners.iter().cycle().skip(1)).map(|(a, b)| (*a, *b));
+        let inside = self.corners.len() > 2 && edges().all(|(a, b)| cross(a, b, p) >= 0.0);
+        let distance = edges().map(|(a, b)| to_segment(a, b, p)).fold(f64::INFINITY, f64::min);
+        if inside || distance < TOLERANCE { 0.0 } else { distance }
+    }
+
+    fn scale(&self, p: Infill) -> Infill {
+        [(p[0] - self.origin[0]) / self.span[0], (p[1] - self.origin[1]) / self.span[1]]
+    }
+}
+
+/// Andrew's monotone chain over sorted, distinct points.
+fn chain(sorted: &[Infill]) -> Vec<Infill> {
+    if sorted.len() < 3 {
+        return sorted.to_vec();
+    }
+    let half = |points: &mut dyn Iterator<Item = &Infill>| {
+        let mut corners: Vec<Infill> = Vec::new();
+        for &p in points {
+            while let [.., a, b] = corners[..]
+                && cross(a, b, p) <= 0.0
+            {
+                corners.pop();
+            }
+            corners.push(p);
+        }
+        corners.pop();
+        corners
+    };
+    let mut corners = half(&mut sorted.iter());
+    corners.extend(half(&mut sorted.iter().rev()));
+    corners
+}
+
+/// Twice the signed area of the triangle; positive if `p` is left of `a -> b`.
+fn cross(a: Infill, b: Infill, p: Infill) -> f64 {
+    (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+}
+
+fn to_segment(a: Infill, b: Infill, p: Infill) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let length2 = along[0] * along[0] + along[1] * along[1];
+    let t = if length2 == 0.0 {
+        0.0
+    } else {
+        (((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / length2).clamp(0.0, 1.0)
+    };
+    (p[0] - a[0] - t * along[0]).hypot(p[1] - a[1] - t * along[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_in_units_of_the_spans() {
+        let hull = Hull::new(&[[10.0, 0.0], [30.0, 0.0], [30.0, 40.0], [10.0, 40.0], [20.0, 20.0]]);
+        assert_eq!(hull.corners.len(), 4);
+        assert_eq!(hull.distance([20.0, 10.0]), 0.0);
+        assert_eq!(hull.distance([10.0, 17.0]), 0.0);
+        assert_eq!(hull.distance([20.0, 60.0]), 0.5);
+        assert!((hull.distance([50.0, 80.0]) - 2f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn designs_on_a_line_or_at_a_point_still_have_a_distance() {
+        let line = Hull::new(&[[10.0, 0.0], [20.0, 0.0], [30.0, 0.0]]);
+        assert_eq!(line.distance([15.0, 0.0]), 0.0);
+        assert_eq!(line.distance([20.0, 2.0]), 2.0);
+        assert_eq!(Hull::new(&[[10.0, 0.0]]).distance([10.0, 3.0]), 3.0);
+    }
+}

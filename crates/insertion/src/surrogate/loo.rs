@@ -1,0 +1,100 @@
+//! Leave-one-out errors: how well a model predicts a finger it has not seen.
+
+use super::kind::fit_axis;
+use super::{Computed, Estimate, Fitted, Measured, ModelKind, infills, measured};
+use crate::stiffness::{Axis, Measurement};
+use finray::FingerError;
+use input::units::N_PER_MM;
+use rayon::prelude::*;
+
+/// Leave-one-out error of one model on one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loo {
+    /// The axis.
+    pub axis: Axis,
+    /// The model.
+    pub model: ModelKind,
+    /// Root mean square error, N/mm; NaN if the model could not be fitted.
+    pub rmse_n_per_mm: f64,
+    /// Mean absolute error relative to the measured stiffness, percent.
+    pub mean_absolute_percent: f64,
+    /// Root mean square of error / predicted standard deviation: 1 if the
+    /// uncertainty is right, above 1 if the model is too sure of itself.
+    pub standardised_rms: f64,
+    /// Prediction for each design when it is left out, N/m, in input order.
+    pub left_out: Vec<f64>,
+    /// Whether the program uses this model on this axis.
+    pub chosen: bool,
+}
+
+/// What the models of one axis are fitted to.
+pub(super) struct Data {
+    axis: Axis,
+    /// Stiffness, N/m; of computed kinds measured / computed.
+    measured: Measured,
+    /// Unit of each design's value, N/m.
+    units: Vec<f64>,
+}
+
+impl Data {
+    /// The measured stiffness itself.
+    pub fn measured(axis: Axis, measurements: &[Measurement]) -> Self {
+        Data::by(axis, measurements, vec![1.0; measurements.len()])
+    }
+
+    /// Ratios of measured and computed stiffness.
+    pub fn ratios(
+        axis: Axis,
+        measurements: &[Measurement],
+        computed: &Computed,
+    ) -> Result<Self, FingerError> {
+        let unit = |m: &Measurement| computed.stiffness(axis, m.infill());
+        Ok(Data::by(axis, measurements, measurements.iter().map(unit).collect::<Result<_, _>>()?))
+    }
+
+    fn by(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
+        let infills: Vec<_> = measurements.iter().map(Measurement::infill).collect();
+        let values = measurements.iter().zip(&units).map(|(m, unit)| m.stiffness(axis) / unit);
+        Data { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }
+    }
+
+    /// A model of all designs.
+    pub fn fit(&self, kind: ModelKind) -> Option<Box<dyn Fitted>> {
+        fit_axis(self.axis, kind, &self.measured)
+    }
+
+    /// Fits `kind` without each design in turn and predicts that design.
+    pub fn leave_one_out(&self, kind: ModelKind) -> Loo {
+        let count = self.measured.targets().len();
+        // Without one of one there is nothing to fit to.
+        let folds = if count > 1 { self.measured.fold(count) } else { Vec::new() };
+        // Collected by index: the thread count changes nothing.
+        let mut predicted: Vec<Estimate> = folds
+            .into_par_iter()
+            .flat_map_iter(|(others, one)| self.predict(kind, &others, &one))
+            .collect();
+        predicted.resize(count, NOTHING);
+        let mean = |term: &dyn Fn(f64, f64, f64) -> f64| {
+            let terms = predicted.iter().zip(self.measured.targets()).zip(&self.units);
+            let terms = terms.map(|((e, &k), unit)| term(e.mean * unit, e.sd * unit, k * unit));
+            terms.sum::<f64>() / count as f64
+        };
+        Loo {
+            axis: self.axis,
+            model: kind,
+            rmse_n_per_mm: mean(&|m, _, k| (m - k).powi(2)).sqrt() / N_PER_MM,
+            mean_absolute_percent: 100.0 * mean(&|m, _, k| (m / k - 1.0).abs()),
+            standardised_rms: mean(&|m, sd, k| ((m - k) / sd).powi(2)).sqrt(),
+            left_out: predicted.iter().zip(&self.units).map(|(e, unit)| e.mean * unit).collect(),
+            chosen: false,
+        }
+    }
+
+    fn predict(&self, kind: ModelKind, others: &Measured, these: &Measured) -> Vec<Estimate> {
+        let fitted = fit_axis(self.axis, kind, others);
+        let predict = |infill| fitted.as_ref().map_or(NOTHING, |fitted| fitted.predict(infill));
+        infills(these).map(predict).collect()
+    }
+}
+
+const NOTHING: Estimate = Estimate { mean: f64::NAN, sd: f64::NAN };

@@ -1,0 +1,168 @@
+//! Ridge polynomials: the baseline that knows no physics.
+//!
+//! Terms and target are standardised, then fitted by `linfa-elasticnet` with an
+//! L1 share of 0. The penalty is the one with the smallest leave-one-out error
+//! among the designs given, so an outer leave-one-out stays honest.
+//!
+//! The terms are turned into their principal axes first. A rotation leaves the ridge penalty
+//! as it is, and along axes that are orthogonal one sweep of coordinate descent is exact.
+
+use super::link::Link;
+use super::{Estimate, Fitted, Measured, infills};
+use crate::stiffness::Infill;
+use linfa::prelude::{Dataset, Fit};
+use linfa_elasticnet::ElasticNet;
+use nalgebra::{DMatrix, DVector};
+use ndarray::{Array1, Array2};
+
+/// Penalties tried, in units of the standardised terms.
+pub(super) const PENALTIES: [f64; 4] = [1e-6, 1e-4, 1e-3, 1e-2];
+
+/// A fitted polynomial in (density, direction) on the scale of its link.
+#[derive(Debug)]
+pub(super) struct Ridge {
+    link: Link,
+    degree: u8,
+    terms: Vec<Standard>,
+    target: Standard,
+    coefficients: Vec<f64>,
+    /// Residual standard deviation, in units of the standardised target.
+    residual_sd: f64,
+    /// Inverse of the Gram matrix of the terms, with the constant first.
+    spread: DMatrix<f64>,
+    penalty: f64,
+}
+
+/// Shift and scale that bring values to mean 0 and standard deviation 1.
+#[derive(Debug, Clone, Copy)]
+struct Standard {
+    mean: f64,
+    sd: f64,
+}
+
+impl Standard {
+    fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
+        Standard { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }
+    }
+
+    fn apply(self, value: f64) -> f64 {
+        (value - self.mean) / self.sd
+    }
+}
+
+/// The terms of a polynomial without its constant.
+fn terms(infill: Infill, degree: u8) -> Vec<f64> {
+    // About the middle of the printable range, so that terms are less alike.
+    let (u, v) = (infill[0] / 20.0 - 1.0, infill[1] / 20.0 - 1.0);
+    match degree {
+        1 => vec![u, v],
+        _ => vec![u, v, u * v, u * u, v * v],
+    }
+}
+
+/// Fits with the best of `penalties`; `None` if nothing can be fitted.
+pub(super) fn fit(measured: &Measured, degree: u8, link: Link, penalties: &[f64]) -> Option<Ridge> {
+    if let [penalty] = penalties {
+        return fit_one(measured, degree, link, *penalty);
+    }
+    let folds = measured.fold(measured.targets().len());
+    let errors = |&penalty: &f64| {
+        let error = |(others, one): &(Measured, Measured)| {
+            let predicted = fit_one(others, degree, link, penalty)?.predict(infills(one).next()?);
+            Some((predicted.mean / one.targets()[0] - 1.0).abs())
+        };
+        Some((penalty, folds.iter().map(error).sum::<Option<f64>>()?))
+    };
+    let best = penalties.iter().filter_map(errors).min_by(|a, b| a.1.total_cmp(&b.1));
+    fit_one(measured, degree, link, best?.0)
+}
+
+fn fit_one(measured: &Measured, degree: u8, link: Link, penalty: f64) -> Option<Ridge> {
+    let rows: Vec<Vec<f64>> = infills(measured).map(|infill| terms(infill, degree)).collect();
+    let (n, count) = (rows.len(), rows.first()?.len());
+    let scales: Vec<Standard> = (0..count)
+        .map(|j| Standard::of(&rows.iter().map(|row| row[j]).collect::<Vec<_>>()))
+        .collect();
+    let raw: Vec<f64> = measured.targets().iter().map(|&k| link.forward(k)).collect();
+    let target = Standard::of(&raw);
+    let x = DMatrix::from_fn(n, count, |i, j| scales[j].apply(rows[i][j]));
+    let y: Array1<f64> = raw.iter().map(|&g| target.apply(g)).collect();
+    let design = x.clone().insert_column(0, 1.0);
+    // None where the designs do not tell the terms apart.
+    let spread = design.tr_mul(&design).cholesky()?.inverse();
+    let axes = x.tr_mul(&x).symmetric_eigen().eigenvectors;
+    let turned = &x * &axes;
+    let turned = Array2::from_shape_fn((n, count), |place| turned[place]);
+    let net = ElasticNet::params()
+        .l1_ratio(0.0)
+        .penalty(penalty)
+        .with_intercept(false)
+        .max_iterations(1)
+        .fit(&Dataset::new(turned.clone(), y.clone()))
+        .ok()?;
+    let residual = &y - &turned.dot(net.hyperplane());
+    let freedom = n.saturating_sub(count + 1).max(1) as f64;
+    let residual_sd = (residual.dot(&residual) / freedom).sqrt();
+    let along_axes = DVector::from_iterator(count, net.hyperplane().iter().copied());
+    let coefficients = (axes * along_axes).data.into();
+    Some(Ridge { link, degree, terms: scales, target, coefficients, residual_sd, spread, penalty })
+}
+
+impl Fitted for Ridge {
+    fn predict(&self, infill: Infill) -> Estimate {
+        let scaled: Vec<f64> = terms(infill, self.degree)
+            .iter()
+            .zip(&self.terms)
+            .map(|(&term, standard)| standard.apply(term))
+            .collect();
+        let g: f64 = scaled.iter().zip(&self.coefficients).map(|(x, b)| x * b).sum();
+        let row = DVector::from_iterator(
+            scaled.len() + 1,
+            std::iter::once(1.0).chain(scaled.iter().copied()),
+        );
+        let leverage = row.dot(&(&self.spread * &row));
+        let (mean, slope) = self.link.backward(self.target.mean + self.target.sd * g);
+        let link_sd = self.target.sd * self.residual_sd * (1.0 + leverage).sqrt();
+        Estimate { mean, sd: (slope * link_sd).hypot(super::gp::READING_SD * mean) }
+    }
+
+    fn describe(&self) -> String {
+        format!("polynomial of degree {}, ridge penalty {}", self.degree, self.penalty)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stiffness::{SHIPPED_CSV, SHIPPED_FILE, parse};
+
+    /// At the smallest penalised square error its gradient is 0: every term's product with the
+    /// residuals is the penalty's pull on its coefficient.
+    #[test]
+    fn one_sweep_along_the_principal_axes_is_the_minimum() {
+        let shipped = parse(SHIPPED_CSV, SHIPPED_FILE).unwrap();
+        let infills: Vec<Infill> = shipped.iter().map(|m| m.infill()).collect();
+        let stiffness: Vec<f64> = shipped.iter().map(|m| m.compliance).collect();
+        let n = stiffness.len() as f64;
+        let data = crate::surrogate::measured(&infills, &stiffness);
+        for penalty in PENALTIES {
+            let fitted = fit_one(&data, 2, Link::identity(), penalty).unwrap();
+            let row = |&infill: &Infill| -> Vec<f64> {
+                let terms = terms(infill, 2);
+                terms.iter().zip(&fitted.terms).map(|(&t, scale)| scale.apply(t)).collect()
+            };
+            let rows: Vec<Vec<f64>> = infills.iter().map(row).collect();
+            for (j, coefficient) in fitted.coefficients.iter().enumerate() {
+                let pull = rows.iter().zip(&stiffness).map(|(row, &k)| {
+                    let g: f64 = row.iter().zip(&fitted.coefficients).map(|(x, b)| x * b).sum();
+                    row[j] * (fitted.target.apply(k) - g)
+                });
+                let gradient = pull.sum::<f64>() - n * penalty * coefficient;
+                assert!(gradient.abs() < 1e-12 * n, "{penalty}, term {j}: {gradient}");
+            }
+        }
+    }
+}

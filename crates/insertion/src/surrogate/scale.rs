@@ -1,0 +1,48 @@
+//! The computed stiffness times one number: all that one measured finger can say.
+
+use super::{Estimate, Fitted, Measured};
+use crate::stiffness::{Axis, Infill};
+
+/// How the logarithms of measured / computed stiffness scatter over the eleven shipped designs:
+/// what is expected of another material before its own scatter is known.
+pub(super) const SCATTER: [(Axis, f64); 2] = [(Axis::Compliance, 0.17), (Axis::Assembly, 0.30)];
+/// Degrees of freedom of that scatter.
+pub(super) const FREEDOM: f64 = 10.0;
+
+/// Measured / computed, one for all designs.
+#[derive(Debug)]
+pub(super) struct Scale {
+    /// Mean of the logarithms.
+    log: f64,
+    /// Of the logarithm of one finger.
+    sd: f64,
+    /// Fingers.
+    count: f64,
+}
+
+/// Fits ratios of measured and computed stiffness; `None` without any.
+pub(super) fn fit(axis: Axis, ratios: &Measured) -> Option<Scale> {
+    let logs = ratios.targets().mapv(f64::ln);
+    let log = logs.mean()?;
+    let (_, scatter) = SCATTER.into_iter().find(|(of, _)| *of == axis)?;
+    let count = logs.len() as f64;
+    let squares = logs.mapv(|each| (each - log).powi(2)).sum() + FREEDOM * scatter * scatter;
+    Some(Scale { log, sd: (squares / (FREEDOM + count - 1.0)).sqrt(), count })
+}
+
+impl Scale {
+    fn error_percent(&self) -> f64 {
+        100.0 * self.sd / self.count.sqrt()
+    }
+}
+
+impl Fitted for Scale {
+    fn predict(&self, _: Infill) -> Estimate {
+        let mean = self.log.exp();
+        Estimate { mean, sd: mean * self.sd * (1.0 + 1.0 / self.count).sqrt() }
+    }
+
+    fn describe(&self) -> String {
+        format!("computed stiffness x {:.3}, ± {:.0} %", self.log.exp(), self.error_percent())
+    }
+}

@@ -1,0 +1,231 @@
+use super::*;
+use crate::stiffness::{Measurement, SHIPPED_CSV, SHIPPED_FILE, SurrogateError, parse};
+use finray::printed::PrintedFinger;
+use input::shipped::FINGERS;
+use input::units::N_PER_MM;
+use std::sync::OnceLock;
+
+fn finray9() -> PrintedFinger {
+    let shipped = FINGERS.first().unwrap();
+    PrintedFinger::parse(shipped.text, shipped.file).unwrap()
+}
+
+/// The computed fingers, each computed once for all tests.
+fn computed() -> &'static Computed {
+    static COMPUTED: OnceLock<Computed> = OnceLock::new();
+    COMPUTED.get_or_init(|| Computed::new(&finray9()))
+}
+
+fn shipped() -> Vec<Measurement> {
+    parse(SHIPPED_CSV, SHIPPED_FILE).unwrap()
+}
+
+fn model() -> Model {
+    fit(&shipped(), &finray9()).unwrap()
+}
+
+fn percent(model: &Model, axis: Axis, kind: ModelKind) -> f64 {
+    let row = model.loo().iter().find(|row| row.axis == axis && row.model == kind);
+    row.unwrap().mean_absolute_percent
+}
+
+#[test]
+fn the_linear_reference_is_the_published_measure_and_the_choice_beats_it() {
+    let model = model();
+    for (axis, reference) in [(Axis::Assembly, 1.6), (Axis::Compliance, 10.0)] {
+        let linear = percent(&model, axis, ModelKind::Linear);
+        assert!((linear - reference).abs() < 0.06, "{axis:?}: {linear}");
+        let chosen = model.chosen(axis).unwrap();
+        assert!(chosen.mean_absolute_percent < 0.93 * reference, "{axis:?}: {chosen:?}");
+    }
+}
+
+#[test]
+fn the_uncertainty_fits_the_errors_on_designs_left_out() {
+    let model = model();
+    for axis in Axis::ALL {
+        let raw = model.chosen(axis).unwrap().standardised_rms;
+        let calibrated = raw / model.widening(axis);
+        assert!((0.4..=1.0 + 1e-12).contains(&calibrated), "{axis:?}: {raw} -> {calibrated}");
+        assert!(raw < 1.5, "{axis:?}: the model itself is too sure: {raw}");
+    }
+}
+
+#[test]
+fn stiffness_is_positive_everywhere_and_follows_the_physics() {
+    let model = model();
+    for density in (5..=60).map(f64::from) {
+        for direction in (0..=60).map(f64::from) {
+            let found = model.predict(density, direction).unwrap();
+            for axis in Axis::ALL {
+                let Estimate { mean, sd } = found.axis(axis);
+                assert!(mean > 0.0 && mean.is_finite() && sd > 0.0 && sd.is_finite());
+            }
+        }
+    }
+    // Inside the data: denser is stiffer; turning the ribs softens z, stiffens y.
+    for density in (10..=30).map(f64::from) {
+        for direction in (0..=40).map(f64::from) {
+            let here = model.predict(density, direction).unwrap();
+            if density < 30.0 {
+                let denser = model.predict(density + 1.0, direction).unwrap();
+                assert!(denser.assembly.mean > here.assembly.mean, "{density} {direction}");
+                assert!(denser.compliance.mean > here.compliance.mean, "{density} {direction}");
+            }
+            if direction < 40.0 {
+                let turned = model.predict(density, direction + 1.0).unwrap();
+                assert!(turned.assembly.mean < here.assembly.mean, "{density} {direction}");
+                assert!(turned.compliance.mean >= here.compliance.mean, "{density} {direction}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_hull_is_that_of_the_measured_designs() {
+    let model = model();
+    for inside in [[10.0, 10.0], [15.0, 30.0], [20.0, 40.0], [30.0, 0.0], [22.0, 17.0]] {
+        assert!(model.predict(inside[0], inside[1]).unwrap().inside_hull(), "{inside:?}");
+    }
+    let outside = model.predict(40.0, 20.0).unwrap();
+    assert!((outside.hull_distance - 0.5).abs() < 1e-12);
+    assert!(!model.predict(10.0, 40.0).unwrap().inside_hull());
+    assert!(outside.compliance.sd > 0.0);
+}
+
+#[test]
+fn predictions_are_uncertain_away_from_the_data() {
+    let model = model();
+    let inside = model.predict(20.0, 20.0).unwrap().assembly;
+    let outside = model.predict(60.0, 60.0).unwrap().assembly;
+    assert!(outside.sd / outside.mean > inside.sd / inside.mean);
+}
+
+#[test]
+fn the_fit_is_bit_identical_for_every_thread_count() {
+    let bits = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let model = pool.install(model);
+        let mut bits: Vec<u64> = Vec::new();
+        for (density, direction) in [(10.0, 0.0), (17.0, 23.0), (50.0, 55.0)] {
+            for axis in Axis::ALL {
+                let found = model.predict(density, direction).unwrap().axis(axis);
+                bits.extend([found.mean.to_bits(), found.sd.to_bits()]);
+            }
+        }
+        bits.extend(model.loo().iter().map(|row| row.mean_absolute_percent.to_bits()));
+        bits
+    };
+    let first = bits(1);
+    assert_eq!(first, bits(1));
+    assert_eq!(first, bits(3));
+}
+
+#[test]
+fn each_bad_line_of_a_file_is_named_with_what_would_be_right() {
+    for (from, to, words) in [
+        ("design,", "Design,", vec!["line 1", "header must be exactly `design,infill"]),
+        ("4,20,0,65,1.95", "4,20,0,65", vec!["line: 5", "4 fields"]),
+        ("4,20,0,65,1.95", "4,20,0,NaN,1.95", vec!["line 5", "stiffness_assembly", "above 0"]),
+        ("4,20,0,65,1.95", "4,20,0,65,-1.95", vec!["line 5", "stiffness_compliance", "above 0"]),
+        ("4,20,0,65,1.95", "4,20,0,65,inf", vec!["line 5", "stiffness_compliance", "finite"]),
+        ("4,20,0,65,1.95", "4,20,0,65,soft", vec!["line 5", "`soft` is not a number"]),
+        ("4,20,0,65,1.95", "4,120,0,65,1.95", vec!["line 5", "density", "at most 100"]),
+        ("4,20,0,65,1.95", "4,20,-5,65,1.95", vec!["line 5", "direction", "0 to 90"]),
+        ("4,20,0,65,1.95", "x,20,0,65,1.95", vec!["line 5", "design", "whole number"]),
+        ("4,20,0,65,1.95", "3,20,0,65,1.95", vec!["line 5", "design 3 is given twice"]),
+        ("4,20,0,65,1.95", "4,15,30,65,1.95", vec!["line 5", "same density", "average"]),
+    ] {
+        let error = parse(&SHIPPED_CSV.replacen(from, to, 1), "mine.csv").unwrap_err().to_string();
+        for word in words.iter().chain(&["mine.csv"]) {
+            assert!(error.contains(word), "{to}: {error}");
+        }
+    }
+    let empty = SHIPPED_CSV.lines().next().unwrap();
+    assert_eq!(parse(empty, "mine.csv"), Err(SurrogateError::None));
+}
+
+#[test]
+fn measurements_without_a_file_are_checked_too() {
+    let mut bad = shipped();
+    bad[2].compliance = f64::NAN;
+    assert!(
+        fit(&bad, &finray9())
+            .unwrap_err()
+            .to_string()
+            .starts_with("design 3: stiffness_compliance")
+    );
+    assert_eq!(fit(&[], &finray9()).unwrap_err(), FitError::Measurements(SurrogateError::None));
+}
+
+#[test]
+fn exact_or_one_dimensional_data_give_a_model_or_an_error_but_no_panic() {
+    let line = |f: &dyn Fn(f64) -> (f64, f64)| -> Vec<Measurement> {
+        (0..8)
+            .map(|i| {
+                let (density_percent, direction_deg) = f(f64::from(i));
+                Measurement {
+                    design: i as u32,
+                    density_percent,
+                    direction_deg,
+                    assembly: 20.0 * N_PER_MM,
+                    compliance: 2.0 * N_PER_MM,
+                }
+            })
+            .collect()
+    };
+    for data in [line(&|i| (10.0 + i, 0.0)), line(&|i| (20.0, 5.0 * i)), line(&|i| (10.0 + i, i))] {
+        if let Ok(model) = fit(&data, &finray9()) {
+            let found = model.predict(20.0, 20.0).unwrap().assembly;
+            assert!(found.mean > 0.0 && found.sd > 0.0, "{found:?}");
+        }
+    }
+}
+
+/// Fingers of a material half as stiff: one of them tells all of them, to the last digit.
+#[test]
+fn one_finger_of_another_material_gives_the_scale_of_all() {
+    let soft = |design, density_percent, direction_deg| {
+        let infill = [density_percent, direction_deg];
+        let half = |axis| 0.5 * computed().stiffness(axis, infill).unwrap();
+        let (assembly, compliance) = (half(Axis::Assembly), half(Axis::Compliance));
+        Measurement { design, density_percent, direction_deg, assembly, compliance }
+    };
+    let all = [soft(1, 20.0, 20.0), soft(2, 30.0, 40.0), soft(3, 10.0, 0.0)];
+    let spread = |count: usize| {
+        let model = fit(&all[..count], &finray9()).unwrap();
+        let found = model.predict(10.0, 0.0).unwrap();
+        for axis in Axis::ALL {
+            let ratio = found.axis(axis).mean / all[2].stiffness(axis);
+            assert!((ratio - 1.0).abs() < 1e-9, "{axis:?} from {count}: {ratio}");
+        }
+        let none = model.loo().iter().all(|row| row.mean_absolute_percent.is_nan());
+        assert_eq!(none, count == 1, "one finger leaves no error");
+        found.compliance.sd / found.compliance.mean
+    };
+    let [one, two] = [1, 2].map(spread);
+    assert!(one > 0.15 && two < one, "{one} {two}");
+}
+
+#[test]
+fn a_density_that_cannot_be_printed_is_named() {
+    let model = fit(&shipped()[..1], &finray9()).unwrap();
+    let error = model.predict(99.0, 0.0).unwrap_err().to_string();
+    assert!(error.contains("finray9.toml") && error.contains("density"), "{error}");
+}
+
+/// The scatter expected of another material is that of the shipped one.
+#[test]
+fn the_shipped_fingers_scatter_about_the_computed_ones_as_said() {
+    for (axis, said) in scale::SCATTER {
+        let shipped = shipped();
+        let log = |m: &Measurement| {
+            (m.stiffness(axis) / computed().stiffness(axis, m.infill()).unwrap()).ln()
+        };
+        let logs: Vec<f64> = shipped.iter().map(log).collect();
+        let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+        let squares: f64 = logs.iter().map(|each| (each - mean).powi(2)).sum();
+        let scatter = (squares / scale::FREEDOM).sqrt();
+        assert!((scatter - said).abs() < 0.005, "{axis:?}: {scatter}");
+    }
+}

@@ -1,0 +1,79 @@
+//! How long a trial takes at most, in simulated time.
+
+use super::{Ending, Phase, Strategy};
+
+/// Longest trial, s.
+pub const LONGEST_TRIAL_S: f64 = 60.0;
+/// Shortest move, s: a tiny displacement is not made in one jerk.
+pub const SHORTEST_MOVE_S: f64 = 0.02;
+/// A tolerance-based move that is not there by then is stuck, s after its command ended.
+pub const TOLERANCE_TIMEOUT_S: f64 = 1.0;
+/// Time to close the jaws and for the fingers to come to rest, s.
+pub const GRASP_S: f64 = 0.3;
+/// Time to lift, tilt and carry the part to the start, s.
+pub const CARRY_S: f64 = 0.2;
+
+impl Phase {
+    /// The longest that it can take if its move is `lead` metres longer than it says, on a
+    /// robot that takes `settling` seconds to follow.
+    fn longest_s(&self, lead: f64, settling: f64) -> f64 {
+        let [x, y, z] = self.displacement;
+        let length = x.hypot(y).hypot(z) + lead;
+        let after = match self.ending {
+            Ending::Duration(rest) => rest.max(settling),
+            Ending::Tolerance(_) => TOLERANCE_TIMEOUT_S,
+            Ending::Touch { preload, sensed } => {
+                (preload / self.speed).max(SHORTEST_MOVE_S) + sensed.latency + 2.0 * settling
+            }
+        };
+        (length / self.speed).max(SHORTEST_MOVE_S) + after
+    }
+}
+
+impl Strategy {
+    /// What is wrong if a trial can take longer than [`LONGEST_TRIAL_S`] on a robot that takes
+    /// `settling` seconds to follow a command and makes a phase's move longer by its `lead`, m.
+    pub fn too_long(&self, lead: impl Fn(&Phase) -> f64, settling: f64) -> Option<String> {
+        let seconds = |phase: &Phase| phase.longest_s(lead(phase), settling);
+        let all: f64 = self.phases.iter().map(seconds).sum();
+        let all = GRASP_S + CARRY_S + settling + all;
+        // Written so that what is no number is too long.
+        if all <= LONGEST_TRIAL_S {
+            return None;
+        }
+        let longest = self.phases.iter().max_by(|a, b| seconds(a).total_cmp(&seconds(b)));
+        let longest = longest.map_or(String::new(), |phase| {
+            format!("; of that \"{}\" takes {:.1} s", phase.name, seconds(phase))
+        });
+        Some(format!("a trial takes {all:.1} s{longest}; it may take {LONGEST_TRIAL_S} s"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::task::Task;
+
+    #[test]
+    fn a_trial_that_takes_too_long_is_refused_with_its_longest_phase() {
+        let usb = include_str!("../../../../tasks/usb.toml");
+        let with = |from: &str, to: &str| {
+            assert!(usb.contains(from), "{from}");
+            Task::parse(&usb.replacen(from, to, 1), "usb.toml")
+        };
+        assert!(with("mass_g", "mass_g").is_ok());
+        let first = |key: &str| {
+            let line = usb.lines().find(|line| line.starts_with(key)).unwrap();
+            line.to_owned()
+        };
+        for (key, value) in [("speed_mm_per_s", "0.001"), ("settle_s", "1e9"), ("settle_s", "59.9")]
+        {
+            let error = with(&first(key), &format!("{key} = {value}")).unwrap_err().to_string();
+            for part in ["usb.toml", "strategy.phase", "a trial takes", "it may take 60 s", "\""] {
+                assert!(error.contains(part), "{error}");
+            }
+        }
+        let error = with(&first("move_mm"), "move_mm = [0.0, 0.0, -1e9]").unwrap_err().to_string();
+        assert!(error.contains("move_mm: is -1000000000; it must lie in -1000"), "{error}");
+        assert!(with(&first("settle_s"), "settle_s = 40.0").is_ok());
+    }
+}

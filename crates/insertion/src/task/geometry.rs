@@ -1,0 +1,266 @@
+//! Exact convex parts, and the mass properties of a body made of them.
+
+use contact::scene::{Geom, Inertia, Pose, Shape};
+use input::units::MM;
+use nalgebra::{Matrix3, Point3, Translation3, Vector3};
+use rapier3d_f64::parry::math::Vector;
+use rapier3d_f64::parry::transformation::try_convex_hull;
+
+/// A convex part of a plug or socket.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// For pictures and errors.
+    pub name: String,
+    /// Its shape, m.
+    pub solid: Solid,
+    /// Its own coefficient of friction, where it has one.
+    pub friction: Option<f64>,
+}
+
+/// The solids a task file may name; all in metres.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Solid {
+    /// An upright box.
+    Box {
+        /// Smallest x, y and z.
+        min: Vector3<f64>,
+        /// Largest x, y and z.
+        max: Vector3<f64>,
+    },
+    /// A cylinder along z.
+    Cylinder {
+        /// Axis position (x, y).
+        centre: [f64; 2],
+        /// Radius.
+        radius: f64,
+        /// Bottom and top.
+        z: [f64; 2],
+    },
+    /// A convex outline in two axes, extruded along the third.
+    Prism {
+        /// Index of the axis of extrusion (0 x, 1 y, 2 z).
+        axis: usize,
+        /// Corners in the other two axes, in the order x, y, z.
+        outline: Vec<[f64; 2]>,
+        /// Start and end along the axis of extrusion.
+        span: [f64; 2],
+    },
+    /// The convex hull of some points.
+    Hull {
+        /// Its corners.
+        points: Vec<Point3<f64>>,
+    },
+}
+
+impl Part {
+    /// The part as a geom on a body whose frame is the part's frame.
+    pub fn geom(&self) -> Geom {
+        let (shape, origin) = self.solid.shape();
+        Geom {
+            name: self.name.clone(),
+            shape,
+            pose: Pose::from_parts(Translation3::from(origin), nalgebra::one()),
+            friction: self.friction,
+        }
+    }
+}
+
+impl Solid {
+    /// The solid as a centred shape and where its centre lies.
+    pub fn shape(&self) -> (Shape, Vector3<f64>) {
+        match self {
+            Solid::Box { min, max } => (Shape::Box { half: (max - min) / 2.0 }, (max + min) / 2.0),
+            Solid::Cylinder { centre, radius, z } => (
+                Shape::Cylinder { half_height: (z[1] - z[0]) / 2.0, radius: *radius },
+                Vector3::new(centre[0], centre[1], (z[0] + z[1]) / 2.0),
+            ),
+            Solid::Prism { .. } | Solid::Hull { .. } => {
+                let corners = self.corners();
+                let middle =
+                    corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / corners.len() as f64;
+                (Shape::Hull { points: corners.iter().map(|p| p - middle).collect() }, middle)
+            }
+        }
+    }
+
+    /// Corners in the part's frame (see [`Shape::corners`]).
+    pub fn corners(&self) -> Vec<Point3<f64>> {
+        match self {
+            Solid::Prism { axis, outline, span } => {
+                let place = |at: f64, p: &[f64; 2]| {
+                    let mut point = [0.0; 3];
+                    let (first, second) = other_axes(*axis);
+                    (point[*axis], point[first], point[second]) = (at, p[0], p[1]);
+                    Point3::from(point)
+                };
+                span.iter().flat_map(|&at| outline.iter().map(move |p| place(at, p))).collect()
+            }
+            Solid::Hull { points } => points.clone(),
+            _ => {
+                let (shape, origin) = self.shape();
+                shape.corners().into_iter().map(|p| p + origin).collect()
+            }
+        }
+    }
+
+    /// Volume, m3; centroid, m; second moments about the centroid per unit of
+    /// density (the tensor of the integral of x xT), m5.
+    fn moments(&self) -> (f64, Vector3<f64>, Matrix3<f64>) {
+        match self {
+            Solid::Box { min, max } => {
+                let size = max - min;
+                let volume = size.product();
+                let second = size.component_mul(&size) * (volume / 12.0);
+                (volume, (max + min) / 2.0, Matrix3::from_diagonal(&second))
+            }
+            Solid::Cylinder { centre, radius, z } => {
+                let height = z[1] - z[0];
+                let volume = std::f64::consts::PI * radius * radius * height;
+                let across = volume * radius * radius / 4.0;
+                let along = volume * height * height / 12.0;
+                let middle = Vector3::new(centre[0], centre[1], (z[0] + z[1]) / 2.0);
+                (volume, middle, Matrix3::from_diagonal(&Vector3::new(across, across, along)))
+            }
+            Solid::Prism { axis, outline, span } => prism_moments(*axis, outline, *span),
+            Solid::Hull { points } => hull_moments(points),
+        }
+    }
+}
+
+/// The two axes that are not `axis`, in the order x, y, z.
+fn other_axes(axis: usize) -> (usize, usize) {
+    match axis {
+        0 => (1, 2),
+        1 => (0, 2),
+        _ => (0, 1),
+    }
+}
+
+/// Volume of a solid, m3.
+pub fn volume(solid: &Solid) -> f64 {
+    solid.moments().0
+}
+
+fn prism_moments(
+    axis: usize,
+    outline: &[[f64; 2]],
+    span: [f64; 2],
+) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    // Polygon area, centroid and second moments by Green's theorem.
+    let (mut area, mut first, mut second) = (0.0, [0.0; 2], [0.0; 3]);
+    for (i, p) in outline.iter().enumerate() {
+        let q = outline[(i + 1) % outline.len()];
+        let cross = p[0] * q[1] - q[0] * p[1];
+        area += cross / 2.0;
+        for k in 0..2 {
+            first[k] += cross * (p[k] + q[k]) / 6.0;
+            second[k] += cross * (p[k] * p[k] + p[k] * q[k] + q[k] * q[k]) / 12.0;
+        }
+        second[2] +=
+            cross * (p[0] * q[1] + 2.0 * p[0] * p[1] + 2.0 * q[0] * q[1] + q[0] * p[1]) / 24.0;
+    }
+    let centre = [first[0] / area, first[1] / area];
+    let length = span[1] - span[0];
+    let volume = area.abs() * length;
+    let sign = area.signum() * length;
+    let (a, b) = other_axes(axis);
+    let mut middle = Vector3::zeros();
+    (middle[a], middle[b], middle[axis]) = (centre[0], centre[1], (span[0] + span[1]) / 2.0);
+    let mut tensor = Matrix3::zeros();
+    tensor[(a, a)] = second[0] * sign - volume * centre[0] * centre[0];
+    tensor[(b, b)] = second[1] * sign - volume * centre[1] * centre[1];
+    tensor[(a, b)] = second[2] * sign - volume * centre[0] * centre[1];
+    tensor[(b, a)] = tensor[(a, b)];
+    tensor[(axis, axis)] = volume * length * length / 12.0;
+    (volume, middle, tensor)
+}
+
+/// Corners, and triangles of them that look outward.
+pub type Triangles = (Vec<Point3<f64>>, Vec<[usize; 3]>);
+
+/// The corners and the outward triangles of the convex hull of some points; none if they lie in
+/// a plane or nearly so.
+pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
+    let scaled: Vec<_> = points.iter().map(|p| Vector::new(p.x / MM, p.y / MM, p.z / MM)).collect();
+    let (corners, faces) = try_convex_hull(&scaled).ok()?;
+    let corners: Vec<_> = corners.iter().map(|v| Point3::new(v.x, v.y, v.z) * MM).collect();
+    let faces: Vec<_> = faces.iter().map(|face| face.map(|corner| corner as usize)).collect();
+    (surface_moments(&corners, &faces).0 > FLAT).then_some((corners, faces))
+}
+
+/// A hull of less volume is flat, m3.
+const FLAT: f64 = 1e-3 * MM * MM * MM;
+
+fn hull_moments(points: &[Point3<f64>]) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    // The task file's checks leave no flat hull.
+    let (corners, faces) = hull(points).unwrap_or_default();
+    surface_moments(&corners, &faces)
+}
+
+/// Volume, centroid and second moments about it of what a closed surface of outward triangles
+/// holds: the sum of the tetrahedra between each and the origin.
+pub fn surface_moments(
+    corners: &[Point3<f64>],
+    faces: &[[usize; 3]],
+) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    let (mut volume, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
+    for face in faces {
+        let [a, b, c] = face.map(|corner| corners[corner].coords);
+        let part = a.dot(&b.cross(&c)) / 6.0;
+        let sum = a + b + c;
+        volume += part;
+        first += sum * (part / 4.0);
+        let squares = a * a.transpose() + b * b.transpose() + c * c.transpose();
+        second += (squares + sum * sum.transpose()) * (part / 20.0);
+    }
+    if volume == 0.0 {
+        return (0.0, Vector3::zeros(), Matrix3::zeros());
+    }
+    let centre = first / volume;
+    (volume, centre, second - centre * centre.transpose() * volume)
+}
+
+/// Mass properties of parts of one density with the given total mass (kg). The
+/// products of inertia are left out: they are zero or small for these plugs.
+pub fn inertia<'a>(parts: impl IntoIterator<Item = &'a Part>, mass: f64) -> Inertia {
+    let moments: Vec<_> = parts.into_iter().map(|part| part.solid.moments()).collect();
+    let volume: f64 = moments.iter().map(|m| m.0).sum();
+    let centre = moments.iter().map(|m| m.1 * m.0).sum::<Vector3<f64>>() / volume;
+    let density = mass / volume;
+    let second = moments.iter().fold(Matrix3::zeros(), |sum, (v, c, tensor)| {
+        let arm = c - centre;
+        sum + tensor + arm * arm.transpose() * *v
+    }) * density;
+    let d = second.diagonal();
+    let moments = Vector3::new(d.y + d.z, d.x + d.z, d.x + d.y);
+    Inertia { mass, centre: Point3::from(centre), moments }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_prism_that_is_a_box_weighs_like_the_box() {
+        let cuboid = Solid::Box {
+            min: Vector3::new(-0.004, 0.001, 0.0),
+            max: Vector3::new(0.004, 0.007, 0.05),
+        };
+        let prism = Solid::Prism {
+            axis: 1,
+            outline: vec![[-0.004, 0.0], [-0.004, 0.05], [0.004, 0.05], [0.004, 0.0]],
+            span: [0.001, 0.007],
+        };
+        let part = |solid| [Part { name: String::new(), solid, friction: None }];
+        let hull = Solid::Hull { points: prism.corners() };
+        let (a, b) = (inertia(&part(cuboid), 0.03), inertia(&part(prism), 0.03));
+        let c = inertia(&part(hull), 0.03);
+        assert!((a.centre - c.centre).norm() < 1e-12, "{c:?}");
+        assert!((a.moments - c.moments).norm() < 1e-9 * a.moments.norm(), "{c:?}");
+        assert!((a.centre - b.centre).norm() < 1e-15);
+        assert!((a.moments - b.moments).norm() < 1e-9 * a.moments.norm());
+        // m (h^2 + d^2) / 12 about x.
+        let about_x = 0.03 * (0.05f64.powi(2) + 0.006f64.powi(2)) / 12.0;
+        assert!((a.moments.x - about_x).abs() < 1e-12);
+    }
+}

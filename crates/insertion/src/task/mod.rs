@@ -1,0 +1,228 @@
+//! Tasks: plug, socket, grip, friction, search strategy and success, from one TOML file.
+
+pub mod duration;
+mod edges;
+pub mod finger;
+pub mod geometry;
+mod latch;
+mod raw;
+mod raw_finger;
+mod raw_part;
+mod rounded;
+
+pub use geometry::{Part, Solid};
+pub use latch::Latch;
+
+use crate::task::finger::FingerModel;
+use input::InputError;
+
+/// A checked task, in SI units, in the task frame: origin at the centre of the
+/// socket's opening on its top surface, z out of the socket, y the direction
+/// in which the jaws close and the start is shifted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Task {
+    /// Name, as used in study folders.
+    pub name: String,
+    /// One line for lists.
+    pub description: String,
+    /// Turn of the task frame about z in the robot's base frame, rad.
+    pub turn: f64,
+    /// Plug, in the plug frame (origin at the tip, z along its axis).
+    pub plug: Plug,
+    /// Socket, in the task frame.
+    pub socket: Vec<Part>,
+    /// The opening on the socket's top, m: x and y from, to.
+    pub opening: [[f64; 2]; 2],
+    /// How the plug is held.
+    pub grip: Grip,
+    /// Coefficients of friction.
+    pub friction: Friction,
+    /// What the fingers are like beside their measured stiffness.
+    pub finger: FingerModel,
+    /// How the plug is brought in.
+    pub strategy: Strategy,
+    /// What counts as inserted.
+    pub success: Success,
+}
+
+/// The moving part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plug {
+    /// Its convex parts, m.
+    pub parts: Vec<Part>,
+    /// Total mass, kg; spread evenly over the volume of the parts.
+    pub mass: f64,
+    /// Those of its parts that spring, if any do.
+    pub latch: Option<Latch>,
+}
+
+impl Plug {
+    /// The parts that are one rigid body.
+    pub fn rigid(&self) -> impl Iterator<Item = &Part> {
+        let springs = |i: &usize| self.latch.as_ref().is_some_and(|latch| latch.parts.contains(i));
+        self.parts.iter().enumerate().filter(move |(i, _)| !springs(i)).map(|(_, part)| part)
+    }
+
+    /// The parts of the latch.
+    pub fn sprung(&self) -> impl Iterator<Item = &Part> {
+        let parts = self.latch.iter().flat_map(|latch| &latch.parts);
+        parts.filter_map(|&i| self.parts.get(i))
+    }
+}
+
+/// Where the fingers hold the plug, plug frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grip {
+    /// Height of the grasp point (TCP) on the plug's axis, m.
+    pub tcp_z: f64,
+    /// Height of the shoulder that the finger's roof pushes on, m.
+    pub shoulder_z: f64,
+    /// The gripped faces, m: y of the face at -y and at +y.
+    pub faces_y: [f64; 2],
+    /// Force with which the jaws close, N.
+    pub force: f64,
+    /// When the jaws are held.
+    pub hold: Hold,
+    /// Slip of the part in the grasp that counts as contact lost, m.
+    pub slip_limit: f64,
+}
+
+impl Grip {
+    /// Height of the shoulder above the TCP, m.
+    pub fn shoulder(&self) -> f64 {
+        self.shoulder_z - self.tcp_z
+    }
+}
+
+/// When the jaws are held where the grasp left them, as by a non-backdrivable
+/// gear; otherwise they go on pressing with the grasp force and give way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hold {
+    /// From the grasp on.
+    Always,
+    /// During the assembly move only, as in the published simulation.
+    Assembly,
+}
+
+/// Coefficients of friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// Finger on plug.
+    pub finger_plug: f64,
+    /// How a pad resists a turn of the plug about the pad's normal.
+    pub finger_torsion: PadTorsion,
+    /// Plug on socket, unless a socket part has its own.
+    pub plug_socket: f64,
+}
+
+/// Friction of a pad against a turn about its normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PadTorsion {
+    /// So much moment per normal force at each contact point, m, beside the points' own levers.
+    Points(f64),
+    /// That of the pressed patch, and no more.
+    Patch,
+}
+
+/// The search strategy: the start, and the moves from there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Strategy {
+    /// Tilt of the plug about x during the search, rad.
+    pub tilt: f64,
+    /// TCP at the nominal start, m.
+    pub start: [f64; 3],
+    /// What becomes of it.
+    pub rule: StartRule,
+    /// Moves, each from where the one before was to end.
+    pub phases: Vec<Phase>,
+}
+
+/// What becomes of the nominal start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum StartRule {
+    /// It is where the task file says
+    #[default]
+    Given,
+    /// It is moved to the middle of the nearest window of the finger
+    Taught,
+}
+
+/// What part of the trial a phase belongs to; decides the failure class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Through the air; touches nothing.
+    Approach,
+    /// Down to the socket's surface, and search moves along it.
+    Search,
+    /// The push into the socket.
+    Assembly,
+}
+
+/// How a move ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ending {
+    /// When every coordinate of the TCP is within this distance of the target, m.
+    Tolerance(f64),
+    /// When this time has passed since the commanded motion ended, s.
+    Duration(f64),
+    /// When the plug touches the socket: the command then goes on by this
+    /// distance along the move (the preload), m.
+    Touch {
+        /// Distance beyond where the move was stopped, m.
+        preload: f64,
+        /// What tells the touch.
+        sensed: Sensed,
+    },
+}
+
+/// How a touch is felt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensed {
+    /// Sum of the normal forces from which on it is one, N.
+    pub force: f64,
+    /// How long the move goes on then, s.
+    pub latency: f64,
+}
+
+impl Sensed {
+    /// At first contact, at once.
+    pub const FIRST: Sensed = Sensed { force: 0.05, latency: 0.0 };
+}
+
+/// One move of the TCP.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phase {
+    /// Name in reports.
+    pub name: String,
+    /// Search or assembly.
+    pub stage: Stage,
+    /// Displacement from the previous target, m.
+    pub displacement: [f64; 3],
+    /// Mean speed of the commanded motion, m/s.
+    pub speed: f64,
+    /// How it ends.
+    pub ending: Ending,
+}
+
+/// What counts as inserted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Success {
+    /// Depth of the tip below the socket's top, m.
+    pub depth: f64,
+    /// Largest angle between the plug's axis and z, rad.
+    pub tilt: f64,
+}
+
+impl Task {
+    /// Reads and checks a task; `file` is named in errors.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        raw::parse(text, file)
+    }
+
+    /// Checks a task file that was read as TOML already; `file` is named in errors.
+    pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
+        raw::from_table(table, file)
+    }
+}

@@ -1,0 +1,440 @@
+//! One attempt at an insertion: the phases, step by step, and what is watched on the way.
+
+use super::cell::{self, Hand, WorkCell};
+use super::classify::{Facts, Placement, classify};
+use super::leading::LeadingEdge;
+use super::motion::{Move, Tcp};
+use super::record::{Frame, Recorder};
+use super::trace::{Sample, Trace};
+use super::watch::Watch;
+use super::{PhaseEnd, Poses, Trial};
+use crate::outcome::Outcome;
+use crate::robot::Mounted;
+use crate::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
+use crate::task::{Ending, Hold, Phase, Sensed, Stage, Task};
+use contact::scene::{BodyId, Pose};
+use contact::{ContactForce, ContactPoint, Diverged, World};
+use descent::Begun;
+use input::units::{DEG, MM};
+use nalgebra::{Point3, Vector3};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+mod descent;
+pub mod driven;
+
+/// Rest after a move that has none of its own, s.
+const REST: f64 = 0.03;
+
+/// Why an attempt ends early.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Stop {
+    Lost,
+    ForceLimit,
+    Diverged,
+    /// The study is to stop: what comes of it is worthless.
+    Interrupted,
+}
+
+impl From<Diverged> for Stop {
+    fn from(_: Diverged) -> Self {
+        Stop::Diverged
+    }
+}
+
+/// An attempt as it goes on.
+pub(super) struct Attempt<'a> {
+    robot: Arc<Mounted>,
+    /// Set when it is to end at once.
+    stop: &'a AtomicBool,
+    /// The task under the conditions of this attempt.
+    task: Arc<Task>,
+    pub cell: WorkCell,
+    pub world: Box<dyn World>,
+    target: Tcp,
+    stage: Stage,
+    /// What has been done already of the first phase of the search.
+    begun: Option<Begun>,
+    /// Turn of the socket, rad.
+    pub yaw: f64,
+    /// From the world to the socket.
+    pub socket: Pose,
+    time: f64,
+    /// Grasp point in each finger's frame right after the grasp.
+    grasp: [Vector3<f64>; 2],
+    watch: Watch,
+    edge: LeadingEdge,
+    phases: Vec<PhaseEnd>,
+    /// Samples, if they are wanted.
+    pub trace: Option<Trace>,
+    /// Films it, if that was asked for.
+    pub recorder: Option<Recorder>,
+}
+
+impl<'a> Attempt<'a> {
+    pub fn new(
+        robot: Arc<Mounted>,
+        task: Arc<Task>,
+        cell: WorkCell,
+        world: Box<dyn World>,
+        stop: &'a AtomicBool,
+    ) -> Self {
+        let pose = world.pose(cell.command);
+        let edge = LeadingEdge::new(&task);
+        Attempt {
+            robot,
+            stop,
+            task,
+            cell,
+            world,
+            target: Tcp { position: pose.translation.vector, tilt: 0.0 },
+            stage: Stage::Approach,
+            begun: None,
+            yaw: 0.0,
+            socket: Pose::identity(),
+            time: 0.0,
+            grasp: [Vector3::zeros(); 2],
+            watch: Watch::default(),
+            edge,
+            phases: Vec::new(),
+            trace: None,
+            recorder: None,
+        }
+    }
+
+    /// An independent copy that goes on bit for bit alike.
+    pub fn copy(&self) -> Attempt<'a> {
+        Attempt {
+            robot: Arc::clone(&self.robot),
+            stop: self.stop,
+            task: Arc::clone(&self.task),
+            cell: self.cell.clone(),
+            world: self.world.snapshot(),
+            edge: self.edge.clone(),
+            phases: self.phases.clone(),
+            trace: self.trace.clone(),
+            recorder: self.recorder.clone(),
+            ..*self
+        }
+    }
+
+    /// The same, beginning with the start shifted by `offset` metres along y.
+    pub fn shifted(&self, offset: f64) -> Attempt<'a> {
+        let mut shifted = self.copy();
+        // Shifting the start by y is shifting the socket by -y: the part has
+        // touched nothing of it yet. So all offsets share grasp and approach.
+        let socket = Pose::translation(0.0, -offset, 0.0) * turned(self.yaw);
+        shifted.socket = turned(-self.yaw) * Pose::translation(0.0, offset, 0.0);
+        shifted.world.place(shifted.cell.socket, socket);
+        shifted
+    }
+
+    /// Grasp, lift, tilt, carry to the start, and the approach through the air.
+    pub fn prepare(&mut self) -> Result<(), Stop> {
+        let task = Arc::clone(&self.task);
+        for i in 1..=self.steps(GRASP_S) {
+            let time = i as f64 * self.world.step_s();
+            for (side, hand) in self.cell.hands.iter().enumerate() {
+                self.world.set_spring(hand.slide, 1, cell::closing(side, task.grip.force, time));
+            }
+            self.step()?;
+        }
+        self.grasp = self.grasp_points();
+        if task.grip.hold == Hold::Always {
+            self.hold();
+        }
+        self.end_phase("grasp");
+        self.world.place(self.cell.stand, Pose::translation(0.0, 0.0, -1.0));
+        let [x, y, z] = task.strategy.start;
+        let start = Tcp { position: Vector3::new(x, y, z), tilt: task.strategy.tilt };
+        self.follow(Move::lasting(self.target, start, CARRY_S), self.rest_time())?;
+        self.end_phase("carry");
+        for phase in task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach) {
+            self.phase(phase)?;
+        }
+        Ok(())
+    }
+
+    pub fn search_and_assemble(&mut self) -> Result<(), Stop> {
+        let task = Arc::clone(&self.task);
+        for phase in task.strategy.phases.iter().filter(|p| p.stage != Stage::Approach) {
+            self.phase(phase)?;
+        }
+        Ok(())
+    }
+
+    fn phase(&mut self, phase: &Phase) -> Result<(), Stop> {
+        if phase.stage == Stage::Assembly
+            && self.stage != Stage::Assembly
+            && self.task.grip.hold == Hold::Assembly
+        {
+            self.hold();
+        }
+        self.stage = phase.stage;
+        let begun = self.begun.take().unwrap_or(Begun { motion: self.motion(phase), steps: 0 });
+        let motion = begun.motion;
+        let end = match phase.ending {
+            Ending::Duration(rest) => self.follow(motion, rest.max(self.rest_time())),
+            Ending::Tolerance(within) => self.reach(motion, within),
+            Ending::Touch { preload, sensed } => self.touch(begun, preload, sensed, phase.speed),
+        };
+        self.end_phase(&phase.name);
+        end
+    }
+
+    /// The move of a phase that begins now.
+    fn motion(&self, phase: &Phase) -> Move {
+        let mut displacement = Vector3::from(phase.displacement);
+        if phase.stage == Stage::Assembly {
+            let along = displacement.try_normalize(0.0).unwrap_or_default();
+            displacement += along * self.robot.lead(&along);
+        }
+        Move::new(self.target, self.target.moved(displacement), phase.speed)
+    }
+
+    /// The jaws stay where they are from now on.
+    fn hold(&mut self) {
+        let flange = self.world.pose(self.cell.flange);
+        for hand in self.cell.hands {
+            let y = (flange.inverse() * self.world.pose(hand.jaw)).translation.y;
+            self.world.set_spring(hand.slide, 1, cell::holding(y - hand.zero_y));
+        }
+    }
+
+    /// Commands a move and then rests, s.
+    fn follow(&mut self, motion: Move, rest: f64) -> Result<(), Stop> {
+        let steps = self.steps(motion.duration() + rest);
+        for i in 1..=steps {
+            self.target = motion.at(i as f64 * self.world.step_s());
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    /// Commands a move and waits until the TCP is there, as near as asked.
+    fn reach(&mut self, motion: Move, within: f64) -> Result<(), Stop> {
+        self.follow(motion, 0.0)?;
+        for _ in 0..self.steps(TOLERANCE_TIMEOUT_S) {
+            if (self.tcp() - self.target.position).amax() < within {
+                break;
+            }
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    /// Moves until the plug is felt to touch the socket, then on by the preload at this speed, m/s.
+    fn touch(
+        &mut self,
+        Begun { motion, steps: done }: Begun,
+        preload: f64,
+        sensed: Sensed,
+        speed: f64,
+    ) -> Result<(), Stop> {
+        let (start, end) = (motion.at(0.0), motion.at(f64::INFINITY));
+        // A robot that trails its command touches after it has ended.
+        let steps = self.steps(motion.duration() + self.robot.settling());
+        let mut left = self.steps(sensed.latency);
+        let mut felt = false;
+        for i in done + 1..=steps {
+            self.target = motion.at(i as f64 * self.world.step_s());
+            self.step()?;
+            felt = felt || self.contact_force() > sensed.force;
+            if felt && left == 0 {
+                break;
+            }
+            left -= usize::from(felt);
+        }
+        let along = (end.position - start.position).normalize();
+        // From where the TCP is, not from its command: a soft flange lags behind,
+        // and the lag would come on top of the preload.
+        let reached = along.dot(&(self.tcp() - start.position));
+        let to = start.moved(along * (reached + preload));
+        self.follow(Move::new(self.target, to, speed), self.rest_time())
+    }
+
+    /// One step of the command, the engine and the monitors.
+    fn step(&mut self) -> Result<(), Stop> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(Stop::Interrupted);
+        }
+        self.world.drive(self.cell.command, self.target.pose());
+        self.world.step()?;
+        let dt = self.world.step_s();
+        self.time += dt;
+        let contact = self.socket_force();
+        self.watch.see_force(&contact.net, dt);
+        self.record(dt);
+        self.watch_grasp(dt)?;
+        if self.stage == Stage::Search {
+            self.watch.entered = self.edge.inside(&self.plug());
+        }
+        if self.trace.as_ref().is_some_and(|trace| trace.due(self.time, dt)) {
+            let sample = self.sample(&contact.net);
+            self.trace.iter_mut().for_each(|trace| trace.take(sample));
+        }
+        if self.robot.stops(&self.watch.force) { Err(Stop::ForceLimit) } else { Ok(()) }
+    }
+
+    /// How things stand now, with the net force of the socket on the plug, world axes, N.
+    fn sample(&self, force: &Vector3<f64>) -> Sample {
+        let placement = self.placement();
+        Sample {
+            time_s: self.time,
+            phase: self.phases.len() as u32,
+            tcp_mm: (self.pose(self.cell.flange).translation.vector / MM).into(),
+            tip_mm: (placement.tip / MM).into(),
+            tilt_deg: placement.tilt / DEG,
+            force_n: (self.socket.rotation * force).into(),
+            slip_mm: self.slip() / MM,
+        }
+    }
+
+    /// Where a body presses the plug or its latch, task frame.
+    fn presses(&self, body: BodyId) -> impl Iterator<Item = ContactPoint> {
+        let parts = [self.cell.plug].into_iter().chain(self.cell.latch);
+        let points = parts.flat_map(move |part| self.world.contact_points(body, part));
+        points.map(|point| point.seen(&self.socket))
+    }
+
+    /// Force of the socket on the plug and its latch.
+    fn socket_force(&self) -> ContactForce {
+        let mut sum = self.world.contact(self.cell.socket, self.cell.plug);
+        if let Some(latch) = self.cell.latch {
+            let more = self.world.contact(self.cell.socket, latch);
+            sum.net += more.net;
+            sum.normal_sum += more.normal_sum;
+        }
+        sum
+    }
+
+    /// Takes a frame, if the trial is filmed.
+    fn record(&mut self, dt: f64) {
+        if !self.recorder.as_mut().is_some_and(|recorder| recorder.wants(dt)) {
+            return;
+        }
+        let frame = Frame {
+            time_s: self.time,
+            stage: self.stage,
+            poses: self.poses(),
+            jaws: self.cell.hands.map(|hand| self.pose(hand.jaw)),
+            force: self.socket * self.watch.force,
+            slip: if self.phases.is_empty() { 0.0 } else { self.slip() },
+            contacts: self.presses(self.cell.socket).collect(),
+            grips: self.cell.hands.into_iter().flat_map(|hand| self.presses(hand.finger)).collect(),
+        };
+        if let Some(recorder) = &mut self.recorder {
+            recorder.frames.push(frame);
+        }
+    }
+
+    /// Shortest rest after a move, s.
+    fn rest_time(&self) -> f64 {
+        REST.max(self.robot.settling())
+    }
+
+    fn tcp(&self) -> Vector3<f64> {
+        self.world.pose(self.cell.flange).translation.vector
+    }
+
+    fn contact_force(&self) -> f64 {
+        self.socket_force().normal_sum
+    }
+
+    fn watch_grasp(&mut self, dt: f64) -> Result<(), Stop> {
+        if self.time < GRASP_S {
+            return Ok(());
+        }
+        let pressed = |hand: Hand| self.world.contact(hand.finger, self.cell.plug).normal_sum;
+        self.watch.see_fingers(self.cell.hands.map(pressed), dt);
+        let slipped = !self.phases.is_empty() && self.slip() > self.task.grip.slip_limit;
+        if self.watch.dropped() || slipped { Err(Stop::Lost) } else { Ok(()) }
+    }
+
+    /// A body in the task frame: as if the start, not the socket, were shifted and turned.
+    fn pose(&self, body: BodyId) -> Pose {
+        self.socket * self.world.pose(body)
+    }
+
+    fn plug(&self) -> Pose {
+        self.pose(self.cell.plug)
+    }
+
+    fn poses(&self) -> Poses {
+        let fingers = self.cell.hands.map(|hand| self.pose(hand.finger));
+        let latch = self.cell.latch.map(|latch| self.pose(latch));
+        Poses { plug: self.plug(), latch, fingers }
+    }
+
+    fn placement(&self) -> Placement {
+        Placement::new(&self.plug())
+    }
+
+    fn grasp_points(&self) -> [Vector3<f64>; 2] {
+        let point = self.world.pose(self.cell.plug) * Point3::new(0.0, 0.0, self.task.grip.tcp_z);
+        self.cell.hands.map(|hand| (self.world.pose(hand.finger).inverse() * point).coords)
+    }
+
+    /// How far the part has moved along the pads since the grasp, m: along the
+    /// pad of the finger it moved less on, since a finger that is off says nothing.
+    fn slip(&self) -> f64 {
+        let now = self.grasp_points();
+        let along = |i: usize| {
+            let moved = now[i] - self.grasp[i];
+            moved.x.hypot(moved.z)
+        };
+        along(0).min(along(1))
+    }
+
+    fn steps(&self, time: f64) -> usize {
+        (time / self.world.step_s()).round() as usize
+    }
+
+    fn end_phase(&mut self, name: &str) {
+        let placement = self.placement();
+        let end = PhaseEnd {
+            name: name.to_owned(),
+            time_s: self.time,
+            tip_mm: (placement.tip / MM).into(),
+            tilt_deg: placement.tilt / DEG,
+            slip_mm: self.slip() / MM,
+            peak_force_n: self.watch.phase_peak,
+            poses: self.poses(),
+            contacts: self.presses(self.cell.socket).collect(),
+        };
+        self.watch.phase_peak = 0.0;
+        self.phases.push(end);
+    }
+
+    /// What came of it, if it ended so.
+    pub fn result(self, end: Result<(), Stop>) -> Trial {
+        let placement = self.placement();
+        // Judged at rest after the push, or where a bottomed part stopped the robot:
+        // a part that only passes through a good pose may tip on.
+        let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
+        let facts = Facts {
+            seated: held && self.stage == Stage::Assembly && placement.seated(&self.task),
+            gripped: self.watch.gripped(),
+            lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
+            entered: self.watch.entered,
+        };
+        let diverged = matches!(end, Err(Stop::Diverged | Stop::Interrupted));
+        let outcome = if diverged { Outcome::Diverged } else { classify(facts) };
+        Trial {
+            outcome,
+            margin: placement.margin(&self.task, outcome),
+            depth_mm: -placement.tip.z / MM,
+            tilt_deg: placement.tilt / DEG,
+            peak_force_n: self.watch.peak_force,
+            slip_mm: self.slip() / MM,
+            simulated_s: self.time,
+            phases: self.phases,
+            retried: false,
+        }
+    }
+}
+
+/// A turn about z, rad.
+fn turned(angle: f64) -> Pose {
+    Pose::rotation(Vector3::z() * angle)
+}

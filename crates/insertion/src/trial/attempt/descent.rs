@@ -1,0 +1,64 @@
+//! The part of the first touch that is the same wherever the socket lies: the way through the air
+//! above it.
+
+use super::Attempt;
+use crate::task::{Ending, Stage};
+use crate::trial::motion::Move;
+use contact::scene::BodyId;
+use input::units::MM;
+
+/// The way down is shared while the plug is this far above the socket, m.
+const CLEAR: f64 = 0.3 * MM;
+/// ... and was, if it is still this far above at its end: more than a contact is foreseen, m. A fast move may
+/// come nearer within a step.
+const UNTOUCHED: f64 = 0.25 * MM;
+
+/// A phase that has begun.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Begun {
+    /// Its move.
+    pub motion: Move,
+    /// Steps made of it.
+    pub steps: usize,
+}
+
+impl<'a> Attempt<'a> {
+    /// A copy, right before the search, that has gone down as far as nothing can touch the socket
+    /// however it is shifted or turned about z: from there on every start goes its own way. None if
+    /// the search does not begin with a touch, fails in the air or comes down too fast.
+    pub fn descended(&self) -> Option<Attempt<'a>> {
+        let phase =
+            self.task.strategy.phases.iter().find(|phase| phase.stage != Stage::Approach)?;
+        if phase.stage != Stage::Search || !matches!(phase.ending, Ending::Touch { .. }) {
+            return None;
+        }
+        let mut copy = self.copy();
+        copy.stage = phase.stage;
+        let motion = copy.motion(phase);
+        let mut steps = 0;
+        while steps < copy.steps(motion.duration()) && copy.clearance() > CLEAR {
+            steps += 1;
+            copy.target = motion.at(steps as f64 * copy.world.step_s());
+            copy.step().ok()?;
+        }
+        copy.begun = Some(Begun { motion, steps });
+        (copy.clearance() > UNTOUCHED).then_some(copy)
+    }
+
+    /// From the top of the socket to the lowest corner of the plug with its latch, along z, m.
+    fn clearance(&self) -> f64 {
+        let plug = [self.cell.plug].into_iter().chain(self.cell.latch);
+        let lowest = plug.flat_map(|body| self.heights(body)).fold(f64::INFINITY, f64::min);
+        lowest - self.heights(self.cell.socket).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Heights of a body's corners, m.
+    fn heights(&self, body: BodyId) -> impl Iterator<Item = f64> {
+        let pose = self.world.pose(body);
+        let geoms = &self.cell.scene.bodies[body.0].geoms;
+        geoms.iter().flat_map(move |geom| {
+            let place = pose * geom.pose;
+            geom.shape.corners().into_iter().map(move |corner| (place * corner).z)
+        })
+    }
+}

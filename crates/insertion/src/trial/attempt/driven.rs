@@ -1,0 +1,185 @@
+//! A trial whose moves are commanded from outside in place of the task's search strategy: for
+//! learning a search.
+
+use super::{Attempt, REST, Stop};
+use crate::outcome::Outcome;
+use crate::task::{Hold, Stage};
+use crate::trial::classify::{Facts, classify};
+use input::units::{DEG, MM};
+use nalgebra::Vector3;
+
+/// For how long a command holds, s.
+pub const CONTROL_S: f64 = 1e-3;
+
+/// A part that is held at the start of the search, and waits for commands.
+pub struct Driven {
+    /// Right before the search; every start is a copy of it.
+    ready: Attempt<'static>,
+    /// Whether grasp and approach came so far.
+    prepared: Result<(), Stop>,
+    attempt: Attempt<'static>,
+    end: Result<(), Stop>,
+    /// For how long the part has been seated and held, s.
+    seated_s: f64,
+}
+
+/// How things stand after a command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// Simulated time since the start of the search, s.
+    pub time_s: f64,
+    /// The TCP as the robot measures it, mm: from the middle of where the robot believes the
+    /// socket's opening to be.
+    pub tcp_mm: [f64; 3],
+    /// How far the flange is turned about x, y and z, degrees; what is tilted for the search
+    /// counts.
+    pub turn_deg: [f64; 3],
+    /// Net force of the socket on the plug as a wrist sensor filters it, N.
+    pub force_n: [f64; 3],
+    /// Tip of the plug from the middle of the opening, mm: what a robot does not know.
+    pub tip_mm: [f64; 3],
+    /// Angle between the plug's axis and that of the opening, degrees.
+    pub tilt_deg: f64,
+    /// Slip of the part in the grasp since the grasp, mm.
+    pub slip_mm: f64,
+    /// From the tip to where it counts as inserted, mm.
+    pub distance_mm: f64,
+    /// How it ended, if it did.
+    pub outcome: Option<Outcome>,
+}
+
+impl Driven {
+    pub(in crate::trial) fn new(ready: Attempt<'static>, prepared: Result<(), Stop>) -> Self {
+        let attempt = ready.copy();
+        let mut driven = Driven { ready, prepared, attempt, end: Ok(()), seated_s: 0.0 };
+        driven.start(0.0);
+        driven
+    }
+
+    /// Begins anew, with the start shifted by `offset` metres along y.
+    pub fn start(&mut self, offset: f64) -> State {
+        self.attempt = self.ready.shifted(offset);
+        self.end = self.prepared;
+        self.seated_s = 0.0;
+        if self.end.is_ok() {
+            self.attempt.stage = Stage::Search;
+        }
+        self.state()
+    }
+
+    /// Commands a velocity of the TCP, m/s, for `CONTROL_S`. Nothing moves once it has ended.
+    pub fn step(&mut self, velocity: Vector3<f64>) -> State {
+        let dt = self.attempt.world.step_s();
+        for _ in 0..self.attempt.steps(CONTROL_S) {
+            if self.outcome().is_none() {
+                self.attempt.target = self.attempt.target.moved(velocity * dt);
+                self.end = self.attempt.step();
+                self.watch(dt);
+            }
+        }
+        self.state()
+    }
+
+    /// What a strategy knows by its phases: when the push begins, and when the part is at rest.
+    fn watch(&mut self, dt: f64) {
+        let attempt = &mut self.attempt;
+        if attempt.watch.entered && attempt.stage == Stage::Search {
+            attempt.stage = Stage::Assembly;
+            if attempt.task.grip.hold == Hold::Assembly {
+                attempt.hold();
+            }
+        }
+        let seated = attempt.placement().seated(&attempt.task) && attempt.watch.gripped();
+        self.seated_s = if seated { self.seated_s + dt } else { 0.0 };
+    }
+
+    fn outcome(&self) -> Option<Outcome> {
+        match self.end {
+            Ok(()) => (self.seated_s >= REST).then_some(Outcome::Inserted),
+            Err(Stop::Diverged | Stop::Interrupted) => Some(Outcome::Diverged),
+            Err(stop) => Some(classify(Facts {
+                seated: stop == Stop::ForceLimit && self.seated_s > 0.0,
+                gripped: self.attempt.watch.gripped(),
+                lost_in: (stop == Stop::Lost).then_some(self.attempt.stage),
+                entered: self.attempt.watch.entered,
+            })),
+        }
+    }
+
+    fn state(&self) -> State {
+        let attempt = &self.attempt;
+        let flange = attempt.world.pose(attempt.cell.flange);
+        let placement = attempt.placement();
+        let seat = placement.tip + Vector3::z() * attempt.task.success.depth;
+        // Deeper is not farther.
+        let away = Vector3::new(seat.x, seat.y, seat.z.max(0.0));
+        State {
+            time_s: attempt.time - self.ready.time,
+            tcp_mm: (flange.translation.vector / MM).into(),
+            turn_deg: (flange.rotation.scaled_axis() / DEG).into(),
+            force_n: attempt.watch.force.into(),
+            tip_mm: (placement.tip / MM).into(),
+            tilt_deg: placement.tilt / DEG,
+            slip_mm: attempt.slip() / MM,
+            distance_mm: away.norm() / MM,
+            outcome: self.outcome(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finger::Finger;
+    use crate::outcome::FailureClass;
+    use crate::robot::Robot;
+    use crate::task::Task;
+    use crate::trial::Rig;
+    use crate::trial::run::EngineRig;
+    use contact::direct::Direct;
+    use input::shipped::{ROBOTS, TASKS};
+    use input::units::N_PER_MM;
+
+    fn driven() -> Driven {
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+        let rig = EngineRig::new(task, &robot, Box::<Direct>::default()).unwrap();
+        rig.driven(&finger).unwrap()
+    }
+
+    #[test]
+    fn a_start_repeats_bit_for_bit_and_what_is_not_moved_rests() {
+        let mut driven = driven();
+        let start = driven.start(1e-3);
+        let run = |driven: &mut Driven| {
+            let down = Vector3::new(0.0, 0.0, -0.02);
+            (0..100).map(|_| driven.step(down)).collect::<Vec<State>>()
+        };
+        let first = run(&mut driven);
+        assert_eq!(driven.start(1e-3), start);
+        assert_eq!(run(&mut driven), first);
+        assert!((first[99].time_s - 0.1).abs() < 1e-9);
+        driven.start(1e-3);
+        let rest = (0..100).map(|_| driven.step(Vector3::zeros())).last().unwrap();
+        assert_eq!((rest.force_n, rest.outcome), ([0.0; 3], None));
+        let moved = [0, 1, 2].map(|axis| (rest.tip_mm[axis] - start.tip_mm[axis]).abs());
+        // The flange, soft, still comes to rest.
+        assert!(moved.iter().all(|&mm| mm < 0.1), "{moved:?}");
+    }
+
+    #[test]
+    fn the_robot_does_not_see_the_shift_and_what_it_crushes_is_a_failure() {
+        let mut driven = driven();
+        let [here, there] = [0.0, 2e-3].map(|offset| driven.start(offset));
+        assert_eq!((here.tcp_mm, here.turn_deg), (there.tcp_mm, there.turn_deg));
+        assert!((there.tip_mm[1] - here.tip_mm[1] - 2.0).abs() < 1e-9);
+        driven.start(30e-3);
+        let down = Vector3::new(0.0, 0.0, -0.1);
+        let end = (0..2000).map(|_| driven.step(down)).find(|state| state.outcome.is_some());
+        let end = end.unwrap();
+        let failed = end.outcome.unwrap().failure();
+        assert!(failed.is_some_and(|class| class >= FailureClass::PlugMissed.number()), "{end:?}");
+        assert_eq!(driven.step(down), end, "nothing moves once it has ended");
+    }
+}

@@ -1,0 +1,303 @@
+//! The scene of a trial: robot flange, jaws, fingers, plug, socket.
+//!
+//! Frames: the world is the task frame. The flange frame is the TCP. The plug
+//! stands upright at its pick-up place, straight above the start of the search.
+
+use crate::arm::Reduced;
+use crate::finger::{self, Finger};
+use crate::robot::{Flange, Mounted, Servo};
+use crate::task::{Latch, PadTorsion, Part, Task, geometry};
+use contact::scene::{
+    Body, BodyId, Friction, Geom, Inertia, Joint, JointAxis, JointId, Motion, Pose, Scene, Shape,
+    Spring, Springs, Torsion,
+};
+use input::units::MM;
+use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
+
+/// Height of the pick-up pose above the start pose, m.
+const PICK_UP_HEIGHT: f64 = 10.0 * MM;
+/// Gap between each pad and the plug before the grasp, m.
+const OPENING: f64 = 0.5 * MM;
+/// Mass of a jaw, kg.
+const JAW_MASS: f64 = 0.05;
+/// Gain of the jaw's position servo, N/m (paper, Table "Simulation Inputs").
+const JAW_GAIN: f64 = 1000.0;
+/// Damping of the jaw's servo, N s/m: two jaws of 50 g close without a bounce.
+const JAW_DAMPING: f64 = 30.0;
+/// Speed at which a jaw's target closes, m/s.
+const CLOSING_SPEED: f64 = 0.1;
+/// Farthest target, m: the softest finger's deflection and the servo's own.
+const CLOSING_STROKE: f64 = 0.02;
+/// Damping of a latch, as a share of critical: it snaps, and is at rest before the next move.
+const LATCH_DAMPING: f64 = 0.1;
+/// A held jaw does not give: a non-backdrivable gear, N/m.
+const HOLD_GAIN: f64 = 1e7;
+
+/// A scene and the handles that a trial needs.
+#[derive(Debug, Clone)]
+pub struct WorkCell {
+    /// The scene.
+    pub scene: Scene,
+    /// The body that is commanded: the flange itself, or its servo's target.
+    pub command: BodyId,
+    /// The flange.
+    pub flange: BodyId,
+    /// The hand at -y and the hand at +y.
+    pub hands: [Hand; 2],
+    /// The plug, but for its latch.
+    pub plug: BodyId,
+    /// The plug's latch, if it has one that springs.
+    pub latch: Option<BodyId>,
+    /// The socket.
+    pub socket: BodyId,
+    /// What the plug stands on until it is grasped.
+    pub stand: BodyId,
+}
+
+/// One jaw with its finger.
+#[derive(Debug, Clone, Copy)]
+pub struct Hand {
+    /// The jaw.
+    pub jaw: BodyId,
+    /// The finger.
+    pub finger: BodyId,
+    /// The jaw's slide; axis 1 (y) is the servo.
+    pub slide: JointId,
+    /// Position of the slide's zero on the flange, m.
+    pub zero_y: f64,
+}
+
+/// Builds the scene for one pair of fingers; the jaws are open.
+pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
+    let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -9.81), ..Scene::default() };
+    let [x, y, z] = task.strategy.start;
+    let tcp = Pose::translation(x, y, z + PICK_UP_HEIGHT);
+    let plug_pose = tcp * Pose::translation(0.0, 0.0, -task.grip.tcp_z);
+    let (command, flange) = flange(&mut scene, &robot.flange, tcp);
+    let plug = scene.body(plug_body(task, plug_pose));
+    let socket = scene.body(Body {
+        name: "socket".into(),
+        motion: Motion::Fixed,
+        pose: Pose::identity(),
+        geoms: task.socket.iter().map(Part::geom).collect(),
+    });
+    let stand = scene.body(stand_body(task, plug_pose));
+    let hands = [-1.0, 1.0].map(|side| hand(&mut scene, task, finger, flange, tcp, side));
+    let latch = task.plug.latch.as_ref().map(|latch| sprung(&mut scene, task, latch, plug));
+    let hard = Friction::hard(task.friction.plug_socket);
+    scene.contact(plug, socket, hard);
+    scene.contact(plug, stand, hard);
+    if let Some(latch) = latch {
+        scene.contact(latch, socket, hard);
+    }
+    let soft = pad_friction(task);
+    for hand in &hands {
+        scene.contact(hand.finger, plug, soft);
+    }
+    WorkCell { command, flange, hands, plug, latch, socket, stand, scene }
+}
+
+/// The servo setting of a jaw that has been closing for `time` seconds; `side`
+/// is 0 for the jaw at -y. The target runs ahead into the part until the servo
+/// is at its limit; a jump there would let the jaw run into its stop.
+pub fn closing(side: usize, force: f64, time: f64) -> Spring {
+    let inward = if side == 0 { 1.0 } else { -1.0 };
+    let target = inward * (time * CLOSING_SPEED).min(CLOSING_STROKE);
+    Spring { stiffness: JAW_GAIN, damping: JAW_DAMPING, target, limit: force }
+}
+
+/// The servo setting that holds a jaw where it is.
+pub fn holding(position: f64) -> Spring {
+    Spring { stiffness: HOLD_GAIN, damping: 1e4, target: position, limit: f64::INFINITY }
+}
+
+/// The commanded body, and the flange that follows it (the same if it does so exactly).
+pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) {
+    let command = scene.body(Body {
+        name: "command".into(),
+        motion: Motion::Driven,
+        pose: tcp,
+        geoms: Vec::new(),
+    });
+    let (motion, springs) = match model {
+        Flange::Ideal => return (command, command),
+        Flange::Servo(servo) => servo_flange(servo),
+        Flange::Reduced(arm) => (Motion::Mechanism(arm.mass), Springs::Coupled(arm.servo())),
+    };
+    let flange = scene.body(Body { name: "flange".into(), motion, pose: tcp, geoms: Vec::new() });
+    scene.joint(Joint {
+        name: "servo".into(),
+        parent: command,
+        child: flange,
+        in_parent: Pose::identity(),
+        in_child: Pose::identity(),
+        springs,
+    });
+    if let Flange::Reduced(arm) = model {
+        brake(scene, arm, flange, tcp);
+    }
+    (command, flange)
+}
+
+/// What damps the flange's speed, if not that of its error: a damper to the world,
+/// whose axes are the tilted TCP's.
+fn brake(scene: &mut Scene, arm: &Reduced, flange: BodyId, tcp: Pose) {
+    let Some(damper) = arm.brake() else { return };
+    let base = scene.body(Body {
+        name: "base".into(),
+        motion: Motion::Fixed,
+        pose: tcp,
+        geoms: Vec::new(),
+    });
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
+    scene.joint(Joint {
+        name: "brake".into(),
+        parent: base,
+        child: flange,
+        in_parent: Pose::from_parts(Translation3::identity(), tilt),
+        in_child: Pose::identity(),
+        springs: Springs::Coupled(damper),
+    });
+}
+
+fn servo_flange(servo: &Servo) -> (Motion, Springs) {
+    let inertia = Inertia {
+        mass: servo.mass,
+        centre: Point3::origin(),
+        moments: Vector3::repeat(servo.inertia),
+    };
+    let critical = |k: f64, m: f64| 2.0 * servo.damping_ratio * (k * m).sqrt();
+    let axis = |i: usize| {
+        let (k, m) = if i < 3 {
+            (servo.stiffness[i], servo.mass)
+        } else {
+            (servo.rotational_stiffness[i - 3], servo.inertia)
+        };
+        JointAxis::Sprung(Spring::new(k, critical(k, m)))
+    };
+    (Motion::Carried(inertia), Springs::Axes(std::array::from_fn(axis)))
+}
+
+/// Friction of a finger's soft pad on the plug.
+fn pad_friction(task: &Task) -> Friction {
+    let coefficient = task.friction.finger_plug;
+    let torsion = match task.friction.finger_torsion {
+        PadTorsion::Patch => Torsion::Patch,
+        PadTorsion::Points(moment) if coefficient > 0.0 => Torsion::Radius(moment / coefficient),
+        // Without friction there is no torsional friction, whatever its radius.
+        PadTorsion::Points(_) => Torsion::Radius(0.0),
+    };
+    Friction { coefficient, torsion }
+}
+
+fn plug_body(task: &Task, pose: Pose) -> Body {
+    let mass = task.plug.mass - latch_mass(task);
+    Body {
+        name: "plug".into(),
+        motion: Motion::Free(geometry::inertia(task.plug.rigid(), mass)),
+        pose,
+        geoms: task.plug.rigid().map(Part::geom).collect(),
+    }
+}
+
+/// The latch's share of the plug's mass, kg.
+fn latch_mass(task: &Task) -> f64 {
+    let volume = |part: &Part| geometry::volume(&part.solid);
+    let sprung: f64 = task.plug.sprung().map(volume).sum();
+    task.plug.mass * (sprung / task.plug.parts.iter().map(volume).sum::<f64>())
+}
+
+/// The latch on its hinge: a body of its own, whose frame is the plug's until it is bent.
+fn sprung(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId {
+    let inertia = geometry::inertia(task.plug.sprung(), latch_mass(task));
+    let pose = scene.bodies[plug.0].pose;
+    let body = scene.body(Body {
+        name: "latch".into(),
+        motion: Motion::Free(inertia),
+        pose,
+        geoms: task.plug.sprung().map(Part::geom).collect(),
+    });
+    let mut arm = inertia.centre - latch.hinge;
+    arm[latch.axis] = 0.0;
+    let about_hinge = inertia.moments[latch.axis] + inertia.mass * arm.norm_squared();
+    let damping = 2.0 * LATCH_DAMPING * (latch.stiffness * about_hinge).sqrt();
+    let mut axes = [JointAxis::Locked; 6];
+    axes[3 + latch.axis] = JointAxis::Sprung(Spring::new(latch.stiffness, damping));
+    let hinge = Pose::from_parts(Translation3::from(latch.hinge.coords), nalgebra::one());
+    scene.joint(Joint {
+        name: "hinge of the latch".into(),
+        parent: plug,
+        child: body,
+        in_parent: hinge,
+        in_child: hinge,
+        springs: Springs::Axes(axes),
+    });
+    body
+}
+
+fn stand_body(task: &Task, plug: Pose) -> Body {
+    let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
+    let bottom = corners.map(|p| p.z).fold(f64::INFINITY, f64::min);
+    let half = Vector3::new(20.0, 20.0, 1.0) * MM;
+    let pose = plug * Pose::translation(0.0, 0.0, bottom - half.z);
+    let geom = Geom {
+        name: "stand".into(),
+        shape: Shape::Box { half },
+        pose: Pose::identity(),
+        friction: None,
+    };
+    Body { name: "stand".into(), motion: Motion::Fixed, pose, geoms: vec![geom] }
+}
+
+/// A jaw on its slide and a finger on its six springs; `side` is -1 or +1.
+fn hand(
+    scene: &mut Scene,
+    task: &Task,
+    finger: &Finger,
+    flange: BodyId,
+    tcp: Pose,
+    side: f64,
+) -> Hand {
+    let label = if side < 0.0 { "-y" } else { "+y" };
+    let face = if side < 0.0 { task.grip.faces_y[0] } else { task.grip.faces_y[1] };
+    // Jaw and finger frames lie on the pad's surface at the height of the TCP.
+    let zero_y = face + side * OPENING;
+    let in_flange = Pose::translation(0.0, zero_y, 0.0);
+    let jaw = scene.body(Body {
+        name: format!("jaw {label}"),
+        motion: Motion::Carried(Inertia {
+            mass: JAW_MASS,
+            centre: Point3::origin(),
+            moments: Vector3::repeat(1e-4),
+        }),
+        pose: tcp * in_flange,
+        geoms: Vec::new(),
+    });
+    let mut axes = [JointAxis::Locked; 6];
+    axes[1] =
+        JointAxis::Sprung(Spring { limit: task.grip.force, ..Spring::new(JAW_GAIN, JAW_DAMPING) });
+    let slide = scene.joint(Joint {
+        name: format!("slide {label}"),
+        parent: flange,
+        child: jaw,
+        in_parent: in_flange,
+        in_child: Pose::identity(),
+        springs: Springs::Axes(axes),
+    });
+    let body = scene.body(Body {
+        name: format!("finger {label}"),
+        motion: Motion::Free(finger::inertia(finger, side)),
+        pose: tcp * in_flange,
+        geoms: finger.pad.geoms(task.grip.shoulder(), side),
+    });
+    let rcc = Pose::from_parts(Translation3::from(finger.centre(side).coords), nalgebra::one());
+    scene.joint(Joint {
+        name: format!("springs {label}"),
+        parent: jaw,
+        child: body,
+        in_parent: rcc,
+        in_child: rcc,
+        springs: finger.mounted(side),
+    });
+    Hand { jaw, finger: body, slide, zero_y }
+}

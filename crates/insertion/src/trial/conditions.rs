@@ -1,0 +1,194 @@
+//! What may differ between two trials of the same finger at the same offset.
+
+use super::cell::WorkCell;
+use crate::finger::{Pad, ROOF_GAP};
+use crate::task::{PadTorsion, Part, Solid, Task};
+use contact::scene::Pose;
+
+/// Deviations of the world from the task file; SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conditions {
+    /// Turn of the socket about z through the middle of its opening, rad.
+    pub yaw: f64,
+    /// Factor on the friction finger-plug.
+    pub friction_finger: f64,
+    /// Factor on the friction plug-socket.
+    pub friction_socket: f64,
+    /// Added to the width of the opening in x and in y, m.
+    pub clearance: f64,
+    /// Displacement of the part in the gripper along x, m.
+    pub grasp_across: f64,
+    /// How much lower than meant the part sits in the gripper, m: a gap
+    /// between its shoulder and the roof of the notch.
+    pub grasp_low: f64,
+}
+
+impl Conditions {
+    /// The world as the task file says.
+    pub const NOMINAL: Conditions = Conditions {
+        yaw: 0.0,
+        friction_finger: 1.0,
+        friction_socket: 1.0,
+        clearance: 0.0,
+        grasp_across: 0.0,
+        grasp_low: 0.0,
+    };
+
+    /// The task under these conditions; the grasp and the yaw are not part of it.
+    pub fn task(&self, nominal: &Task) -> Task {
+        let mut task = nominal.clone();
+        task.friction.finger_plug *= self.friction_finger;
+        if let PadTorsion::Points(moment) = &mut task.friction.finger_torsion {
+            *moment *= self.friction_finger;
+        }
+        task.friction.plug_socket *= self.friction_socket;
+        // What the pads press keeps its own: that is friction of the finger.
+        let pads = task.grip.shoulder_z + ROOF_GAP - Pad::PAPER.height;
+        let below = |part: &&mut Part| part.solid.corners().iter().all(|corner| corner.z < pads);
+        for part in task.plug.parts.iter_mut().filter(below).chain(&mut task.socket) {
+            part.friction = part.friction.map(|mu| mu * self.friction_socket);
+        }
+        let half = self.clearance / 2.0;
+        for part in &mut task.socket {
+            let [x, y] = nominal.opening.map(|[from, to]| (from + to) / 2.0);
+            let outward = |axis, middle| half * side(part, axis, middle);
+            let by = [outward(0, x), outward(1, y)];
+            part.solid.shift(by);
+        }
+        for [from, to] in &mut task.opening {
+            (*from, *to) = (*from - half, *to + half);
+        }
+        task
+    }
+
+    /// Moves the part, and what it stands on, to where these conditions put it in the gripper.
+    pub fn displace(&self, cell: &mut WorkCell) {
+        let by = Pose::translation(self.grasp_across, 0.0, -self.grasp_low);
+        for body in [cell.plug, cell.stand].into_iter().chain(cell.latch) {
+            let pose = &mut cell.scene.bodies[body.0].pose;
+            *pose = by * *pose;
+        }
+    }
+}
+
+/// On which side of the middle of the opening a part lies: -1, +1, or 0 if it lies across.
+fn side(part: &Part, axis: usize, middle: f64) -> f64 {
+    let corners = part.solid.corners();
+    let along = || corners.iter().map(|corner| corner[axis]);
+    if along().all(|at| at >= middle) {
+        1.0
+    } else if along().all(|at| at <= middle) {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+impl Solid {
+    /// Moves the solid by x and y, m.
+    fn shift(&mut self, [x, y]: [f64; 2]) {
+        match self {
+            Solid::Box { min, max } => {
+                for corner in [min, max] {
+                    corner.x += x;
+                    corner.y += y;
+                }
+            }
+            Solid::Cylinder { centre, .. } => *centre = [centre[0] + x, centre[1] + y],
+            Solid::Hull { points } => {
+                for corner in points {
+                    corner.x += x;
+                    corner.y += y;
+                }
+            }
+            Solid::Prism { axis, outline, span } => {
+                // The outline's two axes, in the order x, y, z.
+                let (along, first, second) = match axis {
+                    0 => (x, y, 0.0),
+                    1 => (y, x, 0.0),
+                    _ => (0.0, x, y),
+                };
+                *span = span.map(|at| at + along);
+                for corner in outline {
+                    *corner = [corner[0] + first, corner[1] + second];
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use input::shipped::TASKS;
+    use input::units::MM;
+
+    fn tasks() -> Vec<Task> {
+        TASKS.iter().map(|file| Task::parse(file.text, file.file).unwrap()).collect()
+    }
+
+    #[test]
+    fn nominal_conditions_change_nothing() {
+        for task in tasks() {
+            assert_eq!(Conditions::NOMINAL.task(&task), task);
+        }
+    }
+
+    /// Free width of the socket along an axis through the middle of its opening, at the top.
+    fn width(task: &Task, axis: usize) -> f64 {
+        let other = 1 - axis;
+        let [from, to] = task.opening[other];
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for part in &task.socket {
+            let corners = part.solid.corners();
+            let span = |axis: usize| {
+                let along = corners.iter().map(|corner| corner[axis]);
+                (
+                    along.clone().fold(f64::INFINITY, f64::min),
+                    along.fold(f64::NEG_INFINITY, f64::max),
+                )
+            };
+            let (a, b) = span(other);
+            let at_top = span(2).1 > -0.1 * MM;
+            let beside = a < (from + to) / 2.0 && (from + to) / 2.0 < b;
+            let middle = (task.opening[axis][0] + task.opening[axis][1]) / 2.0;
+            if at_top && beside {
+                let (a, b) = span(axis);
+                if b <= middle {
+                    low = low.max(b);
+                } else if a >= middle {
+                    high = high.min(a);
+                }
+            }
+        }
+        high - low
+    }
+
+    #[test]
+    fn clearance_widens_every_opening_by_itself() {
+        let wider = Conditions { clearance: 0.1 * MM, ..Conditions::NOMINAL };
+        for task in tasks() {
+            let changed = wider.task(&task);
+            for axis in [0, 1] {
+                let grown = width(&changed, axis) - width(&task, axis);
+                assert!((grown / MM - 0.1).abs() < 1e-9, "{} axis {axis}: {grown}", task.name);
+            }
+        }
+    }
+
+    #[test]
+    fn friction_scales_the_latch_and_its_guides_too() {
+        let slippery = Conditions { friction_socket: 0.5, ..Conditions::NOMINAL };
+        let rj45 = tasks().into_iter().find(|task| task.name == "rj45").unwrap();
+        let of = |task: &Task| -> Vec<f64> {
+            let parts = task.plug.parts.iter().chain(&task.socket);
+            let own = parts.filter_map(|part| part.friction);
+            own.chain([task.friction.plug_socket]).collect()
+        };
+        let (before, after) = (of(&rj45), of(&slippery.task(&rj45)));
+        assert!(before.len() > 1);
+        for (before, after) in before.into_iter().zip(after) {
+            assert!((after - before / 2.0).abs() < 1e-15);
+        }
+    }
+}

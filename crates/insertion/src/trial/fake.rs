@@ -1,0 +1,94 @@
+//! A rig with a closed-form window, for tests of everything above the trial.
+//!
+//! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm, with
+//! `k` and `a` the compliance and assembly stiffness in N/mm and `r` the distance of the
+//! remote centre in mm; it jams below and misses above.
+//! Conditions narrow it: friction divides the lower end, yaw takes 1 mm a degree off
+//! both ends, what sits low in the gripper its own height off both; clearance is added.
+
+use super::{Conditions, Grasped, Rig, Trial};
+use crate::finger::Finger;
+use crate::outcome::{FailureClass, Outcome};
+use input::units::{DEG, MM, N_PER_MM};
+use std::sync::atomic::AtomicBool;
+
+/// The rig with the closed-form window.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FakeRig {
+    /// Real time each trial takes, for tests that interrupt a study.
+    pub delay: std::time::Duration,
+}
+
+/// Microseconds each trial takes, for tests that interrupt a study.
+const DELAY: &str = "FINGER_OPT_FAKE_DELAY_US";
+
+impl FakeRig {
+    /// With the delay that the environment asks for.
+    pub fn from_environment() -> Self {
+        let delay = std::env::var(DELAY).ok().and_then(|text| text.parse().ok());
+        FakeRig { delay: std::time::Duration::from_micros(delay.unwrap_or(0)) }
+    }
+}
+
+impl Rig for FakeRig {
+    fn grasp_until<'a>(
+        &'a self,
+        finger: &Finger,
+        conditions: &Conditions,
+        _stop: &'a AtomicBool,
+    ) -> Box<dyn Grasped + 'a> {
+        let (low, high) = window_in_mm(finger, conditions);
+        Box::new(FakeGrasp { low, high, delay: self.delay })
+    }
+}
+
+/// The window's ends in mm: `(most negative, most positive)` inserting offset.
+pub fn window_mm(finger: &Finger) -> (f64, f64) {
+    window_in_mm(finger, &Conditions::NOMINAL)
+}
+
+/// The same under these conditions.
+pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
+    let compliance = finger.compliance / N_PER_MM;
+    let assembly = finger.assembly / N_PER_MM;
+    let rcc = finger.rcc / MM;
+    let less = conditions.yaw.abs() / DEG + conditions.grasp_low / MM - conditions.clearance / MM;
+    let nanometres = |mm: f64| (mm * 1e6).round() / 1e6;
+    let low = -(2.0 + 4.0 / compliance) / conditions.friction_socket;
+    let high = 1.0 + assembly / 50.0 + (21.0 - rcc) / 10.0;
+    (nanometres(low + less), nanometres(high - less))
+}
+
+struct FakeGrasp {
+    low: f64,
+    high: f64,
+    delay: std::time::Duration,
+}
+
+impl Grasped for FakeGrasp {
+    fn trial(&self, offset: f64) -> Trial {
+        std::thread::sleep(self.delay);
+        // Whole nanometres: a shift of 14 steps is 1.4 mm, not 1.4000000000000001.
+        let offset_mm = (offset / MM * 1e6).round() / 1e6;
+        let outcome = if offset_mm < self.low {
+            Outcome::Failed(FailureClass::Jammed)
+        } else if offset_mm > self.high {
+            Outcome::Failed(FailureClass::PlugMissed)
+        } else {
+            Outcome::Inserted
+        };
+        // Distance in mm to the nearer end.
+        let margin = (offset_mm - self.low).min(self.high - offset_mm).clamp(-1.0, 1.0);
+        Trial {
+            outcome,
+            margin,
+            depth_mm: if outcome == Outcome::Inserted { 12.0 } else { 0.0 },
+            tilt_deg: 0.0,
+            peak_force_n: 5.0 + offset_mm.abs(),
+            slip_mm: 0.1,
+            phases: Vec::new(),
+            simulated_s: 1.0,
+            retried: false,
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! One simulated insertion attempt, and where attempts are made.
+
+use crate::finger::Finger;
+use crate::outcome::Outcome;
+use contact::ContactPoint;
+use contact::scene::Pose;
+use serde::Serialize;
+use std::sync::atomic::AtomicBool;
+
+mod attempt;
+pub mod cell;
+pub mod classify;
+pub mod conditions;
+pub mod engine;
+#[cfg(any(test, feature = "fake-engine"))]
+pub mod fake;
+mod leading;
+pub mod motion;
+pub mod picture;
+pub mod record;
+pub mod run;
+mod trace;
+mod watch;
+
+pub use attempt::driven::{Driven, State};
+pub use conditions::Conditions;
+pub use record::Recording;
+pub use trace::Sample;
+
+/// State at the end of one phase of a trial.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PhaseEnd {
+    /// Phase name as in the task file.
+    pub name: String,
+    /// Simulated time since the trial began, s.
+    pub time_s: f64,
+    /// Tip of the plug in the task frame (x, y, z), mm.
+    pub tip_mm: [f64; 3],
+    /// Angle between the plug's axis and z, degrees.
+    pub tilt_deg: f64,
+    /// Slip of the part in the grasp since the grasp, mm.
+    pub slip_mm: f64,
+    /// Largest contact force plug-socket during the phase, N.
+    pub peak_force_n: f64,
+    /// Where the bodies are, task frame, m; for pictures.
+    #[serde(skip)]
+    pub poses: Poses,
+    /// Points at which the socket presses the plug, task frame; for pictures.
+    #[serde(skip)]
+    pub contacts: Vec<ContactPoint>,
+}
+
+/// Where plug and fingers are, task frame, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Poses {
+    /// The plug.
+    pub plug: Pose,
+    /// Its latch, if that springs.
+    pub latch: Option<Pose>,
+    /// The finger at -y and the finger at +y.
+    pub fingers: [Pose; 2],
+}
+
+/// What one trial measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trial {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// How clearly, from -1 to 1: what it has beyond the success criterion that it meets
+    /// least, as a share of that criterion; below 0 if it failed, 0 if it diverged.
+    pub margin: f64,
+    /// Depth of the plug's tip below the socket's top at the end, mm.
+    pub depth_mm: f64,
+    /// Angle between the plug's axis and z at the end, degrees.
+    pub tilt_deg: f64,
+    /// Largest contact force between plug and socket, N.
+    pub peak_force_n: f64,
+    /// Slip of the part in the grasp since the grasp, at the end, mm.
+    pub slip_mm: f64,
+    /// State at the end of each phase that was begun.
+    pub phases: Vec<PhaseEnd>,
+    /// Simulated time, s.
+    pub simulated_s: f64,
+    /// Whether it diverged at first and was run again at half the step.
+    pub retried: bool,
+}
+
+/// The flag of trials that nobody stops.
+pub static NEVER: AtomicBool = AtomicBool::new(false);
+
+/// A place where trials are run: one task, one robot, one engine.
+pub trait Rig: Send + Sync {
+    /// Grasps the part with a pair of such fingers under these conditions; what
+    /// follows does not depend on the offset until the approach, so it is done once.
+    /// Grasp and trials end at once, with a worthless result, when `stop` is set; rigs whose
+    /// trials take no time need not ask.
+    fn grasp_until<'a>(
+        &'a self,
+        finger: &Finger,
+        conditions: &Conditions,
+        stop: &'a AtomicBool,
+    ) -> Box<dyn Grasped + 'a>;
+
+    /// The same for trials that nobody stops.
+    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
+        self.grasp_until(finger, conditions, &NEVER)
+    }
+
+    /// The same in the world as the task file says.
+    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
+        self.grasp_in(finger, &Conditions::NOMINAL)
+    }
+
+    /// The trial of such a pair of fingers with the start shifted by `offset` metres along y, filmed
+    /// from the grasp on; `None` if there is nothing to be seen.
+    fn record(&self, _finger: &Finger, _offset: f64) -> Option<Recording> {
+        None
+    }
+
+    /// The trial of such a pair of fingers whose moves the caller commands; `None` where nothing
+    /// is simulated.
+    fn driven(&self, _finger: &Finger) -> Option<Driven> {
+        None
+    }
+}
+
+/// A part held and tilted, ready for a trial at any offset.
+pub trait Grasped: Send + Sync {
+    /// One trial with the start shifted by `offset` metres along y.
+    fn trial(&self, offset: f64) -> Trial;
+
+    /// The same trial with a sample each `every_s` seconds from the start of the search on;
+    /// none where nothing is simulated.
+    fn traced(&self, offset: f64, _every_s: f64) -> (Trial, Vec<Sample>) {
+        (self.trial(offset), Vec::new())
+    }
+}

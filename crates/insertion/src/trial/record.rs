@@ -1,0 +1,115 @@
+//! A trial as it goes on, for replays: where the bodies are and which forces act, each
+//! millisecond. It only looks: a recorded trial ends as an unrecorded one, bit for bit.
+
+use super::classify::Placement;
+use super::{Poses, Trial};
+use crate::outcome::{FailureClass, Outcome};
+use crate::task::Stage;
+use contact::ContactPoint;
+use contact::scene::Pose;
+use input::units::{DEG, MM};
+use nalgebra::Vector3;
+
+/// Time between two frames, s.
+const INTERVAL: f64 = 1e-3;
+
+/// One moment of a trial; task frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Simulated time since the trial began, s.
+    pub time_s: f64,
+    /// What the robot is about.
+    pub stage: Stage,
+    /// Where plug and fingers are, m.
+    pub poses: Poses,
+    /// Where the jaws are, m: where each finger would be if nothing bent it.
+    pub jaws: [Pose; 2],
+    /// Force of the socket on the plug, filtered as the wrist's sensor does, N.
+    pub force: Vector3<f64>,
+    /// Slip of the part in the grasp since the grasp, m.
+    pub slip: f64,
+    /// Points at which the socket presses the plug.
+    pub contacts: Vec<ContactPoint>,
+    /// Points at which the fingers press the plug.
+    pub grips: Vec<ContactPoint>,
+}
+
+impl Frame {
+    /// Depth of the plug's tip below the socket's top, mm.
+    pub fn depth_mm(&self) -> f64 {
+        -self.poses.plug.translation.z / MM
+    }
+
+    /// Where the latch is: with the plug, if it has none that springs.
+    pub fn latch(&self) -> Pose {
+        self.poses.latch.unwrap_or(self.poses.plug)
+    }
+
+    /// Angle between the plug's axis and z, degrees.
+    pub fn tilt_deg(&self) -> f64 {
+        Placement::new(&self.poses.plug).tilt / DEG
+    }
+
+    /// How far a finger, by its place, is bent from where its jaw would have it, mm; x, y, z of
+    /// the jaw.
+    pub fn deflection_mm(&self, finger: usize) -> [f64; 3] {
+        let bent = self.jaws[finger].inverse() * self.poses.fingers[finger];
+        (bent.translation.vector / MM).into()
+    }
+
+    /// The same seen from another frame.
+    fn seen(&mut self, from: &Pose) {
+        let poses = [&mut self.poses.plug].into_iter().chain(&mut self.poses.latch);
+        for pose in poses.chain(&mut self.poses.fingers).chain(&mut self.jaws) {
+            *pose = from * *pose;
+        }
+        for point in self.contacts.iter_mut().chain(&mut self.grips) {
+            *point = point.seen(from);
+        }
+        self.force = from * self.force;
+    }
+}
+
+/// A trial and its frames.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// What it measured.
+    pub trial: Trial,
+    /// Moments in their order, about a millisecond apart.
+    pub frames: Vec<Frame>,
+    /// When its outcome was decided, s: of a plug that missed at the beginning of the push,
+    /// of every other at the end.
+    pub decided_s: f64,
+}
+
+impl Recording {
+    pub(super) fn new(trial: Trial, frames: Vec<Frame>) -> Self {
+        let push = frames.iter().find(|frame| frame.stage == Stage::Assembly);
+        let missed = trial.outcome == Outcome::Failed(FailureClass::PlugMissed);
+        // Not after the last frame, which may lie before the last step: nobody would see it.
+        let end = frames.last().map_or(trial.simulated_s, |frame| frame.time_s);
+        let decided_s = push.filter(|_| missed).map_or(end, |frame| frame.time_s);
+        Recording { trial, frames, decided_s }
+    }
+}
+
+/// Takes in every so many steps.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Recorder {
+    steps: usize,
+    pub frames: Vec<Frame>,
+}
+
+impl Recorder {
+    /// Whether this step, `step_s` long, is to be taken in.
+    pub fn wants(&mut self, step_s: f64) -> bool {
+        let every = ((INTERVAL / step_s).round() as usize).max(1);
+        self.steps += 1;
+        self.steps.is_multiple_of(every)
+    }
+
+    /// What was seen so far, seen from another frame.
+    pub fn seen(&mut self, from: &Pose) {
+        self.frames.iter_mut().for_each(|frame| frame.seen(from));
+    }
+}

@@ -1,0 +1,367 @@
+//! A trial in a contact engine: where it is run, and what happens if it diverges.
+
+use super::attempt::driven::Driven;
+use super::attempt::{Attempt, Stop};
+use super::record::{Frame, Recorder};
+use super::trace::{Sample, Trace};
+use super::{Conditions, Grasped, NEVER, Recording, Rig, Trial, cell};
+use crate::arm::ArmError;
+use crate::finger::Finger;
+use crate::outcome::Outcome;
+use crate::robot::{Mounted, Robot};
+use crate::task::{Phase, Stage, Task};
+use contact::{Engine, Unsupported};
+use input::units::N_PER_MM;
+use nalgebra::Vector3;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, OnceLock};
+
+/// A task, a robot in place for it, and an engine that can simulate both.
+pub struct EngineRig {
+    /// The task.
+    pub task: Task,
+    robot: Arc<Mounted>,
+    engine: Box<dyn Engine>,
+}
+
+/// Why a task, a robot and an engine do not go together.
+#[derive(Debug, thiserror::Error)]
+pub enum RigError {
+    /// The robot cannot do the task.
+    #[error("the robot `{robot}` on the task `{task}`: {error}")]
+    Robot {
+        /// Name of the robot.
+        robot: String,
+        /// Name of the task.
+        task: String,
+        /// What its arm lacks.
+        error: ArmError,
+    },
+    /// A trial would not end in time.
+    #[error("the robot `{robot}` on the task `{task}`: {problem}")]
+    TooLong {
+        /// Name of the robot.
+        robot: String,
+        /// Name of the task.
+        task: String,
+        /// Which phase takes how long.
+        problem: String,
+    },
+    /// The engine cannot simulate the two.
+    #[error(transparent)]
+    Engine(#[from] Unsupported),
+}
+
+impl EngineRig {
+    /// Puts the robot in place; for fingers as in the paper, whose springs are not coupled
+    /// unless the task says so.
+    pub fn new(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<Self, RigError> {
+        // What a scene needs does not depend on how stiff its fingers are.
+        let any = Finger::new(N_PER_MM, N_PER_MM).shaped(&task.finger, 0.0);
+        Self::with(task, robot, &any, engine)
+    }
+
+    /// The same for such fingers.
+    pub fn with(
+        task: Task,
+        robot: &Robot,
+        finger: &Finger,
+        engine: Box<dyn Engine>,
+    ) -> Result<Self, RigError> {
+        let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(|error| {
+            RigError::Robot { robot: robot.name.clone(), task: task.name.clone(), error }
+        })?;
+        let lead = |phase: &Phase| match Vector3::from(phase.displacement).try_normalize(0.0) {
+            Some(along) if phase.stage == Stage::Assembly => mounted.lead(&along).abs(),
+            _ => 0.0,
+        };
+        if let Some(problem) = task.strategy.too_long(lead, mounted.settling()) {
+            let (robot, task) = (robot.name.clone(), task.name.clone());
+            return Err(RigError::TooLong { robot, task, problem });
+        }
+        engine.supports(&cell::build(&task, &mounted, finger).scene)?;
+        Ok(EngineRig { task, robot: Arc::new(mounted), engine })
+    }
+
+    /// Grasps, carries and approaches.
+    fn prepare<'a>(
+        &self,
+        engine: &dyn Engine,
+        finger: &Finger,
+        conditions: &Conditions,
+        recorder: Option<Recorder>,
+        stop: &'a AtomicBool,
+    ) -> Prepared<'a> {
+        let task = Arc::new(conditions.task(&self.task));
+        let mut cell = cell::build(&task, &self.robot, finger);
+        conditions.displace(&mut cell);
+        let world = engine.world(&cell.scene);
+        let mut attempt = Attempt::new(Arc::clone(&self.robot), task, cell, world, stop);
+        attempt.yaw = conditions.yaw;
+        attempt.recorder = recorder;
+        let end = attempt.prepare();
+        Prepared { attempt, end, descended: OnceLock::new() }
+    }
+}
+
+impl Rig for EngineRig {
+    fn grasp_until<'a>(
+        &'a self,
+        finger: &Finger,
+        conditions: &Conditions,
+        stop: &'a AtomicBool,
+    ) -> Box<dyn Grasped + 'a> {
+        Box::new(Ready {
+            rig: self,
+            finger: *finger,
+            conditions: *conditions,
+            prepared: self.prepare(&*self.engine, finger, conditions, None, stop),
+            halved: OnceLock::new(),
+            stop,
+        })
+    }
+
+    fn record(&self, finger: &Finger, offset: f64) -> Option<Recording> {
+        let by = |engine: &dyn Engine| {
+            let filmed = Some(Recorder::default());
+            let prepared = self.prepare(engine, finger, &Conditions::NOMINAL, filmed, &NEVER);
+            let (trial, _, frames) = prepared.watched(offset, None);
+            Recording::new(trial, frames)
+        };
+        let recording = by(&*self.engine);
+        if recording.trial.outcome != Outcome::Diverged {
+            return Some(recording);
+        }
+        let again = by(&*self.engine.halved());
+        Some(Recording { trial: Trial { retried: true, ..again.trial }, ..again })
+    }
+
+    fn driven(&self, finger: &Finger) -> Option<Driven> {
+        let ready = self.prepare(&*self.engine, finger, &Conditions::NOMINAL, None, &NEVER);
+        Some(Driven::new(ready.attempt, ready.end))
+    }
+}
+
+/// An attempt stopped right before the search, and what it takes to begin it again.
+struct Ready<'a> {
+    rig: &'a EngineRig,
+    finger: Finger,
+    conditions: Conditions,
+    prepared: Prepared<'a>,
+    /// The same at half the step, once a trial has diverged.
+    halved: OnceLock<Prepared<'a>>,
+    /// Set when trials are to end at once.
+    stop: &'a AtomicBool,
+}
+
+impl Grasped for Ready<'_> {
+    fn trial(&self, offset: f64) -> Trial {
+        self.run(offset, None).0
+    }
+
+    fn traced(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
+        self.run(offset, Some(every_s))
+    }
+}
+
+impl Ready<'_> {
+    fn run(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+        let (trial, samples) = self.prepared.run(offset, every_s);
+        if trial.outcome != Outcome::Diverged {
+            return (trial, samples);
+        }
+        let again = || {
+            let engine = self.rig.engine.halved();
+            self.rig.prepare(&*engine, &self.finger, &self.conditions, None, self.stop)
+        };
+        let (trial, samples) = self.halved.get_or_init(again).run(offset, every_s);
+        (Trial { retried: true, ..trial }, samples)
+    }
+}
+
+/// An attempt stopped right before the search; every offset starts from a copy.
+struct Prepared<'a> {
+    attempt: Attempt<'a>,
+    /// Whether it came so far.
+    end: Result<(), Stop>,
+    /// The attempt after its way through the air, where that is the same for every offset.
+    descended: OnceLock<Option<Attempt<'a>>>,
+}
+
+impl<'a> Prepared<'a> {
+    fn run(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+        let (trial, samples, _) = self.watched(offset, every_s.map(Trace::new));
+        (trial, samples)
+    }
+
+    /// What every offset may start from, if nobody looks at the way through the air.
+    fn descended(&self) -> Option<&Attempt<'a>> {
+        self.end.ok()?;
+        self.descended.get_or_init(|| self.attempt.descended()).as_ref()
+    }
+
+    /// The trial, and what was asked for on the way: samples from the search on, frames from the
+    /// grasp on if it is filmed.
+    fn watched(&self, offset: f64, trace: Option<Trace>) -> (Trial, Vec<Sample>, Vec<Frame>) {
+        let seen = trace.is_some() || self.attempt.recorder.is_some();
+        let mut attempt =
+            if seen { None } else { self.descended() }.unwrap_or(&self.attempt).shifted(offset);
+        attempt.trace = trace;
+        if let Some(recorder) = &mut attempt.recorder {
+            recorder.seen(&attempt.socket);
+        }
+        let end = self.end.and_then(|()| attempt.search_and_assemble());
+        let samples = attempt.trace.take().map_or_else(Vec::new, |trace| trace.samples);
+        let frames = attempt.recorder.take().map_or_else(Vec::new, |recorder| recorder.frames);
+        (attempt.result(end), samples, frames)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact::World;
+    use contact::direct::{Direct, DirectSettings};
+    use contact::scene::Scene;
+    use input::shipped::{ROBOTS, TASKS};
+
+    /// An engine whose contacts are not numbers until its step has been halved so often.
+    #[derive(Clone, Copy)]
+    struct Fragile {
+        direct: Direct,
+        halvings: u32,
+    }
+
+    impl Engine for Fragile {
+        fn version(&self) -> String {
+            "fragile".to_owned()
+        }
+
+        fn world(&self, scene: &Scene) -> Box<dyn World> {
+            let settings = DirectSettings { contact_stiffness: f64::NAN, ..self.direct.settings };
+            let broken = Direct { settings };
+            if self.halvings == 0 { self.direct.world(scene) } else { broken.world(scene) }
+        }
+
+        fn halved(&self) -> Box<dyn Engine> {
+            let step_s = 0.5 * self.direct.settings.step_s;
+            let settings = DirectSettings { step_s, ..self.direct.settings };
+            Box::new(Fragile { direct: Direct { settings }, halvings: self.halvings - 1 })
+        }
+    }
+
+    fn trial(engine: Box<dyn Engine>) -> Trial {
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+        EngineRig::new(task, &robot, engine).unwrap().grasp(&finger).trial(0.0)
+    }
+
+    #[test]
+    fn a_trial_ends_at_once_when_it_is_to_stop() {
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+        let rig = EngineRig::new(task, &robot, Box::<Direct>::default()).unwrap();
+        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+        let stop = AtomicBool::new(true);
+        let at_once = rig.grasp_until(&finger, &Conditions::NOMINAL, &stop).trial(0.0);
+        assert_eq!((at_once.outcome, at_once.simulated_s), (Outcome::Diverged, 0.0));
+        stop.store(false, std::sync::atomic::Ordering::SeqCst);
+        let grasped = rig.grasp_until(&finger, &Conditions::NOMINAL, &stop);
+        stop.store(true, std::sync::atomic::Ordering::SeqCst);
+        let after_the_grasp = grasped.trial(0.0);
+        assert!(after_the_grasp.simulated_s < 1.5, "nothing but grasp and approach");
+    }
+
+    #[test]
+    fn a_robot_that_takes_too_long_to_follow_is_refused() {
+        let ur5e = ROBOTS.iter().find(|robot| robot.name == "ur5e").unwrap();
+        let slow = ur5e.text.replace("damping_nms_per_rad = ", "damping_nms_per_rad = 1000");
+        let robot = Robot::parse(&slow, ur5e.file).unwrap();
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let error = EngineRig::new(task, &robot, Box::<Direct>::default()).err().unwrap();
+        assert!(error.to_string().contains("it may take 60 s"), "{error}");
+    }
+
+    #[test]
+    fn what_diverges_is_run_once_more_at_half_the_step() {
+        let fragile = |halvings| Box::new(Fragile { direct: Direct::default(), halvings });
+        let sound = trial(fragile(0));
+        assert_eq!((sound.outcome, sound.retried), (Outcome::Inserted, false));
+        let fine = trial(Direct::default().halved());
+        let mended = trial(fragile(1));
+        assert_eq!(mended, Trial { retried: true, ..fine });
+        let lost = trial(fragile(2));
+        assert_eq!((lost.outcome, lost.retried), (Outcome::Diverged, true));
+    }
+
+    #[test]
+    fn samples_change_nothing_and_end_where_the_trial_ends() {
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+        let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
+        let grasped = rig.grasp(&finger);
+        let (trial, samples) = grasped.traced(0.0, 1e-3);
+        assert_eq!(trial, grasped.trial(0.0));
+        let last = samples.last().unwrap();
+        assert!(
+            samples.windows(2).all(|pair| (pair[1].time_s - pair[0].time_s - 1e-3).abs() < 1e-9)
+        );
+        assert!((last.tip_mm[2] + trial.depth_mm).abs() < 1e-2, "{last:?}");
+        assert!((trial.simulated_s - last.time_s) < 2e-3);
+    }
+
+    #[test]
+    fn starts_that_share_the_way_down_are_the_same_trials() {
+        let slow = "speed_mm_per_s = 20.0";
+        assert!(TASKS[3].text.contains(slow));
+        for speed in [slow, "speed_mm_per_s = 2000.0"] {
+            let text = TASKS[3].text.replace(slow, speed);
+            let task = Task::parse(&text, TASKS[3].file).unwrap();
+            let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+            let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+            let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
+            let engine = Direct::default();
+            let ready = rig.prepare(&engine, &finger, &Conditions::NOMINAL, None, &NEVER);
+            assert!(speed != slow || ready.descended().is_some());
+            // A trial with samples goes all the way by itself.
+            for offset in [-2.5e-3, 0.0, 4e-3] {
+                let trial = ready.run(offset, None).0;
+                assert_eq!(trial, ready.run(offset, Some(1e-3)).0, "{speed} at {offset} m");
+            }
+        }
+    }
+
+    #[test]
+    fn a_recorded_trial_is_the_same_trial() {
+        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
+        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
+        let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
+        let recording = rig.record(&finger, 5e-4).unwrap();
+        assert_eq!(recording.trial, rig.grasp(&finger).trial(5e-4));
+        let frames = &recording.frames;
+        let last = frames.last().unwrap();
+        assert!(recording.decided_s <= last.time_s, "an outcome that no frame shows");
+        assert!((last.depth_mm() - recording.trial.depth_mm).abs() < 0.01);
+        // The socket is pushed the way the plug goes, and the points carry the whole force.
+        let pushed = frames.iter().map(|frame| frame.force.norm()).fold(0.0, f64::max);
+        assert!(pushed > 0.9 * recording.trial.peak_force_n, "{pushed}");
+        assert!(
+            frames
+                .iter()
+                .any(|frame| !frame.contacts.is_empty() && frame.contacts[0].force.z > 0.0)
+        );
+        // The grip bends both fingers outward.
+        let held = frames.iter().find(|frame| frame.time_s > 0.29).unwrap();
+        let [left, right] = [0, 1].map(|finger| held.deflection_mm(finger)[1]);
+        assert!(left < -0.1 && right > 0.1, "{left} and {right}");
+        // The shift of the start is the same before and after the robot comes to the socket.
+        let jump = |pair: &[Frame]| {
+            let [a, b] = [&pair[0], &pair[1]].map(|f| f.poses.plug.translation.vector);
+            (a - b).norm()
+        };
+        assert!(frames.windows(2).all(|pair| jump(pair) < 2e-3));
+    }
+}

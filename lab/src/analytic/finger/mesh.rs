@@ -1,0 +1,94 @@
+//! F3: what must not depend on the mesh.
+
+use super::super::{CheckRow, Tolerance};
+use super::{NoFinger, finray9, infill};
+use finray::elasticity::PlaneStress;
+use finray::geometry::Geometry;
+use finray::mechanics::{CROSS_SIZE, SIZE};
+use finray::model::{Body, Follow, Model};
+use finray::plate::MindlinPlate;
+use nalgebra::Matrix3;
+
+/// Designs looked at: density, percent, and direction, degrees.
+const DESIGNS: [[f64; 2]; 4] = [[10.0, 30.0], [20.0, 20.0], [30.0, 0.0], [30.0, 40.0]];
+/// Largest change of an entry, percent of the springs that it couples.
+const CHANGE_PERCENT: f64 = 2.0;
+/// Rounding, as a share of the springs that an entry couples.
+const ROUNDING: f64 = 1e-9;
+
+/// All rows of F3.
+pub fn f3() -> Vec<CheckRow> {
+    let found: Vec<_> = DESIGNS.iter().map(|&design| (design, Halved::new(design).ok())).collect();
+    let row = |text: String, measured: Option<f64>, unit, allowed| {
+        CheckRow::new(("F3", text), 0.0, measured.ok_or(()), unit, Tolerance::Absolute(allowed))
+    };
+    let changes = found.iter().map(|([density, direction], halved)| {
+        let text = format!("half the mesh, {density} %, {direction} deg");
+        let change = halved.as_ref().map(|halved| 100.0 * halved.change());
+        row(text, change, "%", CHANGE_PERCENT)
+    });
+    let mut rows: Vec<CheckRow> = changes.collect();
+    let all: Option<Vec<_>> =
+        found.iter().map(|(_, halved)| Some(halved.as_ref()?.coarse)).collect();
+    let all = all.map(|designs| designs.concat());
+    let asymmetry = |all: &Vec<Matrix3<f64>>| {
+        all.iter().map(|matrix| difference(matrix, &matrix.transpose())).fold(0.0, f64::max)
+    };
+    let indefinite = |all: &Vec<Matrix3<f64>>| {
+        all.iter().filter(|matrix| matrix.cholesky().is_none()).count() as f64
+    };
+    let text = "stiffness matrices, most asymmetric entry".to_owned();
+    rows.push(row(text, all.as_ref().map(asymmetry), "-", ROUNDING));
+    let text = "stiffness matrices not positive definite".to_owned();
+    rows.push(row(text, all.as_ref().map(indefinite), "-", 0.0));
+    rows
+}
+
+/// The matrices of a design (pad; pad and roof; across the plane) on both meshes.
+struct Halved {
+    coarse: [Matrix3<f64>; 3],
+    fine: [Matrix3<f64>; 3],
+}
+
+impl Halved {
+    fn new(design: [f64; 2]) -> Result<Self, NoFinger> {
+        let geometry = infill(&finray9()?, design)?;
+        Ok(Halved { coarse: matrices(&geometry, 1.0)?, fine: matrices(&geometry, 0.5)? })
+    }
+
+    fn change(&self) -> f64 {
+        let pairs = self.coarse.iter().zip(&self.fine);
+        pairs.map(|(coarse, fine)| difference(coarse, fine)).fold(0.0, f64::max)
+    }
+}
+
+/// As they come out, before they are made exactly symmetric.
+fn matrices(geometry: &Geometry, factor: f64) -> Result<[Matrix3<f64>; 3], NoFinger> {
+    let plane = PlaneStress::of(&geometry.finger);
+    let plate = MindlinPlate::of(&geometry.finger);
+    let [pad, both] = held(geometry, &plane, SIZE * factor, [Body::Pad, Body::PadAndRoof])?;
+    let [across] = held(geometry, &plate, CROSS_SIZE * factor, [Body::Pad])?;
+    Ok([pad, both, across])
+}
+
+fn held<E: Follow, const N: usize>(
+    geometry: &Geometry,
+    element: &E,
+    size: f64,
+    bodies: [Body; N],
+) -> Result<[Matrix3<f64>; N], NoFinger> {
+    let fails = |_| NoFinger::None;
+    let model = Model::new(geometry, size).map_err(|_| NoFinger::None)?;
+    let condensed = model.condense(element, false).map_err(fails)?;
+    let mut found = [Matrix3::zeros(); N];
+    for (matrix, body) in found.iter_mut().zip(bodies) {
+        *matrix = model.hold(&condensed, element, body).map_err(fails)?.stiffness;
+    }
+    Ok(found)
+}
+
+/// Largest difference of two matrices, by the springs that the entry couples.
+fn difference(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
+    let entry = |(i, j)| (a[(i, j)] - b[(i, j)]).abs() / (b[(i, i)] * b[(j, j)]).sqrt();
+    (0..9).map(|n| entry((n / 3, n % 3))).fold(0.0, f64::max)
+}

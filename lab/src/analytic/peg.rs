@@ -1,0 +1,212 @@
+//! T3 and T10: a peg in two-point contact with a hole.
+//!
+//! The peg is tilted by t about x: a corner of its tip touches the wall at +y,
+//! its flank rests on the rim at -y. With the width d of the peg, D of the hole
+//! and l the length of the peg below the rim (Whitney 1982, J. Dyn. Sys. Meas.
+//! Control 104:65, from the geometry): D = d cos t + l sin t.
+//!
+//! The frame of the peg lies in the middle of its tip, its z axis along the
+//! peg; the hole's rim lies in the plane z = 0.
+
+use super::build::{self, Wrench};
+use super::{CheckRow, Tolerance};
+use contact::scene::{Body, BodyId, Friction, Motion, Pose, Scene};
+use contact::{Diverged, Engine, World};
+use input::units::{GRAM, MM};
+use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
+
+/// Length of a peg, m: that of a connector.
+const LENGTH: f64 = 20.0 * MM;
+/// Width of a peg in x, m.
+const DEPTH: f64 = 8.0 * MM;
+/// Thickness of the walls, m.
+const WALL: f64 = 10.0 * MM;
+
+/// A peg in a hole that is open along x.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Peg {
+    /// Width d of the peg, m.
+    pub width: f64,
+    /// Width D of the hole, m.
+    pub hole: f64,
+    /// Length l of the peg below the rim, m.
+    pub inside: f64,
+    /// Between peg and walls.
+    pub friction: f64,
+    /// kg.
+    pub mass: f64,
+}
+
+/// The peg of the facts' cases T3 and T4.
+pub(super) const REFERENCE: Peg =
+    Peg { width: 12.0 * MM, hole: 12.1 * MM, inside: 8.0 * MM, friction: 0.3, mass: 20.0 * GRAM };
+
+impl Peg {
+    /// Tilt in two-point contact, rad: the formula above, solved for t with the
+    /// angle and the length of the diagonal from the tip's corner to the rim.
+    pub fn tilt(&self) -> f64 {
+        let diagonal = self.width.hypot(self.inside);
+        self.inside.atan2(self.width) - (self.hole / diagonal).acos()
+    }
+
+    /// Pose in two-point contact.
+    pub fn tilted(&self) -> Pose {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), self.tilt());
+        // The tip's corner at +y lies on the wall, the rim's point on the flank at z = 0.
+        let corner = turn * Vector3::new(0.0, self.width / 2.0, 0.0);
+        let rim = turn * Vector3::new(0.0, -self.width / 2.0, self.inside);
+        Pose::from_parts(Translation3::new(0.0, self.hole / 2.0 - corner.y, -rim.z), turn)
+    }
+
+    /// Pose upright in the middle of the hole.
+    pub fn upright(&self) -> Pose {
+        Pose::translation(0.0, 0.0, -self.inside)
+    }
+
+    /// Centre of mass in the peg's frame.
+    pub fn centre(&self) -> Point3<f64> {
+        Point3::new(0.0, 0.0, LENGTH / 2.0)
+    }
+
+    /// The peg, weightless.
+    pub fn body(&self, pose: Pose) -> Body {
+        let size = Vector3::new(DEPTH, self.width, LENGTH);
+        let middle = Pose::translation(0.0, 0.0, LENGTH / 2.0);
+        Body {
+            name: "peg".into(),
+            motion: Motion::Carried(build::box_inertia(self.mass, size, self.centre())),
+            pose,
+            geoms: vec![build::cuboid("peg", size, middle)],
+        }
+    }
+
+    /// The wall at -y or +y, twice as deep as the peg is inside.
+    pub fn wall(&self, side: f64) -> Body {
+        let size = Vector3::new(2.0 * DEPTH, WALL, 2.0 * self.inside);
+        let pose = Pose::translation(0.0, side * (self.hole + WALL) / 2.0, -self.inside);
+        let geom = build::cuboid("wall", size, Pose::identity());
+        let name = if side < 0.0 { "wall -y" } else { "wall +y" };
+        build::fixed(name, pose, vec![geom])
+    }
+
+    /// Peg and hole.
+    pub fn scene(&self, pose: Pose) -> (Scene, BodyId) {
+        let mut scene = Scene::default();
+        let peg = scene.body(self.body(pose));
+        for side in [-1.0, 1.0] {
+            let wall = scene.body(self.wall(side));
+            scene.contact(wall, peg, Friction::hard(self.friction));
+        }
+        (scene, peg)
+    }
+
+    /// Loads the middle of the tip for a time.
+    pub fn load(
+        &self,
+        world: &mut dyn World,
+        peg: BodyId,
+        wrench: Wrench,
+        time: f64,
+    ) -> Result<(), Diverged> {
+        for _ in 0..build::steps(world, time) {
+            let tip = world.pose(peg) * Point3::origin();
+            wrench.push(world, peg, self.centre(), tip);
+            world.step()?;
+        }
+        Ok(())
+    }
+}
+
+impl Wrench {
+    /// A moment about x, which turns the peg into two-point contact, N m.
+    pub(super) fn turning(moment: f64) -> Self {
+        Wrench { force: Vector3::zeros(), moment: Vector3::new(moment, 0.0, 0.0) }
+    }
+}
+
+/// Tilt of a peg that a moment turns in its hole, T3 rows.
+pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
+    let peg = REFERENCE;
+    let measured = settled(engine, &peg);
+    // The peg may have moved along the hole while it turned: the formula is
+    // judged at the length inside at which it came to rest.
+    let inside = measured.map_or(peg.inside, |(_, inside)| inside);
+    let expected = Peg { inside, ..peg }.tilt();
+    let tilt = measured.map(|(tilt, _)| tilt / 1e-3);
+    let name = |text: &str| ("T3", text.to_owned());
+    vec![
+        CheckRow::new(
+            name("tilt in two-point contact"),
+            expected / 1e-3,
+            tilt,
+            "mrad",
+            Tolerance::Relative(0.02),
+        ),
+        CheckRow::new(
+            name("length inside, which tilting hardly changes"),
+            peg.inside / MM,
+            measured.map(|(_, inside)| inside / MM),
+            "mm",
+            // By no more than the tip's corners rise and sink.
+            Tolerance::Absolute(peg.width * peg.tilt() / MM),
+        ),
+    ]
+}
+
+/// Moment that turns the peg of T3, N m: presses each contact with 0.25 N. The
+/// formula is for rigid contacts; so lightly pressed, ours yield next to nothing.
+const TURNING: f64 = 0.002;
+/// Time to come to rest, s.
+const RESTING: f64 = 0.05;
+
+/// Tilt and length inside at rest.
+fn settled(engine: &dyn Engine, peg: &Peg) -> Result<(f64, f64), Diverged> {
+    let (scene, body) = peg.scene(peg.upright());
+    let mut world = engine.world(&scene);
+    peg.load(world.as_mut(), body, Wrench::turning(TURNING), RESTING)?;
+    let pose = world.pose(body);
+    let rim = pose.inverse() * Point3::new(0.0, -peg.hole / 2.0, 0.0);
+    Ok((pose.rotation.scaled_axis().x, rim.z))
+}
+
+/// Mass of the plug of T10, kg: an RJ45 plug.
+const LIGHT: f64 = 5.0 * GRAM;
+/// Forces on each of its contacts, N; the second is what an arm at its force
+/// limit of 100 N can wedge a plug with, and shows a contact whose force is bounded.
+const WEDGING: [f64; 2] = [70.0, 200.0];
+/// What a contact may yield under the first force, m: less than the clearance
+/// of a connector, lest plugs pass through rims.
+const YIELD: f64 = 0.1 * MM;
+
+/// How far a light plug sinks into the walls that it is wedged between, T10
+/// rows: little, and in proportion to the force.
+pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
+    let peg = Peg { mass: LIGHT, ..REFERENCE };
+    let sunk = WEDGING.map(|force| sinking(engine, &peg, force));
+    let mut rows = Vec::new();
+    let mut row = |quantity, expected, measured, unit, allowed| {
+        rows.push(CheckRow::new(("T10", quantity), expected, measured, unit, allowed));
+    };
+    let [low, high] = WEDGING;
+    for (i, place) in ["tip's corner", "rim"].into_iter().enumerate() {
+        let few = sunk[0].map(|depths| depths[i] / MM);
+        let many = sunk[1].map(|depths| depths[i] / MM);
+        let linear = few.map_or(f64::NAN, |few| few * high / low);
+        let quantity = |force| format!("5 g plug sinks under {force} N at {place}");
+        row(quantity(low), 0.0, few, "mm", Tolerance::Absolute(YIELD / MM));
+        row(quantity(high), linear, many, "mm", Tolerance::Relative(0.1));
+    }
+    rows
+}
+
+/// Depth of the tip's corner in the wall, and of the rim in the flank.
+fn sinking(engine: &dyn Engine, peg: &Peg, force: f64) -> Result<[f64; 2], Diverged> {
+    let (scene, body) = peg.scene(peg.tilted());
+    let mut world = engine.world(&scene);
+    let wrench = Wrench::turning(force * peg.inside);
+    peg.load(world.as_mut(), body, wrench, RESTING)?;
+    let pose = world.pose(body);
+    let corner = pose * Point3::new(0.0, peg.width / 2.0, 0.0);
+    let rim = pose.inverse() * Point3::new(0.0, -peg.hole / 2.0, 0.0);
+    Ok([corner.y - peg.hole / 2.0, rim.y + peg.width / 2.0])
+}

@@ -1,0 +1,78 @@
+//! T8, second part: what must not depend on how the time is cut.
+//!
+//! Halving the step changes no outcome of the cases that can end in two ways,
+//! each taken at both sides of its threshold; and a restored snapshot continues
+//! bit for bit like the world that it was taken from.
+
+use super::build;
+use super::edge::{self, Push};
+use super::{CheckRow, Make, Tolerance, incline, jamming, wedging};
+use contact::scene::{BodyId, Pose};
+use contact::{Diverged, Engine, World};
+use input::units::{DEG, MM};
+
+/// Distance of the cases from their thresholds, as a share.
+const MARGIN: f64 = 0.02;
+/// A block that is slower than this rests, m/s.
+const RESTS: f64 = 0.01 * MM;
+/// Friction of the cases.
+const FRICTION: f64 = 0.3;
+/// Simulated time before the snapshot and after it, s: from the start of the
+/// push, over the edge, to the fall.
+const BEFORE: f64 = 0.3;
+const AFTER: f64 = 0.3;
+
+/// Outcomes that change with the step, and bits that change with a snapshot, T8 rows.
+pub fn t8(make: Make<'_>) -> Vec<CheckRow> {
+    let none = Tolerance::Absolute(0.0);
+    let row =
+        |text: &str, measured| CheckRow::new(("T8", text.to_owned()), 0.0, measured, "-", none);
+    let engine = make(1.0);
+    vec![
+        row("outcomes changed by half the step", changed_outcomes(make)),
+        row("steps changed by restoring a snapshot", changed_steps(engine.as_ref())),
+    ]
+}
+
+fn changed_outcomes(make: Make<'_>) -> Result<f64, Diverged> {
+    let (whole, half) = (outcomes(make(1.0).as_ref())?, outcomes(make(0.5).as_ref())?);
+    Ok(whole.iter().zip(&half).filter(|(a, b)| a != b).count() as f64)
+}
+
+/// Whether a block rests on an incline at two headings, a peg jams, a peg
+/// wedges, below and above their thresholds; whether a block tips at the edge.
+fn outcomes(engine: &dyn Engine) -> Result<Vec<bool>, Diverged> {
+    let mut all = Vec::new();
+    for share in [1.0 - MARGIN, 1.0 + MARGIN] {
+        for heading in [0.0, 37.0] {
+            all.push(incline::creep(engine, FRICTION, heading * DEG, share)? < RESTS);
+        }
+        all.push(jamming::jams_at(engine, share)?);
+        all.push(wedging::wedges(engine, FRICTION, share * FRICTION)?);
+    }
+    all.push(edge::tipping_place(engine)?.abs() < edge::ALLOWED);
+    Ok(all)
+}
+
+/// Steps after which a world and its restored snapshot differ in any bit.
+fn changed_steps(engine: &dyn Engine) -> Result<f64, Diverged> {
+    let mut first = Push::new(engine);
+    for _ in 0..build::steps(first.world.as_ref(), BEFORE) {
+        first.step()?;
+    }
+    let mut second = first.copy();
+    let mut changed = 0;
+    for _ in 0..build::steps(first.world.as_ref(), AFTER) {
+        first.step()?;
+        second.step()?;
+        let [a, b] = [&first, &second].map(|push| bits(push.world.as_ref(), push.block));
+        changed += usize::from(a != b);
+    }
+    Ok(changed as f64)
+}
+
+fn bits(world: &dyn World, body: BodyId) -> [u64; 7] {
+    let Pose { translation, rotation } = world.pose(body);
+    let (t, q) = (translation.vector, rotation.coords);
+    [t.x, t.y, t.z, q.x, q.y, q.z, q.w].map(f64::to_bits)
+}

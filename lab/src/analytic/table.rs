@@ -1,0 +1,141 @@
+//! The rows of the checks as text and as JSON.
+
+use super::{CheckRow, Tolerance};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Columns of a quantity; what is longer goes on in the next line.
+const QUANTITY: usize = 29;
+
+/// The rows as an aligned table, at most 80 columns wide, and whether all pass.
+pub fn table(rows: &[CheckRow]) -> String {
+    let mut text = format!(
+        "{:<4}{:<QUANTITY$}{:>9}{:>9} {:<6}{:>9} {:<7}\n",
+        "", "quantity", "expected", "measured", "unit", "error", "allowed"
+    );
+    for row in rows {
+        let (error, allowed) = match row.tolerance {
+            Tolerance::Relative(share) => (percent(row.error()), percent(share)),
+            Tolerance::Absolute(error) => (number(row.error()), number(error)),
+        };
+        let verdict = if row.passed { "ok" } else { "FAIL" };
+        let (quantity, rest) = broken(&row.quantity);
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{:<4}{quantity:<QUANTITY$}{:>9}{:>9} {:<6}{error:>9} {allowed:<8}{verdict}",
+            row.check,
+            number(row.expected),
+            number(row.measured),
+            row.unit,
+        );
+        if !rest.is_empty() {
+            let _ = writeln!(text, "      {rest}");
+        }
+    }
+    let failed = rows.iter().filter(|row| !row.passed).count();
+    let _ = match failed {
+        0 => writeln!(text, "pass: all {} checks", rows.len()),
+        failed => writeln!(text, "fail: {failed} of {} checks", rows.len()),
+    };
+    text
+}
+
+/// The rows as a JSON array of objects.
+pub fn json(rows: &[CheckRow]) -> Value {
+    rows.iter()
+        .map(|row| {
+            let (kind, tolerance) = match row.tolerance {
+                Tolerance::Relative(share) => ("relative", share),
+                Tolerance::Absolute(error) => ("absolute", error),
+            };
+            json!({
+                "check": row.check,
+                "quantity": row.quantity,
+                "expected": row.expected,
+                "measured": row.measured,
+                "error": row.error(),
+                "unit": row.unit,
+                "tolerance": tolerance,
+                "tolerance_kind": kind,
+                "passed": row.passed,
+            })
+        })
+        .collect()
+}
+
+/// A quantity as far as its column goes, to the end of a word, and the rest.
+fn broken(quantity: &str) -> (&str, &str) {
+    match quantity.char_indices().nth(QUANTITY) {
+        None => (quantity, ""),
+        Some((end, _)) => match quantity[..end].rfind(' ') {
+            Some(space) => (&quantity[..space], &quantity[space + 1..]),
+            None => quantity.split_at(end),
+        },
+    }
+}
+
+fn number(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        size if size < 1e-3 => format!("{value:.1e}"),
+        size if size < 10.0 => format!("{value:.5}"),
+        size if size < 1e4 => format!("{value:.3}"),
+        _ => format!("{value:.2e}"),
+    }
+}
+
+fn percent(share: f64) -> String {
+    match (100.0 * share).abs() {
+        0.0 => "0 %".into(),
+        size if size < 0.01 => format!("{:.0e} %", 100.0 * share),
+        _ => format!("{:.2} %", 100.0 * share),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact::Diverged;
+
+    fn rows() -> Vec<CheckRow> {
+        let name = |text: &str| ("T1", text.to_owned());
+        let tolerance = Tolerance::Relative(0.01);
+        vec![
+            CheckRow::new(name("good"), 2.0, Ok::<_, Diverged>(2.01), "mm", tolerance),
+            CheckRow::new(
+                name("bad, and named by more words than its column has room for"),
+                7_175_000.0,
+                Ok::<_, Diverged>(-8e6),
+                "rad/Nm",
+                tolerance,
+            ),
+            CheckRow::new(name("diverged"), 2.0, Err(Diverged), "mm", tolerance),
+        ]
+    }
+
+    #[test]
+    fn rows_pass_within_their_tolerance_only() {
+        assert_eq!(rows().iter().map(|row| row.passed).collect::<Vec<_>>(), [true, false, false]);
+    }
+
+    #[test]
+    fn table_fits_a_terminal_and_names_the_failures() {
+        let text = table(&rows());
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+        assert!(text.contains("quantity") && text.contains("unit"), "{text}");
+        assert_eq!(text.matches("FAIL").count(), 2, "{text}");
+        assert!(text.ends_with("\nfail: 2 of 3 checks\n"), "{text}");
+        // The long name is whole, in two lines.
+        assert!(
+            text.contains("bad, and named by more words ") && text.contains("\n      than its")
+        );
+    }
+
+    #[test]
+    fn json_has_null_for_what_diverged() {
+        let value = json(&rows());
+        assert_eq!(value[0]["tolerance_kind"], "relative");
+        assert!(value[2]["measured"].is_null());
+    }
+}

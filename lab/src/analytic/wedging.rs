@@ -1,0 +1,94 @@
+//! T5: wedging of a peg in two-point contact.
+//!
+//! Whitney 1982 (J. Dyn. Sys. Meas. Control 104:65): two contacts can hold a
+//! peg by a force between them alone if the line through them lies within both
+//! friction cones. That line spans the peg's width d and the length l inside,
+//! so a peg wedges only where l/d < mu. Here the force comes from the wall at
+//! +y, which slides and is pressed against the tip's corner; nothing else acts
+//! on the peg. Beyond the threshold the couple of the two normal forces turns
+//! the peg upright and the wall follows.
+
+use super::build;
+use super::peg::{Peg, REFERENCE};
+use super::{CheckRow, Tolerance};
+use contact::scene::{Body, Friction, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs};
+use contact::{Diverged, Engine};
+use input::units::{GRAM, MM};
+use nalgebra::{Point3, Vector3};
+
+/// Frictions of the check; l/d = 0.2 is a plug 2.4 mm inside.
+const FRICTIONS: [f64; 2] = [0.2, 0.3];
+/// Force on the wall, N.
+const SQUEEZE: f64 = 10.0;
+/// The peg, kg: as light as an RJ45 plug. Light parts between heavy ones are
+/// what an iterative solver finds hardest.
+const MASS: f64 = 5.0 * GRAM;
+/// The sliding wall, kg, and the damping of its slide, N s/m.
+const WALL_MASS: f64 = 50.0 * GRAM;
+const WALL_DAMPING: f64 = 1.0;
+/// Clearance of the hole, m: many times what the contacts yield. The tilt that
+/// comes with it does not matter, since the rim presses along the flank's normal.
+const CLEARANCE: f64 = 0.02 * MM;
+/// Time under the force, s.
+const SQUEEZING: f64 = 0.03;
+/// The peg is wedged if it still has this share of its tilt.
+const KEPT: f64 = 0.5;
+/// l/d is sought between these multiples of the friction ...
+const BRACKET: [f64; 2] = [0.5, 2.0];
+/// ... by so many bisections, which leave 0.15 %.
+const BISECTIONS: usize = 10;
+
+/// Largest l/d at which a peg stays wedged, T5 rows.
+pub fn t5(engine: &dyn Engine) -> Vec<CheckRow> {
+    FRICTIONS
+        .into_iter()
+        .map(|friction| {
+            let quantity = format!("l/d up to which a peg wedges, mu {friction}");
+            let measured = find(engine, friction);
+            CheckRow::new(("T5", quantity), friction, measured, "-", Tolerance::Relative(0.02))
+        })
+        .collect()
+}
+
+fn find(engine: &dyn Engine, friction: f64) -> Result<f64, Diverged> {
+    let [mut wedged, mut free] = BRACKET.map(|share| share * friction);
+    for _ in 0..BISECTIONS {
+        let middle = (wedged + free) / 2.0;
+        let end = if wedges(engine, friction, middle)? { &mut wedged } else { &mut free };
+        *end = middle;
+    }
+    Ok((wedged + free) / 2.0)
+}
+
+/// Whether a peg that is `depth` times its width inside stays wedged.
+pub(super) fn wedges(engine: &dyn Engine, friction: f64, depth: f64) -> Result<bool, Diverged> {
+    let (width, hole) = (REFERENCE.width, REFERENCE.width + CLEARANCE);
+    let peg = Peg { hole, inside: depth * width, friction, mass: MASS, ..REFERENCE };
+    let mut scene = Scene::default();
+    let body = scene.body(peg.body(peg.tilted()));
+    let fixed = scene.body(peg.wall(-1.0));
+    let wall = peg.wall(1.0);
+    let size = Vector3::repeat(10.0 * MM);
+    let inertia = build::box_inertia(WALL_MASS, size, Point3::origin());
+    let wall = scene.body(Body { motion: Motion::Carried(inertia), ..wall });
+    let slide = scene.bodies[wall.0].pose;
+    let mut axes = [JointAxis::Locked; 6];
+    axes[1] = JointAxis::Sprung(Spring::new(0.0, WALL_DAMPING));
+    let ground = scene.body(build::fixed("ground", Pose::identity(), Vec::new()));
+    scene.joint(Joint {
+        name: "slide".into(),
+        parent: ground,
+        child: wall,
+        in_parent: slide,
+        in_child: Pose::identity(),
+        springs: Springs::Axes(axes),
+    });
+    for side in [fixed, wall] {
+        scene.contact(side, body, Friction::hard(friction));
+    }
+
+    let mut world = engine.world(&scene);
+    world.push(wall, Vector3::new(0.0, -SQUEEZE, 0.0), Vector3::zeros());
+    build::advance(world.as_mut(), SQUEEZING)?;
+    Ok(world.pose(body).rotation.scaled_axis().x > KEPT * peg.tilt())
+}

@@ -1,0 +1,128 @@
+//! `lab benchmark`: how fast this machine simulates.
+
+use super::{Failure, print, print_json};
+use finger_opt::cli::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
+
+use clap::Args;
+use input::shipped::{self, ROBOTS, TASKS};
+use input::units::N_PER_MM;
+use insertion::evaluation::tolerance::{self, Search};
+use insertion::finger::Finger;
+use insertion::robot::Robot;
+use insertion::task::Task;
+use serde_json::json;
+use std::time::Instant;
+
+/// Evaluations of the study whose time is estimated.
+const BUDGET: f64 = 200.0;
+/// Stiffness of the finger that is measured, N/mm: design 5 of the measured ones,
+/// in the middle of the space.
+const COMPLIANCE: f64 = 2.6;
+/// See [`COMPLIANCE`].
+const ASSEMBLY: f64 = 45.0;
+
+/// Measure how fast this machine simulates.
+///
+/// One finger is evaluated on every task, on as many threads as a study would
+/// use; the time of a study is estimated from it. Close other programs first.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Robot: see `optimize tasks`, or the path of a robot file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
+    robot: String,
+    /// Contact engine
+    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    engine: EngineKind,
+    /// Evaluations per task, at the same time
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    repeats: u32,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What one task took.
+struct TaskSpeed {
+    task: String,
+    trials_per_s: f64,
+    evaluations_per_min: f64,
+}
+
+impl TaskSpeed {
+    /// Time of a study of [`BUDGET`] evaluations, s.
+    fn study_s(&self) -> f64 {
+        60.0 * BUDGET / self.evaluations_per_min
+    }
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = shipped::resolve("robot", ROBOTS, &arguments.robot).map_err(Failure::input)?;
+    let robot = Robot::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let rows = TASKS
+        .iter()
+        .map(|file| {
+            let task = Task::parse(file.text, file.file).map_err(Failure::input)?;
+            measure(&task, &robot, arguments)
+        })
+        .collect::<Result<Vec<TaskSpeed>, Failure>>()?;
+    if arguments.json { print_json(&json(arguments, &rows)) } else { print(&table(&rows)) }
+}
+
+fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<TaskSpeed, Failure> {
+    let finger = Finger::new(COMPLIANCE * N_PER_MM, ASSEMBLY * N_PER_MM);
+    let finger = finger.shaped(&task.finger, 0.0);
+    let rig = setup::rig(arguments.engine, task, robot, &finger).map_err(Failure::input)?;
+    let trials = std::sync::atomic::AtomicU32::new(0);
+    let clock = Instant::now();
+    rayon::scope(|scope| {
+        for _ in 0..arguments.repeats {
+            scope.spawn(|_| {
+                let done = tolerance::evaluate(&*rig, &finger, Search::default()).trials;
+                trials.fetch_add(done, std::sync::atomic::Ordering::Relaxed);
+            });
+        }
+    });
+    let wall_s = clock.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
+    Ok(TaskSpeed {
+        task: task.name.clone(),
+        trials_per_s: f64::from(trials.into_inner()) / wall_s,
+        evaluations_per_min: 60.0 * f64::from(arguments.repeats) / wall_s,
+    })
+}
+
+fn table(rows: &[TaskSpeed]) -> String {
+    let mut text = format!(
+        "{} threads, finger of {COMPLIANCE} and {ASSEMBLY} N/mm\n\
+         task     trials/s  evaluations/min  budget of {BUDGET} takes about\n",
+        rayon::current_num_threads()
+    );
+    for row in rows {
+        text.push_str(&format!(
+            "{:<8} {:>8.1}  {:>15.1}  {:>14.0} s\n",
+            row.task,
+            row.trials_per_s,
+            row.evaluations_per_min,
+            row.study_s()
+        ));
+    }
+    text
+}
+
+fn json(arguments: &Arguments, rows: &[TaskSpeed]) -> serde_json::Value {
+    let row = |row: &TaskSpeed| {
+        json!({
+            "task": row.task,
+            "trials_per_s": row.trials_per_s,
+            "evaluations_per_min": row.evaluations_per_min,
+            "study_s": row.study_s(),
+        })
+    };
+    json!({
+        "robot": arguments.robot,
+        "engine": arguments.engine.name(),
+        "threads": rayon::current_num_threads(),
+        "budget": BUDGET,
+        "tasks": rows.iter().map(row).collect::<Vec<_>>(),
+    })
+}

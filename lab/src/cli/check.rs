@@ -1,0 +1,114 @@
+//! `lab check`: does the contact engine, as it is set, reproduce known results, and do
+//! the windows depend on how finely it cuts time, or on how they are looked for?
+
+use super::validate::{Fingers, search_name, tasks};
+use super::{Failure, print, print_json};
+use crate::analytic;
+use crate::compare::{TaskWays, Way, pairs};
+use clap::Args;
+use contact::Engine;
+use contact::rapier::Rapier;
+use finger_opt::cli::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
+use insertion::evaluation::OffsetStep;
+use insertion::evaluation::tolerance::Search;
+use insertion::robot::Robot;
+use insertion::task::Task;
+use insertion::trial::run::EngineRig;
+use std::sync::Arc;
+
+/// Farthest that half the step may move an end, in grid steps: 0.1 mm.
+const ALLOWED_STEPS: OffsetStep = 1;
+
+/// Compare the contact engine with analytic results.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Contact engine
+    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    engine: EngineKind,
+    /// Compare tolerance windows with finer ones instead
+    #[arg(long, group = "windows")]
+    convergence: bool,
+    /// Compare the windows of the step-by-step walk with those of the quick search instead
+    #[arg(long, group = "windows")]
+    searches: bool,
+    /// Tasks of the windows: ket8, ket12, rj45, usb or all
+    #[arg(long, value_name = "NAME", default_value = "all", requires = "windows")]
+    task: String,
+    /// Measured fingers of the windows
+    #[arg(long, value_enum, default_value = "three", requires = "windows")]
+    fingers: Fingers,
+    /// Robot of the windows
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, requires = "windows")]
+    robot: String,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let engine = arguments.engine;
+    if !engine.simulates() {
+        let name = engine.name();
+        return Err(Failure::usage(format!("--engine {name} simulates no contacts to be checked")));
+    }
+    // `build` answers alike whatever the step, so the second engine is never needed.
+    let make =
+        |factor: f64| engine.build(factor).engine().unwrap_or_else(|| Box::<Rapier>::default());
+    if arguments.convergence || arguments.searches {
+        return arguments.windows(&|| make(1.0));
+    }
+    let rows = analytic::run(&make);
+    let failed = rows.iter().filter(|row| !row.passed).count();
+    arguments.show(analytic::table(&rows), &analytic::json(&rows))?;
+    verdict("checks", failed, rows.len())
+}
+
+impl Arguments {
+    fn windows(&self, make: &dyn Fn() -> Box<dyn Engine>) -> Result<(), Failure> {
+        let robot = setup::robot(&self.robot)?;
+        let ways = if self.convergence { finer } else { searches };
+        let tasks = tasks(&self.task)?.into_iter().map(|task| ways(task, &robot, make()));
+        let tasks = tasks.collect::<Result<Vec<_>, _>>()?;
+        let (allowed, way, keys) = match self.convergence {
+            true => (ALLOWED_STEPS, "finer", ["production", "refined"]),
+            false => (0, "search", ["walk", "strides"]),
+        };
+        let found = pairs::measure(&tasks, &self.fingers.designs());
+        let failed = found.iter().filter(|pair| !pair.agrees(allowed)).count();
+        let json = pairs::json(&found, Some(allowed), way, keys);
+        self.show(pairs::text(&found, Some(allowed)), &json.into())?;
+        verdict("windows", failed, found.len())
+    }
+
+    fn show(&self, table: String, json: &serde_json::Value) -> Result<(), Failure> {
+        if self.json { print_json(json) } else { print(&table) }
+    }
+}
+
+/// The engine as it is, and finer in each way that it can be.
+fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
+    let finer = engine.finer();
+    let ways = std::iter::once(("production", engine)).chain(finer).map(|(name, engine)| {
+        let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
+        Ok(Way { name: name.to_owned(), rig: Arc::new(rig), search: Search::Strides })
+    });
+    let ways = ways.collect::<Result<_, Failure>>()?;
+    Ok(TaskWays { task, ways })
+}
+
+/// Both searches on the same rig.
+fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
+    let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
+    let rig = Arc::new(rig);
+    let way = |search| Way { name: search_name(search).to_owned(), rig: rig.clone(), search };
+    let ways = [Search::Walk, Search::Strides].map(way).to_vec();
+    Ok(TaskWays { task, ways })
+}
+
+fn verdict(what: &str, failed: usize, all: usize) -> Result<(), Failure> {
+    match failed {
+        0 => Ok(()),
+        failed => Err(Failure::running(format!("{failed} of {all} {what} failed"))),
+    }
+}

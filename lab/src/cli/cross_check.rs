@@ -1,0 +1,83 @@
+//! `lab cross-check`: do two engines agree on what goes in?
+
+use super::validate::{Fingers, tasks};
+use super::{Failure, print, print_json};
+use crate::compare::engines::{self, TrialSet};
+use crate::compare::{TaskWays, Way};
+use clap::Args;
+use finger_opt::cli::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
+use insertion::evaluation::tolerance::Search;
+use insertion::finger::model::FingerSource;
+use insertion::task::Task;
+
+/// Compare the outcomes of the same trials in two contact engines (check T9)
+///
+/// The softest and the stiffest measured finger on every task, started about both
+/// ends of the first engine's window. Exits with 1 if the engines agree on less
+/// than 90 % of the trials, or if the windows' ends differ by more than 0.5 mm on
+/// average.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Contact engine that is compared
+    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    engine: EngineKind,
+    /// Contact engine that it is compared with; mujoco if the program was built with it
+    #[arg(long, value_enum)]
+    against: EngineKind,
+    /// Task: ket8, ket12, rj45, usb, all, or the path of a task file of such a name
+    #[arg(long, value_name = "NAME", default_value = "all")]
+    task: String,
+    /// Robot: see `optimize tasks`, or the path of a robot file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
+    robot: String,
+    /// A few trials far from the windows' ends, and no windows of the second engine
+    #[arg(long)]
+    reduced: bool,
+    /// Time one trial of each task in both engines instead, one thread, medians of 5
+    #[arg(long, conflicts_with = "reduced")]
+    time: bool,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let kinds = [arguments.engine, arguments.against];
+    let names = kinds.map(EngineKind::name);
+    let robot = setup::robot(&arguments.robot)?;
+    let ways = |task: Task| {
+        let way = |engine: EngineKind| {
+            let rig = setup::rig(engine, &task, &robot, &FingerSource::Paper.any(&task))
+                .map_err(Failure::input)?
+                .into();
+            Ok(Way { name: engine.name().to_owned(), rig, search: Search::Strides })
+        };
+        let ways = kinds.into_iter().map(way).collect::<Result<_, Failure>>()?;
+        Ok(TaskWays { task, ways })
+    };
+    let tasks =
+        tasks(&arguments.task)?.into_iter().map(ways).collect::<Result<Vec<_>, Failure>>()?;
+    // The softest and the stiffest.
+    let mut designs = Fingers::Three.designs();
+    designs.remove(1);
+    if arguments.time {
+        let rows = engines::time(&tasks, &designs);
+        return if arguments.json {
+            print_json(&engines::time_json(&rows, names))
+        } else {
+            print(&engines::time_text(&rows, names))
+        };
+    }
+    let set = if arguments.reduced { TrialSet::Reduced } else { TrialSet::Full };
+    let check = engines::run(&tasks, &designs, set);
+    if arguments.json {
+        print_json(&engines::json(&check, names))?;
+    } else {
+        print(&engines::text(&check, names))?;
+    }
+    if check.passed() {
+        return Ok(());
+    }
+    Err(Failure::running(format!("{} and {} do not agree well enough", names[0], names[1])))
+}

@@ -1,0 +1,73 @@
+//! The command line of `lab`: one file per command.
+
+mod benchmark;
+mod check;
+mod cross_check;
+mod optimizers;
+mod prints;
+mod validate;
+
+use clap::{Parser, Subcommand};
+use finger_opt::cli::Failure;
+use finger_opt::cli::terminal::{print, print_json, say};
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Checks the models behind `optimize`: against closed formulas, other engines and published tables.
+///
+/// Exit codes: 0 done, 1 failed while running or a check failed, 2 bad usage or bad input file.
+#[derive(Debug, Parser)]
+#[command(
+    name = "lab",
+    version,
+    arg_required_else_help = true,
+    after_help = "Example: cargo run --release -p lab -- check"
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    #[command(after_help = "Example: lab check")]
+    Check(check::Arguments),
+    #[command(after_help = "Example: lab cross-check --against mujoco --reduced")]
+    CrossCheck(cross_check::Arguments),
+    #[command(after_help = "Example: lab validate --task ket8 --strides")]
+    Validate(validate::Arguments),
+    #[command(after_help = "Example: lab benchmark --repeats 8")]
+    Benchmark(benchmark::Arguments),
+    #[command(after_help = "Example: lab optimizers --functions branin --optimizers gp")]
+    Optimizers(optimizers::Arguments),
+    #[command(after_help = "Example: lab prints --json")]
+    Prints(prints::Arguments),
+}
+
+/// Runs `lab` with these arguments, the program's name first.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(usage) if usage.use_stderr() => {
+            say(usage.render().to_string().trim_end());
+            return ExitCode::from(2);
+        }
+        // Help and version come this way, too.
+        Err(asked) => asked.exit(),
+    };
+    let done = match &cli.command {
+        Command::Check(arguments) => check::run(arguments),
+        Command::CrossCheck(arguments) => cross_check::run(arguments),
+        Command::Validate(arguments) => validate::run(arguments),
+        Command::Benchmark(arguments) => benchmark::run(arguments),
+        Command::Optimizers(arguments) => optimizers::run(arguments),
+        Command::Prints(arguments) => prints::run(arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            say(&format!("error: {failure}"));
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

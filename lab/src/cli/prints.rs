@@ -1,0 +1,143 @@
+//! `lab prints`: printing as advised, replayed on the published experiments.
+
+use super::{Failure, print, print_json};
+use crate::prints::{self, Replayed, TOLD};
+use clap::Args;
+use finger_opt::calibration::sampler::{Effort, Settings};
+use finger_opt::cli::calibrated::{CalibrationArguments, Prepared};
+use finger_opt::cli::setup::{
+    DEFAULT_ENGINE, DEFAULT_ROBOT, DEFAULT_SPACE, EngineKind, FingerModelArguments, SetupArguments,
+};
+use serde_json::json;
+
+/// Sampling at each print: there are many.
+const EFFORT: Effort = Effort { warm_up: 200, samples: 150, thin: 3 };
+
+/// Ways of choosing prints, in the order of the table.
+const METHODS: [&str; 4] = ["ours", "random", "gp", "simulation"];
+
+/// Replay the choice of prints on the published experiments: ours, random, a Gaussian process
+/// without simulation, and the order of simulation alone.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Tasks, by commas
+    #[arg(long, value_name = "NAME", default_value = "ket8,ket12,rj45,usb")]
+    task: String,
+    /// Robot: see `optimize tasks`, or the path of a robot file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
+    robot: String,
+    /// Contact engine
+    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    engine: EngineKind,
+    #[command(flatten)]
+    finger_model: FingerModelArguments,
+    /// Seeds that ours is averaged over
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    seeds: u64,
+    #[command(flatten)]
+    calibration: CalibrationArguments,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// One task under each method.
+struct TaskReplay {
+    task: String,
+    fingers: usize,
+    methods: Vec<Replayed>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let setup = SetupArguments {
+        task: arguments.task.clone(),
+        space: DEFAULT_SPACE.to_owned(),
+        robot: arguments.robot.clone(),
+        stiffness_data: None,
+        engine: arguments.engine,
+        finger_model: arguments.finger_model.clone(),
+        start: None,
+        given: Vec::new(),
+    };
+    let prepared = arguments.calibration.prepare(&setup, "published", &[], arguments.json)?;
+    let tasks = (0..prepared.subjects.len())
+        .map(|task| arguments.replay(&prepared, task))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    let means: Vec<Option<Replayed>> = (0..METHODS.len())
+        .map(|i| Replayed::averaged(&tasks.iter().map(|task| task.methods[i]).collect::<Vec<_>>()))
+        .collect();
+    if arguments.json { print_json(&to_json(&tasks, &means)) } else { print(&text(&tasks, &means)) }
+}
+
+impl Arguments {
+    /// Each task by itself: a parameter that they share must not carry one's answer to another.
+    fn replay(&self, prepared: &Prepared, task: usize) -> Result<TaskReplay, Failure> {
+        let subject = &prepared.subjects[task];
+        let nothing = || Failure::usage(format!("{}: nothing is published of it", subject.task));
+        let whole = subject
+            .experiments
+            .iter()
+            .filter_map(|(number, line)| Some((*number, line.range_mm()?)));
+        let (fingers, ranges): (Vec<usize>, Vec<f64>) = whole.unzip();
+        let bench = prepared.layout.benches(&prepared.subjects).swap_remove(task);
+        let settings = Settings { effort: EFFORT, seed: self.calibration.seed };
+        let dimension = prepared.layout.dimension();
+        let simulated = prepared.simulate(task, &fingers)?;
+        let methods = [
+            prints::advised(&bench, dimension, &fingers, &ranges, &settings, self.seeds),
+            (!ranges.is_empty()).then(|| prints::random(&ranges)),
+            prints::without_simulation(&bench, &fingers, &ranges, &settings),
+            prints::by_simulation(&simulated, &ranges),
+        ];
+        let methods = methods.into_iter().collect::<Option<Vec<_>>>().ok_or_else(nothing)?;
+        Ok(TaskReplay { task: subject.task.clone(), fingers: fingers.len(), methods })
+    }
+}
+
+fn to_json(tasks: &[TaskReplay], means: &[Option<Replayed>]) -> serde_json::Value {
+    let method = |(name, replayed): (&str, &Replayed)| {
+        json!({
+            "method": name,
+            "prints_to_best": replayed.prints_to_best,
+            "regret_percent_after": replayed.regret_percent_after,
+        })
+    };
+    let task = |replay: &TaskReplay| {
+        json!({
+            "task": replay.task,
+            "designs": replay.fingers,
+            "methods": METHODS.into_iter().zip(&replay.methods).map(method).collect::<Vec<_>>(),
+        })
+    };
+    let means = METHODS.into_iter().zip(means.iter().flatten());
+    json!({
+        "tasks": tasks.iter().map(task).collect::<Vec<_>>(),
+        "mean": means.map(method).collect::<Vec<_>>(),
+    })
+}
+
+fn text(tasks: &[TaskReplay], means: &[Option<Replayed>]) -> String {
+    let mut lines = vec![
+        format!(
+            "what the best printed finger lacks to the best measured one, percent, after 1 to {TOLD} prints"
+        ),
+        "task     chosen by    prints to the best       1       2       3       4".to_owned(),
+    ];
+    let mut line = |task: &str, method: &str, replayed: &Replayed| {
+        let regrets = replayed.regret_percent_after.map(|regret| format!("{regret:>8.1}"));
+        lines.push(format!(
+            "{task:<8} {method:<12} {:>18.1}{}",
+            replayed.prints_to_best,
+            regrets.concat()
+        ));
+    };
+    for replay in tasks {
+        METHODS
+            .iter()
+            .zip(&replay.methods)
+            .for_each(|(method, one)| line(&replay.task, method, one));
+    }
+    METHODS.iter().zip(means.iter().flatten()).for_each(|(method, one)| line("mean", method, one));
+    lines.join("\n") + "\n"
+}

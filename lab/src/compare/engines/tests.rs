@@ -1,0 +1,86 @@
+//! The rule of the set and the totals, on the closed form.
+
+use super::*;
+use finger_opt::calibration::published::designs;
+use input::shipped::TASKS;
+use insertion::evaluation::tolerance::Search;
+use insertion::outcome::FailureClass;
+use insertion::task::Task;
+use insertion::task::finger::FingerModel;
+use insertion::trial::fake::FakeRig;
+use std::sync::Arc;
+
+fn window(negative: OffsetStep, positive: OffsetStep) -> Window {
+    Window {
+        nominal: Outcome::Inserted,
+        negative_steps: negative,
+        positive_steps: positive,
+        end_negative: Some(Outcome::Failed(FailureClass::Jammed)),
+        end_positive: Some(Outcome::Failed(FailureClass::PlugMissed)),
+    }
+}
+
+#[test]
+fn offsets_lie_about_both_ends_and_in_the_middle() {
+    let wide = TrialSet::Full.offsets(&window(-60, 20));
+    let negative = [-100, -80, -70, -63, -61, -59, -57, -50, -40];
+    let positive = [0, 10, 17, 19, 21, 23, 30, 40, 60];
+    assert_eq!(wide, [&negative[..], &[-20], &positive].concat());
+    // 1 mm inside is beyond the middle of a window of 1 mm.
+    let narrow = TrialSet::Full.offsets(&window(-3, 7));
+    assert_eq!(narrow, [-43, -23, -13, -6, -4, -2, 0, 2, 4, 6, 8, 10, 17, 27, 47]);
+    assert_eq!(TrialSet::Reduced.offsets(&window(-60, 20)), [-80, -50, -20, 10, 40]);
+}
+
+#[test]
+fn an_engine_agrees_with_itself() {
+    let way = |name: &str| Way {
+        name: name.into(),
+        rig: Arc::new(FakeRig::default()),
+        search: Search::Strides,
+    };
+    let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
+    let tasks = [TaskWays { task, ways: vec![way("fake"), way("again")] }];
+    let designs = [designs()[0], designs()[10]];
+    let check = run(&tasks, &designs, TrialSet::Full);
+    assert_eq!((check.agreement(), check.end_difference_mm()), (1.0, Some(0.0)));
+    assert!(
+        check.passed() && check.trials.iter().all(|pair| pair.tip_mm.is_none_or(|by| by == 0.0))
+    );
+    // What is inside the window inserts, what is outside does not.
+    let inside = |pair: &TrialPair| pair.from_end <= 0;
+    let inserts = |pair: &TrialPair| pair.outcomes[0] == Outcome::Inserted;
+    assert!(check.trials.iter().all(|pair| inside(pair) == inserts(pair)));
+    assert!(text(&check, ["fake", "again"]).contains("100.0 %"));
+    let reduced = run(&tasks, &designs, TrialSet::Reduced);
+    assert_eq!((reduced.trials.len(), reduced.windows.len()), (10, 0));
+}
+
+#[test]
+fn a_disagreement_is_counted_and_listed() {
+    let subject = Subject::new("usb", &FingerModel::default(), designs()[0]);
+    let trial = |offset, second| TrialPair {
+        subject: subject.clone(),
+        offset,
+        from_end: 1,
+        outcomes: [Outcome::Failed(FailureClass::Jammed), second],
+        tip_mm: None,
+    };
+    let missed = Outcome::Failed(FailureClass::PlugMissed);
+    // Another failure class is no disagreement.
+    let trials = vec![trial(5, missed), trial(7, Outcome::Inserted)];
+    let windows = WindowPair {
+        subject: subject.clone(),
+        ways: ["direct", "mujoco"].map(str::to_owned),
+        trials: [20, 20],
+        windows: [window(-4, 5), window(-10, 7)],
+    };
+    let check = CrossCheck { trials, windows: vec![windows] };
+    assert_eq!(check.agreement(), 0.5);
+    assert!((check.end_difference_mm().unwrap() - 0.4).abs() < 1e-12);
+    assert!(!check.passed());
+    let text = text(&check, ["direct", "mujoco"]);
+    assert!(text.contains("0.7            0.1  jammed"), "{text}");
+    assert!(!text.contains("plug missed"), "{text}");
+    assert_eq!(json(&check, ["direct", "mujoco"])["trials"][1]["agrees"], false);
+}

@@ -1,0 +1,99 @@
+//! What the two engines made of the set, as text and as JSON.
+
+use super::{AGREEMENT, CrossCheck, END_DIFFERENCE_MM, TrialPair};
+use crate::compare::{merged, pairs, subject_json};
+use insertion::evaluation::grid_mm;
+use insertion::outcome::Outcome;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Tables and totals; `names` are the engines'.
+pub fn text(check: &CrossCheck, names: [&str; 2]) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "T9: the same trials in {} and {}\n", names[0], names[1]);
+    windows(&mut text, check);
+    counts(&mut text, check);
+    disagreements(&mut text, check, names);
+    text
+}
+
+fn windows(text: &mut String, check: &CrossCheck) {
+    let Some(mean) = check.end_difference_mm() else { return };
+    text.push_str(&pairs::text(&check.windows, None));
+    let verdict = if mean <= END_DIFFERENCE_MM { "met" } else { "MISSED" };
+    let _ = writeln!(
+        text,
+        "mean difference of an end {mean:.2} mm; target {END_DIFFERENCE_MM} mm: {verdict}\n"
+    );
+}
+
+fn counts(text: &mut String, check: &CrossCheck) {
+    let agreed = check.trials.iter().filter(|pair| pair.agrees()).count();
+    let total = check.trials.len();
+    let verdict = if check.agreement() >= AGREEMENT { "met" } else { "MISSED" };
+    let _ = writeln!(
+        text,
+        "alike in {agreed} of {total} trials, {:.1} %; target {:.0} %: {verdict}",
+        100.0 * check.agreement(),
+        100.0 * AGREEMENT,
+    );
+    let mut tips: Vec<f64> = check.trials.iter().filter_map(|pair| pair.tip_mm).collect();
+    tips.sort_by(f64::total_cmp);
+    if let (Some(median), Some(largest)) = (tips.get(tips.len() / 2), tips.last()) {
+        let _ = writeln!(
+            text,
+            "tips of the {} plugs that both insert: {median:.3} mm apart (median), {largest:.3} mm at most",
+            tips.len()
+        );
+    }
+}
+
+fn disagreements(text: &mut String, check: &CrossCheck, [first, second]: [&str; 2]) {
+    let others: Vec<&TrialPair> = check.trials.iter().filter(|pair| !pair.agrees()).collect();
+    if others.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "\n{:<7}{:<13}{:>10}{:>15}  {first:<27}{second}",
+        "task", "finger", "offset mm", "beyond end mm"
+    );
+    for pair in others {
+        let [a, b] = pair.outcomes.map(Outcome::label);
+        let _ = writeln!(
+            text,
+            "{:<7}{:<13}{:>10.1}{:>15.1}  {a:<27}{b}",
+            pair.subject.task,
+            pair.subject.infill(),
+            grid_mm(pair.offset),
+            grid_mm(pair.from_end)
+        );
+    }
+}
+
+/// The same for programs; lengths in mm.
+pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
+    let trial = |pair: &TrialPair| {
+        let measured = json!({
+            "finger": pair.subject.infill(),
+            "offset_mm": grid_mm(pair.offset),
+            "beyond_end_mm": grid_mm(pair.from_end),
+            "outcomes": pair.outcomes.map(Outcome::label),
+            "agrees": pair.agrees(),
+            "tip_distance_mm": pair.tip_mm,
+        });
+        merged(subject_json(&pair.subject.task, &pair.subject.design), measured)
+    };
+    let windows = pairs::json(&check.windows, None, "engine", ["first", "second"]);
+    json!({
+        "engines": names,
+        "agreement": check.agreement(),
+        "agreement_target": AGREEMENT,
+        "end_difference_mm": check.end_difference_mm(),
+        "end_difference_target_mm": END_DIFFERENCE_MM,
+        "passed": check.passed(),
+        "trials": check.trials.iter().map(trial).collect::<Vec<_>>(),
+        "windows": windows,
+    })
+}

@@ -1,0 +1,119 @@
+//! How long the same trial takes in both engines.
+
+use crate::compare::{Subject, TaskWays, Way, merged, subject_json};
+use insertion::outcome::Outcome;
+use insertion::stiffness::Measurement;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::time::Instant;
+
+/// Runs of each trial; the median counts.
+const RUNS: usize = 5;
+
+/// The nominal trial of a finger, from the grasp to the end, in both engines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timing {
+    /// The finger and its task.
+    pub subject: Subject,
+    /// How it ended.
+    pub outcomes: [Outcome; 2],
+    /// Simulated time, s.
+    pub simulated_s: [f64; 2],
+    /// Wall time, s: median of 5.
+    pub wall_s: [f64; 2],
+}
+
+impl Timing {
+    /// The first engine's wall time per simulated time over the second's.
+    pub fn ratio(&self) -> f64 {
+        let [first, second] = [0, 1].map(|i| self.wall_s[i] / self.simulated_s[i]);
+        first / second
+    }
+}
+
+/// Times every design on every task, one after the other, on this thread, the engines (the
+/// first two ways of the task) in turn.
+pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
+    let timing = |task: &TaskWays, design: &Measurement| {
+        let [first, second, ..] = &task.ways[..] else { return None };
+        let subject = Subject::new(&task.task.name, &task.task.finger, *design);
+        Some(time_both(subject, [first, second]))
+    };
+    tasks.iter().flat_map(|task| designs.iter().filter_map(move |d| timing(task, d))).collect()
+}
+
+fn time_both(subject: Subject, ways: [&Way; 2]) -> Timing {
+    let mut walls = [Vec::new(), Vec::new()];
+    let mut ends = [(Outcome::Diverged, 0.0); 2];
+    for _ in 0..RUNS {
+        for (i, way) in ways.iter().enumerate() {
+            let clock = Instant::now();
+            let trial = way.rig.grasp(&subject.finger).trial(0.0);
+            walls[i].push(clock.elapsed().as_secs_f64());
+            ends[i] = (trial.outcome, trial.simulated_s);
+        }
+    }
+    Timing {
+        subject,
+        outcomes: ends.map(|end| end.0),
+        simulated_s: ends.map(|end| end.1),
+        wall_s: walls.map(|mut walls| {
+            walls.sort_by(f64::total_cmp);
+            walls[RUNS / 2]
+        }),
+    }
+}
+
+/// A table, and the mean ratio.
+pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
+    let mut text = format!(
+        "one nominal trial from the grasp to the end, one thread, medians of {RUNS}\n\n\
+         {:<7}{:<13}{:>20}{:>20}{:>8}\n{:<20}{:>20}{:>20}{:>8}\n",
+        "task",
+        "finger",
+        first,
+        second,
+        "ratio",
+        "",
+        "wall s (simulated)",
+        "wall s (simulated)",
+        ""
+    );
+    for row in rows {
+        let [a, b] = [0, 1].map(|i| format!("{:.3} ({:.2})", row.wall_s[i], row.simulated_s[i]));
+        let same = (row.outcomes[0] == Outcome::Inserted) == (row.outcomes[1] == Outcome::Inserted);
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{:<7}{:<13}{a:>20}{b:>20}{:>8.3}{}",
+            row.subject.task,
+            row.subject.infill(),
+            row.ratio(),
+            if same { "" } else { "  another outcome" }
+        );
+    }
+    let _ = writeln!(text, "mean ratio of wall to simulated time: {:.3}", mean_ratio(rows));
+    text
+}
+
+/// The same for programs.
+pub fn time_json(rows: &[Timing], names: [&str; 2]) -> Value {
+    json!({
+        "engines": names,
+        "runs": RUNS,
+        "mean_ratio": mean_ratio(rows),
+        "trials": rows.iter().map(|row| {
+            let measured = json!({
+                "finger": row.subject.infill(),
+                "simulated_s": row.simulated_s,
+                "wall_s": row.wall_s,
+                "ratio": row.ratio(),
+            });
+            merged(subject_json(&row.subject.task, &row.subject.design), measured)
+        }).collect::<Vec<_>>(),
+    })
+}
+
+fn mean_ratio(rows: &[Timing]) -> f64 {
+    rows.iter().map(Timing::ratio).sum::<f64>() / rows.len() as f64
+}

@@ -1,0 +1,143 @@
+//! The same fingers measured in several ways: by another search, at half the step, in another
+//! engine, and as published.
+
+pub mod engines;
+pub mod fingers;
+pub mod pairs;
+pub mod published;
+
+#[cfg(test)]
+mod tests;
+
+pub use pairs::WindowPair;
+
+use input::units::N_PER_MM;
+use insertion::evaluation::tolerance::{self, Search};
+use insertion::evaluation::{Evaluation, Window};
+use insertion::finger::Finger;
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::stiffness::Measurement;
+use insertion::task::Task;
+use insertion::task::finger::FingerModel;
+use insertion::trial::Rig;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// One way in which windows are measured.
+#[derive(Clone)]
+pub struct Way {
+    /// What tables call it.
+    pub name: String,
+    /// Where its trials are run.
+    pub rig: Arc<dyn Rig>,
+    /// How it looks for the windows' ends.
+    pub search: Search,
+}
+
+impl Way {
+    /// The window of a finger, and what all trials on the way reported.
+    pub fn evaluate(&self, finger: &Finger) -> Evaluation {
+        tolerance::evaluate(&*self.rig, finger, self.search)
+    }
+}
+
+/// A task and the ways in which its windows are measured; the first is the one that the
+/// others are compared with.
+pub struct TaskWays {
+    /// The task.
+    pub task: Task,
+    /// The ways, at least one.
+    pub ways: Vec<Way>,
+}
+
+/// A measured finger on a task.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Subject {
+    /// Name of the task.
+    pub task: String,
+    /// Infill and measured stiffness of the finger.
+    pub design: Measurement,
+    /// The finger: its measured stiffness, not the surrogate's.
+    pub finger: Finger,
+}
+
+impl Subject {
+    /// A measured finger of a shape.
+    pub fn new(task: &str, model: &FingerModel, design: Measurement) -> Self {
+        let finger = Finger::new(design.compliance, design.assembly);
+        let finger = finger.shaped(model, design.direction_deg);
+        Subject { task: task.to_owned(), design, finger }
+    }
+
+    /// Its infill in words, `10 %, 30 deg`.
+    pub fn infill(&self) -> String {
+        format!("{} %, {} deg", self.design.density_percent, self.design.direction_deg)
+    }
+}
+
+/// The keys that name a finger on a task in every comparison.
+fn subject_json(task: &str, design: &Measurement) -> Value {
+    json!({
+        "task": task,
+        "design": design.design,
+        "infill_density_percent": design.density_percent,
+        "infill_direction_deg": design.direction_deg,
+        "stiffness_assembly_n_per_mm": design.assembly / N_PER_MM,
+        "stiffness_compliance_n_per_mm": design.compliance / N_PER_MM,
+    })
+}
+
+/// Measures every design on every task; in parallel, collected by task and design, so the
+/// number of threads changes nothing.
+pub fn each<T: Send>(
+    tasks: &[TaskWays],
+    designs: &[Measurement],
+    measure: impl Fn(&Subject, &[Way]) -> T + Sync,
+) -> Vec<T> {
+    let pairs: Vec<_> =
+        tasks.iter().flat_map(|task| designs.iter().map(move |d| (task, d))).collect();
+    let one = |(on, design): (&TaskWays, &Measurement)| {
+        measure(&Subject::new(&on.task.name, &on.task.finger, *design), &on.ways)
+    };
+    pairs.into_par_iter().map(one).collect()
+}
+
+/// Failure classes at the negative and the positive end; none without a window.
+fn failures(window: &Window) -> [Option<FailureClass>; 2] {
+    [window.end_negative, window.end_positive].map(|end| match (window.nominal, end) {
+        (Outcome::Inserted, Some(Outcome::Failed(class))) => Some(class),
+        _ => None,
+    })
+}
+
+/// A window with the keys that every command gives it.
+fn window_json(window: &Window) -> Value {
+    let [negative, positive] = failures(window);
+    json!({
+        "nominal": window.nominal.word(),
+        "negative_mm": window.negative_mm(),
+        "positive_mm": window.positive_mm(),
+        "range_mm": window.range_mm(),
+        "failure_negative": negative,
+        "failure_positive": positive,
+    })
+}
+
+/// `-1.4 to +5.8`, in mm; `none` if the nominal start does not insert.
+fn window_words(window: &Window) -> String {
+    match window.nominal {
+        Outcome::Inserted => {
+            format!("{:+.1} to {:+.1}", window.negative_mm(), window.positive_mm())
+        }
+        _ => "none".to_owned(),
+    }
+}
+
+/// Adds the fields of one JSON object to another.
+fn merged(mut fields: Value, more: Value) -> Value {
+    if let (Value::Object(fields), Value::Object(more)) = (&mut fields, more) {
+        fields.extend(more);
+    }
+    fields
+}

@@ -1,0 +1,111 @@
+//! Tables from windows that are known.
+
+use super::*;
+use crate::compare::Subject;
+use insertion::evaluation::tolerance::{Search, evaluate};
+use insertion::task::finger::FingerModel;
+use insertion::trial::fake::FakeRig;
+
+fn window([negative, positive]: [i32; 2], ends: [FailureClass; 2]) -> Window {
+    let [end_negative, end_positive] = ends.map(|class| Some(Outcome::Failed(class)));
+    Window {
+        nominal: Outcome::Inserted,
+        negative_steps: negative,
+        positive_steps: positive,
+        end_negative,
+        end_positive,
+    }
+}
+
+/// Every measured design on a task, by the closed form.
+fn table(task: &str) -> TaskTable {
+    let measured = published::designs();
+    let window = |m: &Measurement| {
+        let subject = Subject::new(task, &FingerModel::default(), *m);
+        evaluate(&FakeRig::default(), &subject.finger, Search::Strides).window
+    };
+    TaskTable::new(task, measured.iter().map(|m| (*m, window(m))))
+}
+
+#[test]
+fn published_match_scores_are_the_papers() {
+    for (task, score) in [("ket12", 100.0), ("ket8", 100.0), ("rj45", 54.5), ("usb", 27.3)] {
+        let found = Agreement::of(&table(task).rows, RangeSource::Simulation, RangeSource::Bench);
+        assert_eq!(found.ends, 22, "{task}");
+        assert!((found.match_percent().unwrap() - score).abs() < 0.05, "{task}: {found:?}");
+    }
+}
+
+#[test]
+fn missing_bench_ranges_are_skipped() {
+    let found = Agreement::of(&table("ket12").rows, RangeSource::Simulation, RangeSource::Bench);
+    assert_eq!(found.designs, 7);
+    // |4.5-7.8| + |4.4-7.5| + |4.7-7.8| + |4.6-7.7| + |4.6-7.2| + |4.6-6.5| + |4.6-6.6|
+    // = 3.3 + 3.1 + 3.1 + 3.1 + 2.6 + 1.9 + 2.0 = 19.1, all below the experiment.
+    assert!((found.mean_absolute_error_mm.unwrap() - 19.1 / 7.0).abs() < 1e-9);
+    assert!((found.mean_error_mm.unwrap() + 19.1 / 7.0).abs() < 1e-9);
+    // 42.3 + 41.3 + 39.7 + 40.2 + 36.1 + 29.2 + 30.3 as printed in the paper.
+    assert!((found.mean_deviation_percent.unwrap() - 259.1 / 7.0).abs() < 0.1);
+}
+
+#[test]
+fn agreement_of_three_designs_by_hand() {
+    use FailureClass::{ContactLossInInsertion as Lost, Jammed, PlugMissed as Missed};
+    let windows = [
+        window([-50, 30], [Lost, Jammed]),   // 8.0; published 9.0, 4 | 3
+        window([-50, 32], [Lost, Missed]),   // 8.2; published 7.6, 4 | 3
+        window([-30, 30], [Jammed, Jammed]), // 6.0; published 6.3, 4 | 3
+    ];
+    let designs = published::designs();
+    let found = TaskTable::new("usb", designs.into_iter().zip(windows)).agreements()[0];
+    assert!((found.mean_absolute_error_mm.unwrap() - (1.0 + 0.6 + 0.3) / 3.0).abs() < 1e-9);
+    assert!((found.mean_error_mm.unwrap() - (-1.0 + 0.6 - 0.3) / 3.0).abs() < 1e-9);
+    assert!((found.spearman.unwrap() - 0.5).abs() < 1e-12);
+    assert_eq!((found.matched_ends, found.ends), (4, 6));
+}
+
+#[test]
+fn a_divergence_is_no_range_and_no_match() {
+    let mut diverged = window([0, 0], [FailureClass::Jammed; 2]);
+    diverged.nominal = Outcome::Diverged;
+    diverged.end_negative = Some(Outcome::Diverged);
+    diverged.end_positive = Some(Outcome::Diverged);
+    let table = TaskTable::new("usb", published::designs().into_iter().zip([diverged]));
+    let found = table.agreements()[0];
+    assert_eq!((found.designs, found.matched_ends, found.ends), (0, 0, 2));
+    assert!(text(&table).contains("nominal start x"));
+    assert!(targets(&table).iter().all(|target| !target.met()));
+    assert!(csv(&[table]).lines().nth(1).unwrap().contains(",diverged,0,0,,,,9.0"));
+}
+
+#[test]
+fn a_failing_nominal_start_is_a_range_of_0_and_no_match() {
+    let mut failed = window([0, 0], [FailureClass::Jammed; 2]);
+    failed.nominal = Outcome::Failed(FailureClass::Jammed);
+    let table = TaskTable::new("ket8", published::designs().into_iter().zip([failed]));
+    let found = table.agreements()[0];
+    assert_eq!((found.designs, found.matched_ends, found.ends), (1, 0, 2));
+    assert_eq!(found.mean_absolute_error_mm, Some(7.2));
+    assert!(csv(&[table]).lines().nth(1).unwrap().contains(",3,0,0,0.0,,,7.2"));
+}
+
+#[test]
+fn tables_are_complete_and_fit_a_terminal() {
+    let tables = ["ket8", "ket12", "rj45", "usb"].map(table);
+    let found = csv(&tables);
+    assert_eq!(found.lines().count(), 1 + 4 * 11);
+    assert!(found.lines().all(|line| line.split(',').count() == CSV_HEADER.len()), "{found}");
+    // Design 1: -(2 + 4 / 1.2) = -5.33 and 1 + 52.4 / 50 = 2.048 mm.
+    let first =
+        "ket8,1,10,0,52.4,1.2,inserted,-5.3,2,7.3,3,2,7.2,3,3,7.6,3,3,0.1,1.4,-0.3,3.9,-0.4,5.3";
+    assert_eq!(found.lines().nth(1), Some(first));
+    let summary = summary_csv(&tables);
+    assert_eq!(summary.lines().count(), 1 + 4 * 3);
+    assert!(summary.lines().all(|line| line.split(',').count() == SUMMARY_HEADER.len()));
+    let accuracy = accuracy(&tables);
+    assert!(accuracy.contains("2.73 mm, +0.00, 100.0 % |\n| rj45 |"), "{accuracy}");
+    assert_eq!(accuracy_json(&tables)[3]["simulation"]["matched_ends"], 6);
+    for text in tables.iter().map(text) {
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    }
+}

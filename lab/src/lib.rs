@@ -1,0 +1,14 @@
+//! What proves the models, as opposed to what users run: analytic checks, the same fingers measured
+//! in several ways and as published, the choice of prints replayed, and benchmarks.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+// A stream that has gone makes these panic: `cli::terminal` prints.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+// A panic is a defect; what input can reach is an error with a message.
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod analytic;
+pub mod cli;
+pub mod compare;
+pub mod prints;
+pub mod problems;

@@ -1,0 +1,142 @@
+//! Recorded landscapes: the objective of every design of a space.
+
+use ask_tell::Grid;
+use ask_tell::GridPoint;
+use input::InputError;
+
+/// Column of the values; the columns before it are the axes.
+const VALUE: &str = "range_mm";
+
+/// The tolerable range of every design of a space, mm; none where the evaluation diverged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Landscape {
+    grid: Grid,
+    /// By level of the first axis, then of the second, and so on.
+    values: Vec<Option<f64>>,
+}
+
+impl Landscape {
+    /// Reads a CSV: a header, the axes, then `range_mm` (empty for no value), then anything.
+    /// Every combination of the axes' values has to be there once. `file` is named in errors.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let fail = |message: String| InputError::Syntax { file: file.to_owned(), message };
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        let header = lines.next().unwrap_or_default();
+        let axes = header.split(',').position(|name| name == VALUE).filter(|&axes| axes > 0);
+        let Some(axes) = axes else {
+            return Err(fail(format!(
+                "the header must name the axes and then {VALUE}: '{header}'"
+            )));
+        };
+        let mut rows = Vec::new();
+        for line in lines {
+            let row = row(line, axes).ok_or_else(|| {
+                fail(format!("'{line}' does not begin with {axes} finite numbers and {VALUE}"))
+            })?;
+            rows.push(row);
+        }
+        Self::of(&rows, axes).map_err(fail)
+    }
+
+    fn of(rows: &[DesignRow], axes: usize) -> Result<Self, String> {
+        let levels: Vec<Vec<f64>> = (0..axes)
+            .map(|axis| {
+                let mut levels: Vec<f64> = rows.iter().map(|row| row.at[axis]).collect();
+                levels.sort_by(f64::total_cmp);
+                levels.dedup();
+                levels
+            })
+            .collect();
+        let grid = Grid::new(levels.iter().map(|l| l.len() as u32).collect());
+        if rows.is_empty() || grid.size() != rows.len() as u64 {
+            return Err(format!("{} rows for a grid of {} designs", rows.len(), grid.size()));
+        }
+        let mut values = vec![None; rows.len()];
+        let mut seen = vec![false; rows.len()];
+        for row in rows {
+            // Every number is among the levels: they were made of the rows.
+            let level = |(at, levels): (&f64, &Vec<f64>)| levels.partition_point(|l| l < at) as u32;
+            let index = index(&grid, &row.at.iter().zip(&levels).map(level).collect::<Vec<u32>>());
+            if std::mem::replace(&mut seen[index], true) {
+                return Err(format!("two rows of the design {:?}", row.at));
+            }
+            values[index] = row.value;
+        }
+        if values.iter().all(Option::is_none) {
+            return Err("no design has a value".to_owned());
+        }
+        Ok(Landscape { grid, values })
+    }
+
+    /// The designs.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The range of a design of the grid, mm.
+    pub fn value(&self, point: &GridPoint) -> Option<f64> {
+        self.values[index(&self.grid, &point.0)]
+    }
+
+    /// The largest range, mm.
+    pub fn best(&self) -> f64 {
+        self.values.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+fn index(grid: &Grid, point: &[u32]) -> usize {
+    point.iter().zip(grid.levels()).fold(0, |index, (&k, &n)| index * n as usize + k as usize)
+}
+
+struct DesignRow {
+    at: Vec<f64>,
+    value: Option<f64>,
+}
+
+fn row(line: &str, axes: usize) -> Option<DesignRow> {
+    let number = |cell: &str| cell.parse::<f64>().ok().filter(|number| number.is_finite());
+    let mut cells = line.split(',');
+    let at = cells.by_ref().take(axes).map(number).collect::<Option<Vec<f64>>>()?;
+    let value = match cells.next()? {
+        "" => None,
+        cell => Some(number(cell)?),
+    };
+    (at.len() == axes).then_some(DesignRow { at, value })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SMALL: &str = "# x\na_percent,b_deg,range_mm,more\n10,0,1.5,7\n10,5,2.0,\n\
+                         20,5,,\n20,0,0.1,\n30,0,3.0,\n30,5,2.9,\n";
+
+    #[test]
+    fn values_stand_at_their_designs_in_any_order() {
+        let landscape = Landscape::parse(SMALL, "small.csv").unwrap();
+        assert_eq!(landscape.grid().levels(), [3, 2]);
+        let at = |a, b| landscape.value(&GridPoint(vec![a, b]));
+        assert_eq!(
+            (at(0, 1), at(1, 0), at(1, 1), at(2, 1)),
+            (Some(2.0), Some(0.1), None, Some(2.9))
+        );
+        assert_eq!(landscape.best(), 3.0);
+    }
+
+    #[test]
+    fn what_is_no_landscape_is_named() {
+        for (text, part) in [
+            ("", "the header must name"),
+            ("range_mm\n1\n", "the header must name"),
+            ("a,range_mm\n", "0 rows"),
+            ("a,range_mm\n1,\n", "no design has a value"),
+            ("a,range_mm\n1,x\n", "'1,x' does not begin"),
+            ("a,range_mm\n1\n", "'1' does not begin"),
+            ("a,b,range_mm\n1,1,1\n2,2,1\n", "2 rows for a grid of 4"),
+            ("a,b,range_mm\n1,1,1\n1,1,2\n1,2,1\n2,2,1\n", "two rows of the design [1.0, 1.0]"),
+        ] {
+            let error = Landscape::parse(text, "l.csv").unwrap_err().to_string();
+            assert!(error.starts_with("l.csv: ") && error.contains(part), "{error}");
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! What is to be found, and how many evaluations an optimizer takes to find it.
+
+use super::functions::Function;
+use super::landscape::Landscape;
+use ask_tell::GridPoint;
+use ask_tell::cmaes::{Restarts, Solution, StartBox, Strategy, Tolerances};
+use ask_tell::{Grid, Observation, Optimizer};
+
+/// Levels per axis of the grids on which the functions are searched.
+const LEVELS: u32 = 1001;
+/// Evaluations after which a run on a landscape counts as failed.
+const LANDSCAPE_LIMIT: usize = 100;
+/// What a design may fall short of the best one of its landscape, mm.
+const SHORTFALL_MM: f64 = 0.1;
+/// Less than a step of the ranges, for their rounding, mm.
+const ROUNDING_MM: f64 = 1e-9;
+
+/// A problem on a grid: **maximised**, up to a target.
+#[derive(Debug, Clone)]
+pub struct GridProblem {
+    name: String,
+    grid: Grid,
+    value: Value,
+    target: f64,
+    limit: usize,
+}
+
+#[derive(Debug, Clone)]
+enum Value {
+    /// The negated function.
+    Function(Function),
+    Landscape(Landscape),
+}
+
+impl GridProblem {
+    /// Those made of a function; none of the functions that are searched off the grid.
+    pub fn of_function(function: Function) -> Vec<Self> {
+        let problem = |goal: &str, dimension, target, limit| GridProblem {
+            name: format!("{}{goal}", function.name()),
+            grid: Grid::new(vec![LEVELS; dimension]),
+            value: Value::Function(function),
+            target,
+            limit,
+        };
+        match function {
+            Function::Branin => vec![
+                // Largest value on the square 308.129; 1 % of the range is 3.0773.
+                problem(" to 1 %", 2, -0.397_887 - 3.0773, 200),
+                // A harder goal: 1 % of the optimal value itself.
+                problem(" to 0.004", 2, -0.397_887 - 0.003_978_87, 200),
+            ],
+            // Its largest value is practically 0.
+            Function::Hartmann6 => vec![problem(" to 1 %", 6, 3.322_37 - 0.033_223_7, 60)],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Within 0.1 mm of the best design of a recorded landscape.
+    pub fn of_landscape(name: &str, landscape: Landscape) -> Self {
+        GridProblem {
+            name: format!("{name} landscape"),
+            grid: landscape.grid().clone(),
+            target: landscape.best() - SHORTFALL_MM - ROUNDING_MM,
+            limit: LANDSCAPE_LIMIT,
+            value: Value::Landscape(landscape),
+        }
+    }
+
+    /// What it is called in tables.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The points.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Evaluations after which a run counts as failed.
+    pub fn limit(&self) -> usize {
+        self.limit
+    }
+
+    fn value(&self, point: &GridPoint) -> Option<f64> {
+        match &self.value {
+            Value::Function(function) => Some(-function.value(&self.grid.unit(point))),
+            Value::Landscape(landscape) => landscape.value(point),
+        }
+    }
+
+    /// Evaluations, one at a time, to the target; none if the limit was not enough.
+    pub fn evaluations(&self, optimizer: &mut dyn Optimizer) -> Option<usize> {
+        for evaluation in 1..=self.limit {
+            let point = optimizer.ask(1).pop()?;
+            let value = self.value(&point);
+            if value.is_some_and(|value| value >= self.target) {
+                return Some(evaluation);
+            }
+            optimizer.tell(&[Observation::new(point, value)]);
+        }
+        None
+    }
+}
+
+/// Evaluations after which a run of CMA-ES counts as failed.
+const CMA_LIMIT: usize = 1_000_000;
+/// The value it has to get below.
+const CMA_TARGET: f64 = 1e-8;
+/// Dimensions in which it is measured.
+pub(super) const CMA_DIMENSIONS: [usize; 2] = [2, 5];
+
+/// Whether a function is searched by CMA-ES in R^n instead of on a grid.
+pub(super) fn is_unbounded(function: Function) -> bool {
+    !matches!(function, Function::Branin | Function::Hartmann6)
+}
+
+/// Evaluations of BIPOP-CMA-ES to a value below 1e-8, from a uniform point of [-4, 4]^n with
+/// a step size of 2.
+pub(super) fn cma_evaluations(function: Function, n: usize, seed: u64) -> Option<usize> {
+    let start = StartBox {
+        low: vec![-4.0; n],
+        high: vec![4.0; n],
+        sigma: 2.0,
+        min_std: Vec::new(),
+        active: true,
+        max_lambda: 1 << 14,
+        tolerances: Tolerances::default(),
+    };
+    let mut cma = Restarts::new(Strategy::Bipop, start, seed);
+    let mut evaluations = 0;
+    while evaluations < CMA_LIMIT {
+        let mut told = Vec::new();
+        for x in cma.ask() {
+            evaluations += 1;
+            let value = function.value(&x);
+            if value < CMA_TARGET {
+                return Some(evaluations);
+            }
+            told.push(Solution { x, value });
+        }
+        cma.tell(&told);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ask_tell::GridSearch;
+
+    #[test]
+    fn a_landscape_is_found_at_the_first_design_a_step_below_its_best() {
+        let text = "a,range_mm\n1,0.5\n2,\n3,1.9\n4,0.7\n5,2.0\n";
+        let landscape = Landscape::parse(text, "l.csv").unwrap();
+        let problem = GridProblem::of_landscape("l", landscape);
+        let mut order = GridSearch::new(problem.grid().clone());
+        let points: Vec<u32> =
+            std::iter::from_fn(|| order.ask(1).pop()).map(|point| point.0[0]).collect();
+        let first = points.iter().position(|&k| k == 2 || k == 4).unwrap() + 1;
+        let mut again = GridSearch::new(problem.grid().clone());
+        assert_eq!(problem.evaluations(&mut again), Some(first));
+    }
+
+    #[test]
+    fn a_spent_optimizer_has_not_found_it() {
+        let landscape = Landscape::parse("a,range_mm\n1,0.5\n2,3.0\n", "l.csv").unwrap();
+        let mut problem = GridProblem::of_landscape("l", landscape);
+        problem.target = 4.0;
+        let mut search = GridSearch::new(problem.grid().clone());
+        assert_eq!(problem.evaluations(&mut search), None);
+    }
+}

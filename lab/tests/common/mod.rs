@@ -1,0 +1,22 @@
+//! Runs the program `lab`.
+#![allow(dead_code, reason = "each test file uses its own part of this")]
+
+#[path = "../../../tests/common/ran.rs"]
+mod ran;
+
+pub use ran::*;
+
+use std::process::{Command, Stdio};
+
+/// The program with these arguments, not yet started; in the root of the workspace.
+pub fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lab"));
+    command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+    command.args(arguments).stdin(Stdio::null());
+    command
+}
+
+/// Runs the program to its end.
+pub fn lab(arguments: &[&str]) -> Ran {
+    run(&mut command(arguments))
+}

@@ -1,0 +1,94 @@
+//! `lab validate`: output, files and what is said of bad input on the fake engine; the
+//! windows of the real one.
+
+mod common;
+
+use common::{lab, read};
+
+fn validate(more: &[&str], out: &std::path::Path) -> common::Ran {
+    let out = out.to_str().expect("a path in UTF-8");
+    lab(&[&["validate", "--engine", "fake", "--out", out], more].concat())
+}
+
+#[test]
+fn all_tasks_are_compared_and_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("all");
+    let ran = validate(&[], &dir);
+    for part in
+        ["ket8", "ket12", "rj45", "usb", "target", "27.3 %", "54.5 %", "100.0 %", "- bench |"]
+    {
+        assert!(ran.succeeds().contains(part), "{part} is not in {}", ran.stdout);
+    }
+    assert!(
+        ran.stdout
+            .lines()
+            .all(|line| line.starts_with("tables are in") || line.chars().count() <= 100),
+        "{}",
+        ran.stdout
+    );
+    let csv = read(&dir.join("validation.csv"));
+    assert!(csv.starts_with("task,design,infill_density_percent,infill_direction_deg,"));
+    assert_eq!(csv.lines().count(), 45);
+    assert_eq!(read(&dir.join("validation_summary.csv")).lines().count(), 13);
+    assert_eq!(read(&dir.join("accuracy.md")).lines().count(), 6);
+}
+
+#[test]
+fn one_task_prints_json_that_threads_do_not_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let ran = |name: &str, threads: &str| {
+        let out = folder.path().join(name);
+        let mut command =
+            common::command(&["validate", "--engine", "fake", "--task", "usb", "--json", "--out"]);
+        common::run(command.arg(out).env("RAYON_NUM_THREADS", threads))
+    };
+    let result = ran("one", "1");
+    let found = result.json();
+    assert_eq!((&found["engine"], &found["search"]), (&"fake".into(), &"walk".into()));
+    assert_eq!(found["agreement_with_bench"][0]["simulation"]["matched_ends"], 6);
+    let task = &found["tasks"][0];
+    assert_eq!(task["designs"].as_array().map(Vec::len), Some(11));
+    // The measured stiffness, not the surrogate's.
+    assert_eq!(task["designs"][4]["stiffness_compliance_n_per_mm"], 2.6);
+    assert_eq!(task["designs"][4]["infill_direction_deg"], 20.0);
+    assert_eq!(task["agreement"][2]["compared"], "simulation");
+    assert_eq!(task["agreement"][2]["matched_ends"], 6);
+    assert_eq!(ran("eight", "8").stdout, result.stdout);
+}
+
+#[test]
+fn a_task_that_is_not_published_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    validate(&["--task", "rj54"], &folder.path().join("a"))
+        .fails(2, &["rj54", "did you mean `rj45`"]);
+    let mine = folder.path().join("mine.toml");
+    let text = std::fs::read_to_string("../tasks/usb.toml").unwrap();
+    std::fs::write(&mine, text.replacen("name = \"usb\"", "name = \"mine\"", 1)).unwrap();
+    let mine = mine.to_str().unwrap();
+    validate(&["--task", mine], &folder.path().join("b"))
+        .fails(2, &["mine.toml", "nothing is published"]);
+}
+
+const REFERENCE: &str = "../results/reference/validation";
+
+/// The windows of three fingers on every task by the real engine; `scripts/reference.sh
+/// validation` measures all 44.
+#[test]
+fn the_windows_are_the_committed_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("golden");
+    let path = out.to_str().expect("a path in UTF-8");
+    lab(&["validate", "--fingers", "three", "--out", path]).succeeds();
+    let found = read(&out.join("validation.csv"));
+    let golden = read(&std::path::Path::new(REFERENCE).join("validation.csv"));
+    let golden: Vec<&str> = golden.lines().collect();
+    let changed: Vec<&str> = found.lines().filter(|line| !golden.contains(line)).collect();
+    assert_eq!(found.lines().count(), 1 + 4 * 3);
+    assert!(
+        changed.is_empty(),
+        "the windows are not those of {REFERENCE}/validation.csv. If physics was changed on \
+         purpose: scripts/reference.sh validation, mend docs/notes/calibration.md, and say in the commit what moved them.\n{}",
+        changed.join("\n")
+    );
+}

@@ -1,0 +1,134 @@
+use super::*;
+use input::shipped::MEASUREMENTS;
+
+fn of(lines: &str) -> Result<Vec<Experiment>, Problems> {
+    let header = "task,infill_density_percent,infill_direction_deg,negative_mm,positive_mm,range_mm,failure_negative,repeats,date,note";
+    parse(&format!("{header}\n{lines}\n"), "m.csv")
+}
+
+#[test]
+fn the_published_bench_is_in_the_documented_form() {
+    let file = MEASUREMENTS[0];
+    let found = parse(file.text, file.file).unwrap();
+    assert_eq!(found.len(), 44);
+    assert_eq!(found.iter().filter_map(Experiment::range_mm).count(), 40);
+    check_tasks(&found, &["ket8", "ket12", "rj45", "usb"], file.file).unwrap();
+    assert_eq!(found[2].range_mm(), Some(8.6));
+}
+
+#[test]
+fn partial_data_are_data() {
+    let found = of("ket8,10,0,,,7.6,3,,,\n\
+                    ket8,10,10,-3.1,2.4,,,2,,\n\
+                    ket8,10,20,,1.5,,,,,\n\
+                    ket8,10,30,,,not measurable,,,,the pad tore\n\
+                    ket8,15,0,-2.0,,4.0,,,,")
+    .unwrap();
+    let extents: Vec<Extent> = found.iter().map(Experiment::extent).collect();
+    assert_eq!(
+        extents,
+        [
+            Extent::Range(7.6),
+            Extent::Range(5.5),
+            Extent::AtLeast(1.5),
+            Extent::Unknown,
+            Extent::Range(4.0)
+        ]
+    );
+    assert_eq!((found[1].repeats, found[3].note.as_str(), found[0].line), (2, "the pad tore", 2));
+    assert_eq!(parse("", "m.csv"), Ok(vec![]));
+    assert_eq!(of("").map(|found| found.len()), Ok(0));
+}
+
+#[test]
+fn what_looks_wrong_is_told_with_line_and_column() {
+    for (line, column, words) in [
+        (
+            "ket8,0.2,0,,,7,,,,",
+            "infill_density_percent",
+            "looks like a share; give percent, as in 20",
+        ),
+        (
+            "ket8,20,0.52,,,7,,,,",
+            "infill_direction_deg",
+            "looks like radians; give degrees, as in 30",
+        ),
+        ("ket8,20,0,,,0.0076,,,,", "range_mm", "looks like metres"),
+        ("ket8,20,0,,,7600,,,,", "range_mm", "micrometres; give millimetres, as in 7.6"),
+        ("ket8,20,0,0.5,2.5,,,,,", "negative_mm", "excludes 0"),
+        ("ket8,20,0,-2.5,-0.5,,,,,", "positive_mm", "excludes 0"),
+        ("ket8,20,0,-2.5,0.5,4,,,,", "range_mm", "3.00 mm wide"),
+        ("ket8,20,0,,,,,,,", "range_mm", "nothing was measured"),
+        ("ket8,20,0,,,7,5,,,", "failure_negative", "4 (contact loss"),
+        ("ket8,20,0,,,7,,0,,", "repeats", "whole number"),
+        ("ket8,20,0,,,7,,,31.3.26,", "date", "2026-03-31"),
+        (",20,0,,,7,,,,", "task", "name the task"),
+        ("ket8,20,0,,,7", "", "has 6 cells"),
+        ("ket8,20,0,,,7,,,,\nket8,20,0,,,6,,,,", "task", "line 2; give the mean"),
+    ] {
+        let problems = of(line).unwrap_err();
+        let at = 1 + line.lines().count() as u64;
+        let [problem] = problems.each() else { panic!("{problems}") };
+        assert_eq!((problem.line, &*problem.column), (at, column), "{problems}");
+        assert!(problems.to_string().contains(words), "{problems}");
+        assert!(problems.to_string().starts_with(&format!("m.csv: line {at}: {column}")));
+    }
+    let both = of("ket8,0.2,0,,,7,,,,\nket8,20,x,,,7,,,,").unwrap_err();
+    assert_eq!(both.each().len(), 2);
+}
+
+#[test]
+fn the_same_finger_on_two_days_is_two_measurements() {
+    assert_eq!(of("ket8,20,0,,,7,,,2026-03-01,\nket8,20,0,,,6,,,2026-03-02,").unwrap().len(), 2);
+}
+
+#[test]
+fn unknown_tasks_and_columns_are_told_with_the_nearest() {
+    let found = of("ket08,20,0,,,7,,,,").unwrap();
+    let error = check_tasks(&found, &["ket8", "usb"], "m.csv").unwrap_err().to_string();
+    assert!(
+        error.contains("m.csv: line 2: task: ") && error.contains("did you mean `ket8`"),
+        "{error}"
+    );
+    for (header, words) in [
+        ("task,infill_density_percent,range_mm", "infill_direction_deg: is missing"),
+        ("task,infill_density_percent,infill_direction_deg,rangemm", "did you mean `range_mm`"),
+        ("task,infill_density_percent,infill_direction_deg,note,note", "twice"),
+    ] {
+        let error = parse(&format!("{header}\n"), "m.csv").unwrap_err().to_string();
+        assert!(error.contains(words) && error.contains("line 1"), "{error}");
+    }
+}
+
+#[test]
+fn further_parameters_are_further_columns() {
+    let text = "task,infill_density_percent,infill_direction_deg,range_mm,finger.rcc_mm\n\
+                ket8,20,0,5,15\nket8,20,0,6,\n";
+    let found = parse(text, "m.csv").unwrap();
+    assert_eq!(found[0].design.get("finger.rcc_mm"), Some(15.0));
+    assert_eq!(found[1].design.get("finger.rcc_mm"), None);
+}
+
+#[test]
+fn a_line_is_added_and_the_others_stay_as_they_were() {
+    let cells = |range: &str| {
+        vec![
+            (Column::Task, "ket8".to_owned()),
+            (Column::Density, "20".to_owned()),
+            (Column::Direction, "0".to_owned()),
+            (Column::Range, range.to_owned()),
+            (Column::Note, "a, b".to_owned()),
+        ]
+    };
+    let new = appended("", &cells("7")).unwrap();
+    assert!(new.starts_with("task,infill_density_percent,infill_direction_deg,negative_mm,"));
+    assert_eq!(parse(&new, "m.csv").unwrap()[0].note, "a, b");
+    let short = "task,infill_density_percent,infill_direction_deg,range_mm\nusb,10,0,4.70";
+    let longer = appended(short, &cells("7")[..4]).unwrap();
+    assert_eq!(longer, format!("{short}\nket8,20,0,7\n"));
+    let wider = appended(&longer, &cells("6")).unwrap();
+    assert!(
+        wider.contains("range_mm,note\nusb,10,0,4.70,\nket8,20,0,7,\nket8,20,0,6,\"a, b\"\n"),
+        "{wider}"
+    );
+}

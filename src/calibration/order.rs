@@ -1,0 +1,143 @@
+//! How far our simulation ranks the fingers of a task as the bench does.
+
+use crate::calibration::published::{Origin, Published, designs, of_task};
+use crate::calibration::statistics::spearman;
+use crate::study::StudyRecord;
+use insertion::evaluation::objective::Measure;
+use insertion::finger::model::FingerModelKind;
+use insertion::stiffness::Measurement;
+use serde::Deserialize;
+
+/// Our windows of the measured fingers, beside those of the bench: columns of the last committed
+/// `validation.csv` (`scripts/reference.sh validation`).
+const VALIDATION: &str = include_str!("../../data/simulated_ranges.csv");
+
+/// A rank correlation of simulated and measured ranges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Order {
+    /// Spearman's, +1 for the same order, -1 for the opposite one.
+    pub spearman: f64,
+    /// Fingers it rests on.
+    pub fingers: usize,
+    /// Whose ranges these are.
+    pub source: OrderSource,
+}
+
+/// Whose simulated ranges are held against the bench.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OrderSource {
+    /// The study's own.
+    Study,
+    /// Those of the committed validation, with the study's finger model and robot.
+    Validation,
+    /// Those of the committed validation, which has another finger model or another robot.
+    OtherRig,
+}
+
+impl OrderSource {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            OrderSource::Study => "this study",
+            OrderSource::Validation => "our validation",
+            OrderSource::OtherRig => "our validation, though of paper fingers on servo,",
+        }
+    }
+}
+
+/// The robot of the committed validation; its fingers are the paper's.
+const VALIDATION_ROBOT: &str = "servo";
+
+#[derive(Deserialize)]
+struct Validated {
+    task: String,
+    range_mm: Option<f64>,
+    bench_range_mm: Option<f64>,
+}
+
+/// The order on a task of a study, by its place: of the study's own ranges where it simulated all
+/// measured fingers; some alone would be those that its search liked. `None` if nothing was measured
+/// of the task.
+pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
+    let name = record.config.tasks().nth(task)?;
+    let bench = of_task(name, Origin::Bench);
+    let measured = designs();
+    let pair = |bench: &Published| {
+        let design = measured.iter().find(|m| m.design == bench.design)?;
+        Some((simulated(record, task, design)?, bench.tolerable_range_mm?))
+    };
+    let own: Vec<(f64, f64)> = bench.iter().filter_map(pair).collect();
+    let all = bench.iter().filter(|bench| bench.tolerable_range_mm.is_some()).count();
+    match own.len() == all {
+        true => order(&own, OrderSource::Study),
+        false => order(&validated(name), of_validation(record)),
+    }
+}
+
+fn of_validation(record: &StudyRecord) -> OrderSource {
+    let config = &record.config;
+    match config.finger_model == FingerModelKind::Paper && config.robot == VALIDATION_ROBOT {
+        true => OrderSource::Validation,
+        false => OrderSource::OtherRig,
+    }
+}
+
+fn order(pairs: &[(f64, f64)], source: OrderSource) -> Option<Order> {
+    Some(Order { spearman: spearman(pairs)?, fingers: pairs.len(), source })
+}
+
+/// What a study simulated of a measured finger, mm.
+fn simulated(record: &StudyRecord, task: usize, m: &Measurement) -> Option<f64> {
+    let infill = insertion::space::Design::infill(m.density_percent, m.direction_deg);
+    let found = record.current().iter().find(|recorded| recorded.design == infill)?;
+    Measure::Range.value(found.on(task)?)
+}
+
+fn validated(task: &str) -> Vec<(f64, f64)> {
+    let rows = csv::Reader::from_reader(VALIDATION.as_bytes()).into_deserialize();
+    let own = rows.flatten().filter(|row: &Validated| row.task == task);
+    own.filter_map(|row| row.range_mm.zip(row.bench_range_mm)).collect()
+}
+
+/// Spearman's rank correlation between published simulation and bench ranges
+/// of a task, and the number of designs it rests on; `None` below 3 designs or
+/// if all ranges are equal.
+pub fn rank_correlation(task: &str) -> Option<(f64, usize)> {
+    let bench = of_task(task, Origin::Bench);
+    let pairs: Vec<(f64, f64)> = of_task(task, Origin::Simulation)
+        .iter()
+        .filter_map(|a| {
+            let b = bench.iter().find(|b| b.design == a.design)?;
+            Some((a.tolerable_range_mm?, b.tolerable_range_mm?))
+        })
+        .collect();
+    Some((spearman(&pairs)?, pairs.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The table of the README, computed from the committed ranges.
+    #[test]
+    fn the_committed_validation_tells_the_order() {
+        for (task, pairs, rank) in
+            [("ket8", 11, -0.57), ("ket12", 7, 0.85), ("rj45", 11, 0.52), ("usb", 11, -0.03)]
+        {
+            let found = order(&validated(task), OrderSource::Validation).unwrap();
+            assert_eq!(found.fingers, pairs, "{task}");
+            assert!((found.spearman - rank).abs() < 0.005, "{task}: {}", found.spearman);
+        }
+        assert!(validated("mine").is_empty());
+    }
+
+    #[test]
+    fn the_ranges_are_those_of_the_committed_validation() {
+        let whole = include_str!("../../results/reference/validation/validation.csv");
+        let cut = |line: &str| {
+            let cells: Vec<&str> = line.split(',').collect();
+            [0, 1, 2, 3, 9, 15].map(|column| cells[column]).join(",") + "\n"
+        };
+        assert_eq!(whole.lines().map(cut).collect::<String>(), VALIDATION);
+    }
+}

@@ -66,7 +66,7 @@ bench() {
     "$optimize" bench next --json > "$folder/replay.json"
     "$optimize" validate --against bench --strides --calibrated "$folder" --out "$work/against" > /dev/null
     cp "$work/against/"{against_bench.txt,calibrated_against_bench.svg} "$folder/"
-    # The key that turns in the grasp (docs/bench.md): ket8 with the pressed patch and twice the preload.
+    # The key that turns in the grasp (docs/notes/bench.md): ket8 with the pressed patch and twice the preload.
     sed 's/^finger_plug_torsion_mm = .*/finger_plug_torsion_mm = "patch"/' tasks/ket8.toml > "$work/patch.toml"
     "$optimize" trial --task "$work/patch.toml" --robot ur5e_position --density 30 --direction 0 \
         --set task.strategy.phase.touch.preload_mm=0.6 --svg "$folder/ket8_turns_about_y.svg" > /dev/null
@@ -151,7 +151,7 @@ pictures() {
     python3 scripts/pictures.py "$work"/usb/{report.html,replay/1-positive.html} docs
 }
 
-# Objectives, constraints and tasks of docs/objectives.md.
+# Objectives, constraints and tasks of docs/guide/objectives.md.
 objectives() {
     local folder="$reference/objectives" few="$work/few.toml"
     mkdir -p "$folder"

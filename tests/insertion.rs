@@ -268,7 +268,7 @@ fn the_success_rate_follows_the_window() {
 }
 
 /// Errors cost range: a robust range lies below the range without them, where the ends of the
-/// window are firm (those of usb are not: `docs/simulation.md`).
+/// window are firm (those of usb are not: `docs/notes/simulation.md`).
 #[test]
 fn a_robust_range_is_smaller_than_the_range() {
     let typical = UNCERTAINTIES[0];

@@ -155,7 +155,7 @@ fn the_number_of_threads_changes_nothing() {
     assert!([1, 2, 8].into_iter().all(|threads| with(threads) == one));
 }
 
-/// What `docs/reproducibility.md` says of proposals, as far as one machine can tell.
+/// What `docs/notes/reliability.md` says of proposals, as far as one machine can tell.
 #[test]
 #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
 fn the_proposals_are_those_of_every_other_machine() {

@@ -562,10 +562,10 @@ fn a_mesh_that_is_no_solid_is_refused_with_what_is_wrong() {
     assert!((same.volume() - volume).abs() < 1e-6 * volume);
 }
 
-/// Every key that the types know is in docs/tasks.md, and no other.
+/// Every key that the types know is in docs/guide/tasks.md, and no other.
 #[test]
 fn the_document_has_every_key_and_no_other() {
-    let document = include_str!("../docs/tasks.md");
+    let document = include_str!("../docs/guide/tasks.md");
     let mut documented: Vec<&str> = document
         .lines()
         .filter(|line| line.starts_with("| `"))

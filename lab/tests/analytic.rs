@@ -88,7 +88,7 @@ fn t10_light_wedged_plug_does_not_sink() {
 }
 
 /// rapier's friction acts at the middle of a face, wherever the face is loaded, so only
-/// `direct` (and MuJoCo, tests/second_engine.rs) is held to it: docs/simulation.md, "Engines".
+/// `direct` (and MuJoCo, tests/second_engine.rs) is held to it: docs/notes/simulation.md, "Engines".
 #[test]
 fn t12_a_face_slides_and_turns_as_its_pressure_says() {
     assert_passed(analytic::grasp::t12(&*direct(1.0)));

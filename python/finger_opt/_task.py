@@ -80,7 +80,7 @@ class Fields:
 class Task(Fields):
     """A connector task: plug, socket, grip, friction, search strategy and success.
 
-    Fields are those of the task file (``docs/simulation.md``), each with the unit that its
+    Fields are those of the task file (``docs/guide/tasks.md``), each with the unit that its
     key carries. Setting one checks the whole task; what cannot be simulated raises
     :class:`InputError` and changes nothing.
 

@@ -31,7 +31,7 @@ class SlurmExecutor(Executor):
     ``folder`` (shared by all nodes) takes submitit's files, ``workers`` is how many jobs are
     handed to Slurm at a time; ``parameters`` go to ``submitit.SlurmExecutor.update_parameters``
     (``partition="short", time=60, cpus_per_task=1``). A job takes some seconds to start: see
-    ``docs/scale.md`` for what is better when evaluations take less.
+    ``docs/guide/clusters.md`` for what is better when evaluations take less.
     """
 
     def __init__(self, folder: str = "results/.slurm", workers: int = 64, **parameters: Any) -> None:

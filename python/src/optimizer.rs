@@ -4,7 +4,7 @@ use ask_tell::protocol;
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
-/// A conversation; `docs/ask-tell.md` describes its lines.
+/// A conversation; `docs/guide/python.md` describes its lines.
 #[pyclass]
 pub struct Session(Mutex<ask_tell::Session>);
 

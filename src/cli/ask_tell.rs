@@ -5,7 +5,7 @@ use ask_tell::protocol::{LONGEST_LINE, Session};
 use clap::Args;
 use std::io::{self, BufRead, Read};
 
-/// Optimize anything: JSON lines on standard input and output, see docs/ask-tell.md.
+/// Optimize anything: JSON lines on standard input and output, see docs/guide/python.md.
 #[derive(Debug, Args)]
 pub struct Arguments {}
 

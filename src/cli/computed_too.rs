@@ -1,5 +1,5 @@
 //! The window of a finger as computed from its ribs, beside that of the default model: on which
-//! of the two the bench agrees depends on the task (`docs/finger.md`).
+//! of the two the bench agrees depends on the task (`docs/notes/finger.md`).
 
 use super::Failure;
 use super::setup::{Setup, SetupArguments};

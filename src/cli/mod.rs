@@ -39,6 +39,7 @@ mod unusable;
 mod words;
 
 pub use failure::Failure;
+pub use manual::reference;
 use terminal::{print, print_json, say};
 
 use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand};
@@ -152,7 +153,7 @@ enum Command {
     Export(export::Arguments),
     /// Optimize anything: JSON lines on standard input and output
     #[command(
-        after_help = "Example: optimize ask-tell < session.jsonl; docs/ask-tell.md has the lines"
+        after_help = "Example: optimize ask-tell < session.jsonl; docs/guide/python.md has the lines"
     )]
     AskTell(ask_tell::Arguments),
     /// List tasks, spaces, robots and uncertainties

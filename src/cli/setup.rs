@@ -33,7 +33,7 @@ pub const DEFAULT_ROBOT: &str = "servo";
 pub const DEFAULT_ENGINE: &str = "direct";
 /// Finger file used unless another is named.
 pub const DEFAULT_FINGER: &str = "finray9";
-/// What presses the pad of a computed finger; why is in `docs/finger.md`.
+/// What presses the pad of a computed finger; why is in `docs/notes/finger.md`.
 pub const TOUCHING: Touching = Touching::PadAndRoof;
 /// Search space used unless another is named.
 pub const DEFAULT_SPACE: &str = "infill";

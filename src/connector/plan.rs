@@ -3,7 +3,7 @@
 //! The strategy is the paper's: down beside the opening with the tip's lower edge in its middle,
 //! across it until both its sides were met, along -y to the wall, and in. What is derived here is
 //! how far each move goes. The over-strokes and the tilt were chosen by trying plugs of 3 to 35 mm:
-//! see `docs/tasks.md`. A round tip comes down with a point, which must be near the wall before it
+//! see `docs/guide/tasks.md`. A round tip comes down with a point, which must be near the wall before it
 //! is pressed, or the plug tips over: it has its own `Moves`.
 
 use super::body::ConvexBody;

@@ -25,7 +25,7 @@ pub fn task(task: &Task, notes: &Notes) -> String {
     }
     let _ = write!(
         out,
-        "# Every key, with its unit and how to choose it: docs/tasks.md.\n\
+        "# Every key, with its unit and how to choose it: docs/guide/tasks.md.\n\
          # Frame: origin in the middle of the opening, on the socket's top; z out of the socket; y the\n\
          # direction in which the jaws close and the start is shifted. Lengths in mm.\n\n\
          name = {}\ndescription = {}\n{}\n\

@@ -1,4 +1,4 @@
-//! Measurements from a bench: `measurements.csv` (`docs/bench.md`) to checked experiments.
+//! Measurements from a bench: `measurements.csv` (`docs/guide/measuring.md`) to checked experiments.
 //!
 //! Only the task, the design and something that was measured are needed; columns may be left
 //! out, and further design parameters are further columns, named as in a space file.

@@ -12,7 +12,7 @@ use insertion::task::Task;
 
 /// Add measurements from the bench to a file, or check such a file.
 ///
-/// The file is `docs/bench.md`'s measurements.csv. Only the task, the infill and something that
+/// The file is `docs/guide/measuring.md`'s measurements.csv. Only the task, the infill and something that
 /// was measured are needed; a range alone is enough.
 #[derive(Debug, Args)]
 pub struct Arguments {

@@ -210,11 +210,11 @@ fn report(
 }
 
 /// What does where hulls reach into the clearance. Two voxels across a tenth of it would be more than
-/// there is time for, and hulls bridge what is hollow by more than that (docs/tasks.md).
+/// there is time for, and hulls bridge what is hollow by more than that (docs/guide/tasks.md).
 fn bridged() -> String {
     format!(
         ": hulls bridge what is hollow, and no --resolution mends that; export the mesh with fewer flats \
          (what makes up to {MOST_PARTS} convex pieces is cut exactly), begin with `optimize task new --round`, \
-         or write the parts about it by hand (docs/tasks.md)"
+         or write the parts about it by hand (docs/guide/tasks.md)"
     )
 }

@@ -35,12 +35,12 @@ impl From<&InputError> for Problem {
         match error {
             InputError::Value { key, problem, .. } => match problem.split_once("; ") {
                 Some((problem, remedy)) => Problem::new(key, problem, remedy),
-                None => Problem::new(key, problem, "see docs/tasks.md"),
+                None => Problem::new(key, problem, "see docs/guide/tasks.md"),
             },
             InputError::Syntax { message, .. } => {
                 // The parser names an unknown or missing key in backticks.
                 let key = message.split('`').nth(1).unwrap_or("the file");
-                Problem::new(key, message, "see docs/tasks.md, or `optimize task show usb`")
+                Problem::new(key, message, "see docs/guide/tasks.md, or `optimize task show usb`")
             }
         }
     }

@@ -87,7 +87,7 @@ pub enum MeshError {
         "{file}: is no solid of flat sides that up to {MOST_PARTS} convex pieces make, and approximating it \
          with --resolution {resolution} would take minutes: give --resolution {finest} or less, export \
          the mesh with fewer flats (a circle of 32 is exact), begin with `optimize task new --round`, \
-         or write its parts by hand (docs/tasks.md)"
+         or write its parts by hand (docs/guide/tasks.md)"
     )]
     Long {
         /// The file.
@@ -101,7 +101,7 @@ pub enum MeshError {
     #[error(
         "{file}: comes to {parts} convex hulls; a task may have {MOST_PARTS}: export the mesh with fewer \
          flats (a circle of 32 is exact), begin with `optimize task new --round`, or write its parts \
-         by hand (docs/tasks.md)"
+         by hand (docs/guide/tasks.md)"
     )]
     Many {
         /// The file.

@@ -1,6 +1,6 @@
 //! `optimize ask-tell`: an optimizer behind JSON lines, for anything that can be measured.
 //!
-//! The protocol is described in `docs/ask-tell.md`. [`Session`] is all of it but the reading
+//! The protocol is described in `docs/guide/python.md`. [`Session`] is all of it but the reading
 //! and writing: one line in, at most one line out.
 
 mod batch;

@@ -35,7 +35,7 @@ pub struct DirectSettings {
     /// Stiffness of a contact point, N/m, whatever the masses. It stands for the
     /// give of loaded edges, socket and board, which the exact boxes lack, and
     /// makes the forces of a redundant contact unique. It decides when a key
-    /// wedges: `docs/calibration.md`.
+    /// wedges: `docs/notes/calibration.md`.
     pub contact_stiffness: f64,
     /// Damping of a contact point, N s/m, above critical for a 40 g key
     /// (published damping ratios are 0.5 and 1). With less, a released wedge

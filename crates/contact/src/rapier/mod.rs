@@ -1,5 +1,5 @@
 //! rapier3d in double precision: a general engine for games and robots, slower and less
-//! exact here than `direct` (`docs/simulation.md`, "Engines"), to compare it with.
+//! exact here than `direct` (`docs/notes/simulation.md`, "Engines"), to compare it with.
 
 mod build;
 mod world;

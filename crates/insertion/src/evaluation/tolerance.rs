@@ -17,7 +17,7 @@ pub enum Search {
     /// In strides of 0.5 mm outward to the first failure, then by bisection
     /// between the last two: a third of the trials. It finds the end that the
     /// walk finds unless a gap in the window is narrower than a stride; so it is on 43 of
-    /// the 44 pairs of task and measured finger (`docs/performance.md`).
+    /// the 44 pairs of task and measured finger (`docs/notes/performance.md`).
     #[default]
     Strides,
 }

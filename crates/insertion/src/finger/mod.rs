@@ -40,7 +40,7 @@ pub struct Finger {
 
 /// Rotational spring about x, N m/rad: the upper end of the range in the paper's
 /// Table "Simulation Inputs" (0.5 .. 2), of which the paper itself used 1; why is
-/// in `docs/calibration.md`.
+/// in `docs/notes/calibration.md`.
 const TILTING: f64 = 2.0;
 
 impl Finger {

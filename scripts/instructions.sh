@@ -12,12 +12,12 @@ cd "$(dirname "$0")/.."
 committed=results/reference/instructions.txt
 # Percent. Linking order and small changes of the compiler move the count by about 1 %.
 margin=5
-program=${CARGO_TARGET_DIR:-target}/debug/optimize
+program=${CARGO_TARGET_DIR:-target}/release/optimize
 if [ -n "${1:-}" ] && [ "$1" != --renew ]; then
     program=$1
     shift
 else
-    cargo build --quiet --features fake-engine
+    cargo build --release --quiet --features fake-engine
 fi
 out=$(mktemp)
 trap 'rm -f "$out"' EXIT

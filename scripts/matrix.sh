@@ -6,8 +6,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-if [ -z "${OPTIMIZE:-}" ]; then cargo build -q --features fake-engine; fi
-optimize=$(realpath "${OPTIMIZE:-${CARGO_TARGET_DIR:-target}/debug/optimize}")
+if [ -z "${OPTIMIZE:-}" ]; then cargo build --release -q --features fake-engine; fi
+optimize=$(realpath "${OPTIMIZE:-${CARGO_TARGET_DIR:-target}/release/optimize}")
 root=$PWD
 work=$(mktemp -d)
 trap 'umount "$work/disk" 2>/dev/null || true; rm -rf "$work"' EXIT

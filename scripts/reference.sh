@@ -12,9 +12,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-parts="stiffness finger shapes bench check windows validation validation-ur5e trials studies pictures objectives instructions optimizers scale"
+parts="stiffness finger shapes bench check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
+lab=${LAB:-target/release/lab}
 reference=results/reference
 # The landscapes that optimizers are compared on.
 recorded="usb ket8 ket12 rj45 finger6 codesign6"
@@ -22,6 +23,10 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 record() { scripts/stale.sh --record "$@"; }
+# Draws the tables in a folder.
+figures() {
+    python3 scripts/figures.py "$1" || echo "left out: $1/ranges.svg needs Python with matplotlib" >&2
+}
 
 stiffness() {
     "$optimize" stiffness --svg "$reference/stiffness.svg" > "$reference/stiffness.txt"
@@ -44,15 +49,11 @@ finger() {
     } > "$folder/table.txt"
     "$optimize" finger --density 20 --direction 20 --svg "$folder/finray9.svg" > "$folder/finray9.txt"
     "$optimize" finger --density 20 --direction 20 --load-n 0,20 --svg "$folder/coupling.svg" > /dev/null
-    "$optimize" validate --against bench --strides --variants --out "$work/bench" > /dev/null
-    cp "$work/bench/against_bench.txt" "$folder/"
-    "$optimize" validate --against bench --strides --phases 8 --out "$work/phases" > /dev/null
-    cp "$work/phases/against_bench.txt" "$folder/against_bench_phases.txt"
     record windows "$folder"/*
 }
 
 # What the published experiments say of every finger, each measured one predicted without it; the
-# choice of prints replayed; all models beside the experiments.
+# choice of prints replayed.
 bench() {
     local folder="$reference/bench" task
     mkdir -p "$folder"
@@ -63,9 +64,8 @@ bench() {
             cp "$work/$task/$table.csv" "$folder/${table}_$task.csv"
         done
     done
-    "$optimize" bench next --json > "$folder/replay.json"
-    "$optimize" validate --against bench --strides --calibrated "$folder" --out "$work/against" > /dev/null
-    cp "$work/against/"{against_bench.txt,calibrated_against_bench.svg} "$folder/"
+    "$lab" prints --json > "$folder/replay.json"
+    figures "$folder"
     # The key that turns in the grasp (docs/notes/bench.md): ket8 with the pressed patch and twice the preload.
     sed 's/^finger_plug_torsion_mm = .*/finger_plug_torsion_mm = "patch"/' tasks/ket8.toml > "$work/patch.toml"
     "$optimize" trial --task "$work/patch.toml" --robot ur5e_position --density 30 --direction 0 \
@@ -74,27 +74,28 @@ bench() {
 }
 
 check() {
-    "$optimize" check > "$reference/check.txt"
+    "$lab" check > "$reference/check.txt"
     record checks "$reference/check.txt"
 }
 
 # Half the step against production on three fingers, the quick search against the walk on all.
 windows() {
-    "$optimize" check --convergence > "$reference/convergence.txt" ||
+    "$lab" check --convergence > "$reference/convergence.txt" ||
         echo "a window moves with the step: $reference/convergence.txt" >&2
-    "$optimize" check --searches --fingers all > "$reference/window_search.txt" ||
+    "$lab" check --searches --fingers all > "$reference/window_search.txt" ||
         echo "the searches differ: $reference/window_search.txt" >&2
     record windows "$reference"/{convergence,window_search}.txt
 }
 
 validation() {
-    "$optimize" validate --out "$reference/validation" > /dev/null
+    "$lab" validate --out "$reference/validation" > /dev/null
+    figures "$reference/validation"
     cut -d, -f1-4,10,16 "$reference/validation/validation.csv" > data/simulated_ranges.csv
     record windows "$reference"/validation/*.{csv,svg} "$reference/validation/accuracy.md"
 }
 
 validation-ur5e() {
-    "$optimize" validate --robot ur5e --out "$reference/validation-ur5e" > /dev/null
+    "$lab" validate --robot ur5e --out "$reference/validation-ur5e" > /dev/null
     record windows "$reference"/validation-ur5e/*.{csv,svg} "$reference/validation-ur5e/accuracy.md"
 }
 
@@ -108,8 +109,6 @@ trials() {
     record windows "$reference"/trial-*.{svg,txt}
 }
 
-# What a study decides by is kept, so that `report` and `compare` open it; its films are not, which
-# are large: the report is the one that `report` makes without them.
 # What the shape of the finger adds to its infill.
 shapes() {
     local folder="$reference/finger/rj45"
@@ -118,10 +117,11 @@ shapes() {
         "$optimize" --task rj45 --space finger --budget 200 --no-cache --out "$work/shapes" --quiet \
         > "$folder/summary.txt"
     sed -i '/^study /d' "$folder/summary.txt"
-    cp "$work/shapes"/{evaluations.csv,report.html} "$folder/"
+    cp "$work/shapes/evaluations.csv" "$folder/"
     record studies "$folder"/*
 }
 
+# What a study decides by is kept, so that `report` and `compare` open it; not what they make of it.
 studies() {
     local task kept
     for task in usb ket8 ket12 rj45; do
@@ -134,6 +134,7 @@ studies() {
         sed -i '/^study /d' "$kept/summary.txt"
         cp -r "$work/$task"/{study.toml,inputs,journal.jsonl,walk.json} "$kept/"
         "$optimize" report "$kept" > /dev/null
+        rm "$kept/report.html"
         record studies "$kept"/* "$kept"/inputs/*
     done
 }
@@ -187,33 +188,14 @@ optimizers() {
     for task in $recorded; do
         landscapes+=(--landscape "$reference/landscapes/$task.csv")
     done
-    "$optimize" bench optimizers --functions branin,hartmann6 --optimizers gp \
+    "$lab" optimizers --functions branin,hartmann6 --optimizers gp \
         --csv "$work/functions.csv"
-    "$optimize" bench optimizers --functions rastrigin --optimizers cma-es --seeds 400 \
+    "$lab" optimizers --functions rastrigin --optimizers cma-es --seeds 400 \
         --csv "$work/rastrigin.csv"
-    "$optimize" bench optimizers "${landscapes[@]}" --csv "$work/landscapes.csv"
+    "$lab" optimizers "${landscapes[@]}" --csv "$work/landscapes.csv"
     { cat "$work/functions.csv"; sed 1d "$work/rastrigin.csv"; sed 1d "$work/landscapes.csv"; } \
         > "$folder/ours.csv"
     record optimizers "$folder/ours.csv"
-}
-
-# How busy workers are, by a simulated clock: the time to think is that of this machine.
-scale() {
-    local table="$reference/scale/utilisation.md"
-    mkdir -p "$reference/scale"
-    {
-        cat << 'EOF'
-# How busy workers are
-
-`cargo run --release --example utilisation -- 4 64 1000 sobol 1000`, on a machine of 2 cores; "thinking" is the
-processor time of a tell with an ask. Measurements take log-uniform times over a factor of ten. Means over
-seeds, medians of regret; "at equal time" is when the quicker of both had measured everything. What ends
-after the last proposal of `--async` is not counted as idle.
-
-EOF
-        cargo run --release --quiet --example utilisation -- 4 64 1000 sobol 1000
-    } > "$table"
-    record optimizers "$table"
 }
 
 # The named columns of a table without commas in its cells, without the header.

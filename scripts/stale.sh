@@ -13,26 +13,21 @@ export LC_ALL=C
 reference=results/reference
 record=$reference/SOURCE
 
-simulation="units stream outcome scene input finger surrogate physics trial evaluation"
+simulation="crates/input crates/contact crates/finray crates/insertion crates/ask-tell/src/stream.rs"
 # The libraries that compute; the others may change without changing a number.
-libraries='^name = "(nalgebra|simba|libm|rapier3d.*|parry3d.*|rand.*|sobol_burley|linfa.*|egobox.*|argmin.*)"'
+libraries='^name = "(nalgebra|simba|libm|rapier3d.*|parry3d.*|rand.*|sobol_burley|linfa.*|argmin.*)"'
 
 # The folders and files of a scope.
 sources() {
     case $1 in
-        windows) rooms=$simulation; folders="data tasks robots" ;;
-        studies) rooms="$simulation optimizer study"; folders="data tasks robots spaces uncertainties" ;;
-        checks) rooms="$simulation verify"; folders="robots" ;;
-        bench) rooms="$simulation optimizer calibration"; folders="data tasks robots spaces priors" ;;
-        optimizers) rooms="stream optimizer verify/problems"; folders="results/reference/landscapes" ;;
+        windows) paths="$simulation data tasks robots" ;;
+        studies) paths="$simulation crates/ask-tell src/study data tasks robots spaces uncertainties" ;;
+        checks) paths="$simulation lab/src/analytic robots" ;;
+        bench) paths="$simulation crates/ask-tell src/calibration data tasks robots spaces priors" ;;
+        optimizers) paths="crates/ask-tell lab/src/problems results/reference/landscapes" ;;
         *) echo "scripts/stale.sh: no scope is called $1" >&2; exit 2 ;;
     esac
-    for room in $rooms; do
-        for path in "src/$room" "src/$room.rs"; do
-            if [ -e "$path" ]; then echo "$path"; fi
-        done
-    done
-    for folder in $folders; do echo "$folder"; done
+    echo "$paths"
 }
 
 hash_of() {

@@ -300,7 +300,6 @@ fn a_co_design_study_names_its_parameters_everywhere() {
     for label in ["infill density", "rcc", "tilt", "side move y", "touch preload", "force"] {
         assert!(text.succeeds().contains(label), "{label} is not in {}", text.stdout);
     }
-    assert!(page.contains("<section id=\"others\">"));
     // The remote centre matters to the closed form, so equal infill is not enough.
     let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
     let column = |row: &str, key| {
@@ -507,11 +506,6 @@ fn a_long_table_of_stiffness_is_bounded() {
     };
     table(26);
     let found = optimize(&["stiffness", "--json", "--stiffness-data", path]).json();
-    assert!(found["left_out"].as_str().unwrap().contains("above 25 designs"), "{found}");
-    assert_eq!(
-        (&found["means"], &found["fingers"]),
-        (&serde_json::json!([]), &serde_json::json!([]))
-    );
     assert!(found["used"]["compliance"]["model"].is_string(), "{found}");
     table(101);
     optimize(&["stiffness", "--stiffness-data", path]).fails(2, &["101 measured", "100 at most"]);

@@ -21,6 +21,7 @@ use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::stiffness;
 use insertion::surrogate::{self, Estimate, Prediction};
+use insertion::task::finger::Coupling;
 use insertion::task::{PadTorsion, Task};
 use insertion::trial::cell;
 use insertion::trial::run::EngineRig;
@@ -362,8 +363,10 @@ fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
 /// A part that is pushed up in the grasp is gripped harder, by as much as the springs pull at one another:
 /// the pads would move inward, and the part is in their way.
 #[test]
-fn pushed_up_a_part_is_gripped_harder_by_computed_fingers() {
+fn pushed_up_a_part_is_gripped_harder_by_coupled_fingers() {
     let mut finger = computed(Touching::PadAndRoof);
+    // y and z pull at one another: pushed up, its pad moves towards the part.
+    finger.coupling = Some(Coupling::new([(1, 2, -0.3)]).unwrap());
     // So high that it stays flat on the part.
     finger.pad.height = 80.0 * MM;
     let shoulder = finger.pad.height / 2.0;

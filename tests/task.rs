@@ -371,7 +371,6 @@ fn a_task_is_copied_like_another_and_shown_as_it_is() {
     assert_eq!((copy.plug, copy.strategy), (usb.plug, usb.strategy));
     assert_eq!(optimize(&["task", "show", "usb"]).succeeds(), shipped("usb"));
     optimize(&["task", "show", "usc"]).fails(2, &["did you mean `usb`"]);
-    assert_eq!(optimize(&["task"]).succeeds(), optimize(&["tasks"]).succeeds());
     optimize(&["task", "new", "a b", "--out", out]).fails(2, &["letters"]);
     optimize(&["task", "new", "a", "--plug", "8x3", "--clearance", "0.1"])
         .fails(2, &["8.25x2.4x6.65"]);

@@ -145,8 +145,8 @@ fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
     recorded(index, infill, model().predict(infill[0], infill[1]).unwrap(), evaluation)
 }
 
-const SECTIONS: [&str; 8] =
-    ["best", "convergence", "map", "windows", "published", "failures", "limits", "provenance"];
+const SECTIONS: [&str; 7] =
+    ["best", "convergence", "windows", "published", "failures", "limits", "provenance"];
 
 fn check_page(page: &str) {
     for id in SECTIONS {

@@ -46,7 +46,7 @@ pub fn folder() -> &'static Path {
 /// Runs the binary; `Err` says what no input may lead to.
 pub fn run(arguments: &[String], input: &[u8], cpu_s: u32) -> Result<Ended, String> {
     let limits = format!("ulimit -v {MEMORY_KIB} -t {cpu_s} -c 0; exec \"$0\" \"$@\"");
-    let mut child = Command::new("bash")
+    let child = Command::new("bash")
         .args(["-c", &limits, &program()])
         .args(arguments)
         .current_dir(folder())
@@ -55,8 +55,16 @@ pub fn run(arguments: &[String], input: &[u8], cpu_s: u32) -> Result<Ended, Stri
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
-        .spawn()
-        .map_err(|error| format!("cannot start: {error}"))?;
+        .spawn();
+    let mut child = match child {
+        Ok(child) => child,
+        // More words than the system takes: it has refused them.
+        Err(error) if error.kind() == std::io::ErrorKind::ArgumentListTooLong => {
+            let (stdout, stderr) = (String::new(), error.to_string());
+            return Ok(Ended { code: Some(2), stdout, stderr });
+        }
+        Err(error) => return Err(format!("cannot start: {error}")),
+    };
     let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
     let input = input.to_vec();
     // All three at once, or a full pipe would hold the program up.

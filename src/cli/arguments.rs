@@ -2,14 +2,20 @@
 
 use crate::session::{
     CacheRequest, CalibrateRequest, DEFAULT_FINGER, DEFAULT_PRIORS, DEFAULT_ROBOT, DEFAULT_SPACE,
-    EffortRequest, FilmRequest, FingerRequest, RepeatRequest, RunRequest, SetupRequest, TaskSource,
-    filmable, given_stiffness,
+    EffortRequest, FilmRequest, FingerRequest, REPEATS, RepeatRequest, RunRequest, SAMPLES,
+    SIMULATIONS, SetupRequest, THREADS, TaskSource, filmable, given_stiffness,
 };
 use clap::Args;
 use insertion::finger::model::FingerModelKind;
 use insertion::task::StartRule;
 use insertion::trial::engine::EngineKind;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
+
+/// A range as clap takes it of numbers narrower than its own.
+pub(super) fn wide<T: Copy + Into<i64>>(range: &RangeInclusive<T>) -> RangeInclusive<i64> {
+    (*range.start()).into()..=(*range.end()).into()
+}
 
 /// What a trial, an evaluation and a study have in common on the command line.
 #[derive(Debug, Clone, clap::Args)]
@@ -133,7 +139,7 @@ pub(super) fn setting(text: &str) -> Result<(String, f64), String> {
 #[derive(Debug, Clone, Args)]
 pub struct RepeatArguments {
     /// Then N times more with friction within 10 %, start within 0.02 mm, and half the step by turns
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(wide(&REPEATS)))]
     repeat: Option<u32>,
     /// Seed of the repeats
     #[arg(long, value_name = "N", default_value_t = 0, requires = "repeat")]
@@ -175,10 +181,10 @@ fn recordable(text: &str) -> Result<PathBuf, String> {
 pub struct EffortArguments {
     /// Simulations per task that the emulator of a bench prediction is made of; one in eight
     /// measures its error [default: 200, or as the study has it]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(16..=4096))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(wide(&SIMULATIONS)))]
     simulations: Option<u16>,
     /// Samples of a bench prediction's posterior [default: 300, or as the study has it]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=20000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(wide(&SAMPLES)))]
     samples: Option<u16>,
 }
 
@@ -224,7 +230,7 @@ impl CalibrationArguments {
 #[derive(Debug, Args)]
 pub struct RunArguments {
     /// Threads [default: one per processor]; changes no result
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(wide(&THREADS)))]
     threads: Option<u16>,
     /// Folder of evaluations that studies share; safe to delete [default: results/.cache]
     #[arg(long, value_name = "DIR")]

@@ -1,7 +1,8 @@
 //! `optimize evaluate`: the tolerance window of one finger.
 
 use super::arguments::{FingerArguments, RepeatArguments, SetupArguments};
-use super::words::{self, merge};
+use super::terminal::merge;
+use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
 use crate::session::{Chosen, EvaluateRequest, Evaluated};
 use crate::study::ByRibs;

@@ -1,6 +1,6 @@
 //! `optimize next`: which finger to print next.
 
-use super::arguments::{CalibrationArguments, SetupArguments};
+use super::arguments::{CalibrationArguments, SetupArguments, wide};
 use super::terminal::simulating;
 use super::{Failure, print, print_json};
 use crate::calibration::next::Advice;
@@ -32,7 +32,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     measurements: String,
     /// Fingers to print at a time
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(wide(&NextRequest::COUNTS)))]
     count: u16,
     /// Fingers that may be printed
     #[arg(long, value_enum, default_value = "space")]

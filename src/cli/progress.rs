@@ -17,7 +17,7 @@ pub struct Progress {
     budget: u64,
     standing: Standing,
     /// Whether nothing is said of what follows the search.
-    alone: bool,
+    quiet_after: bool,
 }
 
 impl Progress {
@@ -34,7 +34,7 @@ impl Progress {
             done_before: done,
             budget,
             standing: Standing::new(study),
-            alone: quiet || json,
+            quiet_after: quiet || json,
         }
     }
 
@@ -48,7 +48,7 @@ impl Progress {
                     say(&format!("warning: evaluations are not kept for other studies: {problem}"));
                 }
             }
-            Event::Simulating { .. } => simulating(self.alone)(event),
+            Event::Simulating { .. } => simulating(self.quiet_after)(event),
         }
     }
 

@@ -1,6 +1,6 @@
 //! `optimize sensitivity`: which unknown matters for the window.
 
-use super::arguments::SetupArguments;
+use super::arguments::{SetupArguments, wide};
 use super::{Failure, print, print_json};
 use crate::report::sensitivity as shown;
 use crate::session::SensitivityRequest;
@@ -22,7 +22,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", default_value = "typical")]
     uncertainty: String,
     /// Rows of the sample: evaluations are this times (inputs + 2)
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(4..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(wide(&SensitivityRequest::SAMPLES)))]
     samples: u32,
     /// Seed of the sample
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -1,6 +1,6 @@
 //! What is printed of a whole study.
 
-use super::words::merge;
+use super::terminal::merge;
 use super::{Failure, on_bench, print, recommended};
 use crate::report::volume_unit;
 use crate::study::{Ending, Recorded, StudyRecord, Walked, nearest, volume};

@@ -2,6 +2,7 @@
 
 use crate::session::{Event, Failure};
 use input::files::visible;
+use serde_json::Value;
 use std::io::{self, Write};
 
 /// Prints to standard output; a reader that has gone away (`| head`) is no error.
@@ -16,8 +17,15 @@ pub fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Prints a value as JSON, one line.
-pub fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
+pub fn print_json(value: &Value) -> Result<(), Failure> {
     print(&format!("{value}\n"))
+}
+
+/// Adds the fields of one JSON object to another.
+pub fn merge(fields: &mut Value, more: Value) {
+    if let (Value::Object(fields), Value::Object(more)) = (fields, more) {
+        fields.extend(more);
+    }
 }
 
 /// What a terminal may see; a carriage return would overwrite the line.

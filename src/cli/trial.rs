@@ -1,7 +1,8 @@
 //! `optimize trial`: one simulated insertion.
 
 use super::arguments::{FilmArguments, FingerArguments, RepeatArguments, SetupArguments};
-use super::words::{self, merge, number};
+use super::terminal::merge;
+use super::words::{self, number};
 use super::{Failure, chosen, print, print_json, repeat};
 use crate::session::{TrialDone, TrialRequest, given_offset};
 use clap::Args;

@@ -51,20 +51,23 @@ pub(super) fn not_stopped(stop: &AtomicBool) -> Result<(), Failure> {
     }
 }
 
-/// A number that must lie in a range; `option` is what gives it.
+/// Whether a number lies in its range, if it is given; `option` is what gives it.
 ///
 /// # Errors
 /// If it does not.
 pub(super) fn within<T: PartialOrd + fmt::Display>(
     option: &str,
-    number: T,
+    number: impl Into<Option<T>>,
     range: &RangeInclusive<T>,
-) -> Result<T, Failure> {
-    if range.contains(&number) {
-        return Ok(number);
+) -> Result<(), Failure> {
+    match number.into() {
+        Some(number) if !range.contains(&number) => {
+            let (least, most) = (range.start(), range.end());
+            let problem = format!("{option} {number}: must lie between {least} and {most}");
+            Err(Failure::usage(problem))
+        }
+        _ => Ok(()),
     }
-    let (least, most) = (range.start(), range.end());
-    Err(Failure::usage(format!("{option} {number}: must lie between {least} and {most}")))
 }
 
 impl From<StudyError> for Failure {

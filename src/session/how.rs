@@ -54,15 +54,19 @@ pub struct EffortRequest {
 }
 
 impl EffortRequest {
+    /// Whether the numbers are within their ranges.
+    fn check(self) -> Result<(), Failure> {
+        within("--simulations", self.simulations, &SIMULATIONS)?;
+        within("--samples", self.samples, &SAMPLES)
+    }
+
     /// What was asked for, or else what is known.
     pub(super) fn or(self, known: Option<BenchEffort>) -> Result<BenchEffort, Failure> {
+        self.check()?;
         let other = known.unwrap_or(EFFORT);
-        let given = |option, given: Option<u16>, range, other| {
-            given.map_or(Ok(other), |given| within(option, given, range))
-        };
         Ok(BenchEffort {
-            simulations: given("--simulations", self.simulations, &SIMULATIONS, other.simulations)?,
-            samples: given("--samples", self.samples, &SAMPLES, other.samples)?,
+            simulations: self.simulations.unwrap_or(other.simulations),
+            samples: self.samples.unwrap_or(other.samples),
         })
     }
 }
@@ -91,8 +95,8 @@ pub struct RunRequest {
 impl RunRequest {
     /// Whether the numbers are within their ranges.
     pub(super) fn check(&self) -> Result<(), Failure> {
-        self.threads.map_or(Ok(0), |threads| within("--threads", threads, &THREADS))?;
-        self.effort.or(None).map(|_| ())
+        within("--threads", self.threads, &THREADS)?;
+        self.effort.check()
     }
 
     /// What to do with a study that was measured otherwise.

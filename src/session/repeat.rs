@@ -64,11 +64,11 @@ impl RepeatRequest {
         stop: &AtomicBool,
         measure: impl Fn(&Repeats) -> T,
     ) -> Result<T, Failure> {
-        let count = within("--repeat", self.count, &REPEATS)?;
+        within("--repeat", self.count, &REPEATS)?;
         let rig = |factor| setup.evaluator.rig(specimen, taught, factor).map_err(Failure::input);
         let rigs = [rig(1.0)?, rig(0.5)?];
         let [whole, half] = rigs.each_ref().map(|rig| Stoppable { rig: &**rig, stop });
-        let repeats = Repeats::new([&whole, &half], &specimen.finger, self.seed, count);
+        let repeats = Repeats::new([&whole, &half], &specimen.finger, self.seed, self.count);
         let measured = measure(&repeats);
         not_stopped(stop)?;
         Ok(measured)

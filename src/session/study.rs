@@ -166,7 +166,7 @@ impl StudyRequest {
         within("--budget", self.budget, &BUDGETS)?;
         within("--polish", self.polish, &POLISHES)?;
         within("--seed", self.seed, &SEEDS)?;
-        self.batch.map_or(Ok(0), |batch| within("--batch", batch, &BATCHES))?;
+        within("--batch", self.batch, &BATCHES)?;
         let setup = self.under_errors(self.setup.setup()?)?;
         let setup = self.measured(setup)?;
         let config = self.config(&setup)?;

@@ -53,6 +53,7 @@ impl EvaluateRequest {
     /// # Errors
     /// If a file cannot be used or the finger cannot be simulated; if `stop` is set meanwhile.
     pub fn run(&self, stop: &AtomicBool) -> Result<Evaluated, Failure> {
+        self.repeat.map_or(Ok(()), RepeatRequest::check)?;
         let mut setup = self.setup.setup()?;
         if let Some(name) = &self.uncertainty {
             setup = setup.under_named(name)?;

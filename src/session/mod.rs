@@ -30,6 +30,8 @@ mod standing;
 mod stiffness;
 mod study;
 mod task;
+#[cfg(test)]
+mod tests;
 mod trial;
 mod unusable;
 

@@ -24,6 +24,11 @@ pub struct RepeatRequest {
 }
 
 impl RepeatRequest {
+    /// Whether it can be done so often.
+    pub(super) fn check(self) -> Result<(), Failure> {
+        within("--repeat", self.count, &REPEATS)
+    }
+
     /// The outcomes at one offset, m, and how often each was met.
     pub(super) fn outcomes(
         &self,
@@ -64,7 +69,6 @@ impl RepeatRequest {
         stop: &AtomicBool,
         measure: impl Fn(&Repeats) -> T,
     ) -> Result<T, Failure> {
-        within("--repeat", self.count, &REPEATS)?;
         let rig = |factor| setup.evaluator.rig(specimen, taught, factor).map_err(Failure::input);
         let rigs = [rig(1.0)?, rig(0.5)?];
         let [whole, half] = rigs.each_ref().map(|rig| Stoppable { rig: &**rig, stop });

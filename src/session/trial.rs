@@ -77,6 +77,7 @@ impl TrialRequest {
             Failure::usage(format!("--offset-mm {}: {problem}", self.offset_mm))
         })?;
         self.film.check()?;
+        self.repeat.map_or(Ok(()), RepeatRequest::check)?;
         if self.every_s.is_some_and(|every_s| !(every_s.is_finite() && every_s >= 0.0)) {
             return Err(Failure::usage("every_s: is a time in s, 0 or above"));
         }

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! input, contact, finray, ask_tell -> insertion
-//!       -> connector, sensitivity, study, calibration -> report -> cli
+//!       -> connector, sensitivity, study, calibration -> report -> session -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -21,4 +21,5 @@ pub mod cli;
 pub mod connector;
 pub mod report;
 pub mod sensitivity;
+pub mod session;
 pub mod study;

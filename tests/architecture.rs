@@ -3,7 +3,8 @@
 use std::path::Path;
 
 /// A room may use those before it (`docs/architecture.md`).
-const FLOW: [&str; 6] = ["connector", "sensitivity", "study", "calibration", "report", "cli"];
+const FLOW: [&str; 7] =
+    ["connector", "sensitivity", "study", "calibration", "report", "session", "cli"];
 
 /// Every `crate::ROOM` in a room of `src/` that comes later, as `file -> room`.
 fn upward(folder: &Path, own: usize, found: &mut Vec<String>) {

@@ -8,7 +8,7 @@ Every call takes the words of the command line ``optimize`` as keywords, with un
 hyphens (``stiffness_data="mine.csv"``, ``walk=True``), and gives the numbers that ``--json``
 prints, under the same keys; each key carries its unit (``range_mm``). Wrong arguments and files
 raise :class:`InputError` (a ``ValueError``), what fails while it runs :class:`RunError` (a
-``RuntimeError``), both with the text of the command line.
+``RuntimeError``), both with the text of the command line; unknown keywords are a ``TypeError``.
 """
 
 from typing import Any

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from . import _native, _words
-from ._task import Task
+from . import _native
+from ._task import Task, sources
 
 
 class Record(dict[str, Any]):
@@ -82,9 +82,8 @@ def evaluate(
 
     Takes about a second, without the interpreter's lock; Ctrl-C ends it.
     """
-    word, files = _words.tasks(task)
-    settings = {"task": word, "density": density, "direction": direction, **settings}
-    return Evaluation(json.loads(_native.evaluate(_words.words(settings), files)))
+    found = _native.evaluate(sources(task), density=density, direction=direction, **settings)
+    return Evaluation(json.loads(found))
 
 
 def trial(
@@ -101,15 +100,8 @@ def trial(
     ``offset_mm`` shifts the start along y; ``every_s`` is the simulated time between two
     samples, s. The rest is as for :func:`evaluate`.
     """
-    word, files = _words.tasks(task)
-    settings = {
-        "task": word,
-        "density": density,
-        "direction": direction,
-        "offset_mm": offset_mm,
-        **settings,
-    }
-    fields, columns = _native.trial(_words.words(settings), files, every_s)
+    settings = {"density": density, "direction": direction, "offset_mm": offset_mm, **settings}
+    fields, columns = _native.trial(sources(task), every_s=every_s, **settings)
     series = {name: np.frombuffer(column, dtype="<f8") for name, column in columns.items()}
     for name in ("tcp_mm", "tip_mm", "force_n"):
         series[name] = series[name].reshape(-1, 3)
@@ -132,9 +124,9 @@ def stiffness(
     own measurements in place of the shipped ones.
     """
     if density is None and direction is None:
-        found = _native.stiffness(_words.words({"stiffness_data": stiffness_data}))
+        found = _native.stiffness(stiffness_data=stiffness_data)
     elif density is None or direction is None:
         raise _native.InputError("give density and direction, or neither")
     else:
-        found = _native.predict(density, direction, stiffness_data)
+        found = _native.predict(density, direction, stiffness_data=stiffness_data)
     return Record(json.loads(found))

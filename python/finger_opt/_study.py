@@ -9,10 +9,10 @@ from collections.abc import Iterable
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
-from . import _native, _words
+from . import _native
 from ._measure import Record
 from ._run import run_open
-from ._task import Task
+from ._task import Task, sources
 
 if TYPE_CHECKING:
     import pandas
@@ -26,14 +26,10 @@ SESSION = (
 class Study:
     """A study in a folder. Make one with :meth:`create`, open one with :func:`load_study`."""
 
-    def __init__(
-        self, path: str | os.PathLike[str], words: list[str], files: list[tuple[str, str]] | None
-    ) -> None:
+    def __init__(self, asked: _native.Asked) -> None:
         #: The folder.
-        self.path = os.fspath(path)
-        self._words = words
-        # None: the study is there, and its folder says what it is.
-        self._files = files
+        self.path = os.fspath(asked.folder())
+        self._asked = asked
 
     @classmethod
     def create(
@@ -53,13 +49,10 @@ class Study:
         They are checked here; the folder (``out``, else ``results/<task>-<optimizer>-seed<seed>``)
         is made by :meth:`run`, which knows the number of workers.
         """
-        word, files = _words.tasks(task)
-        out = None if out is None else os.fspath(out)
         if "executor" in settings:
             raise _native.InputError("executor: is given to run()")
-        settings = {"task": word, "budget": budget, "seed": seed, "out": out, **settings}
-        words = _words.words(settings)
-        return cls(_native.study_folder(words, files), words, files)
+        settings = {"budget": budget, "seed": seed, "out": out, **settings}
+        return cls(_native.study(sources(task), **settings))
 
     def run(
         self,
@@ -85,9 +78,7 @@ class Study:
         return self
 
     def _open(self, workers: int | None) -> Any:
-        if self._files is None:
-            return _native.Guided.resume([*self._words, self.path])
-        return _native.Guided.begin(self._words, self._files, workers)
+        return self._asked.open(workers)
 
     def _read(self) -> _native.Recorded:
         return _native.Recorded(self.path)
@@ -139,4 +130,4 @@ def load_study(folder: str | os.PathLike[str], **session: Any) -> Study:
     if unknown:
         raise _native.InputError(f"{unknown[0]}: a study that is loaded takes {', '.join(SESSION)}")
     _native.Recorded(os.fspath(folder))
-    return Study(folder, _words.words(session), None)
+    return Study(_native.resume(folder, **session))

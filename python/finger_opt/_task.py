@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from . import _native
@@ -110,3 +110,9 @@ class Task(Fields):
 
     def __repr__(self) -> str:
         return f"<Task {self.name}: {self.description}>"
+
+
+def sources(task: str | Task | Iterable[str | Task]) -> list[str | tuple[str, str]]:
+    """Tasks for the library: names as they are, and of a :class:`Task` what messages call it and its text."""
+    given = [task] if isinstance(task, (str, Task)) else list(task)
+    return [(one.file, one.to_toml()) if isinstance(one, Task) else one for one in given]

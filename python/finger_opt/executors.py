@@ -151,16 +151,11 @@ def main(words: list[str]) -> int:
             "the installed Python package finger-opt is of other sources than this program; "
             "install the one from the same folder: pip install ./python"
         )
-    name, quiet = _native.session(words)
-    if name is None:
+    asked = _native.asked(words)
+    if asked.executor is None:
         raise _native.InputError("give --executor")
-    resume = words[:1] == ["resume"]
-
-    def begin(workers: int | None) -> Any:
-        return _native.Guided.resume(words[1:]) if resume else _native.Guided.begin(words, [], workers)
-
-    with named(name) as executor:
-        text, unusable = run_open(begin, executor, not quiet, None, 10)
+    with named(asked.executor) as executor:
+        text, unusable = run_open(asked.open, executor, not asked.quiet, None, 10)
     sys.stdout.write(text)
     if unusable is not None:
         raise _native.RunError(unusable)

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from . import _native, _words
-from ._task import Task
+from . import _native
+from ._task import Task, sources
 
 try:
     import gymnasium
@@ -79,9 +79,8 @@ class InsertionEnv(gymnasium.Env[np.ndarray, np.ndarray]):
             raise _native.InputError("offset_mm: is (from, to), mm, within 1000 of 0")
         if not (0.0 < speed_mm_per_s < float("inf") and 0.0 < time_limit_s < float("inf")):
             raise _native.InputError("speed_mm_per_s, time_limit_s: have to be above 0 and finite")
-        word, files = _words.tasks(task)
-        settings = {"task": word, "density": density, "direction": direction, **settings}
-        self._insertion = _native.Insertion(_words.words(settings), files)
+        finger = {"density": density, "direction": direction}
+        self._insertion = _native.Insertion(sources(task), **finger, **settings)
         self._offsets, self._limit_s = offset_mm, time_limit_s
         self._offset, self._distance, self._ended = 0.0, 0.0, True
         self._speed = float(speed_mm_per_s)

@@ -1,6 +1,6 @@
 //! Failures as exceptions, with the texts of the command line.
 
-use finger_opt::cli::Failure;
+use finger_opt::session::Failure;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 

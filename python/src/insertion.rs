@@ -1,21 +1,24 @@
 //! A trial that Python drives.
 
 use crate::errors::{InputError, raise};
-use crate::measure::{Files, sources};
-use finger_opt::cli::driven;
+use crate::keywords::{Keywords, TaskWord};
+use crate::measure::interruptible;
+use finger_opt::session;
 use insertion::trial::State;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A grasped part in front of its socket.
 #[pyclass(frozen)]
-pub struct Insertion(Mutex<driven::Insertion>);
+pub struct Insertion(Mutex<session::Insertion>);
 
 /// The numbers of a state in the order of its fields, how it ended, and the failure class.
 type Stand = (Vec<f64>, Option<&'static str>, Option<u8>);
 
 impl Insertion {
-    fn open(&self) -> MutexGuard<'_, driven::Insertion> {
+    fn open(&self) -> MutexGuard<'_, session::Insertion> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -23,10 +26,17 @@ impl Insertion {
 #[pymethods]
 impl Insertion {
     #[new]
-    fn new(py: Python<'_>, words: Vec<String>, files: Files) -> PyResult<Self> {
-        let tasks = sources(files);
-        let made = py.allow_threads(|| driven::Insertion::new(&words, &tasks)).map_err(raise)?;
-        Ok(Insertion(Mutex::new(made)))
+    #[pyo3(signature = (tasks, /, **settings))]
+    fn new<'py>(
+        py: Python<'py>,
+        tasks: Vec<TaskWord>,
+        settings: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Self> {
+        let words = Keywords::new(py, settings)?;
+        let (setup, finger) = (words.setup(tasks)?, words.finger()?);
+        words.finish()?;
+        let make = |stop: &AtomicBool| session::Insertion::new(&setup, &finger, stop);
+        Ok(Insertion(Mutex::new(interruptible(py, make)?.map_err(raise)?)))
     }
 
     /// Begins anew.

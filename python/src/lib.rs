@@ -1,9 +1,10 @@
-//! `finger_opt._native`: what the Python package calls. Words of the command line in, JSON
-//! out; the package in `finger_opt/` gives both their Python shape.
+//! `finger_opt._native`: what the Python package calls. Keyword arguments in, JSON out;
+//! the package in `finger_opt/` gives both their Python shape.
 #![forbid(unsafe_code)]
 
 mod errors;
 mod insertion;
+mod keywords;
 mod measure;
 mod optimizer;
 mod study;
@@ -41,8 +42,10 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study::perform, module)?)?;
     module.add_function(wrap_pyfunction!(study::stop_performing, module)?)?;
     module.add_function(wrap_pyfunction!(study::source_sha256, module)?)?;
-    module.add_function(wrap_pyfunction!(study::session, module)?)?;
-    module.add_function(wrap_pyfunction!(study::study_folder, module)?)?;
+    module.add_function(wrap_pyfunction!(study::study, module)?)?;
+    module.add_function(wrap_pyfunction!(study::resume, module)?)?;
+    module.add_function(wrap_pyfunction!(study::asked, module)?)?;
+    module.add_class::<study::Asked>()?;
     module.add_class::<study::Recorded>()?;
     module.add_class::<study::Guided>()?;
     Ok(())

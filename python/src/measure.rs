@@ -1,23 +1,23 @@
 //! Evaluations, trials, stiffness and task files.
 
 use crate::errors::{InputError, raise};
-use finger_opt::cli::call;
+use crate::keywords::{Keywords, TaskWord, wrong};
+use finger_opt::cli;
+use finger_opt::report;
+use finger_opt::session::{EvaluateRequest, StiffnessRequest, TaskFile, TrialRequest};
+use finger_opt::session::{read_space, read_task};
 use input::shipped::Source;
+use insertion::space::Parameter;
+use insertion::trial::Sample;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use serde_json::{Value, json};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 /// How often a long call looks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(100);
-
-/// Task files in place of names: what to call each in messages, and its text.
-pub type Files = Vec<(String, String)>;
-
-pub fn sources(files: Files) -> Vec<Source> {
-    files.into_iter().map(|(file, text)| Source { file, text }).collect()
-}
 
 /// Runs `work` without the interpreter's lock. Ctrl-C sets the flag that `work` is given,
 /// and is raised when `work` has ended.
@@ -50,30 +50,56 @@ pub fn interruptible<T: Send>(
     })
 }
 
+/// The window of a finger, as JSON.
 #[pyfunction]
-pub fn evaluate(py: Python<'_>, words: Vec<String>, files: Files) -> PyResult<String> {
-    let tasks = sources(files);
-    let found = interruptible(py, |stop| call::evaluate(&words, &tasks, stop))?;
-    Ok(found.map_err(raise)?.to_string())
+#[pyo3(signature = (tasks, /, **settings))]
+pub fn evaluate<'py>(
+    py: Python<'py>,
+    tasks: Vec<TaskWord>,
+    settings: Option<&Bound<'py, PyDict>>,
+) -> PyResult<String> {
+    let words = Keywords::new(py, settings)?;
+    let seed = words.take("seed")?;
+    let request = EvaluateRequest {
+        setup: words.setup(tasks)?,
+        finger: words.finger()?,
+        walk: words.flag("walk")?,
+        uncertainty: words.text("uncertainty")?,
+        seed: seed.unwrap_or(0),
+        repeat: words.repeat()?,
+        by_ribs: false,
+    };
+    words.finish()?;
+    if seed.is_some() && request.uncertainty.is_none() {
+        return Err(wrong("seed", "goes with uncertainty"));
+    }
+    let found = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
+    Ok(cli::evaluate::json(&found).to_string())
 }
 
 /// JSON of the trial, and by name the columns of its course: little-endian float64.
 #[pyfunction]
+#[pyo3(signature = (tasks, /, **settings))]
 pub fn trial<'py>(
     py: Python<'py>,
-    words: Vec<String>,
-    files: Files,
-    every_s: f64,
+    tasks: Vec<TaskWord>,
+    settings: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<(String, Bound<'py, PyDict>)> {
-    if !(every_s.is_finite() && every_s >= 0.0) {
-        return Err(InputError::new_err("every_s: is a time in s, 0 or above"));
-    }
-    let tasks = sources(files);
-    let found = interruptible(py, |_| call::trial(&words, &tasks, every_s))?;
-    let (fields, samples) = found.map_err(raise)?;
+    let words = Keywords::new(py, settings)?;
+    let request = TrialRequest {
+        setup: words.setup(tasks)?,
+        finger: words.finger()?,
+        offset_mm: words.take("offset_mm")?.unwrap_or(0.0),
+        repeat: words.repeat()?,
+        every_s: words.take("every_s")?,
+        film: words.film()?,
+        svg: words.take("svg")?,
+    };
+    words.finish()?;
+    let done = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
     let columns = PyDict::new(py);
-    let column = |name: &str, of: &dyn Fn(&insertion::trial::Sample) -> Vec<f64>| {
-        let bytes: Vec<u8> = samples.iter().flat_map(of).flat_map(f64::to_le_bytes).collect();
+    let column = |name: &str, of: &dyn Fn(&Sample) -> Vec<f64>| {
+        let bytes: Vec<u8> = done.samples.iter().flat_map(of).flat_map(f64::to_le_bytes).collect();
         columns.set_item(name, PyBytes::new(py, &bytes))
     };
     column("time_s", &|sample| vec![sample.time_s])?;
@@ -83,48 +109,63 @@ pub fn trial<'py>(
     column("tilt_deg", &|sample| vec![sample.tilt_deg])?;
     column("force_n", &|sample| sample.force_n.to_vec())?;
     column("slip_mm", &|sample| vec![sample.slip_mm])?;
-    Ok((fields.to_string(), columns))
+    Ok((cli::trial::json(&done).to_string(), columns))
 }
 
+/// How well the stiffness model fits, as JSON.
 #[pyfunction]
-pub fn stiffness(py: Python<'_>, words: Vec<String>) -> PyResult<String> {
-    Ok(py.allow_threads(|| call::stiffness(&words)).map_err(raise)?.to_string())
+#[pyo3(signature = (*, stiffness_data=None))]
+pub fn stiffness(py: Python<'_>, stiffness_data: Option<String>) -> PyResult<String> {
+    let request = StiffnessRequest { stiffness_data, ..StiffnessRequest::default() };
+    let model = py.allow_threads(|| request.model()).map_err(raise)?;
+    Ok(report::stiffness::json(&model).to_string())
 }
 
+/// The stiffness predicted for an infill, density in percent and direction in degrees, as JSON.
 #[pyfunction]
+#[pyo3(signature = (density, direction, *, stiffness_data=None))]
 pub fn predict(
     py: Python<'_>,
     density: f64,
     direction: f64,
-    data: Option<String>,
+    stiffness_data: Option<String>,
 ) -> PyResult<String> {
-    let predicted = py.allow_threads(|| call::predict(density, direction, data.as_deref()));
-    Ok(predicted.map_err(raise)?.to_string())
+    let request = StiffnessRequest { stiffness_data, ..StiffnessRequest::default() };
+    let model = py.allow_threads(|| request.model()).map_err(raise)?;
+    let predicted = model.predict(density, direction);
+    let predicted = predicted.map_err(|error| InputError::new_err(error.to_string()))?;
+    Ok(json!(predicted).to_string())
 }
 
-/// The parameters of a space, as JSON.
+/// The parameters of a space as the first line of `ask-tell` has them, as JSON.
 #[pyfunction]
 pub fn space(name: &str) -> PyResult<String> {
-    Ok(call::space(name).map_err(raise)?.to_string())
+    let space = read_space(name).map_err(raise)?;
+    let line = |parameter: &Parameter| {
+        let Parameter { key, low, high, step, .. } = parameter;
+        json!({"name": key, "low": low, "high": high, "step": step})
+    };
+    Ok(space.parameters().iter().map(line).collect::<Value>().to_string())
 }
 
 /// Name in messages and text of the task file of this name or path.
 #[pyfunction]
 pub fn task(name: &str) -> PyResult<(String, String)> {
-    let source = call::task(name).map_err(raise)?;
+    let source = read_task(name).map_err(raise)?.source;
     Ok((source.file, source.text))
 }
 
 /// The fields of a task file, checked, as JSON.
 #[pyfunction]
 pub fn task_fields(file: String, text: String) -> PyResult<String> {
-    call::task_fields(&Source { file, text }).map(|fields| fields.to_string()).map_err(raise)
+    let fields = TaskFile::fields(Source { file, text }).map_err(raise)?;
+    Ok(json!(fields).to_string())
 }
 
 /// The text of a task file with these fields, given as JSON; checked.
 #[pyfunction]
 pub fn task_text(file: &str, fields: &str) -> PyResult<String> {
-    let fields = serde_json::from_str(fields)
+    let fields: Value = serde_json::from_str(fields)
         .map_err(|error| InputError::new_err(format!("{file}: {error}")))?;
-    call::task_text(file, &fields).map_err(raise)
+    Ok(TaskFile::of_fields(file, &fields).map_err(raise)?.source.text)
 }

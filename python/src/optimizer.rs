@@ -6,13 +6,13 @@ use std::sync::{Mutex, PoisonError};
 
 /// A conversation; `docs/guide/python.md` describes its lines.
 #[pyclass]
-pub struct Session(Mutex<ask_tell::Session>);
+pub struct Session(Mutex<protocol::Session>);
 
 #[pymethods]
 impl Session {
     #[new]
     fn new() -> Self {
-        Session(Mutex::new(ask_tell::Session::new()))
+        Session(Mutex::new(protocol::Session::new()))
     }
 
     /// The answer to a line; the first line, if it is good, has none.

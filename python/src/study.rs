@@ -1,12 +1,15 @@
 //! Studies: read from their folders, and run by whoever measures.
 
 use crate::errors::{InputError, Refused, RunError, raise};
-use crate::measure::{Files, interruptible, sources};
+use crate::keywords::{Keywords, TaskWord, wrong};
+use crate::measure::interruptible;
 use finger_opt::cli::call;
-use finger_opt::cli::guided::{self, NotTaken, Order};
-use finger_opt::study::{Ending, SOURCES};
+use finger_opt::report;
+use finger_opt::session::{self, AnyStudy, NotTaken, Order, POLISH, ResumeRequest, StudyRequest};
+use finger_opt::study::{Ending, SOURCES, StudyRecord, evaluations_csv};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyDict};
+use serde_json::json;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -18,7 +21,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 #[pyfunction]
 pub fn perform<'py>(py: Python<'py>, work: &[u8], worker: &str) -> PyResult<Bound<'py, PyBytes>> {
     let work = work.to_vec();
-    let done = py.allow_threads(|| guided::perform(&work, worker, &STOP)).map_err(raise)?;
+    let done = py.allow_threads(|| session::perform(&work, worker, &STOP)).map_err(raise)?;
     Ok(PyBytes::new(py, &done))
 }
 
@@ -34,74 +37,157 @@ pub fn source_sha256() -> &'static str {
     SOURCES
 }
 
-/// Where the study of these words is measured, and whether quietly.
-#[pyfunction]
-pub fn session(words: Vec<String>) -> PyResult<(Option<String>, bool)> {
-    call::session(&words).map_err(raise)
+/// A study that is asked for.
+#[pyclass(frozen)]
+pub struct Asked(call::Asked);
+
+impl Asked {
+    fn of(study: AnyStudy) -> Self {
+        Asked(call::Asked { study, executor: None, quiet: false, json: false })
+    }
 }
 
-/// The folder of the study of these words, which are checked.
+/// The study of these tasks and keywords.
 #[pyfunction]
-pub fn study_folder(py: Python<'_>, words: Vec<String>, files: Files) -> PyResult<PathBuf> {
-    let tasks = sources(files);
-    py.allow_threads(|| call::study_folder(&words, &tasks)).map_err(raise)
+#[pyo3(signature = (tasks, /, **settings))]
+pub fn study<'py>(
+    py: Python<'py>,
+    tasks: Vec<TaskWord>,
+    settings: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Asked> {
+    let words = Keywords::new(py, settings)?;
+    let budget = words.take("budget")?.ok_or_else(|| wrong("budget", "has to be given"))?;
+    let usual = StudyRequest::new(words.setup(tasks)?, budget);
+    let request = StudyRequest {
+        polish: words.number_or("polish", POLISH)?.unwrap_or(usual.polish),
+        optimizer: words.listed("optimizer")?.unwrap_or(usual.optimizer),
+        objective: words.listed("objective")?.unwrap_or(usual.objective),
+        constraints: words.parsed("constraint")?,
+        uncertainty: words.text("uncertainty")?,
+        measurements: words.text("measurements")?,
+        aggregate: words.choice("aggregate")?,
+        weights: words.numbers("weights")?,
+        seed: words.take("seed")?.unwrap_or(usual.seed),
+        batch: words.take("batch")?,
+        asynchronous: words.flag("async")?,
+        out: words.take("out")?,
+        run: words.run()?,
+        ..usual
+    };
+    words.finish()?;
+    Ok(Asked::of(AnyStudy::Asked(Box::new(request))))
+}
+
+/// The study in a folder, to be gone on with.
+#[pyfunction]
+#[pyo3(signature = (folder, /, **settings))]
+pub fn resume<'py>(
+    py: Python<'py>,
+    folder: PathBuf,
+    settings: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Asked> {
+    let words = Keywords::new(py, settings)?;
+    let request = ResumeRequest { dir: folder, run: words.run()? };
+    words.finish()?;
+    Ok(Asked::of(AnyStudy::Resumed(request)))
+}
+
+/// The study of these words of the command line.
+#[pyfunction]
+pub fn asked(words: Vec<String>) -> PyResult<Asked> {
+    call::asked(&words).map(Asked).map_err(raise)
+}
+
+#[pymethods]
+impl Asked {
+    /// Where it is measured.
+    #[getter]
+    fn executor(&self) -> Option<&str> {
+        self.0.executor.as_deref()
+    }
+
+    /// Whether no progress is shown.
+    #[getter]
+    fn quiet(&self) -> bool {
+        self.0.quiet
+    }
+
+    /// Its folder, with all checked that is asked for.
+    fn folder(&self, py: Python<'_>) -> PyResult<PathBuf> {
+        py.allow_threads(|| self.0.study.folder()).map_err(raise)
+    }
+
+    /// Begins it or goes on with it.
+    fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<Guided> {
+        let opened = py.allow_threads(|| self.0.study.open(workers)?.guided()).map_err(raise)?;
+        Ok(Guided { open: Mutex::new(Some(opened)), json: self.0.json })
+    }
 }
 
 /// A study as its folder holds it now.
 #[pyclass(frozen)]
-pub struct Recorded(call::Read);
+pub struct Recorded {
+    folder: PathBuf,
+    record: StudyRecord,
+}
 
 #[pymethods]
 impl Recorded {
     #[new]
     fn new(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        py.allow_threads(|| call::Read::new(&folder)).map(Recorded).map_err(raise)
+        let read = py.allow_threads(|| StudyRecord::load(&folder));
+        let record = read.map_err(|error| raise(error.into()))?;
+        Ok(Recorded { folder, record })
     }
 
+    /// What was asked for, as `study.toml` has it, as JSON.
     fn config(&self) -> String {
-        self.0.config().to_string()
+        json!(self.record.config).to_string()
     }
 
+    /// How many evaluations its journal holds.
     fn length(&self) -> usize {
-        self.0.length()
+        self.record.evaluations.len()
     }
 
     fn best(&self) -> String {
-        self.0.best().to_string()
+        call::best(&self.record).to_string()
     }
 
+    /// The text of `evaluations.csv`.
     fn table(&self) -> PyResult<String> {
-        self.0.table().map_err(raise)
+        evaluations_csv(&self.folder, &self.record).map_err(|error| raise(error.into()))
     }
 
+    /// The answer as a piece of HTML.
     fn card(&self) -> String {
-        self.0.card()
+        report::card(&self.record)
     }
 }
 
 /// A study that is open and whose measuring the caller does.
 #[pyclass(frozen)]
-pub struct Guided(Mutex<Option<guided::Guided>>);
+pub struct Guided {
+    open: Mutex<Option<session::Guided>>,
+    /// Whether its result is printed as JSON.
+    json: bool,
+}
 
 /// What is to be measured (none: wait for a result), and how the study ended, if it did.
 type Next<'py> = (Vec<(u64, Bound<'py, PyBytes>)>, Option<&'static str>);
 
 impl Guided {
-    fn of(study: guided::Guided) -> Self {
-        Guided(Mutex::new(Some(study)))
-    }
-
-    fn open(&self) -> MutexGuard<'_, Option<guided::Guided>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    fn study(&self) -> MutexGuard<'_, Option<session::Guided>> {
+        self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Does something with the study, without the interpreter's lock.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        what: impl FnOnce(&mut guided::Guided) -> T + Send,
+        what: impl FnOnce(&mut session::Guided) -> T + Send,
     ) -> PyResult<T> {
-        let done = py.allow_threads(|| self.open().as_mut().map(what));
+        let done = py.allow_threads(|| self.study().as_mut().map(what));
         done.ok_or_else(|| RunError::new_err("the study is closed"))
     }
 }
@@ -114,27 +200,8 @@ const ENDINGS: [(Ending, &str); 3] = [
 
 #[pymethods]
 impl Guided {
-    /// Begins or continues the study of these words.
-    #[staticmethod]
-    fn begin(
-        py: Python<'_>,
-        words: Vec<String>,
-        files: Files,
-        workers: Option<u64>,
-    ) -> PyResult<Self> {
-        let tasks = sources(files);
-        let begun = py.allow_threads(|| guided::Guided::begin(&words, &tasks, workers));
-        begun.map(Guided::of).map_err(raise)
-    }
-
-    /// Continues the study in a folder.
-    #[staticmethod]
-    fn resume(py: Python<'_>, words: Vec<String>) -> PyResult<Self> {
-        py.allow_threads(|| guided::Guided::resume(&words)).map(Guided::of).map_err(raise)
-    }
-
     fn next<'py>(&self, py: Python<'py>) -> PyResult<Next<'py>> {
-        let order = interruptible(py, |_| self.open().as_mut().map(guided::Guided::order))?;
+        let order = interruptible(py, |_| self.study().as_mut().map(session::Guided::order))?;
         let order = order.ok_or_else(|| RunError::new_err("the study is closed"))?;
         Ok(match order.map_err(raise)? {
             Order::Wait => (Vec::new(), None),
@@ -175,15 +242,16 @@ impl Guided {
         let ending = ending.map(|(ending, _)| *ending);
         let ending = ending.ok_or_else(|| InputError::new_err("ending: is none"))?;
         let finish =
-            |stop: &AtomicBool| self.open().as_mut().map(|study| study.finish(ending, stop));
+            |stop: &AtomicBool| self.study().as_mut().map(|study| study.finish(ending, stop));
         let done = interruptible(py, finish)?;
-        let (text, failure) =
-            done.ok_or_else(|| RunError::new_err("the study is closed"))?.map_err(raise)?;
-        Ok((text, failure.map(|failure| failure.to_string())))
+        let ended = done.ok_or_else(|| RunError::new_err("the study is closed"))?;
+        let ended = ended.map_err(raise)?;
+        let unusable = ended.unusable.as_ref().map(ToString::to_string);
+        Ok((call::text(&ended, self.json), unusable))
     }
 
     /// Lets other processes open the study.
     fn close(&self, py: Python<'_>) {
-        py.allow_threads(|| *self.open() = None);
+        py.allow_threads(|| *self.study() = None);
     }
 }

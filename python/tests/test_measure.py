@@ -88,7 +88,7 @@ def test_errors_have_the_texts_of_the_command_line(command, words, settings):
 def test_an_unknown_task_and_an_unknown_word():
     with pytest.raises(fo.InputError, match="did you mean `rj45`"):
         fo.evaluate("rj54", 20, 10)
-    with pytest.raises(fo.InputError, match="unexpected argument '--densty'"):
+    with pytest.raises(TypeError, match="unexpected keyword argument 'densty'"):
         fo.evaluate("usb", densty=20)
 
 

@@ -6,6 +6,7 @@ use input::units::MM;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::stoppable::Stoppable;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::finger::Finger;
@@ -14,6 +15,7 @@ use insertion::robot::{Drive, Robot};
 use insertion::space::Design;
 use insertion::trial::Conditions;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Starts that are tried in turn where the task's own does not insert, mm from it: a person
 /// teaches the start where it inserts.
@@ -26,15 +28,18 @@ pub struct Simulation<'a> {
     parameters: Vec<&'a Parameter>,
     /// Where windows are kept, if they are.
     cache: Option<PathBuf>,
+    stop: &'a AtomicBool,
 }
 
 impl<'a> Simulation<'a> {
-    /// With those of the parameters that this task and robot have.
+    /// With those of the parameters that this task and robot have; once `stop` is set windows are
+    /// worthless, and none is kept.
     pub fn new(
         evaluator: &'a Evaluator,
         template: &'a Template,
         parameters: &'a [Parameter],
         cache: Option<PathBuf>,
+        stop: &'a AtomicBool,
     ) -> Self {
         let soft = matches!(evaluator.robot.drive, Drive::Servo(_));
         let has = |parameter: &&Parameter| match &parameter.sets {
@@ -47,7 +52,7 @@ impl<'a> Simulation<'a> {
             | Target::Centre => true,
         };
         let parameters = parameters.iter().filter(has).collect();
-        Simulation { evaluator, template, parameters, cache }
+        Simulation { evaluator, template, parameters, cache, stop }
     }
 
     /// The parameters that the task and the robot have, in order.
@@ -94,8 +99,11 @@ impl<'a> Simulation<'a> {
             return Ok(found);
         }
         let rig = engine.rig(&specimen.task, robot, &specimen.finger, 1.0)?;
-        let evaluation = tolerance::evaluate(&*rig, &specimen.finger, search);
-        if let Some((cache, key)) = keep {
+        let rig = Stoppable { rig: &*rig, stop: self.stop };
+        let evaluation = tolerance::evaluate(&rig, &specimen.finger, search);
+        if let Some((cache, key)) = keep
+            && !self.stop.load(Ordering::SeqCst)
+        {
             cache.put(&key, &evaluation);
         }
         Ok(evaluation)

@@ -1,12 +1,13 @@
 //! `optimize calibrate`: what few measurements say of every finger.
 
-use super::calibrated::CalibrationArguments;
-use super::setup::SetupArguments;
+use super::arguments::{CalibrationArguments, SetupArguments};
+use super::terminal::simulating;
 use super::{Failure, print, print_json};
-use crate::calibration::calibrate::Calibration;
 use crate::calibration::table;
+use crate::session::Calibrated;
 use crate::study::write_file;
 use clap::Args;
+use insertion::trial::NEVER;
 use std::path::PathBuf;
 
 /// Predict what every finger does on the bench, from simulation and few measurements.
@@ -37,20 +38,19 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { setup, measurements, calibration, .. } = arguments;
+    let request = calibration.request(setup.request(), measurements);
     let quiet = arguments.quiet || arguments.json;
-    let prepared = calibration.prepare(setup, measurements, &[], quiet)?;
-    let subjects = &prepared.subjects;
-    let found = Calibration::new(prepared.layout.clone(), subjects, &calibration.settings());
+    let Calibrated { subjects, found } = request.run(&NEVER, &mut simulating(quiet))?;
     if let Some(out) = &arguments.out {
         for (subject, result) in subjects.iter().zip(&found.tasks) {
             let name = format!("predictions_{}.csv", subject.task);
             write_file(&out.join(name), &table::predictions_csv(subject, result))?;
         }
-        write_file(&out.join("leave_one_out.csv"), &table::left_out_csv(&found, subjects))?;
+        write_file(&out.join("leave_one_out.csv"), &table::left_out_csv(&found, &subjects))?;
         write_file(&out.join("parameters.csv"), &table::parameters_csv(&found))?;
     }
     if arguments.json {
-        return print_json(&table::json(&found, subjects));
+        return print_json(&table::json(&found, &subjects));
     }
     let tasks = subjects.iter().zip(&found.tasks);
     let mut text: Vec<String> =

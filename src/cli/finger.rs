@@ -1,20 +1,16 @@
 //! `optimize finger`: what a finger's ribs say of its stiffness.
 
-use super::setup::{DEFAULT_FINGER, find};
-use super::specimen::setting;
+use super::arguments::setting;
 use super::{Failure, print, print_json};
+use crate::session::{DEFAULT_FINGER, RibsRequest};
 use crate::study::write_file;
 use clap::Args;
 use finray::geometry::Geometry;
-use finray::infill::Design;
-use finray::mechanics::{self, FingerStiffness};
+use finray::mechanics::FingerStiffness;
 use finray::picture;
 use finray::printed::PrintedFinger;
 use finray::stiffness::PlanarStiffness;
-use input::shipped::FINGERS;
 use input::units::{GRAM, MM, N_PER_MM};
-use insertion::finger::file::{FingerFile, is_shape};
-use insertion::space;
 use nalgebra::Matrix3;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -27,7 +23,7 @@ const LARGEST_LOAD_N: f64 = 1000.0;
 /// Plane stress on the exact profile: free stiffnesses at the pad's middle at the modulus of the
 /// finger file, before any measured correction. Nothing is fitted. Trials and studies use
 /// it with --finger-model computed.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct Arguments {
     /// Infill density, percent
     #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
@@ -100,14 +96,8 @@ struct AcrossRow {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let finger = arguments.printed()?;
-    let design = Design {
-        density_percent: arguments.density,
-        direction_deg: arguments.direction,
-        phase_mm: arguments.phase_mm,
-    };
-    let geometry = Geometry::new(&finger, &design).map_err(Failure::input)?;
-    let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
+    let Arguments { density, direction, finger, phase_mm, set, .. } = arguments.clone();
+    let (geometry, computed) = RibsRequest { density, direction, finger, phase_mm, set }.run()?;
     if let Some(file) = &arguments.svg {
         write_file(file, &picture::svg(&geometry, arguments.load_n).map_err(Failure::input)?)?;
     }
@@ -117,21 +107,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             .map_err(|error| Failure::running(format!("cannot write the result: {error}")))?;
         return print_json(&value);
     }
-    print(&text(&row, &finger))
-}
-
-impl Arguments {
-    /// The finger of the file with what is set.
-    fn printed(&self) -> Result<PrintedFinger, Failure> {
-        if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
-            return Err(Failure::usage(format!(
-                "--set {key}: sets no number of a finger file, as finger.skin.thickness_mm does"
-            )));
-        }
-        let source = find("finger", FINGERS, &self.finger)?;
-        let file = FingerFile::parse(&source.text, &source.file).map_err(Failure::input)?;
-        file.with(&space::Design(self.set.iter().cloned().collect())).map_err(Failure::input)
-    }
+    print(&text(&row, &geometry.finger))
 }
 
 impl FingerRow {

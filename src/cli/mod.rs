@@ -1,22 +1,17 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
+pub mod arguments;
 mod ask_tell;
 mod calibrate;
-pub mod calibrated;
 pub mod call;
+mod chosen;
 mod compare;
-mod computed_too;
-pub mod driven;
-mod evaluate;
+pub mod evaluate;
 mod executor;
 mod export;
-mod failure;
-mod film;
 mod finger;
-pub mod guided;
 mod manual;
 mod measure;
-mod measured;
 mod next;
 mod on_bench;
 mod progress;
@@ -25,20 +20,16 @@ mod repeat;
 mod report;
 mod resume;
 mod sensitivity;
-mod session;
-pub mod setup;
-mod specimen;
 mod stiffness;
 mod study;
 mod summary;
 mod task;
 mod tasks;
 pub mod terminal;
-mod trial;
-mod unusable;
+pub mod trial;
 mod words;
 
-pub use failure::Failure;
+use crate::session::Failure;
 pub use manual::reference;
 use terminal::{print, print_json, say};
 
@@ -73,12 +64,12 @@ struct Cli {
 impl Cli {
     /// Where a study is to be measured, if not here.
     fn executor(&self) -> Option<&str> {
-        let session = match &self.command {
-            None => &self.study.0.as_ref()?.session,
-            Some(Command::Resume(arguments)) => &arguments.session,
+        let run = match &self.command {
+            None => &self.study.0.as_ref()?.run,
+            Some(Command::Resume(arguments)) => &arguments.run,
             Some(_) => return None,
         };
-        session.executor.as_deref()
+        run.executor.as_deref()
     }
 }
 
@@ -227,7 +218,9 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => match cli.study.0 {
             Some(arguments) => study::run(&arguments),
-            None => Err(Failure::no_task()),
+            None => Err(Failure::usage(
+                "give --task NAME and --budget N, or a subcommand; see `optimize --help`",
+            )),
         },
         Some(Command::Resume(arguments)) => resume::run(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),

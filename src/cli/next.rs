@@ -1,24 +1,19 @@
 //! `optimize next`: which finger to print next.
 
-use super::calibrated::CalibrationArguments;
-use super::setup::SetupArguments;
+use super::arguments::{CalibrationArguments, SetupArguments, wide};
+use super::terminal::simulating;
 use super::{Failure, print, print_json};
-use crate::calibration::bench::Posterior;
-use crate::calibration::next::{Advice, Question, advise};
-use crate::calibration::published;
+use crate::calibration::next::Advice;
 use crate::calibration::subject::Subject;
 use crate::calibration::table::design_json;
-use ask_tell::stream::stream;
+use crate::session::{Advised, Among, NextRequest};
 use clap::{Args, ValueEnum};
-use insertion::space::Design;
+use insertion::trial::NEVER;
 use serde_json::{Value, json};
-
-/// Joint draws per sample of the posterior.
-const DRAWS: usize = 4;
 
 /// Fingers that may be printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Among {
+enum AmongWord {
     /// Those of the space
     Space,
     /// The 11 of the publication
@@ -37,11 +32,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     measurements: String,
     /// Fingers to print at a time
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(wide(&NextRequest::COUNTS)))]
     count: u16,
     /// Fingers that may be printed
     #[arg(long, value_enum, default_value = "space")]
-    among: Among,
+    among: AmongWord,
     /// Gain of range that is worth the print and the measurement, mm; below it: stop
     #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = cost)]
     print_cost_mm: f64,
@@ -56,50 +51,27 @@ pub struct Arguments {
 }
 
 fn cost(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
-        _ => Err("a cost is a number, 0 or above, in mm of range".to_owned()),
-    }
+    NextRequest::given_cost(text.parse().unwrap_or(f64::NAN))
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.setup.task.contains(',') {
-        return Err(Failure::usage("give one --task: a finger is printed for one"));
-    }
-    let published: Vec<Design> = match arguments.among {
-        Among::Space => Vec::new(),
-        Among::Published => {
-            let designs = published::designs().into_iter();
-            designs
-                .map(|design| Design::infill(design.density_percent, design.direction_deg))
-                .collect()
-        }
+    let calibration = &arguments.calibration;
+    let request = NextRequest {
+        calibration: calibration.request(arguments.setup.request(), &arguments.measurements),
+        count: arguments.count,
+        among: match arguments.among {
+            AmongWord::Space => Among::Space,
+            AmongWord::Published => Among::Published,
+        },
+        print_cost_mm: arguments.print_cost_mm,
     };
     let quiet = arguments.quiet || arguments.json;
-    let (setup, calibration) = (&arguments.setup, &arguments.calibration);
-    let prepared = calibration.prepare(setup, &arguments.measurements, &published, quiet)?;
-    let Some(subject) = prepared.subjects.first() else { return Err(Failure::no_task()) };
-    let among: Vec<usize> = match arguments.among {
-        Among::Space => (0..subject.of_space).collect(),
-        Among::Published => published.iter().filter_map(|design| subject.finger(design)).collect(),
-    };
-    let benches = prepared.layout.benches(&prepared.subjects);
-    let settings = calibration.settings();
-    let mut random = stream(settings.seed, 0, "next");
-    let dimension = prepared.layout.dimension();
-    let posterior = Posterior::sampled(&benches, dimension, settings.effort, &mut random);
-    let question = Question {
-        among: &among,
-        count: usize::from(arguments.count),
-        cost_mm: arguments.print_cost_mm,
-        draws: DRAWS,
-    };
-    let advice = advise(&benches[0], &posterior, &question, &mut random);
+    let Advised { subject, advice } = request.run(&NEVER, &mut simulating(quiet))?;
     if arguments.json {
-        return print_json(&to_json(subject, &advice));
+        return print_json(&to_json(&subject, &advice));
     }
-    print(&text(subject, &advice, arguments.print_cost_mm))
+    print(&text(&subject, &advice, arguments.print_cost_mm))
 }
 
 fn to_json(subject: &Subject, advice: &Advice) -> Value {

@@ -1,89 +1,10 @@
-//! A study with measurements: which of its fingers is the best on the bench.
+//! What is said of a study with measurements: which of its fingers is the best on the bench.
 
-use super::Failure;
-use super::calibrated::{EFFORT, EffortArguments, Ground, settings};
-use super::measured::Measured;
-use super::setup::Setup;
 use super::words;
-use crate::calibration::calibrate::Calibration;
-use crate::calibration::on_bench::{by_range, on_bench};
-use crate::calibration::simulation::Simulation;
-use crate::calibration::table;
-use crate::study::{
-    BenchEffort, OnBench, Provenance, Study, StudyConfig, StudyRecord, write_own_file,
-};
+use crate::study::{OnBench, StudyRecord};
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::{Measure, Objectives};
-use rayon::ThreadPool;
+use insertion::evaluation::objective::Measure;
 use serde_json::{Value, json};
-use std::path::PathBuf;
-
-/// Every finger of the space as predicted, in the study's folder.
-pub const TABLE: &str = "bench_predictions.csv";
-
-/// Whether a study of this can end with a prediction for the bench.
-pub fn check(config: &StudyConfig) -> Result<(), Failure> {
-    let refused = |what: &str| {
-        Err(Failure::usage(format!("--measurements predicts the range of one task; {what}")))
-    };
-    match (&config.objective, config.several_tasks(), config.constraints.is_empty()) {
-        (_, true, _) => refused("give one --task"),
-        (objective, ..) if *objective != Objectives::of(Measure::Range) => {
-            refused(&format!("--objective {objective} is not known on the bench; leave it out"))
-        }
-        (.., false) => refused("a --constraint is not known on the bench; leave it out"),
-        _ => Ok(()),
-    }
-}
-
-/// Predicts every finger of the space on the bench, if there are measurements and it is not known
-/// yet, and keeps that with the study.
-pub fn predict(
-    study: &Study,
-    setup: &Setup,
-    arguments: EffortArguments,
-    cache: Option<PathBuf>,
-    pool: &ThreadPool,
-    quiet: bool,
-) -> Result<(), Failure> {
-    let Some(measured) = &setup.measured else { return Ok(()) };
-    let known = study.record().on_bench.map(|known| known.effort);
-    let effort = arguments.or(known.unwrap_or(EFFORT));
-    if known == Some(effort) {
-        return Ok(());
-    }
-    let ground = Ground {
-        setup,
-        parameters: &measured.priors.parameters,
-        simulations: usize::from(effort.simulations),
-        seed: study.config.seed,
-        cache,
-        quiet,
-    };
-    let provenance = study.provenance().clone();
-    let (found, predictions) = pool.install(|| all(&ground, measured, effort, provenance))?;
-    write_own_file(&study.dir().join(TABLE), &predictions)?;
-    Ok(study.keep_on_bench(&found)?)
-}
-
-/// The best fingers, and a table of all.
-fn all(
-    ground: &Ground<'_>,
-    Measured { file, experiments, .. }: &Measured,
-    effort: BenchEffort,
-    provenance: Provenance,
-) -> Result<(OnBench, String), Failure> {
-    let (subjects, layout) = ground.subjects(file, experiments, &[])?;
-    let calibration = Calibration::new(layout, &subjects, &settings(effort, ground.seed));
-    let nothing = || Failure::running("the space has no finger to predict");
-    let (subject, result) = subjects.first().zip(calibration.tasks.first()).ok_or_else(nothing)?;
-    let best = by_range(result).first().map(|best| best.finger).ok_or_else(nothing)?;
-    let Ground { setup, cache, .. } = ground;
-    let simulation = Simulation::new(&setup.evaluator, setup.only_task()?, &[], cache.clone());
-    let simulated = simulation.window(&subject.designs[best], None).map_err(Failure::input)?;
-    let found = on_bench(subject, result, simulated, provenance, effort);
-    Ok((found, table::predictions_csv(subject, result)))
-}
 
 /// What the terminal leads with.
 pub fn lines(found: &OnBench) -> Vec<String> {

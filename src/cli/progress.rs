@@ -1,10 +1,9 @@
 //! Progress of a study on standard error: a bar on a terminal, lines elsewhere.
 
-use super::say;
+use super::terminal::{say, simulating};
+use crate::session::{Event, Standing};
 use crate::study::{Recorded, Study};
-use ask_tell::pareto::Archive;
 use indicatif::{ProgressBar, ProgressStyle};
-use insertion::evaluation::objective::Goals;
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 
@@ -16,55 +15,47 @@ pub struct Progress {
     begun: Instant,
     done_before: u64,
     budget: u64,
-    goals: Goals,
-    /// Front of the designs that keep all constraints, larger is better.
-    front: Archive,
+    standing: Standing,
+    /// Whether nothing is said of what follows the search.
+    quiet_after: bool,
 }
 
 impl Progress {
-    /// Begins; nothing is shown if `quiet`.
-    pub fn new(study: &Study, quiet: bool) -> Self {
+    /// Begins; nothing is shown if `quiet`, and no more than that if JSON is printed.
+    pub fn new(study: &Study, quiet: bool, json: bool) -> Self {
         let done = study.evaluations.len() as u64;
         let budget = study.config.evaluations();
         let shown = !quiet && done < budget;
         let bar = (shown && stderr().is_terminal()).then(|| bar(done, budget));
-        let mut progress = Progress {
+        Progress {
             line_every: (shown && bar.is_none()).then_some(study.config.batch),
             bar,
             begun: Instant::now(),
             done_before: done,
             budget,
-            goals: study.config.goals(),
-            front: Archive::default(),
-        };
-        study.evaluations.iter().for_each(|recorded| progress.add(recorded));
-        progress
-    }
-
-    fn add(&mut self, recorded: &Recorded) {
-        if let Some(values) = recorded.feasible() {
-            self.front.add(self.goals.gains(values));
+            standing: Standing::new(study),
+            quiet_after: quiet || json,
         }
     }
 
-    /// The best value, or how many designs there are on the front.
-    pub fn best(&self) -> String {
-        match (self.goals.objectives.single(), self.front.points()) {
-            (_, []) if self.goals.constraints.is_empty() => "no value yet".to_owned(),
-            (_, []) => "nothing keeps the constraints yet".to_owned(),
-            // The sign that makes gains of values makes values of gains.
-            (Some(measure), [gains, ..]) => {
-                let values = self.goals.gains(gains);
-                format!("best {}", values.first().map_or(String::new(), |&v| measure.show(v)))
+    /// Shows what happens.
+    pub fn see(&mut self, event: Event<'_>) {
+        match event {
+            Event::Measured(recorded) => self.measured(recorded),
+            Event::Searched { not_kept } => {
+                self.bar.iter().for_each(ProgressBar::finish_and_clear);
+                if let Some(problem) = not_kept {
+                    say(&format!("warning: evaluations are not kept for other studies: {problem}"));
+                }
             }
-            (None, front) => format!("front of {}", front.len()),
+            Event::Simulating { .. } => simulating(self.quiet_after)(event),
         }
     }
 
     /// One more evaluation is written down.
-    pub fn measured(&mut self, recorded: &Recorded) {
-        self.add(recorded);
-        let best = self.best();
+    fn measured(&mut self, recorded: &Recorded) {
+        self.standing.add(recorded);
+        let best = self.standing.best();
         let done = recorded.index + 1;
         if let Some(bar) = &self.bar {
             let left = indicatif::HumanDuration(self.remaining(done));
@@ -75,13 +66,6 @@ impl Progress {
         {
             let left = self.remaining(done).as_secs();
             say(&format!("{done}/{} evaluations, {best}, about {left} s left", self.budget));
-        }
-    }
-
-    /// Takes the bar away.
-    pub fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
         }
     }
 

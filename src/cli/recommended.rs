@@ -1,7 +1,8 @@
 //! The recommendation of a study, in lines and as JSON: what it leads with.
 
 use super::on_bench;
-use super::words::{self, merge};
+use super::terminal::merge;
+use super::words;
 use crate::calibration::order::{Order, order_on_bench};
 use crate::report::beyond_chance;
 use crate::study::{ByRibs, Recommendation, Recorded, StudyRecord};

@@ -1,9 +1,9 @@
 //! `optimize resume DIR`: continues a study.
 
 use super::Failure;
-use super::session::{self, SessionArguments};
-use super::setup::Setup;
-use crate::study::Study;
+use super::arguments::RunArguments;
+use super::study::to_its_end;
+use crate::session::ResumeRequest;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -13,22 +13,17 @@ pub struct Arguments {
     /// Folder of the study
     dir: PathBuf,
     #[command(flatten)]
-    pub session: SessionArguments,
+    pub run: RunArguments,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (study, setup) = arguments.open()?;
-    session::run(study, &setup, &arguments.session)
+    to_its_end(arguments.request().open()?, &arguments.run)
 }
 
 impl Arguments {
-    /// Opens the study to go on with it.
-    pub fn open(&self) -> Result<(Study, Setup), Failure> {
-        let mut study = Study::resume(&self.dir)?;
-        let inputs = study.inputs()?;
-        let setup = Setup::from_inputs(&inputs, &study.provenance().engine.name)?;
-        study.measure_with(&setup.provenance(), &inputs, self.session.if_changed())?;
-        Ok((study, setup))
+    /// What is asked for.
+    pub fn request(&self) -> ResumeRequest {
+        ResumeRequest { dir: self.dir.clone(), run: self.run.request() }
     }
 }

@@ -1,16 +1,14 @@
 //! `optimize stiffness`: the stiffness model and how well it fits.
 
-use super::setup::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
 use super::{Failure, print, print_json};
 use crate::report::stiffness;
+use crate::session::{DEFAULT_FINGER, StiffnessRequest};
 use crate::study::write_file;
 use clap::Args;
-use insertion::surrogate::Model;
-use serde_json::Value;
 use std::path::PathBuf;
 
 /// Show the stiffness model.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct Arguments {
     /// Your own stiffness measurements in place of the shipped ones
     #[arg(long, value_name = "FILE.csv")]
@@ -28,7 +26,8 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let model = arguments.model()?;
+    let Arguments { stiffness_data, finger, .. } = arguments.clone();
+    let model = StiffnessRequest { stiffness_data, finger }.model()?;
     if let Some(path) = &arguments.svg {
         let svg = stiffness::svg(&model).map_err(|error| Failure::running(error.to_string()))?;
         write_file(path, &svg)?;
@@ -37,18 +36,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return print_json(&stiffness::json(&model));
     }
     print(&stiffness::table(&model))
-}
-
-impl Arguments {
-    /// The model of the data that the arguments name.
-    fn model(&self) -> Result<Model, Failure> {
-        let finger = printed_finger(&self.finger)?;
-        let data = stiffness_data(self.stiffness_data.as_deref(), &finger)?;
-        surrogate(&data, &finger)
-    }
-
-    /// What `--json` prints.
-    pub fn json(&self) -> Result<Value, Failure> {
-        Ok(stiffness::json(&self.model()?))
-    }
 }

@@ -1,48 +1,28 @@
 //! `optimize --task T --budget N`: begins or continues a study.
 
-use super::calibrated::DEFAULT_PRIORS;
-use super::session::{self, SessionArguments};
-use super::setup::{self, Setup, SetupArguments};
-use super::{Failure, measure, on_bench};
-use crate::study::{LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, read_config, study_name};
+use super::arguments::{RunArguments, SetupArguments};
+use super::progress::Progress;
+use super::{Failure, say, summary};
+use crate::session::{BATCHES, BUDGETS, Ended, OpenStudy, POLISHES, SEEDS, StudyRequest};
 use ask_tell::OptimizerKind;
-use clap::{Args, ValueEnum};
-use input::shipped::{PRIORS, UNCERTAINTIES};
-use insertion::evaluation::objective::{Aggregate, Constraint, Measure, Objectives};
+use clap::Args;
+use insertion::evaluation::objective::{AggregateKind, Constraint, Objectives};
 use std::path::{Path, PathBuf};
-
-/// Largest seed: TOML, in which studies keep theirs, has no larger whole numbers.
-const LARGEST_SEED: u64 = i64::MAX as u64;
-
-/// Batch of a new study unless another is given.
-const DEFAULT_BATCH: u64 = 4;
-
-/// Errors used unless others are named.
-const DEFAULT_UNCERTAINTY: &str = "typical";
-
-/// What is made of the values of several tasks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum AggregateKind {
-    /// The worst of them
-    Min,
-    /// Their mean, not scaled: a task with wide windows counts for more
-    Mean,
-    /// Their mean with --weights
-    Weighted,
-}
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Run a study.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    pub setup: SetupArguments,
+    setup: SetupArguments,
     /// Evaluations in all; run the same command with a larger one to go on
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=LARGEST_BUDGET))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(BUDGETS))]
     budget: u64,
     /// Then up to N evaluations more, by Nelder-Mead from the best design; the budget of
     /// such a study cannot be raised
     #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
-          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=LARGEST_BUDGET))]
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(POLISHES))]
     polish: u64,
     /// Optimizer: gp, cma-es, random, sobol or grid
     #[arg(long, value_name = "NAME", default_value = "gp")]
@@ -70,12 +50,12 @@ pub struct Arguments {
     weights: Vec<f64>,
     /// Seed; the same seed gives the same study
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
-          value_parser = clap::value_parser!(u64).range(..=LARGEST_SEED))]
+          value_parser = clap::value_parser!(u64).range(SEEDS))]
     seed: u64,
     /// Designs proposed and evaluated at a time; part of the study, unlike --threads [default: that
     /// of the study if it goes on, else 4, with --executor the number of its workers]
     #[arg(long, value_name = "N", allow_negative_numbers = true,
-          value_parser = clap::value_parser!(u64).range(1..=LARGEST_BATCH))]
+          value_parser = clap::value_parser!(u64).range(BATCHES))]
     batch: Option<u64>,
     /// Tell each result as it comes and ask for one more design, so that no worker waits for the
     /// slowest of a batch; the journal then depends on who was fast
@@ -89,141 +69,59 @@ pub struct Arguments {
     )]
     out: Option<PathBuf>,
     #[command(flatten)]
-    pub session: SessionArguments,
+    pub run: RunArguments,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (study, setup) = arguments.open(None)?;
-    session::run(study, &setup, &arguments.session)
+    to_its_end(arguments.request().open(None)?, &arguments.run)
 }
 
 impl Arguments {
-    /// Begins the study or goes on with it; where no batch is given a new study's is `workers`.
-    pub fn open(&self, workers: Option<u64>) -> Result<(Study, Setup), Failure> {
-        let (setup, mut config, dir) = self.look()?;
-        if self.batch.is_none() {
-            // A study that goes on keeps its own.
-            let kept = read_config(&dir).ok().map(|found| found.batch);
-            config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
-        }
-        let if_changed = self.session.if_changed();
-        let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
-        Ok((study, setup))
-    }
-
-    /// What the words name, checked: nothing is written.
-    pub fn look(&self) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
-        let setup = self.under_errors(Setup::from_arguments(&self.setup)?)?;
-        let setup = self.measured(setup)?;
-        let config = self.config(&setup)?;
-        check(self.optimizer, &config)?;
-        if setup.measured.is_some() {
-            on_bench::check(&config)?;
-        }
-        let dir = self.out.clone().unwrap_or_else(|| default_folder(&config));
-        Ok((setup, config, dir))
-    }
-
-    /// With the errors that the goals need.
-    fn under_errors(&self, setup: Setup) -> Result<Setup, Failure> {
-        let constrained = self.constraint.iter().map(|constraint| constraint.measure);
-        let mut measures = self.objective.measures().iter().copied().chain(constrained);
-        match (measures.any(Measure::is_drawn), &self.uncertainty) {
-            (false, None) => Ok(setup),
-            (false, Some(_)) => Err(Failure::usage(
-                "--uncertainty is for success-rate and robust-range; make one of them an \
-                 --objective or a --constraint",
-            )),
-            (true, name) => {
-                let name = name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY);
-                setup.under(setup::find("uncertainty", UNCERTAINTIES, name)?)
-            }
-        }
-    }
-
-    /// With what was measured on the bench.
-    fn measured(&self, setup: Setup) -> Result<Setup, Failure> {
-        let Some(name) = &self.measurements else { return Ok(setup) };
-        let priors = setup::find("file of priors", PRIORS, DEFAULT_PRIORS)?;
-        setup.with_measurements(measure::find(name)?, priors)
-    }
-
-    /// How the values of several tasks become one; `None` for one task.
-    fn aggregate(&self, tasks: usize) -> Result<Option<Aggregate>, Failure> {
-        let given = self.aggregate.unwrap_or(AggregateKind::Min);
-        if tasks == 1 && (self.aggregate.is_some() || !self.weights.is_empty()) {
-            return Err(Failure::usage(
-                "--aggregate and --weights are for several tasks, as in --task usb,rj45",
-            ));
-        }
-        if given != AggregateKind::Weighted && !self.weights.is_empty() {
-            return Err(Failure::usage("--weights goes with --aggregate weighted"));
-        }
-        let aggregate = match given {
-            AggregateKind::Min => Aggregate::Min,
-            AggregateKind::Mean => Aggregate::Mean,
-            AggregateKind::Weighted => Aggregate::weighted(self.weights.clone(), tasks)
-                .map_err(|problem| Failure::usage(format!("--weights: {problem}")))?,
-        };
-        Ok((tasks > 1).then_some(aggregate))
-    }
-
-    fn config(&self, setup: &Setup) -> Result<StudyConfig, Failure> {
-        let evaluator = &setup.evaluator;
-        let names = evaluator.templates.iter().map(|template| template.task().name.clone());
-        let tasks: Vec<String> = names.collect();
-        Ok(StudyConfig {
-            aggregate: self.aggregate(tasks.len())?,
-            tasks,
-            robot: evaluator.robot.name.clone(),
-            finger_model: evaluator.fingers.kind(),
-            optimizer: self.optimizer.to_string(),
+    /// What is asked for.
+    pub fn request(&self) -> StudyRequest {
+        StudyRequest {
+            polish: self.polish,
+            optimizer: self.optimizer,
             objective: self.objective.clone(),
             constraints: self.constraint.clone(),
-            uncertainty: setup.uncertainty.as_ref().map(|errors| errors.name.clone()),
+            uncertainty: self.uncertainty.clone(),
+            measurements: self.measurements.clone(),
+            aggregate: self.aggregate,
+            weights: self.weights.clone(),
             seed: self.seed,
-            budget: self.budget,
-            polish: self.polish,
-            batch: self.batch.unwrap_or(DEFAULT_BATCH),
+            batch: self.batch,
             asynchronous: self.asynchronous,
-            provenance: setup.provenance(),
-            space: setup.space.clone(),
-        })
+            out: self.out.clone(),
+            run: self.run.request(),
+            ..StudyRequest::new(self.setup.request(), self.budget)
+        }
     }
 }
 
-/// Whether the optimizer can do what is asked for.
-fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
-    if config.asynchronous && (kind == OptimizerKind::CmaEs || config.polish > 0) {
-        return Err(Failure::usage(
-            "--async: cma-es and --polish learn from whole batches; leave it out, or give another \
-             --optimizer and no --polish",
-        ));
-    }
-    if config.objective.single().is_some() {
-        return Ok(());
-    }
-    if !kind.takes_several_objectives() {
-        let able = OptimizerKind::ALL.into_iter().filter(|kind| kind.takes_several_objectives());
-        let able: Vec<&str> = able.map(OptimizerKind::name).collect();
-        return Err(Failure::usage(format!(
-            "{kind} knows one objective only; for {} give --optimizer {}",
-            config.objective,
-            able.join(", ")
-        )));
-    }
-    if config.polish > 0 {
-        return Err(Failure::usage("--polish knows one objective only; leave it out"));
-    }
-    Ok(())
+/// Runs an open study until its budget is spent, shows how far it is, and prints its result.
+pub fn to_its_end(open: OpenStudy, arguments: &RunArguments) -> Result<(), Failure> {
+    let stop = stop_on_interrupt(open.study().dir())?;
+    let mut progress = Progress::new(open.study(), arguments.quiet, arguments.json);
+    let Ended { dir, record, ending, known, unusable } =
+        open.run(&stop, &mut |event| progress.see(event))?;
+    summary::show(&dir, &record, ending, known, arguments.json)?;
+    unusable.map_or(Ok(()), Err)
 }
 
-/// `results/<task>-<optimizer>-seed<seed>`; a task of one's own may be named with anything.
-fn default_folder(config: &StudyConfig) -> PathBuf {
-    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-    // The plus sign stands between tasks.
-    let task = |name: &str| name.chars().map(safe).collect::<String>();
-    let task = config.tasks().map(task).collect::<Vec<_>>().join("+");
-    Path::new("results").join(study_name(&task, &config.method(), config.seed))
+/// A flag that Ctrl-C (or a polite kill) sets; a second one ends the process
+/// at once, which the journal survives as well.
+fn stop_on_interrupt(dir: &Path) -> Result<Arc<AtomicBool>, Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let (flag, dir) = (Arc::clone(&stop), dir.display().to_string());
+    let handler = move || {
+        if flag.swap(true, Ordering::SeqCst) {
+            say(&format!("stopped; continue with: optimize resume {dir}"));
+            std::process::exit(1);
+        }
+        say("stopping; once more to stop at once");
+    };
+    ctrlc::set_handler(handler)
+        .map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;
+    Ok(stop)
 }

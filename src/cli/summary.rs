@@ -1,6 +1,6 @@
 //! What is printed of a whole study.
 
-use super::words::merge;
+use super::terminal::merge;
 use super::{Failure, on_bench, print, recommended};
 use crate::report::volume_unit;
 use crate::study::{Ending, Recorded, StudyRecord, Walked, nearest, volume};
@@ -69,7 +69,7 @@ fn text(dir: &Path, record: &StudyRecord, ending: Ending, known: u64) -> String 
     if known > 0 {
         lines.push(format!("cache         {known} evaluations were known from other studies"));
     }
-    let page = dir.join(super::report::PAGE);
+    let page = dir.join(crate::session::PAGE);
     let place = format!("study         {} (see {})\n", dir.display(), page.display());
     super::words::wrapped(&(lines.join("\n") + "\n")) + &place
 }

@@ -1,7 +1,8 @@
 //! What is printed: standard output, standard error, and what a terminal must not see.
 
-use super::Failure;
+use crate::session::{Event, Failure};
 use input::files::visible;
+use serde_json::Value;
 use std::io::{self, Write};
 
 /// Prints to standard output; a reader that has gone away (`| head`) is no error.
@@ -16,8 +17,15 @@ pub fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Prints a value as JSON, one line.
-pub fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
+pub fn print_json(value: &Value) -> Result<(), Failure> {
     print(&format!("{value}\n"))
+}
+
+/// Adds the fields of one JSON object to another.
+pub fn merge(fields: &mut Value, more: Value) {
+    if let (Value::Object(fields), Value::Object(more)) = (fields, more) {
+        fields.extend(more);
+    }
 }
 
 /// What a terminal may see; a carriage return would overwrite the line.
@@ -29,4 +37,14 @@ fn shown(text: &str) -> String {
 /// ends for it.
 pub fn say(text: &str) {
     let _ = writeln!(io::stderr(), "{}", shown(text));
+}
+
+/// Says what is about to be simulated for the bench, unless `quiet`.
+pub fn simulating(quiet: bool) -> impl FnMut(Event<'_>) + Send {
+    move |event| match event {
+        Event::Simulating { task, count } if !quiet => {
+            say(&format!("{task}: {count} simulations, or their cache .."));
+        }
+        _ => (),
+    }
 }

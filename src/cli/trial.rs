@@ -1,28 +1,21 @@
 //! `optimize trial`: one simulated insertion.
 
-use super::film::FilmArguments;
-use super::repeat::{self, RepeatArguments};
-use super::setup::{Setup, SetupArguments};
-use super::specimen::{Chosen, FingerArguments};
-use super::words::{self, merge, number};
-use super::{Failure, print, print_json};
-use crate::study::write_file;
+use super::arguments::{FilmArguments, FingerArguments, RepeatArguments, SetupArguments};
+use super::terminal::merge;
+use super::words::{self, number};
+use super::{Failure, chosen, print, print_json, repeat};
+use crate::session::{TrialDone, TrialRequest, given_offset};
 use clap::Args;
-use input::units::MM;
-use insertion::evaluation::{OffsetStep, grid_mm};
+use insertion::evaluation::grid_mm;
 use insertion::outcome::Outcome;
-use insertion::trial::{NEVER, Sample, Trial, picture};
+use insertion::trial::{NEVER, Trial};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-
-/// Largest offset accepted, mm: far outside any socket.
-const LARGEST_OFFSET_MM: f64 = 1000.0;
 
 /// Simulate one insertion.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    pub setup: SetupArguments,
+    setup: SetupArguments,
     #[command(flatten)]
     finger: FingerArguments,
     /// Shift of the start along y, mm
@@ -41,83 +34,55 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What the command found.
-pub struct Found {
-    setup: Setup,
-    chosen: Chosen,
-    taught: Option<OffsetStep>,
-    trial: Trial,
-    /// The course of the trial, if it was asked for.
-    pub samples: Vec<Sample>,
-    repeats: Option<BTreeMap<String, usize>>,
-}
-
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let found = find(arguments, None)?;
-    if arguments.json {
-        return print_json(&found.json(arguments));
-    }
-    let repeats = found.repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
-    let start = words::taught(found.taught).map_or(String::new(), |line| line + "\n");
-    let drawn = arguments.svg.iter().map(|file| format!("wrote         {}\n", file.display()));
-    let wrote: String = drawn.chain([arguments.film.written()]).collect();
-    let chosen = found.chosen.text(&found.setup);
-    print(&format!("{chosen}\n{start}{}{repeats}{wrote}", text(&found.trial)))
-}
-
-/// Simulates, with a sample each `every_s` seconds if that is given.
-pub fn find(arguments: &Arguments, every_s: Option<f64>) -> Result<Found, Failure> {
-    let setup = Setup::from_arguments(&arguments.setup)?;
-    let chosen = arguments.finger.choose(&setup)?;
-    let specimen = &chosen.specimen;
-    let offset = arguments.offset_mm * MM;
-    let taught = setup.evaluator.taught(specimen, &NEVER).map_err(Failure::input)?;
-    let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
-    let filmed = arguments.film.record(&*rig, specimen, arguments.offset_mm)?;
-    let (trial, samples) = match (every_s, filmed) {
-        (Some(every_s), _) => rig.grasp(&specimen.finger).traced(offset, every_s),
-        (None, Some(recording)) => (recording.trial, Vec::new()),
-        (None, None) => (rig.grasp(&specimen.finger).trial(offset), Vec::new()),
+    let request = TrialRequest {
+        setup: arguments.setup.request(),
+        finger: arguments.finger.request(),
+        offset_mm: arguments.offset_mm,
+        repeat: arguments.repeat.request(),
+        every_s: None,
+        film: arguments.film.request(),
+        svg: arguments.svg.clone(),
     };
-    drop(rig);
-    if let Some(file) = &arguments.svg {
-        let label =
-            format!("{}, start shifted by {:+.1} mm", specimen.task.name, arguments.offset_mm);
-        write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
+    let done = request.run(&NEVER)?;
+    if arguments.json {
+        return print_json(&json(&done));
     }
-    let repeats = arguments.repeat.outcomes(&setup, &chosen, (taught, offset))?;
-    Ok(Found { setup, chosen, taught, trial, samples, repeats })
+    let repeats = done.repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
+    let start = words::taught(done.taught).map_or(String::new(), |line| line + "\n");
+    let wrote = done.written.iter().map(|file| format!("wrote         {}\n", file.display()));
+    let wrote: String = wrote.collect();
+    let chosen = chosen::text(&done.chosen);
+    print(&format!("{chosen}\n{start}{}{repeats}{wrote}", text(&done.trial)))
 }
 
-impl Found {
-    /// What `--json` prints.
-    pub fn json(&self, arguments: &Arguments) -> Value {
-        let mut fields = self.chosen.json(&self.setup, &arguments.finger);
-        let trial = &self.trial;
-        merge(
-            &mut fields,
-            json!({
-                "offset_mm": arguments.offset_mm,
-                "outcome": trial.outcome.word(),
-                "failure": trial.outcome.failure(),
-                "depth_mm": trial.depth_mm,
-                "tilt_deg": trial.tilt_deg,
-                "peak_force_n": trial.peak_force_n,
-                "slip_mm": trial.slip_mm,
-                "simulated_s": trial.simulated_s,
-                "retried_at_half_step": trial.retried,
-                "phases": trial.phases,
-            }),
-        );
-        if let Some(taught) = self.taught {
-            merge(&mut fields, json!({ "taught_start_mm": grid_mm(taught) }));
-        }
-        if let Some(counts) = &self.repeats {
-            merge(&mut fields, json!({ "repeats": counts }));
-        }
-        fields
+/// What `--json` prints.
+pub fn json(done: &TrialDone) -> Value {
+    let mut fields = chosen::json(&done.chosen);
+    let trial = &done.trial;
+    merge(
+        &mut fields,
+        json!({
+            "offset_mm": done.offset_mm,
+            "outcome": trial.outcome.word(),
+            "failure": trial.outcome.failure(),
+            "depth_mm": trial.depth_mm,
+            "tilt_deg": trial.tilt_deg,
+            "peak_force_n": trial.peak_force_n,
+            "slip_mm": trial.slip_mm,
+            "simulated_s": trial.simulated_s,
+            "retried_at_half_step": trial.retried,
+            "phases": trial.phases,
+        }),
+    );
+    if let Some(taught) = done.taught {
+        merge(&mut fields, json!({ "taught_start_mm": grid_mm(taught) }));
     }
+    if let Some(counts) = &done.repeats {
+        merge(&mut fields, json!({ "repeats": counts }));
+    }
+    fields
 }
 
 fn text(trial: &Trial) -> String {
@@ -149,9 +114,5 @@ fn text(trial: &Trial) -> String {
 }
 
 fn offset(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        // Written so that a NaN is outside.
-        Ok(value) if value.abs() <= LARGEST_OFFSET_MM => Ok(value),
-        _ => Err(format!("an offset is a number of mm between ±{LARGEST_OFFSET_MM}")),
-    }
+    given_offset(text.parse().unwrap_or(f64::NAN))
 }

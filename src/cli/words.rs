@@ -6,7 +6,6 @@ use insertion::evaluation::objective::Measure;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::surrogate::Prediction;
-use serde_json::Value;
 use std::fmt::Write;
 
 /// Columns of a terminal.
@@ -131,13 +130,6 @@ pub fn number(value: f64, decimals: usize, unit: &str) -> String {
     let value = format!("{value:.decimals$}");
     // After a collision that a body was thrown far by.
     if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
-}
-
-/// Adds the fields of one JSON object to another.
-pub fn merge(fields: &mut Value, more: Value) {
-    if let (Value::Object(fields), Value::Object(more)) = (fields, more) {
-        fields.extend(more);
-    }
 }
 
 /// What the finger tolerates with springs computed from its ribs, a line a task, each ended.

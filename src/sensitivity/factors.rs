@@ -3,11 +3,13 @@
 use input::units::{DEG, MM};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::stoppable::Stoppable;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::uncertainty::{Draw, Errors};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use insertion::trial::{Conditions, NEVER};
+use insertion::trial::Conditions;
+use std::sync::atomic::AtomicBool;
 
 /// Half the width over which a normal error is varied, in standard deviations: 95 % of it.
 const NORMAL_WIDTH_SD: f64 = 2.0;
@@ -65,7 +67,8 @@ impl Factors {
         &self.0
     }
 
-    /// The window of the insertion at a point of the unit cube, by the quick search.
+    /// The window of the insertion at a point of the unit cube, by the quick search; worthless once
+    /// `stop` is set.
     ///
     /// # Errors
     /// If the point cannot be simulated.
@@ -74,6 +77,7 @@ impl Factors {
         evaluator: &Evaluator,
         template: &Template,
         unit: &[f64],
+        stop: &AtomicBool,
     ) -> Result<Evaluation, Impossible> {
         let mut design = Design::default();
         let (mut conditions, mut stiffness) = (Conditions::NOMINAL, [0.0; 2]);
@@ -88,9 +92,10 @@ impl Factors {
         }
         let predicted = evaluator.predict(&design)?;
         let specimen = evaluator.specimen(template, &design, predicted)?;
-        let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, &NEVER)?, 1.0)?;
+        let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, stop)?, 1.0)?;
         let finger = Draw::under(conditions, stiffness).finger(&specimen.finger, &predicted);
-        Ok(tolerance::evaluate_in(&*rig, &finger, &conditions, Search::Strides))
+        let rig = Stoppable { rig: &*rig, stop };
+        Ok(tolerance::evaluate_in(&rig, &finger, &conditions, Search::Strides))
     }
 }
 

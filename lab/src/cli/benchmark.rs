@@ -1,15 +1,15 @@
 //! `lab benchmark`: how fast this machine simulates.
 
 use super::{Failure, print, print_json};
-use finger_opt::cli::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
-
 use clap::Args;
-use input::shipped::{self, ROBOTS, TASKS};
+use finger_opt::session::{self, DEFAULT_ROBOT};
+use input::shipped::TASKS;
 use input::units::N_PER_MM;
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::finger::Finger;
 use insertion::robot::Robot;
 use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
 use serde_json::json;
 use std::time::Instant;
 
@@ -31,7 +31,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     robot: String,
     /// Contact engine
-    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
     /// Evaluations per task, at the same time
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -57,8 +57,7 @@ impl TaskSpeed {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = shipped::resolve("robot", ROBOTS, &arguments.robot).map_err(Failure::input)?;
-    let robot = Robot::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let robot = session::robot(&arguments.robot)?;
     let rows = TASKS
         .iter()
         .map(|file| {
@@ -72,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<TaskSpeed, Failure> {
     let finger = Finger::new(COMPLIANCE * N_PER_MM, ASSEMBLY * N_PER_MM);
     let finger = finger.shaped(&task.finger, 0.0);
-    let rig = setup::rig(arguments.engine, task, robot, &finger).map_err(Failure::input)?;
+    let rig = arguments.engine.rig(task, robot, &finger, 1.0).map_err(Failure::input)?;
     let trials = std::sync::atomic::AtomicU32::new(0);
     let clock = Instant::now();
     rayon::scope(|scope| {

@@ -8,11 +8,12 @@ use crate::compare::{TaskWays, Way, pairs};
 use clap::Args;
 use contact::Engine;
 use contact::rapier::Rapier;
-use finger_opt::cli::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
+use finger_opt::session::{self, DEFAULT_ROBOT};
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::tolerance::Search;
 use insertion::robot::Robot;
 use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
 use insertion::trial::run::EngineRig;
 use std::sync::Arc;
 
@@ -23,7 +24,7 @@ const ALLOWED_STEPS: OffsetStep = 1;
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Contact engine
-    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
     /// Compare tolerance windows with finer ones instead
     #[arg(long, group = "windows")]
@@ -66,7 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 impl Arguments {
     fn windows(&self, make: &dyn Fn() -> Box<dyn Engine>) -> Result<(), Failure> {
-        let robot = setup::robot(&self.robot)?;
+        let robot = session::robot(&self.robot)?;
         let ways = if self.convergence { finer } else { searches };
         let tasks = tasks(&self.task)?.into_iter().map(|task| ways(task, &robot, make()));
         let tasks = tasks.collect::<Result<Vec<_>, _>>()?;

@@ -5,10 +5,11 @@ use super::{Failure, print, print_json};
 use crate::compare::engines::{self, TrialSet};
 use crate::compare::{TaskWays, Way};
 use clap::Args;
-use finger_opt::cli::setup::{self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind};
+use finger_opt::session::{self, DEFAULT_ROBOT};
 use insertion::evaluation::tolerance::Search;
 use insertion::finger::model::FingerSource;
 use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
 
 /// Compare the outcomes of the same trials in two contact engines (check T9)
 ///
@@ -19,7 +20,7 @@ use insertion::task::Task;
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Contact engine that is compared
-    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
     /// Contact engine that it is compared with; mujoco if the program was built with it
     #[arg(long, value_enum)]
@@ -45,12 +46,11 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kinds = [arguments.engine, arguments.against];
     let names = kinds.map(EngineKind::name);
-    let robot = setup::robot(&arguments.robot)?;
+    let robot = session::robot(&arguments.robot)?;
     let ways = |task: Task| {
         let way = |engine: EngineKind| {
-            let rig = setup::rig(engine, &task, &robot, &FingerSource::Paper.any(&task))
-                .map_err(Failure::input)?
-                .into();
+            let rig = engine.rig(&task, &robot, &FingerSource::Paper.any(&task), 1.0);
+            let rig = rig.map_err(Failure::input)?.into();
             Ok(Way { name: engine.name().to_owned(), rig, search: Search::Strides })
         };
         let ways = kinds.into_iter().map(way).collect::<Result<_, Failure>>()?;

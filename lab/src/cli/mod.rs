@@ -8,8 +8,8 @@ mod prints;
 mod validate;
 
 use clap::{Parser, Subcommand};
-use finger_opt::cli::Failure;
 use finger_opt::cli::terminal::{print, print_json, say};
+use finger_opt::session::Failure;
 use std::ffi::OsString;
 use std::process::ExitCode;
 

@@ -4,10 +4,11 @@ use super::{Failure, print, print_json};
 use crate::prints::{self, Replayed, TOLD};
 use clap::Args;
 use finger_opt::calibration::sampler::{Effort, Settings};
-use finger_opt::cli::calibrated::{CalibrationArguments, Prepared};
-use finger_opt::cli::setup::{
-    DEFAULT_ENGINE, DEFAULT_ROBOT, DEFAULT_SPACE, EngineKind, FingerModelArguments, SetupArguments,
-};
+use finger_opt::cli::arguments::{CalibrationArguments, FingerModelArguments};
+use finger_opt::cli::terminal::simulating;
+use finger_opt::session::{DEFAULT_ROBOT, Prepared, SetupRequest, TaskSource};
+use insertion::trial::NEVER;
+use insertion::trial::engine::EngineKind;
 use serde_json::json;
 
 /// Sampling at each print: there are many.
@@ -27,7 +28,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     robot: String,
     /// Contact engine
-    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
     #[command(flatten)]
     finger_model: FingerModelArguments,
@@ -50,17 +51,15 @@ struct TaskReplay {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let setup = SetupArguments {
-        task: arguments.task.clone(),
-        space: DEFAULT_SPACE.to_owned(),
+    let setup = arguments.finger_model.of(SetupRequest {
+        tasks: TaskSource::list(&arguments.task),
         robot: arguments.robot.clone(),
-        stiffness_data: None,
         engine: arguments.engine,
-        finger_model: arguments.finger_model.clone(),
-        start: None,
-        given: Vec::new(),
-    };
-    let prepared = arguments.calibration.prepare(&setup, "published", &[], arguments.json)?;
+        ..SetupRequest::default()
+    });
+    let request = arguments.calibration.request(setup, "published");
+    let mut watch = simulating(arguments.json);
+    let prepared = request.prepare(&[], &NEVER, &mut watch)?;
     let tasks = (0..prepared.subjects.len())
         .map(|task| arguments.replay(&prepared, task))
         .collect::<Result<Vec<_>, Failure>>()?;

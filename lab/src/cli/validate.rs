@@ -5,15 +5,15 @@ use crate::compare::fingers::Windows;
 use crate::compare::published::{self as beside, TaskTable};
 use clap::{Args, ValueEnum};
 use finger_opt::calibration::published::{self, Origin};
-use finger_opt::cli::setup::{
-    self, DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, FingerModelArguments,
-};
+use finger_opt::cli::arguments::FingerModelArguments;
+use finger_opt::session::{self, DEFAULT_ROBOT, SetupRequest, TaskFile};
 use finger_opt::study::write_file;
 use input::shipped::TASKS;
 use insertion::evaluation::tolerance::Search;
 use insertion::robot::Robot;
 use insertion::stiffness::Measurement;
 use insertion::task::{StartRule, Task};
+use insertion::trial::engine::EngineKind;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -52,7 +52,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     robot: String,
     /// Contact engine
-    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
     /// Look every 0.5 mm and bisect: a third of the trials, but blind to gaps narrower than that
     #[arg(long)]
@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for task in &mut tasks {
         task.strategy.rule = arguments.start.unwrap_or(task.strategy.rule);
     }
-    let robot = setup::robot(&arguments.robot)?;
+    let robot = session::robot(&arguments.robot)?;
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
     let tables = arguments.measure(&tasks, &robot, search)?;
     write(&arguments.out, &tables)?;
@@ -130,7 +130,7 @@ impl Arguments {
         robot: &Robot,
         search: Search,
     ) -> Result<Vec<TaskTable>, Failure> {
-        let fingers = setup::fingers(self.finger_model.source(None)?.as_ref())?;
+        let fingers = self.finger_model.of(SetupRequest::default()).fingers()?;
         let engine = self.engine;
         let windows = Windows { fingers: &fingers, robot, engine, search };
         windows.measure(tasks, &self.fingers.designs()).map_err(Failure::input)
@@ -139,8 +139,7 @@ impl Arguments {
 
 /// A task of which something is published.
 fn task(name: &str) -> Result<Task, Failure> {
-    let source = setup::find("task", TASKS, name)?;
-    let task = Task::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let TaskFile { source, task } = session::read_task(name)?;
     if published::of_task(&task.name, Origin::Simulation).is_empty() {
         let names: Vec<&str> = TASKS.iter().map(|shipped| shipped.name).collect();
         return Err(Failure::usage(format!(

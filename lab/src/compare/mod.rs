@@ -11,6 +11,7 @@ mod tests;
 
 pub use pairs::WindowPair;
 
+use finger_opt::cli::terminal::merge;
 use input::units::N_PER_MM;
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::{Evaluation, Window};
@@ -76,16 +77,18 @@ impl Subject {
     }
 }
 
-/// The keys that name a finger on a task in every comparison.
-fn subject_json(task: &str, design: &Measurement) -> Value {
-    json!({
+/// The keys that name a finger on a task in every comparison, and those of what was measured.
+fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
+    let mut fields = json!({
         "task": task,
         "design": design.design,
         "infill_density_percent": design.density_percent,
         "infill_direction_deg": design.direction_deg,
         "stiffness_assembly_n_per_mm": design.assembly / N_PER_MM,
         "stiffness_compliance_n_per_mm": design.compliance / N_PER_MM,
-    })
+    });
+    merge(&mut fields, measured);
+    fields
 }
 
 /// Measures every design on every task; in parallel, collected by task and design, so the
@@ -132,12 +135,4 @@ fn window_words(window: &Window) -> String {
         }
         _ => "none".to_owned(),
     }
-}
-
-/// Adds the fields of one JSON object to another.
-fn merged(mut fields: Value, more: Value) -> Value {
-    if let (Value::Object(fields), Value::Object(more)) = (&mut fields, more) {
-        fields.extend(more);
-    }
-    fields
 }

@@ -1,6 +1,6 @@
 //! Windows of the same fingers in two ways: how far their ends lie apart.
 
-use super::{Subject, TaskWays, Way, each, merged, subject_json, window_json, window_words};
+use super::{Subject, TaskWays, Way, each, subject_json, window_json, window_words};
 use finger_opt::calibration::statistics::mean;
 use insertion::evaluation::{OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
@@ -133,7 +133,7 @@ pub fn json(
             "allowed_mm": allowed.map(grid_mm),
             "passed": allowed.map(|allowed| pair.agrees(allowed)),
         });
-        merged(subject_json(&pair.subject.task, &pair.subject.design), measured)
+        subject_json(&pair.subject.task, &pair.subject.design, measured)
     };
     pairs.iter().map(row).collect()
 }

@@ -1,16 +1,13 @@
 //! `optimize export finger`: a finger for the printer.
 
-use crate::cli::setup::find;
 use crate::cli::{Failure, print};
-use crate::study::{StudyRecord, write_file};
+use crate::session::PrintRequest;
+use crate::study::write_file;
 use clap::{Args, ValueEnum};
 use finray::export::prism::Prism;
 use finray::export::{self, drawing, dxf, sheet, slicer, stl, three_mf};
 use finray::geometry::Geometry;
 use finray::mechanics;
-use input::shipped::FINGERS;
-use insertion::finger::file::FingerFile;
-use insertion::space::Design;
 use std::path::{Path, PathBuf};
 
 /// A finger for the printer: the best of a study, or of an infill
@@ -18,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Both fingers of a gripper are this part. STL, 3MF, DXF and SVG have every rib of it; the
 /// settings for slicers are for its outline, which is written beside them and which the slicer
 /// fills with its own ribs.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct Arguments {
     /// Folder of a study: its best design
     #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"],
@@ -44,9 +41,6 @@ pub struct Arguments {
     out: PathBuf,
 }
 
-/// The finger of the paper.
-const DEFAULT: &str = "finray9";
-
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
     /// Closed surface, binary, mm
@@ -68,7 +62,9 @@ enum Format {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let geometry = geometry(arguments)?;
+    let Arguments { dir, density, direction, finger: named, phase_mm, .. } = arguments.clone();
+    let request = PrintRequest { dir, density, direction, finger: named, phase_mm };
+    let geometry = request.geometry()?;
     let (out, title) = (&arguments.out, export::title(&geometry));
     match arguments.format {
         Format::Stl => write_file(out, &stl::write(&finger(&geometry)?, &title))?,
@@ -84,39 +80,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Prusaslicer => return settings(out, &geometry, &slicer::prusaslicer(&geometry)),
     }
     print(&format!("wrote {title}: {}\n", out.display()))
-}
-
-/// The finger that is asked for.
-fn geometry(arguments: &Arguments) -> Result<Geometry, Failure> {
-    let (design, of_study) = match (&arguments.dir, arguments.density, arguments.direction) {
-        (Some(dir), ..) => best(dir)?,
-        (None, Some(density), Some(direction)) => (Design::infill(density, direction), None),
-        _ => {
-            return Err(Failure::usage("give the folder of a study, or --density and --direction"));
-        }
-    };
-    let file = match (&arguments.finger, of_study) {
-        (None, Some(file)) => file,
-        (named, _) => {
-            let source = find("finger", FINGERS, named.as_deref().unwrap_or(DEFAULT))?;
-            FingerFile::parse(&source.text, &source.file).map_err(Failure::input)?
-        }
-    };
-    let finger = file.with(&design).map_err(Failure::input)?;
-    let infill = design.printed(arguments.phase_mm);
-    Geometry::new(&finger, &infill).map_err(Failure::input)
-}
-
-/// The design that a study recommends, and the finger file of its fingers.
-fn best(dir: &Path) -> Result<(Design, Option<FingerFile>), Failure> {
-    let record = StudyRecord::load(dir)?;
-    let Some(best) = record.to_print() else {
-        return Err(Failure::usage(format!(
-            "{}: the study recommends no design; give --density and --direction",
-            dir.display()
-        )));
-    };
-    Ok((best.clone(), record.finger.clone()))
 }
 
 fn finger(geometry: &Geometry) -> Result<Prism, Failure> {

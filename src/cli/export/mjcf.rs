@@ -1,13 +1,10 @@
 //! `optimize export mjcf`: the scene of a trial.
 
-use crate::cli::setup::{Setup, SetupArguments};
-use crate::cli::specimen::FingerArguments;
+use crate::cli::arguments::{FingerArguments, SetupArguments};
 use crate::cli::{Failure, print};
+use crate::session::SceneRequest;
 use crate::study::write_file;
 use clap::Args;
-use contact::mjcf::{self, MjcfSettings};
-use insertion::evaluation::evaluator::Specimen;
-use insertion::trial::cell;
 use std::path::PathBuf;
 
 /// The scene of a trial as MJCF, the model format of MuJoCo and its viewer
@@ -28,18 +25,8 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let setup = Setup::from_arguments(&arguments.setup)?;
-    let chosen = arguments.finger.choose(&setup)?;
-    let Specimen { task, finger, .. } = &chosen.specimen;
-    let mounted =
-        setup.evaluator.robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
-    let scene = cell::build(task, &mounted, finger).scene;
-    let instead = match scene.patched() {
-        Some(_) => "give finger_plug_torsion_mm in mm",
-        None => "--robot servo and --robot rigid need none of it",
-    };
-    let text = mjcf::write(&scene, &task.name, &MjcfSettings::default())
-        .map_err(|error| Failure::usage(format!("{error}; {instead}")))?;
+    let (setup, finger) = (arguments.setup.request(), arguments.finger.request());
+    let (task, text) = SceneRequest { setup, finger }.mjcf()?;
     write_file(&arguments.out, &text)?;
-    print(&format!("wrote {}: the scene of {}, for MuJoCo\n", arguments.out.display(), task.name))
+    print(&format!("wrote {}: the scene of {task}, for MuJoCo\n", arguments.out.display()))
 }

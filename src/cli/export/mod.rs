@@ -2,7 +2,6 @@
 
 mod finger;
 mod mjcf;
-pub mod study;
 
 use super::Failure;
 use clap::{Args, Subcommand};

@@ -1,8 +1,8 @@
 //! `optimize measure add`.
 
-use super::task_name;
 use crate::calibration::experiments::{COLUMNS, Column, NOT_MEASURABLE, appended, parse};
 use crate::cli::{Failure, print, say};
+use crate::session::read_task;
 use crate::study::write_file;
 use clap::Args;
 use input::shipped::MEASUREMENTS;
@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         cells = asked(&mut io::stdin().lock())?;
     }
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == Column::Task) {
-        *name = task_name(name)?;
+        *name = read_task(name)?.task.name;
     }
     let new = appended(&text, &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;

@@ -1,8 +1,8 @@
 //! `optimize measure check`.
 
-use super::{read, task_name};
 use crate::calibration::experiments::{Experiment, Extent};
 use crate::cli::{Failure, print, print_json};
+use crate::session::{read_measurements, read_task};
 use clap::Args;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -32,9 +32,10 @@ struct Known {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let own = arguments.task.iter().map(|name| task_name(name)).collect::<Result<Vec<_>, _>>()?;
+    let own = arguments.task.iter().map(|name| Ok(read_task(name)?.task.name));
+    let own = own.collect::<Result<Vec<_>, Failure>>()?;
     let own: Vec<&str> = own.iter().map(String::as_str).collect();
-    let found = read(&arguments.file, &own)?;
+    let found = read_measurements(&arguments.file, &own)?;
     let mut tasks: BTreeMap<&str, Known> = BTreeMap::new();
     for line in &found {
         let known = tasks.entry(&line.task).or_default();

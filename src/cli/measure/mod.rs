@@ -4,11 +4,8 @@ mod add;
 mod check;
 
 use super::Failure;
-use super::{measured, setup};
 use crate::calibration::experiments::Experiment;
 use clap::{Args, Subcommand};
-use input::shipped::{self, MEASUREMENTS, Source, TASKS};
-use insertion::task::Task;
 
 /// Add measurements from the bench to a file, or check such a file.
 ///
@@ -43,26 +40,4 @@ fn lines(found: &[Experiment]) -> String {
         1 => "1 line".to_owned(),
         count => format!("{count} lines"),
     }
-}
-
-/// The measurements of that name or at that path, checked; their tasks are shipped ones or
-/// those in `more`.
-pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
-    measured::lines(&find(name)?, more)
-}
-
-/// A shipped name, or else a path, whatever it looks like.
-pub fn find(name: &str) -> Result<Source, Failure> {
-    if std::path::Path::new(name).is_file() {
-        let text = std::fs::read_to_string(name);
-        let unreadable = |error| Failure::usage(format!("{name}: cannot read it: {error}"));
-        return Ok(Source { file: name.to_owned(), text: text.map_err(unreadable)? });
-    }
-    shipped::resolve("measurement file", MEASUREMENTS, name).map_err(Failure::input)
-}
-
-/// The name of a task that is shipped or a file.
-fn task_name(name: &str) -> Result<String, Failure> {
-    let source = setup::find("task", TASKS, name)?;
-    Ok(Task::parse(&source.text, &source.file).map_err(Failure::input)?.name)
 }

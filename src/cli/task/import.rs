@@ -1,18 +1,18 @@
 //! `optimize task import`: a task from meshes of plug and socket.
 
-use super::super::setup::{DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, find};
 use super::super::{Failure, print, print_json, say};
-use super::check::{self, Checked};
+use super::check;
 use crate::connector::mesh::import::{
     ALLOWED, Along, COARSEST, Imported, MOST_PARTS, Mesh, Request, import,
 };
 use crate::connector::mesh::{Surface, read};
 use crate::connector::write::{self, Notes};
+use crate::session::{TaskCheck, TaskFile, read_task};
 use crate::study::write_file;
 use clap::{Args, ValueEnum};
-use input::shipped::{Source, TASKS};
+use input::shipped::Source;
 use input::units::MM;
-use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -53,7 +53,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Contact engine that tries the nominal start
-    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
     /// Print the result as JSON
     #[arg(long)]
@@ -89,9 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let file = out.display();
         return Err(Failure::usage(format!("{file} exists; name another file with --out")));
     }
-    let like = arguments.like.as_deref().map(|name| find("task", TASKS, name)).transpose()?;
-    let like = like.map(|like| Task::parse(&like.text, &like.file)).transpose();
-    let like = like.map_err(Failure::input)?;
+    let like = arguments.like.as_deref().map(read_task).transpose()?;
     let [plug, socket] =
         [mesh(&arguments.plug, arguments.unit)?, mesh(&arguments.socket, arguments.unit)?];
     let inward = [&plug, &socket].map(|mesh| mesh.surface.was_inward);
@@ -100,17 +98,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         name: &name,
         along: arguments.insert_along,
         resolution: arguments.resolution,
-        like: like.as_ref(),
+        like: like.as_ref().map(|like| &like.task),
         say: &|what| say(what),
     };
     let imported = import(plug, socket, &request).map_err(Failure::input)?;
-    let source = Source {
+    let written = TaskFile::parse(Source {
         file: out.display().to_string(),
         text: write::task(&imported.task, &notes(arguments, &imported)),
-    };
-    Task::parse(&source.text, &source.file).map_err(Failure::input)?;
-    write_file(out, &source.text)?;
-    let checked = check::check(&source, DEFAULT_ROBOT, arguments.engine, None)?;
+    })?;
+    write_file(out, &written.source.text)?;
+    let checked = TaskCheck::of_text(written.source, arguments.engine)?;
     report(arguments, &imported, inward, &checked)
 }
 
@@ -151,7 +148,7 @@ fn report(
     arguments: &Arguments,
     imported: &Imported,
     inward: [bool; 2],
-    checked: &Checked,
+    checked: &TaskCheck,
 ) -> Result<(), Failure> {
     let [plug, socket] = imported.parts();
     let (depth, at, of) = match imported.intrusion {
@@ -184,7 +181,7 @@ fn report(
             "socket_was_inward": inward[1],
             "warning": warning,
             "out": arguments.out.display().to_string(),
-            "check": checked.json(),
+            "check": check::json(checked),
         }));
     }
     let how = |exact: bool| if exact { "exact" } else { "approximated by hulls" };
@@ -206,7 +203,7 @@ fn report(
         }
     }
     text.extend(warning.map(|warning| format!("warning       {warning}\n")));
-    print(&(text + &checked.text()))
+    print(&(text + &check::text(checked)))
 }
 
 /// What does where hulls reach into the clearance. Two voxels across a tenth of it would be more than

@@ -6,11 +6,7 @@ mod new;
 mod show;
 
 use super::Failure;
-use crate::calibration::published::three;
 use clap::{Args, Subcommand};
-use input::shipped::STIFFNESS;
-use insertion::finger::Finger;
-use insertion::stiffness;
 
 /// Make, show and check a task
 #[derive(Debug, Args)]
@@ -48,15 +44,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Check(arguments) => check::run(arguments),
         Command::Import(arguments) => import::run(arguments),
     }
-}
-
-/// The shipped measured finger of middling compliance stiffness.
-fn middling() -> Result<Finger, Failure> {
-    let [file] = STIFFNESS else { return Err(Failure::running("no measured fingers are shipped")) };
-    let designs = stiffness::parse(file.text, file.file).map_err(Failure::input)?;
-    let three = three(designs);
-    let middle = three.get(1).or(three.first());
-    middle
-        .map(|design| Finger::new(design.compliance, design.assembly))
-        .ok_or_else(|| Failure::running("no measured fingers are shipped"))
 }

@@ -1,16 +1,16 @@
 //! `optimize task new`: a task file to begin with.
 
-use super::super::setup::{DEFAULT_ENGINE, DEFAULT_ROBOT, EngineKind, find};
 use super::super::{Failure, print};
 use super::check;
 use crate::connector::draft::{DENSITY, Dimensions, Size, draft};
 use crate::connector::round::Hole;
 use crate::connector::write::{self, Notes};
+use crate::session::{TaskCheck, TaskFile, read_task};
 use crate::study::write_file;
 use clap::Args;
-use input::shipped::{Source, TASKS};
+use input::shipped::Source;
 use input::units::MM;
-use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
 use std::path::PathBuf;
 
 /// Dimensions of the example that is written if none are given: a USB-C plug.
@@ -45,39 +45,37 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Contact engine that tries the nominal start
-    #[arg(long, value_enum, default_value = DEFAULT_ENGINE)]
+    #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let like = arguments.like.as_deref().map(|name| find("task", TASKS, name)).transpose()?;
+    let like = arguments.like.as_deref().map(read_task).transpose()?;
     let text = match (&like, arguments.plug.or(arguments.round)) {
-        (Some(like), None) => copy(&arguments.name, like)?,
+        (Some(like), None) => copy(&arguments.name, like),
         (like, _) => drafted(arguments, like.as_ref())?,
     };
     let out = arguments.out.clone().unwrap_or_else(|| format!("{}.toml", arguments.name).into());
     let file = out.display().to_string();
     // The name is checked here: what is written can be read.
-    Task::parse(&text, &file).map_err(Failure::input)?;
+    let written = TaskFile::parse(Source { file: file.clone(), text })?;
     if out.exists() {
         return Err(Failure::usage(format!("{file} exists; name another file with --out")));
     }
-    write_file(&out, &text)?;
-    let source = Source { file: file.clone(), text };
-    let checked = check::check(&source, DEFAULT_ROBOT, arguments.engine, None)?;
+    write_file(&out, &written.source.text)?;
+    let checked = TaskCheck::of_text(written.source, arguments.engine)?;
     print(&format!(
         "written       {file}\n{}next          optimize task check {file} --svg {}.svg\n",
-        checked.text(),
+        check::text(&checked),
         arguments.name
     ))
 }
 
-fn drafted(arguments: &Arguments, like: Option<&Source>) -> Result<String, Failure> {
+fn drafted(arguments: &Arguments, like: Option<&TaskFile>) -> Result<String, Failure> {
     let (size, example) = dimensions(arguments)?;
-    let like = like.map(|like| Task::parse(&like.text, &like.file)).transpose();
-    let like = like.map_err(Failure::input)?;
-    let task = draft(&arguments.name, &size, like.as_ref()).map_err(Failure::input)?;
+    let task =
+        draft(&arguments.name, &size, like.map(|like| &like.task)).map_err(Failure::input)?;
     let body = size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)));
     let tip = match size.round {
         true => format!("--round {}", mm(&[size.plug.width, size.plug.length])),
@@ -127,13 +125,12 @@ fn mm(lengths: &[f64]) -> String {
 }
 
 /// The other task's file with this name.
-fn copy(name: &str, like: &Source) -> Result<String, Failure> {
-    let task = Task::parse(&like.text, &like.file).map_err(Failure::input)?;
+fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
     let line =
         |key: &str, value: &str| format!("{key} = {}", toml::Value::String(value.to_owned()));
     let described = format!("like {}: {}", task.name, task.description);
     let mut head = true;
-    let lines = like.text.lines().map(|text| {
+    let lines = source.text.lines().map(|text| {
         head &= !text.starts_with('[');
         match text.split_once('=').map(|(key, _)| key.trim()) {
             Some("name") if head => line("name", name),
@@ -141,7 +138,7 @@ fn copy(name: &str, like: &Source) -> Result<String, Failure> {
             _ => text.to_owned(),
         }
     });
-    Ok(lines.collect::<Vec<_>>().join("\n") + "\n")
+    lines.collect::<Vec<_>>().join("\n") + "\n"
 }
 
 fn clearance(text: &str) -> Result<f64, String> {

@@ -1,9 +1,8 @@
 //! `optimize task show`: a shipped task file as it is.
 
-use super::super::setup::find;
 use super::super::{Failure, print};
+use crate::session::TaskSource;
 use clap::Args;
-use input::shipped::TASKS;
 
 /// Print a shipped task file
 #[derive(Debug, Args)]
@@ -15,5 +14,5 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    print(&find("task", TASKS, &arguments.name)?.text)
+    print(&TaskSource::Named(arguments.name.clone()).read()?.text)
 }

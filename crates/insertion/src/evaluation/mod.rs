@@ -6,7 +6,7 @@ pub mod objective;
 pub mod robustness;
 mod schema;
 pub mod sprung;
-mod stoppable;
+pub mod stoppable;
 pub mod taught;
 pub mod template;
 pub mod tolerance;

@@ -13,11 +13,12 @@ use contact::rapier::Rapier;
 use serde::{Deserialize, Serialize};
 
 /// What computes the contacts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum EngineKind {
     /// Contact simulation in rapier3d
     Rapier,
     /// Implicit stepper made for sprung fingers and rigid contacts
+    #[default]
     Direct,
     /// MuJoCo 3.17.0, as a second opinion
     #[cfg(feature = "mujoco")]

@@ -1,7 +1,7 @@
 //! What the two engines made of the set, as text and as JSON.
 
 use super::{AGREEMENT, CrossCheck, END_DIFFERENCE_MM, TrialPair};
-use crate::compare::{merged, pairs, subject_json};
+use crate::compare::{pairs, subject_json};
 use insertion::evaluation::grid_mm;
 use insertion::outcome::Outcome;
 use serde_json::{Value, json};
@@ -83,7 +83,7 @@ pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
             "agrees": pair.agrees(),
             "tip_distance_mm": pair.tip_mm,
         });
-        merged(subject_json(&pair.subject.task, &pair.subject.design), measured)
+        subject_json(&pair.subject.task, &pair.subject.design, measured)
     };
     let windows = pairs::json(&check.windows, None, "engine", ["first", "second"]);
     json!({

@@ -1,6 +1,6 @@
 //! How long the same trial takes in both engines.
 
-use crate::compare::{Subject, TaskWays, Way, merged, subject_json};
+use crate::compare::{Subject, TaskWays, Way, subject_json};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
 use serde_json::{Value, json};
@@ -109,7 +109,7 @@ pub fn time_json(rows: &[Timing], names: [&str; 2]) -> Value {
                 "wall_s": row.wall_s,
                 "ratio": row.ratio(),
             });
-            merged(subject_json(&row.subject.task, &row.subject.design), measured)
+            subject_json(&row.subject.task, &row.subject.design, measured)
         }).collect::<Vec<_>>(),
     })
 }

@@ -2,7 +2,7 @@
 
 use super::agreement::deviation_percent;
 use super::{Agreement, COMPARISONS, DesignRow, Reading, TaskTable, targets};
-use crate::compare::{merged, subject_json, window_json};
+use crate::compare::{subject_json, window_json};
 use input::units::N_PER_MM;
 use insertion::outcome::Outcome;
 use serde_json::{Value, json};
@@ -175,7 +175,7 @@ fn row_json(task: &str, row: &DesignRow) -> Value {
         "simulation": reading(row.simulation),
         "bench": reading(row.bench),
     });
-    merged(subject_json(task, &row.design), measured)
+    subject_json(task, &row.design, measured)
 }
 
 pub(super) fn agreement_json(found: &Agreement) -> Value {

@@ -19,6 +19,17 @@ pub enum Aggregate {
     Weighted(Vec<f64>),
 }
 
+/// An [`Aggregate`] by its name, without weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum AggregateKind {
+    /// The worst of them
+    Min,
+    /// Their mean, not scaled: a task with wide windows counts for more
+    Mean,
+    /// Their mean with --weights
+    Weighted,
+}
+
 impl Aggregate {
     /// Weights for so many tasks.
     ///

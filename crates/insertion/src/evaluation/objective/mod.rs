@@ -7,7 +7,7 @@ mod list;
 mod measure;
 mod plateau;
 
-pub use aggregate::Aggregate;
+pub use aggregate::{Aggregate, AggregateKind};
 pub use constraint::{Bound, Constraint};
 pub use list::Objectives;
 pub use measure::Measure;

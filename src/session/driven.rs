@@ -1,24 +1,14 @@
 //! A trial that a caller commands step by step: no command of the command line has it.
 
 use super::Failure;
-use super::call::read;
-use super::setup::{Setup, SetupArguments};
-use super::specimen::FingerArguments;
-use clap::Args;
-use input::shipped::Source;
+use super::failure::not_stopped;
+use super::finger::FingerRequest;
+use super::request::SetupRequest;
 use input::units::MM;
 use insertion::evaluation::tolerance::offset;
-use insertion::trial::{Driven, NEVER, State};
+use insertion::trial::{Driven, State};
 use nalgebra::Vector3;
-
-/// Task, robot and finger.
-#[derive(Debug, Args)]
-struct Arguments {
-    #[command(flatten)]
-    setup: SetupArguments,
-    #[command(flatten)]
-    finger: FingerArguments,
-}
+use std::sync::atomic::AtomicBool;
 
 /// A grasped part in front of its socket.
 pub struct Insertion {
@@ -28,17 +18,19 @@ pub struct Insertion {
 }
 
 impl Insertion {
-    /// Of the words that `optimize trial` takes for task, robot and finger; `tasks`, if there are
-    /// any, in place of the file that `--task` names.
+    /// A part between these fingers; a start that is taught is looked for until `stop` is set.
     ///
     /// # Errors
-    /// As the command fails, and if the engine simulates nothing.
-    pub fn new(words: &[String], tasks: &[Source]) -> Result<Self, Failure> {
-        let mut arguments: Arguments = read(words)?;
-        arguments.setup.given = tasks.to_vec();
-        let setup = Setup::from_arguments(&arguments.setup)?;
-        let specimen = arguments.finger.choose(&setup)?.specimen;
-        let taught = setup.evaluator.taught(&specimen, &NEVER).map_err(Failure::input)?;
+    /// If task, robot and finger cannot be simulated, or the engine simulates nothing.
+    pub fn new(
+        setup: &SetupRequest,
+        finger: &FingerRequest,
+        stop: &AtomicBool,
+    ) -> Result<Self, Failure> {
+        let setup = setup.setup()?;
+        let specimen = finger.choose(&setup)?.specimen;
+        let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
+        not_stopped(stop)?;
         let rig = setup.evaluator.rig(&specimen, None, 1.0).map_err(Failure::input)?;
         let driven = rig.driven(&specimen.finger).ok_or_else(|| {
             Failure::usage(

@@ -1,10 +1,11 @@
-//! What was measured on the bench, and the bounds of what nobody measured, as commands read it.
+//! What was measured on the bench, and the bounds of what nobody measured, as files have it.
 
 use super::Failure;
+use super::files::find;
 use crate::calibration::experiments::{self, Experiment, Extent};
 use crate::calibration::prior::Priors;
 use crate::calibration::subject::whole;
-use input::shipped::{Source, TASKS};
+use input::shipped::{MEASUREMENTS, Source, TASKS};
 use insertion::evaluation::template::Template;
 use insertion::space::Space;
 
@@ -16,6 +17,22 @@ pub struct Measured {
     pub experiments: Vec<Experiment>,
     /// The bounds.
     pub priors: Priors,
+}
+
+/// The measurements of that name or at that path, checked; their tasks are shipped ones or
+/// those in `more`.
+pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
+    lines(&file(name)?, more)
+}
+
+/// A shipped name, or else a path, whatever it looks like.
+pub fn file(name: &str) -> Result<Source, Failure> {
+    if std::path::Path::new(name).is_file() {
+        let text = std::fs::read_to_string(name);
+        let unreadable = |error| Failure::usage(format!("{name}: cannot read it: {error}"));
+        return Ok(Source { file: name.to_owned(), text: text.map_err(unreadable)? });
+    }
+    find("measurement file", MEASUREMENTS, name)
 }
 
 /// The lines of a file; their tasks are shipped ones or those in `more`.

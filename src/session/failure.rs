@@ -1,9 +1,12 @@
-//! Why a command failed, and the exit code that says so.
+//! Why a request failed, and the exit code that says so.
 
 use crate::study::StudyError;
 use std::fmt;
+use std::ops::RangeInclusive;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Why a command failed.
+/// Why a request failed. The texts name options as the command line has them; Python's keywords are
+/// the same words.
 #[derive(Debug)]
 pub enum Failure {
     /// Bad usage or a bad input file: exit code 2.
@@ -35,10 +38,35 @@ impl Failure {
     pub fn running(message: impl Into<String>) -> Self {
         Failure::Run(anyhow::Error::msg(message.into()))
     }
+}
 
-    /// Neither a subcommand nor a study was asked for.
-    pub fn no_task() -> Self {
-        Failure::usage("give --task NAME and --budget N, or a subcommand; see `optimize --help`")
+/// Whether nobody has asked to stop.
+///
+/// # Errors
+/// That it was interrupted, if `stop` is set: what was computed meanwhile is worthless.
+pub(super) fn not_stopped(stop: &AtomicBool) -> Result<(), Failure> {
+    match stop.load(Ordering::SeqCst) {
+        true => Err(Failure::running("interrupted")),
+        false => Ok(()),
+    }
+}
+
+/// Whether a number lies in its range, if it is given; `option` is what gives it.
+///
+/// # Errors
+/// If it does not.
+pub(super) fn within<T: PartialOrd + fmt::Display>(
+    option: &str,
+    number: impl Into<Option<T>>,
+    range: &RangeInclusive<T>,
+) -> Result<(), Failure> {
+    match number.into() {
+        Some(number) if !range.contains(&number) => {
+            let (least, most) = (range.start(), range.end());
+            let problem = format!("{option} {number}: must lie between {least} and {most}");
+            Err(Failure::usage(problem))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -1,7 +1,6 @@
 //! What went wrong where no design of a study inserts at the nominal start.
 
-use super::Failure;
-use super::setup::Setup;
+use super::{Failure, Setup};
 use crate::study::{StudyRecord, write_own_file};
 use insertion::outcome::Outcome;
 use insertion::trial::picture;
@@ -11,7 +10,7 @@ use std::path::Path;
 const PICTURE: &str = "nominal.svg";
 
 /// Fails, with what the design that comes nearest does at the nominal start, if none inserts there.
-pub fn check(dir: &Path, record: &StudyRecord, setup: &Setup) -> Result<(), Failure> {
+pub(super) fn check(dir: &Path, record: &StudyRecord, setup: &Setup) -> Result<(), Failure> {
     let Some((task, nearest)) = record.unusable() else { return Ok(()) };
     let Some(template) = setup.evaluator.templates.get(task) else { return Ok(()) };
     let evaluator = &setup.evaluator;

@@ -1,39 +1,32 @@
 //! A study whose designs are measured by somebody else: a process pool, a cluster. It says
 //! what is to be measured, checks what comes back, and writes the journal.
 
-use super::progress::Progress;
-use super::session::{self, SessionArguments};
-use super::setup::Setup;
-use super::{Failure, call, resume, study, summary, unusable};
+use super::failure::not_stopped;
+use super::open::{Ended, OpenStudy, hint, resume_hint};
+use super::standing::Standing;
+use super::{Failure, Setup, optimizer};
 use crate::study::{
-    Arrived, Cache, Course, Ending, Next, Simulated, Study, StudyError, Timing, Wanted, Work,
-    WorkError, now,
+    Arrived, Course, Ending, Next, Simulated, StudyError, Timing, Wanted, Work, WorkError, now,
 };
 use ask_tell::Optimizer;
-use input::shipped::Source;
 use insertion::evaluation::evaluator::Evaluate;
 use insertion::evaluation::objective::Measure;
-use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::tolerance::Search;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// A study that is open; no other process can open it meanwhile.
+/// An open study and what is out.
 pub struct Guided {
-    study: Study,
-    setup: Setup,
-    session: SessionArguments,
-    plan: Plan,
-    cache: Option<Cache>,
+    open: OpenStudy,
     optimizer: Box<dyn Optimizer + Send>,
     course: Course,
     /// What is being measured, by the number of its proposal.
     measuring: BTreeMap<u64, Work>,
-    progress: Progress,
+    standing: Standing,
 }
 
 /// What is to be done next.
@@ -55,41 +48,10 @@ pub enum NotTaken {
 }
 
 impl Guided {
-    /// Begins or continues the study of `optimize` with these words; `tasks`, if there are
-    /// any, in place of the files that `--task` names; `workers` is the batch unless one is
-    /// given or the study has one.
-    ///
-    /// # Errors
-    /// As the command fails before it measures.
-    pub fn begin(
-        words: &[String],
-        tasks: &[Source],
-        workers: Option<u64>,
-    ) -> Result<Self, Failure> {
-        let mut arguments: study::Arguments = call::read(words)?;
-        arguments.setup.given = tasks.to_vec();
-        let (study, setup) = arguments.open(workers)?;
-        Guided::new(study, setup, arguments.session)
-    }
-
-    /// Continues the study in a folder as `optimize resume` does with these words.
-    ///
-    /// # Errors
-    /// As the command fails before it measures.
-    pub fn resume(words: &[String]) -> Result<Self, Failure> {
-        let arguments: resume::Arguments = call::read(words)?;
-        let (study, setup) = arguments.open()?;
-        Guided::new(study, setup, arguments.session)
-    }
-
-    fn new(study: Study, setup: Setup, session: SessionArguments) -> Result<Self, Failure> {
-        session::check(&study.config, &setup)?;
-        let optimizer = session::optimizer(&setup, &study.config)?;
-        let (course, progress) = (Course::new(&study), Progress::new(&study, true));
-        let goals = study.config.goals();
-        let plan = setup.plan(study.config.seed, |measure| goals.need(measure))?;
-        let (cache, measuring) = (session.cache(&setup), BTreeMap::new());
-        Ok(Guided { study, setup, session, plan, cache, optimizer, course, measuring, progress })
+    pub(super) fn new(open: OpenStudy) -> Result<Self, Failure> {
+        let optimizer = optimizer::optimizer(&open.setup, &open.study.config)?;
+        let (course, standing) = (Course::new(&open.study), Standing::new(&open.study));
+        Ok(Guided { open, optimizer, course, measuring: BTreeMap::new(), standing })
     }
 
     /// What is to be done next. What the cache knows is taken from there.
@@ -98,7 +60,7 @@ impl Guided {
     /// If the journal holds other designs than are proposed, or cannot be written.
     pub fn order(&mut self) -> Result<Order, Failure> {
         loop {
-            let wanted = match self.course.next(&self.study, &mut *self.optimizer)? {
+            let wanted = match self.course.next(&self.open.study, &mut *self.optimizer)? {
                 Next::Wait => return Ok(Order::Wait),
                 Next::Ended(ending) => return Ok(Order::Finish(ending)),
                 Next::Measure(wanted) => wanted,
@@ -139,21 +101,23 @@ impl Guided {
     }
 
     fn simulated<'a>(&'a self, stop: &'a AtomicBool) -> Simulated<'a> {
-        let (evaluator, plan, cache) = (&self.setup.evaluator, &self.plan, self.cache.as_ref());
+        let OpenStudy { setup, plan, cache, .. } = &self.open;
+        let (evaluator, cache) = (&setup.evaluator, cache.as_ref());
         Simulated { evaluator, search: Search::default(), plan, cache, stop }
     }
 
     fn work(&self, Wanted { proposal, design }: Wanted) -> Work {
-        let goals = self.study.config.goals();
+        let OpenStudy { study, setup, .. } = &self.open;
+        let goals = study.config.goals();
         Work {
             proposal,
             design,
-            seed: self.study.config.seed,
+            seed: study.config.seed,
             success_rate: goals.need(Measure::SuccessRate),
             robust_range: goals.need(Measure::RobustRange),
-            tasks: self.study.config.tasks.len() as u64,
-            provenance: self.study.provenance().clone(),
-            inputs: self.setup.inputs.clone(),
+            tasks: study.config.tasks.len() as u64,
+            provenance: study.provenance().clone(),
+            inputs: setup.inputs.clone(),
         }
     }
 
@@ -164,7 +128,7 @@ impl Guided {
     pub fn take(&mut self, proposal: u64, result: &[u8]) -> Result<bool, NotTaken> {
         let Some(work) = self.measuring.get(&proposal) else { return Ok(false) };
         let impossible = |error| NotTaken::Failed(Failure::input(error));
-        let stiffness = self.setup.evaluator.predict(&work.design).map_err(impossible)?;
+        let stiffness = self.open.setup.evaluator.predict(&work.design).map_err(impossible)?;
         let arrived = work.check(result, &stiffness).map_err(NotTaken::Refused)?;
         self.simulated(&NEVER).keep(&work.design, &arrived.measured);
         let taken = self.accept(arrived).map_err(NotTaken::Failed)?;
@@ -173,44 +137,35 @@ impl Guided {
     }
 
     fn accept(&mut self, arrived: Arrived) -> Result<bool, Failure> {
-        let progress = &mut self.progress;
-        let mut see = |recorded: &_| progress.measured(recorded);
-        let taken = self.course.take(&mut self.study, arrived, &mut see);
-        taken.map_err(|error| session::hint(self.study.rescue(error), &self.study))
+        let (standing, study) = (&mut self.standing, &mut self.open.study);
+        let mut see = |recorded: &_| standing.add(recorded);
+        let taken = self.course.take(study, arrived, &mut see);
+        taken.map_err(|error| hint(study.rescue(error), study))
     }
 
     /// Evaluations written, evaluations in all, and the best so far in words.
     pub fn progress(&self) -> (usize, u64, String) {
-        let evaluations = self.study.config.evaluations();
-        (self.study.evaluations.len(), evaluations, self.progress.best())
+        let study = &self.open.study;
+        (study.evaluations.len(), study.config.evaluations(), self.standing.best())
     }
 
     /// How to go on with the study.
     pub fn hint(&self) -> String {
-        session::resume_hint(&self.study)
+        resume_hint(&self.open.study)
     }
 
-    /// Confirms what is recommended on the threads of this process, writes tables and report,
-    /// and gives what the command prints, and its failure if no design inserts anywhere.
+    /// Confirms what is recommended on the threads of this process, and writes tables and report.
     ///
     /// # Errors
     /// If a file cannot be written; if `stop` is set meanwhile.
-    pub fn finish(
-        &mut self,
-        ending: Ending,
-        stop: &AtomicBool,
-    ) -> Result<(String, Option<Failure>), Failure> {
-        let Guided { study, setup, session, cache, .. } = self;
-        let known = cache.as_ref().map_or(0, Cache::found);
-        let (pool, ended) = (session.pool()?, (ending, cache.as_ref()));
-        let record = session::conclude(study, setup, session, ended, &pool, stop)?;
-        let text = summary::words(study.dir(), &record, ending, known, session.json);
-        Ok((text, unusable::check(study.dir(), &record, setup).err()))
+    pub fn finish(&mut self, ending: Ending, stop: &AtomicBool) -> Result<Ended, Failure> {
+        let pool = self.open.how.pool()?;
+        self.open.conclude(ending, &pool, stop, &mut |_| ())
     }
 
     /// How many threads measure if nobody else does; 0 for one per processor.
     pub fn threads(&self) -> usize {
-        self.session.threads()
+        self.open.how.threads()
     }
 }
 
@@ -261,9 +216,7 @@ fn measure(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>, Fai
         let (index, design) = (work.proposal, work.design.to_string());
         StudyError::Impossible { index, design, source }
     })?;
-    if stop.load(Ordering::SeqCst) {
-        return Err(Failure::running("interrupted"));
-    }
+    not_stopped(stop)?;
     let wall_s = clock.elapsed().as_secs_f64();
     let datetime_complete = now();
     let timing = Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() };

@@ -1,6 +1,6 @@
 //! The recommended finger of a study for the printer, written into its folder when it ends.
 
-use crate::cli::Failure;
+use super::Failure;
 use crate::report::printer::{SHEET, SURFACE, recommended};
 use crate::study::{StudyRecord, write_own_file};
 use finray::export::prism::Prism;
@@ -12,7 +12,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// If a file cannot be written.
-pub fn write(dir: &Path, record: &StudyRecord) -> Result<(), Failure> {
+pub(super) fn write(dir: &Path, record: &StudyRecord) -> Result<(), Failure> {
     let Some(geometry) = recommended(record) else { return Ok(()) };
     if let Ok(prism) = Prism::finger(&geometry) {
         write_own_file(&dir.join(SURFACE), &stl::write(&prism, &title(&geometry)))?;

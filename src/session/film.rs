@@ -1,11 +1,9 @@
-//! Films of trials: `--record` and `--plot` of `trial`, and the pairs at the ends of a study's
+//! Films of trials: of one trial that is asked for, and the pairs at the ends of a study's
 //! recommended window.
 
-use super::Failure;
-use super::setup::Setup;
+use super::{Failure, Setup};
 use crate::report::replay::{self, Film, PairEnd};
 use crate::study::{StudyRecord, write_file, write_own_file};
-use clap::Args;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::tolerance::offset;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
@@ -16,19 +14,24 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is made of a recorded trial.
-#[derive(Debug, Clone, Args)]
-pub struct FilmArguments {
-    /// Record the trial: a page that plays it, or a table of every millisecond
-    #[arg(long, value_name = "FILE.html|.csv", value_parser = recordable)]
-    record: Option<PathBuf>,
-    /// Draw force against depth
-    #[arg(long, value_name = "FILE.svg")]
-    plot: Option<PathBuf>,
+#[derive(Debug, Clone, Default)]
+pub struct FilmRequest {
+    /// Page that plays it (`.html`), or table of every millisecond (`.csv`).
+    pub record: Option<PathBuf>,
+    /// Drawing of force against depth.
+    pub plot: Option<PathBuf>,
 }
 
-impl FilmArguments {
+impl FilmRequest {
+    /// Whether what is asked for can be written.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        let problem =
+            |file| filmable(file).map_err(|why| Failure::usage(format!("--record: {why}")));
+        self.record.as_deref().map_or(Ok(()), problem)
+    }
+
     /// Records the trial at this offset and writes what was asked for; `None` if nothing was.
-    pub fn record(
+    pub(super) fn record(
         &self,
         rig: &dyn Rig,
         specimen: &Specimen,
@@ -58,10 +61,20 @@ impl FilmArguments {
         Ok(Some(recording))
     }
 
-    /// The files that were written, in words.
-    pub fn written(&self) -> String {
-        let files = self.record.iter().chain(&self.plot);
-        files.map(|file| format!("wrote         {}\n", file.display())).collect()
+    /// The files that are written.
+    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.record.iter().chain(&self.plot)
+    }
+}
+
+/// Whether a trial can be recorded into a file of this name.
+///
+/// # Errors
+/// What its name must end with.
+pub fn filmable(file: &Path) -> Result<(), String> {
+    match extension(file).as_deref() {
+        Some("html" | "csv") => Ok(()),
+        _ => Err("its name must end with .html or .csv, which says what is written".into()),
     }
 }
 
@@ -80,14 +93,6 @@ fn extension(file: &Path) -> Option<String> {
     Some(file.extension()?.to_str()?.to_lowercase())
 }
 
-fn recordable(text: &str) -> Result<PathBuf, String> {
-    let file = PathBuf::from(text);
-    match extension(&file).as_deref() {
-        Some("html" | "csv") => Ok(file),
-        _ => Err("its name must end with .html or .csv, which says what is written".into()),
-    }
-}
-
 fn shifted(offset_mm: f64) -> String {
     if offset_mm == 0.0 {
         return "nominal start".to_owned();
@@ -98,7 +103,7 @@ fn shifted(offset_mm: f64) -> String {
 /// Records the pair at each end of the recommended design's windows, the last offset that
 /// inserts beside the first that fails, into the study's folder; what an earlier run left there is
 /// replaced or, where there is no pair, removed.
-pub fn boundary(
+pub(super) fn boundary(
     dir: &Path,
     record: &StudyRecord,
     setup: &Setup,

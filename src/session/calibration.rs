@@ -1,0 +1,195 @@
+//! What few measurements say of every finger: simulations, measurements and priors together.
+
+use super::failure::not_stopped;
+use super::files::find;
+use super::how::{CacheRequest, EffortRequest, settings};
+use super::request::SetupRequest;
+use super::{Event, Failure, Setup, Watch, measured};
+use crate::calibration::calibrate::{Calibration, Layout};
+use crate::calibration::emulator::{Emulator, EmulatorError};
+use crate::calibration::experiments::Experiment;
+use crate::calibration::prior::Parameter;
+use crate::calibration::sampler::Settings;
+use crate::calibration::simulation::Simulation;
+use crate::calibration::subject::{Subject, SubjectError};
+use input::shipped::PRIORS;
+use insertion::evaluation::template::{Impossible, Template};
+use insertion::space::Design;
+use insertion::trial::NEVER;
+use rayon::prelude::*;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+/// Priors unless others are named.
+pub const DEFAULT_PRIORS: &str = "bench";
+
+/// What to calibrate, and how.
+#[derive(Debug, Clone)]
+pub struct CalibrateRequest {
+    /// Tasks, robot, space, finger model.
+    pub setup: SetupRequest,
+    /// What was measured on the bench: a shipped name, or the path of a file.
+    pub measurements: String,
+    /// What nobody measured, and its bounds: a shipped name, or the path of a file.
+    pub priors: String,
+    /// How much is computed.
+    pub effort: EffortRequest,
+    /// Seed; the same seed gives the same answer.
+    pub seed: u64,
+    /// Where simulations are kept.
+    pub cache: CacheRequest,
+}
+
+/// What a calibration found.
+pub struct Calibrated {
+    /// The tasks' fingers, in order.
+    pub subjects: Vec<Subject>,
+    /// What is predicted of them.
+    pub found: Calibration,
+}
+
+/// Tasks with all that is needed to calibrate them.
+pub struct Prepared {
+    setup: Setup,
+    /// The tasks' fingers, in order.
+    pub subjects: Vec<Subject>,
+    /// What each coordinate is.
+    pub layout: Layout,
+    /// How to sample.
+    pub settings: Settings,
+    cache: Option<PathBuf>,
+}
+
+impl CalibrateRequest {
+    /// Of this setup and these measurements, all else as usual.
+    pub fn new(setup: SetupRequest, measurements: String) -> Self {
+        CalibrateRequest {
+            setup,
+            measurements,
+            priors: DEFAULT_PRIORS.to_owned(),
+            effort: EffortRequest::default(),
+            seed: 0,
+            cache: CacheRequest::default(),
+        }
+    }
+
+    /// Predicts every finger of the space on each task.
+    ///
+    /// # Errors
+    /// If a file cannot be used, or nothing can be fitted; if `stop` is set meanwhile.
+    pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Calibrated, Failure> {
+        let Prepared { subjects, layout, settings, .. } = self.prepare(&[], stop, watch)?;
+        let found = Calibration::new(layout, &subjects, &settings);
+        Ok(Calibrated { subjects, found })
+    }
+
+    /// Simulates the tasks, and reads what was measured on them; `more` are fingers that are
+    /// asked for beside those of the space.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn prepare(
+        &self,
+        more: &[Design],
+        stop: &AtomicBool,
+        watch: &mut Watch<'_>,
+    ) -> Result<Prepared, Failure> {
+        let setup = self.setup.setup()?;
+        let experiments = measured::read(&self.measurements, &setup.task_names())?;
+        let priors = measured::priors(&find("file of priors", PRIORS, &self.priors)?)?;
+        let cache = self.cache.folder(&setup)?;
+        let effort = self.effort.or(None)?;
+        let ground = Ground {
+            setup: &setup,
+            parameters: &priors.parameters,
+            simulations: usize::from(effort.simulations),
+            seed: self.seed,
+            cache: cache.clone(),
+            stop,
+        };
+        let (subjects, layout) = ground.subjects(&self.measurements, &experiments, more, watch)?;
+        Ok(Prepared { setup, subjects, layout, settings: settings(effort, self.seed), cache })
+    }
+}
+
+impl Prepared {
+    /// Ranges of a task's fingers with all as the files say, mm.
+    ///
+    /// # Errors
+    /// If a finger cannot be simulated.
+    pub fn simulate(&self, task: usize, fingers: &[usize]) -> Result<Vec<f64>, Failure> {
+        let (evaluator, subject) = (&self.setup.evaluator, &self.subjects[task]);
+        let template = &evaluator.templates[task];
+        let simulation = Simulation::new(evaluator, template, &[], self.cache.clone(), &NEVER);
+        let range = |&finger: &usize| {
+            Ok(simulation.window(&subject.designs[finger], None)?.window.range_mm())
+        };
+        let ranges = fingers.par_iter().map(range).collect::<Result<_, Impossible>>();
+        ranges.map_err(Failure::input)
+    }
+}
+
+/// What a calibration simulates with.
+pub(super) struct Ground<'a> {
+    /// Tasks, robot, fingers, space.
+    pub setup: &'a Setup,
+    /// What nobody measured.
+    pub parameters: &'a [Parameter],
+    /// Simulations per task.
+    pub simulations: usize,
+    /// Names their set.
+    pub seed: u64,
+    /// Where they are kept, if they are.
+    pub cache: Option<PathBuf>,
+    /// Set when it is to end.
+    pub stop: &'a AtomicBool,
+}
+
+impl<'a> Ground<'a> {
+    fn simulation(&self, template: &'a Template) -> Simulation<'a> {
+        let evaluator = &self.setup.evaluator;
+        Simulation::new(evaluator, template, self.parameters, self.cache.clone(), self.stop)
+    }
+
+    /// The tasks' fingers and their parameters; `measurements` is the file's name.
+    pub fn subjects(
+        &self,
+        measurements: &str,
+        experiments: &[Experiment],
+        more: &[Design],
+        watch: &mut Watch<'_>,
+    ) -> Result<(Vec<Subject>, Layout), Failure> {
+        let templates = &self.setup.evaluator.templates;
+        let subject = |template| self.subject(template, experiments, more, watch);
+        let subjects = templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
+        not_stopped(self.stop)?;
+        let subjects = subjects.map_err(|error| match error {
+            SubjectError::Emulator(EmulatorError::NoFit { .. }) => {
+                Failure::running(error.to_string())
+            }
+            SubjectError::Emulator(_) => Failure::input(error),
+            _ => Failure::usage(format!("{measurements}: {error}")),
+        })?;
+        let of_task = |template: &'a Template| {
+            (template.task().name.clone(), self.simulation(template).parameters().to_vec())
+        };
+        let of_tasks: Vec<_> = templates.iter().map(of_task).collect();
+        Ok((subjects, Layout::new(&of_tasks)))
+    }
+
+    fn subject(
+        &self,
+        template: &'a Template,
+        experiments: &[Experiment],
+        more: &[Design],
+        watch: &mut Watch<'_>,
+    ) -> Result<Subject, SubjectError> {
+        let (evaluator, space) = (&self.setup.evaluator, &self.setup.space);
+        let (task, count) = (&template.task().name, self.simulations);
+        if evaluator.engine.simulates() {
+            watch(Event::Simulating { task, count });
+        }
+        let emulator = Emulator::new(&self.simulation(template), space, task, count, self.seed)?;
+        Subject::new(evaluator, template, space, emulator, experiments, more)
+    }
+}

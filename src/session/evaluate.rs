@@ -1,0 +1,98 @@
+//! The tolerance window of one finger.
+
+use super::failure::not_stopped;
+use super::finger::{Chosen, FingerRequest};
+use super::repeat::RepeatRequest;
+use super::request::SetupRequest;
+use super::{Failure, Setup};
+use crate::study::ByRibs;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::robustness::repeat::Bands;
+use insertion::evaluation::tolerance::Search;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Which finger to measure on which task, and how.
+#[derive(Debug, Clone, Default)]
+pub struct EvaluateRequest {
+    /// Task, robot, finger model; one task.
+    pub setup: SetupRequest,
+    /// The finger.
+    pub finger: FingerRequest,
+    /// Whether to go step by step to the first failure.
+    pub walk: bool,
+    /// Errors under which success rate and robust range are measured, too: a shipped name or a path.
+    pub uncertainty: Option<String>,
+    /// Seed of the drawn errors.
+    pub seed: u64,
+    /// Repeats at the window's ends.
+    pub repeat: Option<RepeatRequest>,
+    /// Whether to measure it once more from its ribs, unless a finger model was asked for: on which
+    /// of the two the bench agrees depends on the task (`docs/notes/finger.md`).
+    pub by_ribs: bool,
+}
+
+/// What was measured of a finger.
+pub struct Evaluated {
+    /// The finger on its task.
+    pub chosen: Chosen,
+    /// Its window.
+    pub evaluation: Evaluation,
+    /// Where the outcome at the window's ends is unsure, if that was asked for and there is a window.
+    pub bands: Option<Bands>,
+    /// The same finger with springs computed from its ribs, if that was asked for.
+    pub by_ribs: Option<ByRibs>,
+    /// What the evaluation took, s.
+    pub wall_s: f64,
+}
+
+impl EvaluateRequest {
+    /// Measures the finger.
+    ///
+    /// # Errors
+    /// If a file cannot be used or the finger cannot be simulated; if `stop` is set meanwhile.
+    pub fn run(&self, stop: &AtomicBool) -> Result<Evaluated, Failure> {
+        self.repeat.map_or(Ok(()), RepeatRequest::check)?;
+        let mut setup = self.setup.setup()?;
+        if let Some(name) = &self.uncertainty {
+            setup = setup.under_named(name)?;
+        }
+        let chosen = self.finger.choose(&setup)?;
+        let clock = Instant::now();
+        let plan = setup.plan(self.seed, |_| setup.uncertainty.is_some())?;
+        let evaluation = setup.evaluator.measure(&chosen.specimen, self.search(), &plan, stop);
+        let evaluation = evaluation.map_err(Failure::input)?;
+        not_stopped(stop)?;
+        let wall_s = clock.elapsed().as_secs_f64();
+        let bands = match &self.repeat {
+            Some(repeat) => repeat.bands(&setup, &chosen, &evaluation, stop)?,
+            None => None,
+        };
+        let by_ribs = self.from_ribs(&setup, stop)?;
+        Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s })
+    }
+
+    fn search(&self) -> Search {
+        if self.walk { Search::Walk } else { Search::Strides }
+    }
+
+    /// Measures the finger once more, from its ribs, with the start taught where the task's own does
+    /// not insert; nothing if a finger model was asked for, if the finger is given by its springs, or
+    /// if the engine has no such fingers.
+    fn from_ribs(&self, setup: &Setup, stop: &AtomicBool) -> Result<Option<ByRibs>, Failure> {
+        if !self.by_ribs || self.setup.finger_model.is_some() || self.finger.springs_are_given() {
+            return Ok(None);
+        }
+        let Some(evaluator) = setup.by_ribs() else { return Ok(None) };
+        let measured = self.finger.specimen(setup, &evaluator).and_then(|specimen| {
+            let found = evaluator.measure_or_teach(&specimen, self.search(), &Plan::WINDOW, stop);
+            found.map_err(Failure::input)
+        });
+        not_stopped(stop)?;
+        Ok(Some(match measured {
+            Ok(evaluation) => ByRibs::Measured(vec![evaluation]),
+            Err(failure) => ByRibs::Refused(failure.to_string()),
+        }))
+    }
+}

@@ -1,0 +1,171 @@
+//! Which finger a trial or an evaluation is of.
+
+use super::{Failure, Setup};
+use input::shown;
+use input::units::N_PER_MM;
+use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::finger::model::FingerModelKind;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::surrogate::Prediction;
+use std::ops::RangeInclusive;
+
+/// Stiffnesses that a caller may give in place of an infill, N/mm.
+const STIFFNESS_N_PER_MM: RangeInclusive<f64> = 1e-6..=1e6;
+
+/// A stiffness in N/mm, from its text.
+///
+/// # Errors
+/// If it is none.
+pub fn given_stiffness(n_per_mm: f64) -> Result<f64, String> {
+    match STIFFNESS_N_PER_MM.contains(&n_per_mm) {
+        true => Ok(n_per_mm),
+        false => Err("a stiffness is a number above 0, 1e-6 to 1e6, in N/mm".to_owned()),
+    }
+}
+
+/// Which finger: by its infill, or by its springs.
+#[derive(Debug, Clone, Default)]
+pub struct FingerRequest {
+    /// Infill density, percent.
+    pub density: Option<f64>,
+    /// Infill direction, degrees.
+    pub direction: Option<f64>,
+    /// Stiffness in the compliance direction in place of the predicted one, N/mm.
+    pub stiffness_compliance: Option<f64>,
+    /// Stiffness in the direction of assembly in place of the predicted one, N/mm.
+    pub stiffness_assembly: Option<f64>,
+    /// Numbers of the task or the finger by their keys, in the units that these carry.
+    pub set: Vec<(String, f64)>,
+}
+
+/// A finger on a task, and where its stiffness comes from.
+pub struct Chosen {
+    /// Task and finger.
+    pub specimen: Specimen,
+    /// Infill density, percent, if it was given.
+    pub density: Option<f64>,
+    /// Infill direction, degrees, if it was given.
+    pub direction: Option<f64>,
+    /// Name of the robot.
+    pub robot: String,
+    /// Where its springs come from that were not measured.
+    pub finger_model: FingerModelKind,
+    /// All that names the design: infill and what was set; empty for a stiffness alone.
+    pub design: Design,
+    /// What was set beside the infill.
+    pub set: Design,
+    /// Whether the stiffness was given, not predicted.
+    pub given: bool,
+}
+
+impl FingerRequest {
+    /// Whether the finger is given by two springs, not by its infill.
+    pub(super) fn springs_are_given(&self) -> bool {
+        self.stiffness_compliance.is_some() || self.stiffness_assembly.is_some()
+    }
+
+    /// The finger, checked against the space.
+    pub(super) fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
+        self.by(setup, &setup.evaluator)
+    }
+
+    /// The same finger by the models of another evaluator of the same setup.
+    pub(super) fn specimen(&self, setup: &Setup, by: &Evaluator) -> Result<Specimen, Failure> {
+        Ok(self.by(setup, by)?.specimen)
+    }
+
+    fn by(&self, setup: &Setup, evaluator: &Evaluator) -> Result<Chosen, Failure> {
+        let template = setup.only_task()?;
+        for (flag, key, value) in [
+            ("--density", DENSITY_KEY, self.density),
+            ("--direction", DIRECTION_KEY, self.direction),
+        ] {
+            if let Some(value) = value {
+                check(setup, flag, key, value)?;
+            }
+        }
+        let set = self.settings(setup)?;
+        let mut design = set.clone();
+        design.0.extend(self.density.map(|density| (DENSITY_KEY.to_owned(), density)));
+        design.0.extend(self.direction.map(|direction| (DIRECTION_KEY.to_owned(), direction)));
+        let stiffness = match self.springs()? {
+            Some(_) if evaluator.fingers.kind() == FingerModelKind::Computed => {
+                return Err(Failure::usage(
+                    "--stiffness-compliance and --stiffness-assembly are springs of the finger \
+                     model `paper`; --finger-model computed needs --density and --direction alone",
+                ));
+            }
+            Some(given) => given,
+            None if self.density.is_some() && self.direction.is_some() => {
+                evaluator.predict(&design).map_err(Failure::input)?
+            }
+            None => return Err(Failure::usage("give --density and --direction")),
+        };
+        let given = self.springs_are_given();
+        let specimen = evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
+        Ok(Chosen {
+            specimen,
+            density: self.density,
+            direction: self.direction,
+            robot: evaluator.robot.name.clone(),
+            finger_model: evaluator.fingers.kind(),
+            design,
+            set,
+            given,
+        })
+    }
+
+    /// The stiffness that was given, if it was.
+    fn springs(&self) -> Result<Option<Prediction>, Failure> {
+        match (self.stiffness_compliance, self.stiffness_assembly) {
+            (Some(compliance), Some(assembly)) => {
+                for given in [compliance, assembly] {
+                    given_stiffness(given).map_err(Failure::usage)?;
+                }
+                Ok(Some(Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM)))
+            }
+            (None, None) => Ok(None),
+            _ => Err(Failure::usage(
+                "--stiffness-compliance and --stiffness-assembly go together: give both",
+            )),
+        }
+    }
+
+    /// What is set beside the infill; a key of the space must keep to its bounds there.
+    fn settings(&self, setup: &Setup) -> Result<Design, Failure> {
+        let mut set = Design::default();
+        for (key, value) in &self.set {
+            if [DENSITY_KEY, DIRECTION_KEY].contains(&key.as_str()) {
+                return Err(Failure::usage(format!(
+                    "--set {key}: give the infill by --density and --direction"
+                )));
+            }
+            if setup.space.parameters().iter().any(|parameter| parameter.key == *key) {
+                check(setup, "--set", key, *value)?;
+            }
+            if set.0.insert(key.clone(), *value).is_some() {
+                return Err(Failure::usage(format!("--set {key}: is given twice")));
+            }
+        }
+        Ok(set)
+    }
+}
+
+/// A value must lie within the bounds its key has in the space.
+fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure> {
+    let parameters = setup.space.parameters();
+    match parameters.iter().find(|parameter| parameter.key == key) {
+        // Written so that a NaN is outside.
+        Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
+        Some(parameter) => Err(Failure::usage(format!(
+            "{flag} {}: {key} must lie between {} and {} in the space `{}`",
+            shown(value),
+            parameter.low,
+            parameter.high,
+            setup.space.name()
+        ))),
+        None => {
+            Err(Failure::usage(format!("{flag}: the space `{}` has no {key}", setup.space.name())))
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! How something is computed, as opposed to what: threads, cache, effort.
+
+use super::failure::within;
+use super::{Failure, Setup};
+use crate::calibration::sampler::{Effort, Settings};
+use crate::study::{BenchEffort, Cache, IfChanged};
+use rayon::ThreadPool;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+/// Folder of the cache unless another is named.
+const CACHE: &str = "results/.cache";
+/// Threads there may be.
+pub const THREADS: RangeInclusive<u16> = 1..=1024;
+/// Simulations per task that an emulator may be made of.
+pub const SIMULATIONS: RangeInclusive<u16> = 16..=4096;
+/// Samples of a posterior there may be.
+pub const SAMPLES: RangeInclusive<u16> = 20..=20_000;
+/// Simulations and samples unless others are asked for.
+const EFFORT: BenchEffort = BenchEffort { simulations: 200, samples: 300 };
+/// Sweeps before sampling, and from one sample to the next.
+const WARM_UP: usize = 300;
+const THIN: usize = 4;
+
+/// Where simulations are kept for others, if they are.
+#[derive(Debug, Clone, Default)]
+pub struct CacheRequest {
+    /// The folder; unless it is given, `results/.cache` for engines that simulate.
+    pub dir: Option<PathBuf>,
+    /// Whether to simulate anew and keep nothing.
+    pub off: bool,
+}
+
+impl CacheRequest {
+    /// Where simulations of this setup are kept, if they are.
+    pub(super) fn folder(&self, setup: &Setup) -> Result<Option<PathBuf>, Failure> {
+        if self.off && self.dir.is_some() {
+            return Err(Failure::usage("--cache and --no-cache exclude one another"));
+        }
+        // A closed formula is faster than a file.
+        let default = setup.evaluator.engine.simulates().then(|| PathBuf::from(CACHE));
+        Ok(self.dir.clone().or(default).filter(|_| !self.off))
+    }
+}
+
+/// How much is computed for a prediction of the bench; what is not given is 200 simulations and
+/// 300 samples, or as the study has it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct EffortRequest {
+    /// Simulations per task that the emulator is made of; one in eight measures its error.
+    pub simulations: Option<u16>,
+    /// Samples of the posterior.
+    pub samples: Option<u16>,
+}
+
+impl EffortRequest {
+    /// Whether the numbers are within their ranges.
+    fn check(self) -> Result<(), Failure> {
+        within("--simulations", self.simulations, &SIMULATIONS)?;
+        within("--samples", self.samples, &SAMPLES)
+    }
+
+    /// What was asked for, or else what is known.
+    pub(super) fn or(self, known: Option<BenchEffort>) -> Result<BenchEffort, Failure> {
+        self.check()?;
+        let other = known.unwrap_or(EFFORT);
+        Ok(BenchEffort {
+            simulations: self.simulations.unwrap_or(other.simulations),
+            samples: self.samples.unwrap_or(other.samples),
+        })
+    }
+}
+
+/// How to sample.
+pub(super) fn settings(effort: BenchEffort, seed: u64) -> Settings {
+    let effort = Effort { warm_up: WARM_UP, samples: usize::from(effort.samples), thin: THIN };
+    Settings { effort, seed }
+}
+
+/// How a study is run, as opposed to what it measures.
+#[derive(Debug, Clone, Default)]
+pub struct RunRequest {
+    /// Threads; one per processor unless given. Changes no result.
+    pub threads: Option<u16>,
+    /// Where evaluations are kept for other studies.
+    pub cache: CacheRequest,
+    /// Whether to leave out what confirms the recommendation.
+    pub no_confirm: bool,
+    /// Whether to go on, in a new segment, with a study that was measured otherwise.
+    pub accept_changed: bool,
+    /// How much is computed for the bench.
+    pub effort: EffortRequest,
+}
+
+impl RunRequest {
+    /// Whether the numbers are within their ranges.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        within("--threads", self.threads, &THREADS)?;
+        self.effort.check()
+    }
+
+    /// What to do with a study that was measured otherwise.
+    pub(super) fn if_changed(&self) -> IfChanged {
+        if self.accept_changed { IfChanged::NewSegment } else { IfChanged::Refuse }
+    }
+
+    /// How many threads measure; 0 for one per processor.
+    pub(super) fn threads(&self) -> usize {
+        usize::from(self.threads.unwrap_or(0))
+    }
+
+    /// The threads that measure.
+    pub(super) fn pool(&self) -> Result<ThreadPool, Failure> {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads())
+            .build()
+            .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))
+    }
+
+    /// The cache of a study of this setup, if it has one.
+    pub(super) fn cache(&self, setup: &Setup) -> Result<Option<Cache>, Failure> {
+        let (robot, engine) = (&setup.evaluator.robot, &setup.evaluator.engine);
+        let folder = self.cache.folder(setup)?;
+        Ok(folder.map(|dir| Cache::new(&dir, robot, &engine.record())))
+    }
+}

@@ -1,0 +1,85 @@
+//! The door to all that comes before it: typed requests in, typed results out, for whoever asks:
+//! the command line, the program `lab`, Python.
+//!
+//! A request is checked when it is turned into what it is used as; nothing is printed here. What
+//! takes long ends, with a failure, once the `stop` that it is given is set.
+
+mod calibration;
+mod driven;
+mod evaluate;
+mod failure;
+mod files;
+mod film;
+mod finger;
+mod guided;
+mod how;
+mod measured;
+mod next;
+mod on_bench;
+mod open;
+mod optimizer;
+mod printable;
+mod repeat;
+mod report;
+mod request;
+mod ribs;
+mod scene;
+mod sensitivity;
+mod setup;
+mod standing;
+mod stiffness;
+mod study;
+mod task;
+#[cfg(test)]
+mod tests;
+mod trial;
+mod unusable;
+
+pub use calibration::{CalibrateRequest, Calibrated, DEFAULT_PRIORS, Prepared};
+pub use driven::Insertion;
+pub use evaluate::{EvaluateRequest, Evaluated};
+pub use failure::Failure;
+pub use files::robot;
+pub use film::{FilmRequest, filmable};
+pub use finger::{Chosen, FingerRequest, given_stiffness};
+pub use guided::{Guided, NotTaken, Order, perform};
+pub use how::{CacheRequest, EffortRequest, RunRequest, SAMPLES, SIMULATIONS, THREADS};
+pub use measured::read as read_measurements;
+pub use next::{Advised, Among, NextRequest};
+pub use open::{Ended, OpenStudy};
+pub use repeat::{REPEATS, RepeatRequest};
+pub use report::{PAGE, rewrite};
+pub use request::{DEFAULT_FINGER, DEFAULT_ROBOT, DEFAULT_SPACE, SetupRequest, TaskSource};
+pub use ribs::{PrintRequest, RibsRequest};
+pub use scene::SceneRequest;
+pub use sensitivity::SensitivityRequest;
+pub use setup::Setup;
+pub use standing::Standing;
+pub use stiffness::StiffnessRequest;
+pub use study::{AnyStudy, BATCHES, BUDGETS, POLISH, POLISHES, ResumeRequest, SEEDS, StudyRequest};
+pub use task::{TaskCheck, TaskFile, read_space, read_task};
+pub use trial::{TrialDone, TrialRequest, given_offset};
+
+use crate::study::Recorded;
+
+/// What happens meanwhile, for whoever shows it.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// A design was measured and is written down.
+    Measured(&'a Recorded),
+    /// The search has ended; what confirms its result follows.
+    Searched {
+        /// Why evaluations are not kept for other studies, if so.
+        not_kept: Option<String>,
+    },
+    /// An emulator is about to be made, of simulations or their cache.
+    Simulating {
+        /// Name of the task.
+        task: &'a str,
+        /// How many simulations.
+        count: usize,
+    },
+}
+
+/// Is told what happens meanwhile.
+pub type Watch<'a> = dyn FnMut(Event<'_>) + Send + 'a;

@@ -1,0 +1,174 @@
+//! A study that is open: measured on the threads of this process, or guided from outside.
+
+use super::guided::Guided;
+use super::how::RunRequest;
+use super::{Event, Failure, Setup, Watch};
+use super::{film, on_bench, optimizer, printable, report, unusable};
+use crate::study::{
+    Cache, Confirmer, Ending, Runner, Simulated, Study, StudyConfig, StudyError, StudyRecord,
+};
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::tolerance::Search;
+use rayon::ThreadPool;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A study that is open; no other process can open it meanwhile.
+pub struct OpenStudy {
+    pub(super) study: Study,
+    pub(super) setup: Setup,
+    pub(super) how: RunRequest,
+    /// What is measured beside the window.
+    pub(super) plan: Plan,
+    pub(super) cache: Option<Cache>,
+}
+
+/// A study that has ended.
+pub struct Ended {
+    /// Its folder.
+    pub dir: PathBuf,
+    /// What it measured.
+    pub record: StudyRecord,
+    /// How it ended.
+    pub ending: Ending,
+    /// Evaluations that were known from other studies.
+    pub known: u64,
+    /// Why it is of no use, if no design inserts at the nominal start.
+    pub unusable: Option<Failure>,
+}
+
+impl OpenStudy {
+    pub(super) fn new(study: Study, setup: Setup, how: RunRequest) -> Result<Self, Failure> {
+        check(&study.config, &setup)?;
+        let goals = study.config.goals();
+        let plan = setup.plan(study.config.seed, |measure| goals.need(measure))?;
+        let cache = how.cache(&setup)?;
+        Ok(OpenStudy { study, setup, how, plan, cache })
+    }
+
+    /// The study as it stands.
+    pub fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// Leaves the measuring to the caller.
+    ///
+    /// # Errors
+    /// If the optimizer cannot be made.
+    pub fn guided(self) -> Result<Guided, Failure> {
+        Guided::new(self)
+    }
+
+    /// Runs the study until its budget is spent, confirms and writes the report.
+    ///
+    /// # Errors
+    /// If a design cannot be simulated or a file cannot be written; if `stop` is set meanwhile.
+    pub fn run(mut self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Ended, Failure> {
+        let pool = self.how.pool()?;
+        let mut optimizer = optimizer::optimizer(&self.setup, &self.study.config)?;
+        let evaluator = Simulated {
+            evaluator: &self.setup.evaluator,
+            search: Search::default(),
+            plan: &self.plan,
+            cache: self.cache.as_ref(),
+            stop,
+        };
+        let runner = Runner { evaluator: &evaluator, pool: &pool, stop };
+        let mut measured = |recorded: &_| watch(Event::Measured(recorded));
+        let ended = runner.run(&mut self.study, &mut *optimizer, &mut measured);
+        let problem = self.cache.as_ref().and_then(Cache::problem);
+        watch(Event::Searched { not_kept: problem.map(|problem| problem.to_string()) });
+        let ending = ended.map_err(|error| hint(error, &self.study))?;
+        self.conclude(ending, &pool, stop, watch)
+    }
+
+    /// Confirms what is recommended and writes the report of a study that has ended so.
+    pub(super) fn conclude(
+        &mut self,
+        ending: Ending,
+        pool: &ThreadPool,
+        stop: &AtomicBool,
+        watch: &mut Watch<'_>,
+    ) -> Result<Ended, Failure> {
+        let known = self.cache.as_ref().map_or(0, Cache::found);
+        let OpenStudy { study, setup, how, cache, .. } = self;
+        let interrupted = || ending == Ending::Interrupted || stop.load(Ordering::SeqCst);
+        if ending != Ending::Interrupted && !how.no_confirm {
+            confirm((study, setup), cache.as_ref(), pool, stop)?;
+        }
+        study.check_journal()?;
+        if !interrupted() {
+            let predicted = on_bench::predict((study, setup), how, pool, stop, watch);
+            // Interrupted, it says nothing; the report is written all the same.
+            predicted.or_else(|failure| if interrupted() { Ok(()) } else { Err(failure) })?;
+        }
+        let (dir, record) = (study.dir().to_owned(), study.record());
+        if !interrupted() {
+            film::boundary(&dir, &record, setup, pool)?;
+        }
+        printable::write(&dir, &record)?;
+        report::write(&dir, &record, &setup.evaluator.surrogate)?;
+        if interrupted() {
+            return Err(Failure::running(format!("interrupted; {}", resume_hint(study))));
+        }
+        let unusable = unusable::check(&dir, &record, setup).err();
+        Ok(Ended { dir, record, ending, known, unusable })
+    }
+}
+
+/// Walks the best designs and repeats them at their ends.
+fn confirm(
+    (study, setup): (&mut Study, &Setup),
+    cache: Option<&Cache>,
+    pool: &ThreadPool,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    let (evaluator, search, plan) = (&setup.evaluator, Search::Walk, &Plan::WINDOW);
+    let walker = Simulated { evaluator, search, plan, cache, stop };
+    let by_ribs = setup.by_ribs();
+    let by_ribs = by_ribs.as_ref();
+    let confirmer = Confirmer { walker: &walker, by_ribs, evaluator, pool, stop };
+    confirmer.confirm(study).map_err(|error| hint(error, study))
+}
+
+/// Whether `study.toml` says what the input files say, which it was once written from.
+fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
+    let evaluator = &setup.evaluator;
+    let tasks = evaluator.templates.iter().map(|template| template.task().name.as_str());
+    let uncertainty = setup.uncertainty.as_ref().map(|errors| &errors.name);
+    for (key, same) in [
+        ("tasks", tasks.eq(config.tasks())),
+        ("robot", evaluator.robot.name == config.robot),
+        ("uncertainty", uncertainty == config.uncertainty.as_ref()),
+        ("space", setup.space == config.space),
+    ] {
+        if !same {
+            return Err(bad_config(format!(
+                "{key}: is not what the input files in the folder say; restore the file from a copy"
+            )));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn bad_config(error: impl std::fmt::Display) -> Failure {
+    Failure::usage(format!("study.toml: {error}"))
+}
+
+/// The failure, and how to go on after it where the journal is as it was written.
+pub(super) fn hint(error: StudyError, study: &Study) -> Failure {
+    let lost = matches!(error, StudyError::Interfered { .. });
+    match Failure::from(error) {
+        Failure::Run(error) if !lost => {
+            Failure::running(format!("{error}\n{}", resume_hint(study)))
+        }
+        other => other,
+    }
+}
+
+/// How far a study is, and how to go on.
+pub(super) fn resume_hint(study: &Study) -> String {
+    let (done, budget, dir) =
+        (study.evaluations.len(), study.config.evaluations(), study.dir().display());
+    format!("{done} of {budget} evaluations are safe; continue with: optimize resume {dir}")
+}

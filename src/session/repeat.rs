@@ -1,0 +1,88 @@
+//! Repeats of a trial or an evaluation: do small changes change the outcome?
+
+use super::failure::{not_stopped, within};
+use super::finger::Chosen;
+use super::{Failure, Setup};
+use insertion::evaluation::robustness::repeat::{Bands, Repeats};
+use insertion::evaluation::stoppable::Stoppable;
+use insertion::evaluation::{Evaluation, OffsetStep};
+use insertion::outcome::Outcome;
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+use std::sync::atomic::AtomicBool;
+
+/// How often may be repeated.
+pub const REPEATS: RangeInclusive<u32> = 2..=10_000;
+
+/// How often to repeat, with friction within 10 %, start within 0.02 mm, and half the step by turns.
+#[derive(Debug, Clone, Copy)]
+pub struct RepeatRequest {
+    /// How often.
+    pub count: u32,
+    /// Seed of the changes.
+    pub seed: u64,
+}
+
+impl RepeatRequest {
+    /// Whether it can be done so often.
+    pub(super) fn check(self) -> Result<(), Failure> {
+        within("--repeat", self.count, &REPEATS)
+    }
+
+    /// The outcomes at one offset, m, and how often each was met.
+    pub(super) fn outcomes(
+        &self,
+        setup: &Setup,
+        chosen: &Chosen,
+        (taught, offset): (Option<OffsetStep>, f64),
+        stop: &AtomicBool,
+    ) -> Result<BTreeMap<String, usize>, Failure> {
+        let count = |outcomes: Vec<Outcome>| {
+            let mut counts = BTreeMap::new();
+            for outcome in outcomes {
+                *counts.entry(word(outcome)).or_default() += 1;
+            }
+            counts
+        };
+        self.with((setup, chosen), taught, stop, |repeats| count(repeats.outcomes(offset)))
+    }
+
+    /// The bands at the ends of a window; `None` if there is no window.
+    pub(super) fn bands(
+        &self,
+        setup: &Setup,
+        chosen: &Chosen,
+        measured: &Evaluation,
+        stop: &AtomicBool,
+    ) -> Result<Option<Bands>, Failure> {
+        if measured.window.nominal != Outcome::Inserted {
+            return Ok(None);
+        }
+        let bands = |repeats: &Repeats| repeats.bands(&measured.window);
+        self.with((setup, chosen), measured.taught, stop, bands).map(Some)
+    }
+
+    fn with<T>(
+        &self,
+        (setup, Chosen { specimen, .. }): (&Setup, &Chosen),
+        taught: Option<OffsetStep>,
+        stop: &AtomicBool,
+        measure: impl Fn(&Repeats) -> T,
+    ) -> Result<T, Failure> {
+        let rig = |factor| setup.evaluator.rig(specimen, taught, factor).map_err(Failure::input);
+        let rigs = [rig(1.0)?, rig(0.5)?];
+        let [whole, half] = rigs.each_ref().map(|rig| Stoppable { rig: &**rig, stop });
+        let repeats = Repeats::new([&whole, &half], &specimen.finger, self.seed, self.count);
+        let measured = measure(&repeats);
+        not_stopped(stop)?;
+        Ok(measured)
+    }
+}
+
+/// `inserted`, `failed: jammed` and so on.
+fn word(outcome: Outcome) -> String {
+    match outcome {
+        Outcome::Failed(class) => format!("failed: {}", class.label()),
+        outcome => outcome.word().to_owned(),
+    }
+}

@@ -1,0 +1,54 @@
+//! The tables, plots and page of a study.
+
+use super::Failure;
+use super::setup::surrogate_of;
+use crate::report::replay::PairEnd;
+use crate::report::{self, Beside, Replay, printer};
+use crate::study::{StudyRecord, write_evaluations_csv, write_own_file};
+use input::files::{self, LARGEST_OWN};
+use insertion::surrogate::Model;
+use std::path::Path;
+
+/// Writes tables, plots and page of the study in a folder again; gives what it measured.
+///
+/// # Errors
+/// If there is none, it is damaged, or a file cannot be written.
+pub fn rewrite(dir: &Path) -> Result<StudyRecord, Failure> {
+    let record = StudyRecord::load(dir)?;
+    let model = surrogate_of(&record.inputs(dir)?)?;
+    write(dir, &record, &model)?;
+    Ok(record)
+}
+
+/// The page among a report's files.
+pub const PAGE: &str = "report.html";
+
+/// Writes all that is made of a study into its folder: table, plot and page.
+pub(super) fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(), Failure> {
+    let drawn = |error: report::ReportError| Failure::running(error.to_string());
+    write_evaluations_csv(dir, record)?;
+    write_own_file(&dir.join("convergence.svg"), &report::convergence_svg(record).map_err(drawn)?)?;
+    if let Some(front) = report::front_svg(record).map_err(drawn)? {
+        write_own_file(&dir.join("front.svg"), &front)?;
+    }
+    write_own_file(
+        &dir.join(PAGE),
+        &report::page(record, model, &beside(dir, record)).map_err(drawn)?,
+    )?;
+    Ok(())
+}
+
+/// The films and the files for the printer that the study kept.
+fn beside(dir: &Path, record: &StudyRecord) -> Beside {
+    let several = record.config.several_tasks();
+    let of = |(at, task): (usize, &str)| {
+        let on = if several { format!(" on {task}") } else { String::new() };
+        PairEnd::BOTH.map(|end| {
+            let page = files::read_own(&dir.join(end.file(at)), LARGEST_OWN).ok()?;
+            Some(Replay { label: format!("Play the {} end{on}", end.word()), page })
+        })
+    };
+    let replays = record.config.tasks().enumerate().flat_map(of).flatten().collect();
+    let printable = [printer::SURFACE, printer::SHEET].iter().all(|name| dir.join(name).exists());
+    Beside { replays, printable }
+}

@@ -1,0 +1,152 @@
+//! Which tasks, space, robot and finger model: names on the way to files.
+
+use super::files::{Fingers, find, stiffness_data};
+use super::{Failure, Setup};
+use input::shipped::{FINGERS, ROBOTS, SPACES, Source, TASKS};
+use insertion::finger::file::is_shape;
+use insertion::finger::model::{FingerModelKind, FingerSource};
+use insertion::space::{Parameter, Space};
+use insertion::task::StartRule;
+use insertion::trial::engine::EngineKind;
+
+/// Robot used unless another is named.
+pub const DEFAULT_ROBOT: &str = "servo";
+/// Finger file used unless another is named.
+pub const DEFAULT_FINGER: &str = "finray9";
+/// Search space used unless another is named.
+pub const DEFAULT_SPACE: &str = "infill";
+
+/// A task by its name, or by the text of its file.
+#[derive(Debug, Clone)]
+pub enum TaskSource {
+    /// A shipped task, or the path of a task file.
+    Named(String),
+    /// The text of a task file, and what messages call it.
+    Given(Source),
+}
+
+impl TaskSource {
+    /// The tasks of a list of names by commas.
+    pub fn list(names: &str) -> Vec<Self> {
+        names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
+    }
+
+    /// Its file, unchecked.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn read(&self) -> Result<Source, Failure> {
+        match self {
+            TaskSource::Named(name) => find("task", TASKS, name),
+            TaskSource::Given(source) => Ok(source.clone()),
+        }
+    }
+}
+
+/// What a trial, an evaluation, a calibration and a study have in common.
+#[derive(Debug, Clone)]
+pub struct SetupRequest {
+    /// At least one; only a study, a calibration and a setup by itself may have several.
+    pub tasks: Vec<TaskSource>,
+    /// A shipped space, or the path of a space file.
+    pub space: String,
+    /// A shipped robot, or the path of a robot file.
+    pub robot: String,
+    /// Path of stiffness measurements in place of those that the finger file names.
+    pub stiffness_data: Option<String>,
+    /// Contact engine.
+    pub engine: EngineKind,
+    /// Where the springs of a finger come from that were not measured; unless it is given: the
+    /// paper, or the ribs for a space with numbers of a printed finger.
+    pub finger_model: Option<FingerModelKind>,
+    /// Finger file of computed fingers: a shipped one, or a path.
+    pub finger: String,
+    /// What becomes of the nominal start, in place of what the task files say.
+    pub start: Option<StartRule>,
+}
+
+impl Default for SetupRequest {
+    fn default() -> Self {
+        SetupRequest {
+            tasks: Vec::new(),
+            space: DEFAULT_SPACE.to_owned(),
+            robot: DEFAULT_ROBOT.to_owned(),
+            stiffness_data: None,
+            engine: EngineKind::default(),
+            finger_model: None,
+            finger: DEFAULT_FINGER.to_owned(),
+            start: None,
+        }
+    }
+}
+
+impl SetupRequest {
+    /// Reads and checks all that is named.
+    ///
+    /// # Errors
+    /// If a file cannot be used, or they do not go together.
+    pub fn setup(&self) -> Result<Setup, Failure> {
+        if self.tasks.is_empty() {
+            return Err(Failure::usage("give --task"));
+        }
+        let task = |task: &TaskSource| {
+            let source = task.read()?;
+            Ok(match self.start {
+                Some(rule) => started(source, rule),
+                None => source,
+            })
+        };
+        let tasks = self.tasks.iter().map(task).collect::<Result<Vec<_>, Failure>>()?;
+        let space = find("space", SPACES, &self.space)?;
+        let robot = find("robot", ROBOTS, &self.robot)?;
+        let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
+        let fingers = Fingers::parse(self.finger_file(Some(&parsed))?)?;
+        let stiffness =
+            stiffness_data(self.stiffness_data.as_deref(), &fingers.measured_finger()?)?;
+        Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, self.engine)
+    }
+
+    /// What makes fingers where no space is searched.
+    ///
+    /// # Errors
+    /// If the finger file cannot be used.
+    pub fn fingers(&self) -> Result<FingerSource, Failure> {
+        Ok(Fingers::parse(self.finger_file(None)?)?.made())
+    }
+
+    /// The finger file, if fingers are computed: as those of a space with numbers of a printed
+    /// finger have to be.
+    fn finger_file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
+        let shape = |p: &&Parameter| is_shape(&p.key);
+        let shaped = space.and_then(|space| space.parameters().iter().find(shape));
+        let kind = match (self.finger_model, shaped) {
+            (Some(FingerModelKind::Paper), Some(Parameter { key, .. })) => {
+                return Err(Failure::usage(format!(
+                    "the space sets {key}, which --finger-model computed knows, paper does not"
+                )));
+            }
+            (Some(kind), _) => kind,
+            (None, Some(_)) => FingerModelKind::Computed,
+            (None, None) => FingerModelKind::Paper,
+        };
+        match kind {
+            FingerModelKind::Paper if self.finger != DEFAULT_FINGER => {
+                Err(Failure::usage("--finger goes with --finger-model computed"))
+            }
+            FingerModelKind::Paper => Ok(None),
+            FingerModelKind::Computed => find("finger", FINGERS, &self.finger).map(Some),
+        }
+    }
+}
+
+/// A task file with this rule of its start. What is no task stays as it is, to be refused.
+fn started(task: Source, rule: StartRule) -> Source {
+    let Ok(mut table) = task.text.parse::<toml::Table>() else { return task };
+    let Some(toml::Value::Table(strategy)) = table.get_mut("strategy") else { return task };
+    let word = match rule {
+        StartRule::Given => "given",
+        StartRule::Taught => "taught",
+    };
+    strategy.insert("start".to_owned(), word.into());
+    Source { text: table.to_string(), ..task }
+}

@@ -1,0 +1,102 @@
+//! A finger as its ribs make it: to be computed, or to be printed.
+
+use super::Failure;
+use super::files::find;
+use super::request::DEFAULT_FINGER;
+use crate::study::StudyRecord;
+use finray::geometry::Geometry;
+use finray::mechanics::{self, FingerStiffness};
+use input::shipped::FINGERS;
+use insertion::finger::file::{FingerFile, is_shape};
+use insertion::space::Design;
+use std::path::{Path, PathBuf};
+
+/// Which finger to compute.
+#[derive(Debug, Clone)]
+pub struct RibsRequest {
+    /// Infill density, percent.
+    pub density: f64,
+    /// Infill direction, degrees.
+    pub direction: f64,
+    /// A shipped finger, or the path of a finger file.
+    pub finger: String,
+    /// Where the first rib lies, mm; as the finger file says unless given.
+    pub phase_mm: Option<f64>,
+    /// Numbers of the finger file by their keys.
+    pub set: Vec<(String, f64)>,
+}
+
+impl RibsRequest {
+    /// The ribs, and the stiffness that they give.
+    ///
+    /// # Errors
+    /// If the file cannot be used, or there is no such finger.
+    pub fn run(&self) -> Result<(Geometry, FingerStiffness), Failure> {
+        if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
+            return Err(Failure::usage(format!(
+                "--set {key}: sets no number of a finger file, as finger.skin.thickness_mm does"
+            )));
+        }
+        let set = Design(self.set.iter().cloned().collect());
+        let finger = finger_file(&self.finger)?.with(&set).map_err(Failure::input)?;
+        let infill = Design::infill(self.density, self.direction).printed(self.phase_mm);
+        let geometry = Geometry::new(&finger, &infill).map_err(Failure::input)?;
+        let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
+        Ok((geometry, computed))
+    }
+}
+
+/// Which finger to print: the best of a study, or of an infill.
+#[derive(Debug, Clone, Default)]
+pub struct PrintRequest {
+    /// Folder of a study.
+    pub dir: Option<PathBuf>,
+    /// Infill density, percent.
+    pub density: Option<f64>,
+    /// Infill direction, degrees.
+    pub direction: Option<f64>,
+    /// A shipped finger, or the path of a finger file; the study's, or the shipped one, unless given.
+    pub finger: Option<String>,
+    /// Where the first rib lies, mm; as the finger file says unless given.
+    pub phase_mm: Option<f64>,
+}
+
+impl PrintRequest {
+    /// Its ribs.
+    ///
+    /// # Errors
+    /// If a file cannot be used, the study recommends nothing, or there is no such finger.
+    pub fn geometry(&self) -> Result<Geometry, Failure> {
+        let (design, of_study) = match (&self.dir, self.density, self.direction) {
+            (Some(dir), ..) => best(dir)?,
+            (None, Some(density), Some(direction)) => (Design::infill(density, direction), None),
+            _ => {
+                let problem = "give the folder of a study, or --density and --direction";
+                return Err(Failure::usage(problem));
+            }
+        };
+        let file = match (&self.finger, of_study) {
+            (None, Some(file)) => file,
+            (named, _) => finger_file(named.as_deref().unwrap_or(DEFAULT_FINGER))?,
+        };
+        let finger = file.with(&design).map_err(Failure::input)?;
+        Geometry::new(&finger, &design.printed(self.phase_mm)).map_err(Failure::input)
+    }
+}
+
+fn finger_file(name: &str) -> Result<FingerFile, Failure> {
+    let source = find("finger", FINGERS, name)?;
+    FingerFile::parse(&source.text, &source.file).map_err(Failure::input)
+}
+
+/// The design that a study recommends, and the finger file of its fingers.
+fn best(dir: &Path) -> Result<(Design, Option<FingerFile>), Failure> {
+    let record = StudyRecord::load(dir)?;
+    let Some(best) = record.to_print() else {
+        return Err(Failure::usage(format!(
+            "{}: the study recommends no design; give --density and --direction",
+            dir.display()
+        )));
+    };
+    Ok((best.clone(), record.finger.clone()))
+}

@@ -1,0 +1,279 @@
+//! A study that is asked for: begun, or gone on with.
+
+use super::calibration::DEFAULT_PRIORS;
+use super::failure::within;
+use super::files::find;
+use super::how::RunRequest;
+use super::open::OpenStudy;
+use super::request::SetupRequest;
+use super::{Failure, Setup, measured, on_bench};
+use crate::study::{LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, read_config, study_name};
+use ask_tell::OptimizerKind;
+use input::shipped::PRIORS;
+use insertion::evaluation::objective::{Aggregate, AggregateKind, Constraint, Measure, Objectives};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+/// Seeds there are: TOML, in which studies keep theirs, has no larger whole numbers.
+pub const SEEDS: RangeInclusive<u64> = 0..=i64::MAX as u64;
+/// Budgets there are.
+pub const BUDGETS: RangeInclusive<u64> = 1..=LARGEST_BUDGET;
+/// Length of a polish that is asked for without a number.
+pub const POLISH: u64 = 20;
+/// Lengths of a polish there are.
+pub const POLISHES: RangeInclusive<u64> = 0..=LARGEST_BUDGET;
+/// Batches there are.
+pub const BATCHES: RangeInclusive<u64> = 1..=LARGEST_BATCH;
+/// Batch of a new study unless another is given.
+const DEFAULT_BATCH: u64 = 4;
+/// Errors used unless others are named.
+const DEFAULT_UNCERTAINTY: &str = "typical";
+
+/// Which study to begin or to go on with.
+#[derive(Debug, Clone)]
+pub struct StudyRequest {
+    /// Tasks, robot, space, finger model.
+    pub setup: SetupRequest,
+    /// Evaluations in all.
+    pub budget: u64,
+    /// Then up to so many evaluations more, from the best design.
+    pub polish: u64,
+    /// Optimizer.
+    pub optimizer: OptimizerKind,
+    /// What is optimized.
+    pub objective: Objectives,
+    /// What a design must keep to.
+    pub constraints: Vec<Constraint>,
+    /// Errors for success rate and robust range: a shipped name, or the path of a file.
+    pub uncertainty: Option<String>,
+    /// What was measured on the bench: a shipped name, or the path of a file.
+    pub measurements: Option<String>,
+    /// What is made of the values of several tasks; the worst unless it is given.
+    pub aggregate: Option<AggregateKind>,
+    /// Weight of each task, if they are weighted.
+    pub weights: Vec<f64>,
+    /// Seed; the same seed gives the same study.
+    pub seed: u64,
+    /// Designs at a time; unless it is given that of the study if it goes on, else the number of
+    /// workers, or 4.
+    pub batch: Option<u64>,
+    /// Whether each result is told as it comes.
+    pub asynchronous: bool,
+    /// Folder; `results/<task>-<optimizer>-seed<seed>` unless it is given.
+    pub out: Option<PathBuf>,
+    /// How it is run.
+    pub run: RunRequest,
+}
+
+/// Which study to go on with.
+#[derive(Debug, Clone)]
+pub struct ResumeRequest {
+    /// Its folder.
+    pub dir: PathBuf,
+    /// How it is run.
+    pub run: RunRequest,
+}
+
+/// A study that is begun, or gone on with.
+#[derive(Debug, Clone)]
+pub enum AnyStudy {
+    /// By what it measures.
+    Asked(Box<StudyRequest>),
+    /// By its folder.
+    Resumed(ResumeRequest),
+}
+
+impl AnyStudy {
+    /// Opens it; where no batch is given a new study's is `workers`.
+    ///
+    /// # Errors
+    /// As of the request.
+    pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
+        match self {
+            AnyStudy::Asked(request) => request.open(workers),
+            AnyStudy::Resumed(request) => request.open(),
+        }
+    }
+
+    /// Its folder, with all checked that is asked for; nothing is written.
+    ///
+    /// # Errors
+    /// If it cannot be.
+    pub fn folder(&self) -> Result<PathBuf, Failure> {
+        match self {
+            AnyStudy::Asked(request) => Ok(request.look()?.2),
+            AnyStudy::Resumed(request) => Ok(request.dir.clone()),
+        }
+    }
+}
+
+impl ResumeRequest {
+    /// Opens the study to go on with it.
+    ///
+    /// # Errors
+    /// If there is none, or it is damaged, in use or was measured otherwise.
+    pub fn open(&self) -> Result<OpenStudy, Failure> {
+        self.run.check()?;
+        let mut study = Study::resume(&self.dir)?;
+        let inputs = study.inputs()?;
+        let setup = Setup::from_inputs(&inputs, &study.provenance().engine.name)?;
+        study.measure_with(&setup.provenance(), &inputs, self.run.if_changed())?;
+        OpenStudy::new(study, setup, self.run.clone())
+    }
+}
+
+impl StudyRequest {
+    /// Of this setup with this budget, all else as usual.
+    pub fn new(setup: SetupRequest, budget: u64) -> Self {
+        StudyRequest {
+            setup,
+            budget,
+            polish: 0,
+            optimizer: OptimizerKind::Gp,
+            objective: Objectives::of(Measure::Range),
+            constraints: Vec::new(),
+            uncertainty: None,
+            measurements: None,
+            aggregate: None,
+            weights: Vec::new(),
+            seed: 0,
+            batch: None,
+            asynchronous: false,
+            out: None,
+            run: RunRequest::default(),
+        }
+    }
+
+    /// Begins the study or goes on with it; where no batch is given a new study's is `workers`.
+    ///
+    /// # Errors
+    /// If it cannot be, or its folder cannot be used.
+    pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
+        let (setup, mut config, dir) = self.look()?;
+        if self.batch.is_none() {
+            // A study that goes on keeps its own.
+            let kept = read_config(&dir).ok().map(|found| found.batch);
+            config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
+        }
+        let if_changed = self.run.if_changed();
+        let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
+        OpenStudy::new(study, setup, self.run.clone())
+    }
+
+    /// What it measures with, what it is and its folder, checked; nothing is written.
+    fn look(&self) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
+        self.run.check()?;
+        within("--budget", self.budget, &BUDGETS)?;
+        within("--polish", self.polish, &POLISHES)?;
+        within("--seed", self.seed, &SEEDS)?;
+        within("--batch", self.batch, &BATCHES)?;
+        let setup = self.under_errors(self.setup.setup()?)?;
+        let setup = self.measured(setup)?;
+        let config = self.config(&setup)?;
+        check(self.optimizer, &config)?;
+        if setup.measured.is_some() {
+            on_bench::check(&config)?;
+        }
+        let dir = self.out.clone().unwrap_or_else(|| default_folder(&config));
+        Ok((setup, config, dir))
+    }
+
+    /// With the errors that the goals need.
+    fn under_errors(&self, setup: Setup) -> Result<Setup, Failure> {
+        let constrained = self.constraints.iter().map(|constraint| constraint.measure);
+        let mut measures = self.objective.measures().iter().copied().chain(constrained);
+        match (measures.any(Measure::is_drawn), &self.uncertainty) {
+            (false, None) => Ok(setup),
+            (false, Some(_)) => Err(Failure::usage(
+                "--uncertainty is for success-rate and robust-range; make one of them an \
+                 --objective or a --constraint",
+            )),
+            (true, name) => setup.under_named(name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY)),
+        }
+    }
+
+    /// With what was measured on the bench.
+    fn measured(&self, setup: Setup) -> Result<Setup, Failure> {
+        let Some(name) = &self.measurements else { return Ok(setup) };
+        let priors = find("file of priors", PRIORS, DEFAULT_PRIORS)?;
+        setup.with_measurements(measured::file(name)?, priors)
+    }
+
+    /// How the values of several tasks become one; `None` for one task.
+    fn aggregate(&self, tasks: usize) -> Result<Option<Aggregate>, Failure> {
+        let given = self.aggregate.unwrap_or(AggregateKind::Min);
+        if tasks == 1 && (self.aggregate.is_some() || !self.weights.is_empty()) {
+            return Err(Failure::usage(
+                "--aggregate and --weights are for several tasks, as in --task usb,rj45",
+            ));
+        }
+        if given != AggregateKind::Weighted && !self.weights.is_empty() {
+            return Err(Failure::usage("--weights goes with --aggregate weighted"));
+        }
+        let aggregate = match given {
+            AggregateKind::Min => Aggregate::Min,
+            AggregateKind::Mean => Aggregate::Mean,
+            AggregateKind::Weighted => Aggregate::weighted(self.weights.clone(), tasks)
+                .map_err(|problem| Failure::usage(format!("--weights: {problem}")))?,
+        };
+        Ok((tasks > 1).then_some(aggregate))
+    }
+
+    fn config(&self, setup: &Setup) -> Result<StudyConfig, Failure> {
+        let evaluator = &setup.evaluator;
+        let names = evaluator.templates.iter().map(|template| template.task().name.clone());
+        let tasks: Vec<String> = names.collect();
+        Ok(StudyConfig {
+            aggregate: self.aggregate(tasks.len())?,
+            tasks,
+            robot: evaluator.robot.name.clone(),
+            finger_model: evaluator.fingers.kind(),
+            optimizer: self.optimizer.to_string(),
+            objective: self.objective.clone(),
+            constraints: self.constraints.clone(),
+            uncertainty: setup.uncertainty.as_ref().map(|errors| errors.name.clone()),
+            seed: self.seed,
+            budget: self.budget,
+            polish: self.polish,
+            batch: self.batch.unwrap_or(DEFAULT_BATCH),
+            asynchronous: self.asynchronous,
+            provenance: setup.provenance(),
+            space: setup.space.clone(),
+        })
+    }
+}
+
+/// Whether the optimizer can do what is asked for.
+fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
+    if config.asynchronous && (kind == OptimizerKind::CmaEs || config.polish > 0) {
+        return Err(Failure::usage(
+            "--async: cma-es and --polish learn from whole batches; leave it out, or give another \
+             --optimizer and no --polish",
+        ));
+    }
+    if config.objective.single().is_some() {
+        return Ok(());
+    }
+    if !kind.takes_several_objectives() {
+        let able = OptimizerKind::ALL.into_iter().filter(|kind| kind.takes_several_objectives());
+        let able: Vec<&str> = able.map(OptimizerKind::name).collect();
+        return Err(Failure::usage(format!(
+            "{kind} knows one objective only; for {} give --optimizer {}",
+            config.objective,
+            able.join(", ")
+        )));
+    }
+    if config.polish > 0 {
+        return Err(Failure::usage("--polish knows one objective only; leave it out"));
+    }
+    Ok(())
+}
+
+/// `results/<task>-<optimizer>-seed<seed>`; a task of one's own may be named with anything.
+fn default_folder(config: &StudyConfig) -> PathBuf {
+    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    // The plus sign stands between tasks.
+    let task = |name: &str| name.chars().map(safe).collect::<String>();
+    let task = config.tasks().map(task).collect::<Vec<_>>().join("+");
+    Path::new("results").join(study_name(&task, &config.method(), config.seed))
+}

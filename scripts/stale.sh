@@ -15,7 +15,7 @@ record=$reference/SOURCE
 
 simulation="units stream outcome scene input finger surrogate physics trial evaluation"
 # The libraries that compute; the others may change without changing a number.
-libraries='^name = "(nalgebra|simba|libm|rapier3d.*|parry3d.*|rand.*|sobol_burley|linfa.*|egobox.*|argmin.*)"'
+libraries='^name = "(nalgebra|simba|libm|rapier3d.*|parry3d.*|rand.*|sobol_burley|linfa.*|argmin.*)"'
 
 # The folders and files of a scope.
 sources() {

@@ -16,6 +16,7 @@ mod lattice;
 mod nelder_mead;
 pub mod pareto;
 mod polish;
+pub mod process;
 mod proposed;
 pub mod protocol;
 mod random;

@@ -5,8 +5,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// What decides the evaluation of a design.
-const SIMULATION: [&str; 7] = [
+const SIMULATION: [&str; 8] = [
     "Cargo.lock",
+    "crates/ask-tell/src/process",
     "crates/ask-tell/src/stream.rs",
     "crates/contact",
     "crates/finray",

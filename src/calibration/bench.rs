@@ -119,7 +119,7 @@ impl At {
             let (mean, sd) = self.conditioned.predict(finger);
             log_normal_cdf((mean - bound) / sd.hypot(noise))
         };
-        self.conditioned.log_likelihood + self.bounds.iter().map(bound).sum::<f64>()
+        self.conditioned.log_likelihood() + self.bounds.iter().map(bound).sum::<f64>()
     }
 }
 

@@ -14,7 +14,8 @@
 //! in `kz`. Offset, `r`, `b1` and `b2` are normal about 0 and integrated out; `d` is a Matern 5/2
 //! process.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use ask_tell::process::{Process, distance2, matern52};
+use nalgebra::{DMatrix, DVector};
 
 /// A finger's place: its standardised `1 / ky` and `kz`.
 pub type Place = [f64; 2];
@@ -64,9 +65,7 @@ impl Hyperparameters {
     }
 
     fn kernel(&self, a: &Place, b: &Place) -> f64 {
-        let r2 = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
-        let s = (5.0 * r2).sqrt() / self.length;
-        self.process.powi(2) * (1.0 + s + s * s / 3.0) * libm::exp(-s)
+        self.process.powi(2) * matern52(distance2(a, b) / self.length.powi(2))
     }
 
     /// Prior covariance of two fingers.
@@ -98,12 +97,10 @@ impl Finger {
 pub struct Conditioned {
     hyperparameters: Hyperparameters,
     fingers: Vec<Finger>,
-    factor: Cholesky<f64, Dyn>,
-    weights: DVector<f64>,
+    /// Of what they departed from the simulation; the linear terms are in its kernel.
+    process: Process<0>,
     /// Standard deviation of each measured value's noise.
     noises: Vec<f64>,
-    /// Logarithm of the marginal likelihood.
-    pub log_likelihood: f64,
 }
 
 impl Conditioned {
@@ -124,21 +121,15 @@ impl Conditioned {
             }
             covariance[(j, j)] += noises[j].powi(2);
         }
-        let factor = Cholesky::new(covariance)?;
-        let residual =
-            DVector::from_iterator(n, measured.iter().zip(&fingers).map(|(y, f)| y - f.simulated));
-        let weights = factor.solve(&residual);
-        let determinant: f64 =
-            factor.l_dirty().diagonal().iter().map(|pivot| 2.0 * libm::log(*pivot)).sum();
-        let log_likelihood = -0.5 * (residual.dot(&weights) + determinant);
-        log_likelihood.is_finite().then_some(Conditioned {
-            hyperparameters,
-            fingers,
-            factor,
-            weights,
-            noises,
-            log_likelihood,
-        })
+        let departures: Vec<f64> =
+            measured.iter().zip(&fingers).map(|(y, f)| y - f.simulated).collect();
+        let process = Process::new(covariance, &vec![[]; n], &departures)?;
+        Some(Conditioned { hyperparameters, fingers, process, noises })
+    }
+
+    /// Logarithm of the marginal likelihood, less a constant.
+    pub fn log_likelihood(&self) -> f64 {
+        self.process.log_likelihood()
     }
 
     fn towards(&self, finger: &Finger) -> DVector<f64> {
@@ -149,9 +140,9 @@ impl Conditioned {
     /// Mean and standard deviation of what the bench would give on average.
     pub fn predict(&self, finger: &Finger) -> (f64, f64) {
         let k = self.towards(finger);
-        let variance =
-            self.hyperparameters.covariance(finger, finger) - k.dot(&self.factor.solve(&k));
-        (finger.simulated + k.dot(&self.weights), variance.max(0.0).sqrt())
+        let own = self.hyperparameters.covariance(finger, finger);
+        let mean = finger.simulated + self.process.mean(&k, &[]);
+        (mean, self.process.variance(&k, &[], own).sqrt())
     }
 
     /// The values at `fingers` that a draw of the prior becomes under the measurements
@@ -159,7 +150,7 @@ impl Conditioned {
     /// from the simulation at `fingers`, `known` at the measured ones, with their noise.
     pub fn update(&self, fingers: &[Finger], prior: &[f64], known: &[f64]) -> Vec<f64> {
         let known = DVector::from_column_slice(known);
-        let weights = &self.weights - self.factor.solve(&known);
+        let weights = self.process.weights() - self.process.solve(&known);
         let value = |(finger, prior): (&Finger, &f64)| {
             finger.simulated + prior + self.towards(finger).dot(&weights)
         };

@@ -1,7 +1,4 @@
-//! Optimizers behind one ask / tell trait.
-//!
-//! They maximise. They know the unit cube, the number of levels per axis and
-//! the numbers they are told, and nothing of fingers or tasks.
+#![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -16,6 +13,7 @@ mod lattice;
 mod nelder_mead;
 pub mod pareto;
 mod polish;
+pub mod process;
 mod proposed;
 pub mod protocol;
 mod random;

@@ -1,5 +1,9 @@
 //! Search spaces: named, bounded, stepped parameters, and the designs in them.
 
+mod corners;
+
+pub(crate) use corners::corners;
+
 use ask_tell::GridPoint;
 use finray::infill;
 use input::{Check, InputError, read, shown};

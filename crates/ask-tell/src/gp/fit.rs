@@ -1,6 +1,6 @@
 //! Hyperparameters by maximum a posteriori.
 
-use super::kernel::Hyperparameters;
+use super::hyperparameters::Hyperparameters;
 use super::lbfgs::{Limits, minimise};
 use super::likelihood::{log_posterior, priors};
 

@@ -1,8 +1,9 @@
 //! Log posterior of the hyperparameters and its gradient.
 
-use super::factor::{Factor, factor, inverse};
-use super::kernel::{Hyperparameters, distance2, matern52, matern52_slope};
-use nalgebra::{DMatrix, DVector};
+use super::hyperparameters::Hyperparameters;
+use crate::process::factor::inverse;
+use crate::process::{Process, distance2, matern52, matern52_slope};
+use nalgebra::DMatrix;
 
 /// Value and gradient at one setting of the hyperparameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,43 +24,6 @@ pub(super) fn priors(dimension: usize) -> Vec<(f64, f64)> {
     let mut priors = vec![(length, 3f64.sqrt()); dimension];
     priors.extend([(0.0, 1.5), (-9.2, 3.0)]);
     priors
-}
-
-/// What the values tell of the constant mean, which has a flat prior.
-#[derive(Debug, Clone)]
-pub(super) struct ConstantMean {
-    /// `K^-1 1`.
-    pub weights: DVector<f64>,
-    /// `1' K^-1 1`: one over the variance of the mean; 0 without values.
-    pub precision: f64,
-}
-
-impl ConstantMean {
-    /// Of as many values as `factor` has rows.
-    pub fn new(factor: &Factor) -> Self {
-        let weights = factor.solve(&DVector::repeat(factor.l_dirty().nrows(), 1.0));
-        let precision = weights.sum().max(0.0);
-        ConstantMean { weights, precision }
-    }
-
-    /// The generalised least squares mean, and `K^-1 (y - mean)` with it.
-    pub fn residual(&self, factor: &Factor, y: &DVector<f64>) -> (f64, DVector<f64>) {
-        let known = self.precision > 0.0;
-        let mean = if known { self.weights.dot(y) / self.precision } else { 0.0 };
-        (mean, factor.solve(&y.add_scalar(-mean)))
-    }
-
-    /// `(1 - k' K^-1 1) / (1' K^-1 1)` for covariances `k`: how a point leans on the mean.
-    pub fn leaning(&self, k: &DVector<f64>) -> f64 {
-        let rest = 1.0 - k.dot(&self.weights);
-        if self.precision > 0.0 { rest / self.precision } else { 0.0 }
-    }
-
-    /// Variance that the unknown mean adds at a point with covariances `k`.
-    pub fn variance(&self, k: &DVector<f64>) -> f64 {
-        let leaning = self.leaning(k);
-        leaning * leaning * self.precision
-    }
 }
 
 /// Log posterior of `theta` for points `x` of the unit cube with standardised values `y`.
@@ -85,19 +49,14 @@ pub fn log_posterior(
         }
         k[(j, j)] += noise_floor + noise;
     }
-    let factor = factor(k.clone())?;
-    let constant = ConstantMean::new(&factor);
-    let y = DVector::from_column_slice(y);
-    let (mean, alpha) = constant.residual(&factor, &y);
-    let quadratic = alpha.dot(&y.add_scalar(-mean));
-    let precision = constant.precision.max(f64::MIN_POSITIVE);
-    let w = constant.weights / precision.sqrt();
-    let log_determinant: f64 =
-        factor.l_dirty().diagonal().iter().map(|pivot| 2.0 * libm::log(*pivot)).sum();
-    let mut value = -0.5 * (quadratic + log_determinant + libm::log(precision));
+    let process = Process::new(k.clone(), &vec![[1.0]; n], y)?;
+    let (alpha, [to_mean], [precision]) =
+        (process.weights(), &process.linear_mean().weights, process.linear_mean().pivots);
+    let w = to_mean / precision.max(f64::MIN_POSITIVE).sqrt();
+    let mut value = process.log_likelihood();
 
     // d value / d theta = 1/2 sum_ij (alpha_i alpha_j + w_i w_j - (K^-1)_ij) dK_ij / d theta.
-    let inverse = inverse(&factor);
+    let inverse = inverse(process.factor());
     let mut gradient = vec![0.0; d + 2];
     let (mut through_k, mut trace) = (0.0, 0.0);
     for j in 0..n {

@@ -13,9 +13,8 @@
 
 mod acquisition;
 mod data;
-mod factor;
 mod fit;
-mod kernel;
+mod hyperparameters;
 mod lbfgs;
 mod likelihood;
 mod local_search;
@@ -30,7 +29,7 @@ mod warp;
 
 pub use acquisition::{log_expected_improvement, log_expected_volume, log_h, log_normal_cdf};
 pub use fit::{FitEffort, fit};
-pub use kernel::Hyperparameters;
+pub use hyperparameters::Hyperparameters;
 pub use likelihood::{Posterior, log_posterior};
 pub use model::Gp;
 pub use optimizer::{DEFAULT_NOISE_FLOOR, GpOptimizer};

@@ -1,8 +1,8 @@
 //! The trained Gaussian process.
 
-use super::factor::{Factor, factor, half_solved, with_point};
-use super::kernel::{Hyperparameters, matern52, matern52_slope};
-use super::likelihood::ConstantMean;
+use super::hyperparameters::Hyperparameters;
+use crate::process::factor::half_solved;
+use crate::process::{Process, matern52, matern52_slope};
 use nalgebra::{DMatrix, DVector};
 
 /// A Gaussian process conditioned on observations. Inputs in the unit cube, outputs in the
@@ -14,15 +14,14 @@ pub struct Gp {
     inverse_length: Vec<f64>,
     signal: f64,
     noise: f64,
-    mean: f64,
     /// Scaled inputs by axis: `columns[a][i]` is coordinate `a` of observation `i`.
     columns: Vec<Vec<f64>>,
-    factor: Factor,
-    /// `K^-1 (y - mean)`; zero for believed points.
-    alpha: DVector<f64>,
-    /// What is known of the mean.
-    constant: ConstantMean,
+    /// About a constant mean.
+    process: Process<1>,
 }
+
+/// The term of a constant mean.
+const ONE: [f64; 1] = [1.0];
 
 /// Posterior of the function (without noise) at a point, and its derivatives by the point's
 /// coordinates. The variance holds that of the constant mean (ordinary kriging).
@@ -48,25 +47,11 @@ impl Gp {
         let columns: Vec<Vec<f64>> = inverse_length.iter().enumerate().map(scaled).collect();
         let covariance = lower_covariance(&columns, signal, y.len());
         let mut noise = noise_floor + libm::exp(theta.log_noise);
-        let y = DVector::from_column_slice(y);
         for _ in 0..8 {
             let mut noisy = covariance.clone();
             (0..y.len()).for_each(|i| noisy[(i, i)] += noise);
-            if let Some(factor) = factor(noisy) {
-                let constant = ConstantMean::new(&factor);
-                let (mean, alpha) = constant.residual(&factor, &y);
-                let finite = mean.is_finite() && alpha.iter().all(|a| a.is_finite());
-                return finite.then_some(Gp {
-                    theta,
-                    inverse_length,
-                    signal,
-                    noise,
-                    mean,
-                    columns,
-                    factor,
-                    alpha,
-                    constant,
-                });
+            if let Some(process) = Process::new(noisy, &vec![ONE; y.len()], y) {
+                return Some(Gp { theta, inverse_length, signal, noise, columns, process });
             }
             noise = (noise * 10.0).max(1e-8 * signal);
         }
@@ -75,12 +60,12 @@ impl Gp {
 
     /// Observations and believed points together.
     pub fn len(&self) -> usize {
-        self.alpha.len()
+        self.process.len()
     }
 
     /// Whether it is conditioned on nothing.
     pub fn is_empty(&self) -> bool {
-        self.alpha.is_empty()
+        self.process.is_empty()
     }
 
     /// The hyperparameters.
@@ -104,12 +89,9 @@ impl Gp {
     /// the variance falls. Nothing changes if `x` cannot be told from points already there.
     pub fn believe(&mut self, x: &[f64]) {
         let k = self.covariances(x);
-        if let Some(factor) = with_point(&self.factor, &k, self.signal + self.noise) {
+        if self.process.believe(&k, &ONE, self.signal + self.noise) {
             let scaled = self.scale(x);
             self.columns.iter_mut().zip(scaled).for_each(|(c, x)| c.push(x));
-            self.alpha = self.alpha.push(0.0);
-            self.constant = ConstantMean::new(&factor);
-            self.factor = factor;
         }
     }
 
@@ -118,19 +100,21 @@ impl Gp {
         let scaled = self.scale(x);
         let r2 = distances2(&self.columns, &scaled);
         let k = covariances(&r2, self.signal);
-        let half = half_solved(&self.factor, &k);
-        let variance = self.variance_of(&k, &half);
+        let (factor, constant) = (self.process.factor(), self.process.linear_mean());
+        let half = half_solved(factor, &k);
+        let variance = self.process.variance_of(&k, &ONE, self.signal, &half);
         let mut solved = half;
-        self.factor.l_dirty().ad_solve_lower_triangular_unchecked_mut(&mut solved);
+        factor.l_dirty().ad_solve_lower_triangular_unchecked_mut(&mut solved);
         // The variance is signal - k' K^-1 k + leaning^2 precision.
-        let by_k = -2.0 * (solved + self.constant.leaning(&k) * &self.constant.weights);
+        let ([leaning], [to_mean]) = (constant.leaning(&k, &ONE), &constant.weights);
+        let by_k = -2.0 * (solved + leaning * to_mean);
         let mut slopes = (Vec::new(), Vec::new());
         for ((column, x), inverse_length) in
             self.columns.iter().zip(&scaled).zip(&self.inverse_length)
         {
             let slope = |(c, r2): (&f64, &f64)| -2.0 * (x - c) * matern52_slope(*r2);
             let slope = DVector::from_iterator(self.len(), column.iter().zip(&r2).map(slope));
-            slopes.0.push(self.signal * inverse_length * slope.dot(&self.alpha));
+            slopes.0.push(self.signal * inverse_length * slope.dot(self.process.weights()));
             slopes.1.push(self.signal * inverse_length * slope.dot(&by_k));
         }
         let mean = self.mean_at(&k);
@@ -139,24 +123,20 @@ impl Gp {
 
     /// Posterior mean from the covariances `k` of a candidate.
     pub(super) fn mean_at(&self, k: &DVector<f64>) -> f64 {
-        self.mean + k.dot(&self.alpha)
+        self.process.mean(k, &ONE)
     }
 
     /// A bound on the posterior variance that needs no triangular solution: that given the most
     /// correlated observation alone, and that of the mean.
     pub(super) fn variance_bound(&self, k: &DVector<f64>) -> f64 {
         let largest = k.iter().copied().fold(0.0, f64::max);
-        self.signal - largest * largest / (self.signal + self.noise) + self.constant.variance(k)
+        let given = self.signal - largest * largest / (self.signal + self.noise);
+        given + self.process.linear_mean().variance(k, &ONE)
     }
 
     /// Posterior variance from the covariances `k` of a candidate.
     pub(super) fn variance_at(&self, k: &DVector<f64>) -> f64 {
-        self.variance_of(k, &half_solved(&self.factor, k))
-    }
-
-    /// The same with `L^-1 k`.
-    fn variance_of(&self, k: &DVector<f64>, half: &DVector<f64>) -> f64 {
-        (self.signal - half.norm_squared()).max(0.0) + self.constant.variance(k)
+        self.process.variance(k, &ONE, self.signal)
     }
 
     /// Covariances of a point of the unit cube with all observations.

@@ -1,7 +1,7 @@
 //! Processes of the points about a place, where one of all points would cost too much.
 
 use super::data::Standardised;
-use super::kernel::Hyperparameters;
+use super::hyperparameters::Hyperparameters;
 use super::model::{Gp, distances2};
 use super::spread::spread;
 use super::trained::{Goal, Margin, Trained};

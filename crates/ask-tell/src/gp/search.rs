@@ -222,7 +222,7 @@ fn advance(point: &mut GridPoint, levels: &[u32]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::kernel::Hyperparameters;
+    use super::super::hyperparameters::Hyperparameters;
     use super::super::model::Gp;
     use super::super::trained::Goal;
     use super::*;

@@ -2,7 +2,7 @@
 
 use super::data::{Standardised, standardise};
 use super::fit::{FitEffort, fit};
-use super::kernel::Hyperparameters;
+use super::hyperparameters::Hyperparameters;
 use super::local_search::LocalSearch;
 use super::model::Gp;
 use super::neighbours::{FEW, Neighbours, Process};

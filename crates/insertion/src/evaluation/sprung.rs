@@ -1,10 +1,10 @@
 //! Whether every computed finger of a space has springs, asked before the first one is simulated.
 
 use super::evaluator::Evaluator;
-use super::template::{Impossible, is_infill, space::extremes};
+use super::template::{Impossible, is_infill};
 use crate::finger::computed::AtPad;
 use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
-use crate::space::{Design, Space};
+use crate::space::{Design, Parameter, Space, corners};
 use input::{Check, InputError};
 
 /// A space read from `file` that sets a computed finger's remote centre or tilting stiffness may ask
@@ -19,18 +19,8 @@ pub fn check(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Inp
     let Some(first) = space.parameters().iter().find(|p| computed && sets(&p.key)) else {
         return Ok(());
     };
-    let mut designs = vec![Design::default()];
-    for parameter in space.parameters().iter().filter(|p| sets(&p.key) || is_infill(&p.key)) {
-        let with = |(design, value): (&Design, f64)| {
-            let mut design = design.clone();
-            design.0.insert(parameter.key.clone(), value);
-            design
-        };
-        let values = extremes(parameter);
-        let each = |design| values.iter().map(move |&value| with((design, value)));
-        designs = designs.iter().flat_map(each).collect();
-    }
-    for design in designs {
+    let tried = |p: &&Parameter| sets(&p.key) || is_infill(&p.key);
+    for design in corners(space.parameters().iter().filter(tried), usize::MAX) {
         if let Err(error) = springs(evaluator, &design) {
             return Check { file }.fail(&first.key, format!("{design} has no springs: {error}"));
         }

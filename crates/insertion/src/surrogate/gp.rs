@@ -21,14 +21,12 @@
 //! restarts, so the fit is the same on every run.
 
 use super::link::{Link, Sum};
+use super::standard::Standard;
 use super::{Estimate, Fitted, Measured, infills};
 use crate::stiffness::{Axis, Infill};
-use egobox_gp::correlation_models::Matern52Corr;
-use egobox_gp::mean_models::RegressionModel;
-use egobox_gp::{GaussianProcess, GpParams, ThetaTuning};
+use ask_tell::process::{Process, matern52};
 use input::units::DEG;
-use linfa::prelude::{Dataset, Fit};
-use ndarray::{Array2, ArrayBase, Data, Ix1, Ix2, array};
+use nalgebra::{DMatrix, DVector};
 
 /// Inverse correlation lengths tried, per standard deviation of the inputs.
 const THETAS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, 0.8];
@@ -40,52 +38,38 @@ pub(super) const READING_SD: f64 = 0.01;
 /// Densities below this are taken as this, percent: the law diverges at 0.
 const LEAST_DENSITY: f64 = 1.0;
 
-/// The mean `a + b feature`, where the feature is the first input; or `a` alone.
-#[derive(Debug, Clone, Copy, Default)]
-struct PhysicalMean {
-    lamina: bool,
-}
-
-impl PhysicalMean {
-    fn terms(self) -> usize {
-        1 + usize::from(self.lamina)
-    }
-}
-
-impl std::fmt::Display for PhysicalMean {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("PhysicalMean")
-    }
-}
-
-impl RegressionModel<f64> for PhysicalMean {
-    fn coefs(&self, x: &ArrayBase<impl Data<Elem = f64>, Ix2>) -> Array2<f64> {
-        let mut terms = Array2::ones((x.nrows(), self.terms()));
-        if self.lamina {
-            terms.column_mut(1).assign(&x.column(0));
-        }
-        terms
-    }
-
-    fn jac(&self, x: &ArrayBase<impl Data<Elem = f64>, Ix1>) -> Array2<f64> {
-        let mut jacobian = Array2::zeros((self.terms(), x.len()));
-        if self.lamina {
-            jacobian[[1, 0]] = 1.0;
-        }
-        jacobian
-    }
-}
-
-/// A fitted process.
-#[derive(Debug)]
-pub(super) struct PhysicalProcess {
-    link: Link,
-    mean: PhysicalMean,
+/// What the likelihood chooses.
+#[derive(Debug, Clone, Copy)]
+struct Setting {
+    /// Of the density in the feature.
     exponent: f64,
+    /// Inverse correlation length.
+    theta: f64,
+    /// Ratio of noise to process variance.
     nugget: f64,
-    process: GaussianProcess<f64, PhysicalMean, Matern52Corr>,
-    /// `n / (n - terms)`: the likelihood's variance ignores the terms of the mean.
-    unbias: f64,
+}
+
+/// A fitted process about the mean `a + b feature`, or about `a` alone (`P = 1`).
+#[derive(Debug)]
+pub(super) struct PhysicalProcess<const P: usize> {
+    link: Link,
+    setting: Setting,
+    /// Of the feature and of the inputs.
+    scales: [Standard; 3],
+    /// Of the values on the scale of the link.
+    target: Standard,
+    /// Where the designs lie.
+    places: Vec<Place>,
+    /// Of the standardised values, in units of the process variance.
+    process: Process<P>,
+}
+
+/// Inputs of the process, in correlation lengths.
+type Place = [f64; 2];
+
+/// Correlation of two places: a product over the axes.
+fn correlation(a: &Place, b: &Place) -> f64 {
+    a.iter().zip(b).map(|(a, b)| matern52((a - b) * (a - b))).product()
 }
 
 /// The sum that holds along an axis, and the density exponents tried.
@@ -99,64 +83,78 @@ fn physics(axis: Axis) -> (Sum, &'static [f64]) {
 /// Feature of the mean, then the inputs of the process.
 fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
     let density = infill[0].max(LEAST_DENSITY);
-    let lamina = (infill[1] * DEG).cos().powi(4);
-    [(density / 20.0).powf(exponent) * lamina, density.ln(), infill[1]]
+    let lamina = libm::cos(infill[1] * DEG).powi(4);
+    [libm::pow(density / 20.0, exponent) * lamina, libm::log(density), infill[1]]
 }
 
 /// Fits stiffness about the lamina's mean; `None` if nothing can be fitted.
-pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess> {
+pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess<2>> {
     let (sum, exponents) = physics(axis);
-    let link = Link::new(sum, measured.targets());
-    fit_about(PhysicalMean { lamina: true }, link, exponents, measured)
+    fit_about(Link::new(sum, measured.targets()), exponents, measured)
 }
 
 /// Fits the ratio of measured and computed stiffness, about one number for all designs.
-pub(super) fn fit_ratio(ratios: &Measured) -> Option<PhysicalProcess> {
-    fit_about(PhysicalMean { lamina: false }, Link::logarithm(), &[1.0], ratios)
+pub(super) fn fit_ratio(ratios: &Measured) -> Option<PhysicalProcess<1>> {
+    fit_about(Link::logarithm(), &[1.0], ratios)
 }
 
 /// Maximum likelihood over the grid.
-fn fit_about(
-    mean: PhysicalMean,
+fn fit_about<const P: usize>(
     link: Link,
     exponents: &[f64],
     measured: &Measured,
-) -> Option<PhysicalProcess> {
-    let y = measured.targets().mapv(|k| link.forward(k));
-    let spare = y.len().checked_sub(mean.terms()).filter(|&spare| spare > 0)?;
-    let mut best: Option<PhysicalProcess> = None;
-    for &exponent in exponents {
-        let rows: Vec<[f64; 3]> =
-            infills(measured).map(|infill| inputs(infill, exponent)).collect();
-        let data = Dataset::new(Array2::from(rows), y.clone());
-        for (theta, nugget) in THETAS.iter().flat_map(|&t| NUGGETS.map(|n| (t, n))) {
-            // The kernel does not see the feature: its inverse length is 0.
-            let fitted = GpParams::new(mean, Matern52Corr())
-                .theta_tuning(ThetaTuning::Fixed(array![0.0, theta, theta]))
-                .nugget(nugget)
-                .fit(&data);
-            let Ok(process) = fitted else { continue };
-            let better = |old: &PhysicalProcess| process.likelihood() > old.process.likelihood();
-            if process.likelihood().is_finite() && best.as_ref().is_none_or(better) {
-                let unbias = y.len() as f64 / spare as f64;
-                best = Some(PhysicalProcess { link, mean, exponent, nugget, process, unbias });
-            }
-        }
-    }
-    best
+) -> Option<PhysicalProcess<P>> {
+    let kernels = || THETAS.into_iter().flat_map(|theta| NUGGETS.map(|nugget| (theta, nugget)));
+    let settings = exponents.iter().flat_map(|&exponent| {
+        kernels().map(move |(theta, nugget)| Setting { exponent, theta, nugget })
+    });
+    settings
+        .filter_map(|setting| PhysicalProcess::new(link, setting, measured))
+        .map(|fitted| (fitted.process.profile_log_likelihood(), fitted))
+        .filter(|(likelihood, _)| likelihood.is_finite())
+        .reduce(|best, next| if next.0 > best.0 { next } else { best })
+        .map(|(_, fitted)| fitted)
 }
 
-impl Fitted for PhysicalProcess {
+impl<const P: usize> PhysicalProcess<P> {
+    /// `None` of so few designs that nothing is left to the process.
+    fn new(link: Link, setting: Setting, measured: &Measured) -> Option<Self> {
+        let rows: Vec<[f64; 3]> =
+            infills(measured).map(|infill| inputs(infill, setting.exponent)).collect();
+        let values: Vec<f64> = measured.targets().iter().map(|&k| link.forward(k)).collect();
+        let n = Some(values.len()).filter(|&n| n > P)?;
+        let of_column =
+            |i: usize| Standard::of(&rows.iter().map(|row| row[i]).collect::<Vec<_>>(), 1);
+        let (scales, target) = (std::array::from_fn(of_column), Standard::of(&values, 1));
+        let (terms, places): (Vec<[f64; P]>, Vec<Place>) =
+            rows.iter().map(|&row| scaled(row, &scales, setting.theta)).unzip();
+        let noise = |i, j| if i == j { setting.nugget } else { 0.0 };
+        let covariance =
+            DMatrix::from_fn(n, n, |i, j| correlation(&places[i], &places[j]) + noise(i, j));
+        let values: Vec<f64> = values.into_iter().map(|value| target.apply(value)).collect();
+        let process = Process::new(covariance, &terms, &values)?;
+        Some(PhysicalProcess { link, setting, scales, target, places, process })
+    }
+}
+
+/// Terms of the mean and place in the process.
+fn scaled<const P: usize>(row: [f64; 3], scales: &[Standard; 3], theta: f64) -> ([f64; P], Place) {
+    let [feature, u, v]: [f64; 3] = std::array::from_fn(|i| scales[i].apply(row[i]));
+    (std::array::from_fn(|term| if term == 0 { 1.0 } else { feature }), [theta * u, theta * v])
+}
+
+impl<const P: usize> Fitted for PhysicalProcess<P> {
     fn predict(&self, infill: Infill) -> Estimate {
-        let x = Array2::from(vec![inputs(infill, self.exponent)]);
-        let Ok((mean, variance)) = self.process.predict_valvar(&x) else {
-            return Estimate { mean: f64::NAN, sd: f64::NAN };
-        };
-        let (mean, slope) = self.link.backward(mean[0]);
+        let Setting { exponent, theta, nugget } = self.setting;
+        let (terms, place) = scaled(inputs(infill, exponent), &self.scales, theta);
+        let to = self.places.iter().map(|known| correlation(known, &place));
+        let to = DVector::from_iterator(self.places.len(), to);
+        let mean = self.target.mean + self.target.sd * self.process.mean(&to, &terms);
         // The nugget is the scatter of a finger yet to be printed and measured.
-        let noise = self.nugget * self.process.variance();
-        let link_sd = ((variance[0] + noise) * self.unbias).sqrt();
-        Estimate { mean, sd: (slope * link_sd).hypot(READING_SD * mean) }
+        let variance = self.process.scale() * (self.process.variance(&to, &terms, 1.0) + nugget);
+        let (mean, slope) = self.link.backward(mean);
+        let link_sd = self.target.sd * variance.sqrt();
+        Estimate { mean, sd: libm::hypot(slope * link_sd, READING_SD * mean) }
     }
 
     fn describe(&self) -> String {
@@ -165,14 +163,11 @@ impl Fitted for PhysicalProcess {
             Sum::Series => "1/k = a + b density^n cos^4(direction)",
             Sum::Product => "ln(k / computed) = a",
         };
-        let exponent = match self.mean.lamina {
-            true => format!(", n = {}", self.exponent),
-            false => String::new(),
-        };
+        let Setting { exponent, theta, nugget } = self.setting;
+        let exponent = if P > 1 { format!(", n = {exponent}") } else { String::new() };
         format!(
-            "mean {mean}{exponent}; Matern 5/2 of inverse length {} about it; noise / process variance {}",
-            self.process.theta()[1],
-            self.nugget,
+            "mean {mean}{exponent}; Matern 5/2 of inverse length {theta} about it; \
+             noise / process variance {nugget}"
         )
     }
 }

@@ -53,10 +53,10 @@ impl Link {
         let q = match self.sum {
             Sum::Parallel => stiffness,
             Sum::Series => 1.0 / stiffness,
-            Sum::Product => stiffness.ln(),
+            Sum::Product => libm::log(stiffness),
         };
         // q + s ln(1 - exp(-q / s)): the inverse of soft plus, without overflow.
-        self.scale.map_or(q, |s| q + s * (-(-q / s).exp()).ln_1p())
+        self.scale.map_or(q, |s| q + s * libm::log1p(-libm::exp(-q / s)))
     }
 
     /// From the linear scale to stiffness (N/m), and its slope there.
@@ -67,13 +67,14 @@ impl Link {
                 // Beyond e^-50 the inverse of q would overflow, and nobody cares.
                 let x = (g / s).max(-50.0);
                 // max(x, 0) + ln(1 + exp(-|x|)) does not overflow.
-                (s * (x.max(0.0) + (-x.abs()).exp().ln_1p()), 1.0 / (1.0 + (-x).exp()))
+                let excess = libm::log1p(libm::exp(-x.abs()));
+                (s * (x.max(0.0) + excess), 1.0 / (1.0 + libm::exp(-x)))
             }
         };
         match self.sum {
             Sum::Parallel => (q, slope),
             Sum::Series => (1.0 / q, slope / (q * q)),
-            Sum::Product => (q.exp(), slope * q.exp()),
+            Sum::Product => (libm::exp(q), slope * libm::exp(q)),
         }
     }
 }

@@ -1,11 +1,10 @@
 //! Leave-one-out errors: how well a model predicts a finger it has not seen.
 
 use super::kind::fit_axis;
-use super::{Computed, Estimate, Fitted, Measured, ModelKind, infills, measured};
+use super::{Computed, Fitted, Measured, ModelKind, left_out, measured};
 use crate::stiffness::{Axis, Measurement};
 use finray::FingerError;
 use input::units::N_PER_MM;
-use rayon::prelude::*;
 
 /// Leave-one-out error of one model on one axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,14 +65,9 @@ impl Data {
     /// Fits `kind` without each design in turn and predicts that design.
     pub fn leave_one_out(&self, kind: ModelKind) -> Loo {
         let count = self.measured.targets().len();
-        // Without one of one there is nothing to fit to.
-        let folds = if count > 1 { self.measured.fold(count) } else { Vec::new() };
-        // Collected by index: the thread count changes nothing.
-        let mut predicted: Vec<Estimate> = folds
-            .into_par_iter()
-            .flat_map_iter(|(others, one)| self.predict(kind, &others, &one))
-            .collect();
-        predicted.resize(count, NOTHING);
+        let predicted = left_out(&self.measured, |others, infill| {
+            Some(fit_axis(self.axis, kind, others)?.predict(infill))
+        });
         let mean = |term: &dyn Fn(f64, f64, f64) -> f64| {
             let terms = predicted.iter().zip(self.measured.targets()).zip(&self.units);
             let terms = terms.map(|((e, &k), unit)| term(e.mean * unit, e.sd * unit, k * unit));
@@ -89,12 +83,4 @@ impl Data {
             chosen: false,
         }
     }
-
-    fn predict(&self, kind: ModelKind, others: &Measured, these: &Measured) -> Vec<Estimate> {
-        let fitted = fit_axis(self.axis, kind, others);
-        let predict = |infill| fitted.as_ref().map_or(NOTHING, |fitted| fitted.predict(infill));
-        infills(these).map(predict).collect()
-    }
 }
-
-const NOTHING: Estimate = Estimate { mean: f64::NAN, sd: f64::NAN };

@@ -24,12 +24,14 @@ mod model;
 mod ridge;
 mod row;
 mod scale;
+mod standard;
 #[cfg(test)]
 mod tests;
 
 use crate::stiffness::{Axis, Infill};
 use linfa::prelude::Dataset;
 use ndarray::{Array1, Array2, Ix1};
+use rayon::prelude::*;
 
 pub use computed::Computed;
 pub use kind::ModelKind;
@@ -99,4 +101,22 @@ trait Fitted: std::fmt::Debug + Send + Sync {
 
     /// Its parameters, in words.
     fn describe(&self) -> String;
+}
+
+/// Each design predicted without it, in their order: `predict` fits a model to the others and asks
+/// it. No numbers where there is no model.
+fn left_out(
+    measured: &Measured,
+    predict: impl Fn(&Measured, Infill) -> Option<Estimate> + Sync,
+) -> Vec<Estimate> {
+    let nothing = Estimate { mean: f64::NAN, sd: f64::NAN };
+    let count = measured.targets().len();
+    // Without one of one there is nothing to fit to.
+    let folds = if count > 1 { measured.fold(count) } else { Vec::new() };
+    let one = |(others, one): (Measured, Measured)| predict(&others, infills(&one).next()?);
+    // Collected by index: the thread count changes nothing.
+    let mut predicted: Vec<Estimate> =
+        folds.into_par_iter().map(|fold| one(fold).unwrap_or(nothing)).collect();
+    predicted.resize(count, nothing);
+    predicted
 }

@@ -8,7 +8,8 @@
 //! as it is, and along axes that are orthogonal one sweep of coordinate descent is exact.
 
 use super::link::Link;
-use super::{Estimate, Fitted, Measured, infills};
+use super::standard::Standard;
+use super::{Estimate, Fitted, Measured, infills, left_out};
 use crate::stiffness::Infill;
 use linfa::prelude::{Dataset, Fit};
 use linfa_elasticnet::ElasticNet;
@@ -33,26 +34,6 @@ pub(super) struct Ridge {
     penalty: f64,
 }
 
-/// Shift and scale that bring values to mean 0 and standard deviation 1.
-#[derive(Debug, Clone, Copy)]
-struct Standard {
-    mean: f64,
-    sd: f64,
-}
-
-impl Standard {
-    fn of(values: &[f64]) -> Self {
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
-        Standard { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }
-    }
-
-    fn apply(self, value: f64) -> f64 {
-        (value - self.mean) / self.sd
-    }
-}
-
 /// The terms of a polynomial without its constant.
 fn terms(infill: Infill, degree: u8) -> Vec<f64> {
     // About the middle of the printable range, so that terms are less alike.
@@ -68,15 +49,15 @@ pub(super) fn fit(measured: &Measured, degree: u8, link: Link, penalties: &[f64]
     if let [penalty] = penalties {
         return fit_one(measured, degree, link, *penalty);
     }
-    let folds = measured.fold(measured.targets().len());
-    let errors = |&penalty: &f64| {
-        let error = |(others, one): &(Measured, Measured)| {
-            let predicted = fit_one(others, degree, link, penalty)?.predict(infills(one).next()?);
-            Some((predicted.mean / one.targets()[0] - 1.0).abs())
-        };
-        Some((penalty, folds.iter().map(error).sum::<Option<f64>>()?))
+    let error = |&penalty: &f64| {
+        let predicted = left_out(measured, |others, infill| {
+            Some(fit_one(others, degree, link, penalty)?.predict(infill))
+        });
+        let off = predicted.iter().zip(measured.targets()).map(|(e, k)| (e.mean / k - 1.0).abs());
+        (penalty, off.sum::<f64>())
     };
-    let best = penalties.iter().filter_map(errors).min_by(|a, b| a.1.total_cmp(&b.1));
+    let fitted = penalties.iter().map(error).filter(|(_, error)| !error.is_nan());
+    let best = fitted.min_by(|a, b| a.1.total_cmp(&b.1));
     fit_one(measured, degree, link, best?.0)
 }
 
@@ -84,10 +65,10 @@ fn fit_one(measured: &Measured, degree: u8, link: Link, penalty: f64) -> Option<
     let rows: Vec<Vec<f64>> = infills(measured).map(|infill| terms(infill, degree)).collect();
     let (n, count) = (rows.len(), rows.first()?.len());
     let scales: Vec<Standard> = (0..count)
-        .map(|j| Standard::of(&rows.iter().map(|row| row[j]).collect::<Vec<_>>()))
+        .map(|j| Standard::of(&rows.iter().map(|row| row[j]).collect::<Vec<_>>(), 0))
         .collect();
     let raw: Vec<f64> = measured.targets().iter().map(|&k| link.forward(k)).collect();
-    let target = Standard::of(&raw);
+    let target = Standard::of(&raw, 0);
     let x = DMatrix::from_fn(n, count, |i, j| scales[j].apply(rows[i][j]));
     let y: Array1<f64> = raw.iter().map(|&g| target.apply(g)).collect();
     let design = x.clone().insert_column(0, 1.0);

@@ -40,6 +40,28 @@ fn the_linear_reference_is_the_published_measure_and_the_choice_beats_it() {
     }
 }
 
+/// Made by egobox-gp 0.37.1, an implementation of its own, of the shipped measurements.
+#[test]
+fn the_processes_are_those_of_another_library() {
+    let model = model();
+    for (infill, expected) in [
+        ([10.0, 0.0], [5.2407564e+04, 5.3508625e+02, 1.1803913e+03, 9.8741280e+01]),
+        ([10.0, 40.0], [1.6112269e+04, 4.3299436e+02, 2.3883293e+03, 3.2799396e+02]),
+        ([15.0, 30.0], [2.9998988e+04, 3.1830368e+02, 2.4311270e+03, 3.3406153e+02]),
+        ([17.0, 23.0], [3.8957195e+04, 4.0962629e+02, 2.3136039e+03, 3.0205311e+02]),
+        ([20.0, 20.0], [4.4999754e+04, 4.6231767e+02, 2.4605630e+03, 3.4026350e+02]),
+        ([22.0, 5.0], [6.2128469e+04, 6.6599275e+02, 2.2879320e+03, 2.9536785e+02]),
+        ([30.0, 0.0], [7.4973440e+04, 7.5715896e+02, 2.7586693e+03, 4.3252251e+02]),
+        ([30.0, 40.0], [3.5008539e+04, 3.6577085e+02, 3.9575983e+03, 8.9717550e+02]),
+    ] {
+        let found = model.predict(infill[0], infill[1]).unwrap();
+        let (z, y) = (found.assembly, found.compliance);
+        for (found, expected) in [z.mean, z.sd, y.mean, y.sd].iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 1e-6, "{infill:?}: {found} {expected}");
+        }
+    }
+}
+
 #[test]
 fn the_uncertainty_fits_the_errors_on_designs_left_out() {
     let model = model();

@@ -13,7 +13,7 @@
 //! before its checks, so that no design escapes them.
 
 pub mod printable;
-pub(super) mod space;
+mod space;
 
 use crate::finger::Finger;
 use crate::finger::computed::AtPad;

@@ -1,8 +1,7 @@
 //! Whether every finger of a space can be printed, asked before the first one is simulated.
 
-use super::space::extremes;
 use crate::finger::file::{FingerFile, is_shape};
-use crate::space::{Design, Space};
+use crate::space::{Design, Parameter, Space, corners};
 use finray::geometry::Geometry;
 use input::{Check, InputError};
 
@@ -15,28 +14,17 @@ use input::{Check, InputError};
 /// If a key sets nothing in the finger file, or a combination cannot be printed.
 pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), InputError> {
     let check = Check { file };
-    let mut designs = vec![Design::default()];
-    for parameter in space.parameters() {
-        let shape = is_shape(&parameter.key);
-        if !shape && !super::is_infill(&parameter.key) {
-            continue;
-        }
-        let values = extremes(parameter);
-        for &value in values.iter().filter(|_| shape) {
+    let shape = |p: &&Parameter| is_shape(&p.key);
+    for parameter in space.parameters().iter().filter(shape) {
+        for value in parameter.extremes() {
             let alone = Design([(parameter.key.clone(), value)].into());
             if let Err(error) = finger.with(&alone) {
                 return check.fail(&parameter.key, format!("cannot be {value}: {error}"));
             }
         }
-        let with = |(design, value): (&Design, f64)| {
-            let mut design = design.clone();
-            design.0.insert(parameter.key.clone(), value);
-            design
-        };
-        let each = |design| values.iter().map(move |&value| with((design, value)));
-        designs = designs.iter().flat_map(each).collect();
     }
-    for design in designs {
+    let sets = |p: &&Parameter| shape(p) || super::is_infill(&p.key);
+    for design in corners(space.parameters().iter().filter(sets), usize::MAX) {
         let finger = finger.with(&design)?;
         if let Err(error) = Geometry::new(&finger, &design.printed(None)) {
             return check.fail("parameter", format!("{design} cannot be printed: {error}"));

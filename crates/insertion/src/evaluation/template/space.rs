@@ -4,7 +4,7 @@ use super::{Impossible, Template, is_infill};
 use crate::finger::computed::AtPad;
 use crate::finger::file::is_shape;
 use crate::finger::model::FingerSource;
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Parameter, Space};
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Parameter, Space, corners};
 use crate::task::Task;
 use crate::trial::run::RigError;
 use input::{Check, InputError};
@@ -32,10 +32,8 @@ impl Template {
         }
         let other = |p: &&Parameter| !is_infill(&p.key) && !is_shape(&p.key);
         let parameters = || space.parameters().iter().filter(other);
-        let mut designs = vec![Design::default()];
         for parameter in parameters() {
-            let values = extremes(parameter);
-            for &value in &values {
+            for value in parameter.extremes() {
                 let design = Design([(parameter.key.clone(), value)].into());
                 if let Err(error) = self.possible(&design, fits) {
                     return match error {
@@ -48,17 +46,8 @@ impl Template {
                     };
                 }
             }
-            if designs.len() * values.len() <= COMBINATIONS {
-                let with = |design: &Design, value| {
-                    let mut design = design.clone();
-                    design.0.insert(parameter.key.clone(), value);
-                    design
-                };
-                let each = |design: &Design| values.iter().map(|&v| with(design, v)).collect();
-                designs = designs.iter().flat_map::<Vec<Design>, _>(each).collect();
-            }
         }
-        for design in designs {
+        for design in corners(parameters(), COMBINATIONS) {
             if let Err(error) = self.possible(&design, fits) {
                 return check.fail("parameter", format!("{design} is impossible: {error}"));
             }
@@ -74,16 +63,6 @@ impl Template {
         let (task, _) = self.apply(&design, &FingerSource::Paper, at_pad)?;
         Ok(fits(&task)?)
     }
-}
-
-/// The smallest and the largest value, and the one nearest to zero.
-pub(in crate::evaluation) fn extremes(parameter: &Parameter) -> Vec<f64> {
-    let last = parameter.levels() - 1;
-    let zero = (-parameter.low / parameter.step).round().clamp(0.0, f64::from(last)) as u32;
-    let mut levels = vec![0, zero, last];
-    levels.sort_unstable();
-    levels.dedup();
-    levels.into_iter().map(|level| parameter.value(level)).collect()
 }
 
 #[cfg(test)]

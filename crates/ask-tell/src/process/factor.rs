@@ -3,14 +3,14 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// `K = L L'`.
-pub(super) type Factor = Cholesky<f64, Dyn>;
+pub(crate) type Factor = Cholesky<f64, Dyn>;
 
 /// Least pivot, as a share of the diagonal: below it rounding decides.
 const LEAST_PIVOT: f64 = 1e-14;
 
 /// Factors a covariance matrix of which only the lower triangle is read; `None` if it is not
 /// positive definite to working precision.
-pub(super) fn factor(covariance: DMatrix<f64>) -> Option<Factor> {
+pub(crate) fn factor(covariance: DMatrix<f64>) -> Option<Factor> {
     let diagonal = covariance.diagonal();
     let factor = Cholesky::new(covariance)?;
     let pivots = factor.l_dirty().diagonal();
@@ -19,7 +19,7 @@ pub(super) fn factor(covariance: DMatrix<f64>) -> Option<Factor> {
 }
 
 /// The factor of one point more, of these covariances with the others and this variance.
-pub(super) fn with_point(factor: &Factor, covariances: &DVector<f64>, own: f64) -> Option<Factor> {
+pub(crate) fn with_point(factor: &Factor, covariances: &DVector<f64>, own: f64) -> Option<Factor> {
     let n = covariances.len();
     let grown = factor.insert_column(n, covariances.push(own));
     let pivot = grown.l_dirty()[(n, n)];
@@ -27,7 +27,7 @@ pub(super) fn with_point(factor: &Factor, covariances: &DVector<f64>, own: f64) 
 }
 
 /// `L^-1 b`.
-pub(super) fn half_solved(factor: &Factor, b: &DVector<f64>) -> DVector<f64> {
+pub(crate) fn half_solved(factor: &Factor, b: &DVector<f64>) -> DVector<f64> {
     let mut x = b.clone();
     factor.l_dirty().solve_lower_triangular_unchecked_mut(&mut x);
     x
@@ -35,7 +35,7 @@ pub(super) fn half_solved(factor: &Factor, b: &DVector<f64>) -> DVector<f64> {
 
 /// The lower triangle of `K^-1`, zeros above. A third of the work of
 /// [`Cholesky::inverse`], which does not use that the inverse of `L` is triangular, too.
-pub(super) fn inverse(factor: &Factor) -> DMatrix<f64> {
+pub(crate) fn inverse(factor: &Factor) -> DMatrix<f64> {
     let (l, n) = (factor.l_dirty(), factor.l_dirty().nrows());
     let mut w = DMatrix::identity(n, n);
     for j in 0..n {

@@ -1,0 +1,33 @@
+//! The hyperparameters of the Matern 5/2 kernel with a length scale per axis.
+
+/// Hyperparameters, as natural logarithms; outputs are standardised, inputs in the unit cube.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hyperparameters {
+    /// Length scale of each axis, in cube edges.
+    pub log_length: Vec<f64>,
+    /// Signal variance.
+    pub log_signal: f64,
+    /// Noise variance above the floor.
+    pub log_noise: f64,
+}
+
+impl Hyperparameters {
+    /// As one vector: length scales, signal, noise.
+    pub fn to_vec(&self) -> Vec<f64> {
+        let mut theta = self.log_length.clone();
+        theta.extend([self.log_signal, self.log_noise]);
+        theta
+    }
+
+    /// From one vector of at least two numbers.
+    pub fn from_slice(theta: &[f64]) -> Self {
+        let d = theta.len().saturating_sub(2);
+        let at = |i: usize| theta.get(i).copied().unwrap_or(0.0);
+        Hyperparameters { log_length: theta[..d].to_vec(), log_signal: at(d), log_noise: at(d + 1) }
+    }
+
+    /// `x` in units of the length scales.
+    pub fn scale(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().zip(&self.log_length).map(|(x, l)| x * libm::exp(-l)).collect()
+    }
+}

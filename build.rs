@@ -15,7 +15,7 @@ const SIMULATION: [&str; 8] = [
     "crates/insertion",
     "data",
 ];
-/// What else decides the course and the answer of a study.
+/// What else decides the course of a study and what it recommends.
 const STUDY: [&str; 3] = ["crates/ask-tell", "src/calibration", "src/study"];
 
 fn main() -> io::Result<()> {

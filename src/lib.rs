@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! input, contact, finray, ask_tell -> insertion
-//!       -> connector, sensitivity, study, calibration -> report -> session -> cli
+//!       -> connector, sensitivity, study, calibration -> answer -> report -> session -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -16,6 +16,7 @@
 // A panic is a defect; what input can reach is an error with a message.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod answer;
 pub mod calibration;
 pub mod cli;
 pub mod connector;

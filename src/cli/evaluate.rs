@@ -4,6 +4,7 @@ use super::arguments::{FingerArguments, RepeatArguments, SetupArguments};
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
+use crate::answer::words::{mm, number};
 use crate::session::{Chosen, EvaluateRequest, Evaluated};
 use crate::study::ByRibs;
 use clap::Args;
@@ -77,13 +78,13 @@ fn window(chosen: &Chosen, evaluation: &Evaluation) -> String {
     let mut lines = vec![
         format!("task          {}", chosen.specimen.task.name),
         chosen::text(chosen),
-        format!("range         {:.1} mm", evaluation.window.range_mm()),
+        format!("range         {}", mm(evaluation.window.range_mm())),
         words::window(evaluation),
         format!(
             "failures      {c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",
             evaluation.diverged, evaluation.trials
         ),
-        format!("peak force    {}", words::number(evaluation.peak_force_n, 1, "N")),
+        format!("peak force    {}", number(evaluation.peak_force_n, 1, "N")),
     ];
     lines.extend(words::taught(evaluation.taught));
     lines.extend(words::drawn_text(evaluation));

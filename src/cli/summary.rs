@@ -1,11 +1,11 @@
 //! What is printed of a whole study.
 
 use super::terminal::merge;
+use super::words::wrapped;
 use super::{Failure, on_bench, print, recommended};
-use crate::report::volume_unit;
-use crate::study::{Ending, Recorded, StudyRecord, Walked, nearest, volume};
-use insertion::evaluation::objective::Measure;
-use insertion::evaluation::robustness::firm::Firm;
+use crate::answer::words::{evaluated, volume_unit};
+use crate::answer::{Answer, Front, Nearest, NothingInserts, WalkedDesign};
+use crate::study::{Ending, Recorded, StudyRecord};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -28,15 +28,17 @@ pub fn words(
     known: u64,
     as_json: bool,
 ) -> String {
+    let answer = Answer::of(record);
     if as_json {
-        let mut fields = to_json(record, ending, known);
+        let mut fields = to_json(&answer, ending, known);
         merge(&mut fields, json!({"study": dir}));
         return format!("{fields}\n");
     }
-    text(dir, record, ending, known)
+    text(dir, &answer, ending, known)
 }
 
-fn text(dir: &Path, record: &StudyRecord, ending: Ending, known: u64) -> String {
+fn text(dir: &Path, answer: &Answer, ending: Ending, known: u64) -> String {
+    let record = answer.record;
     let config = &record.config;
     let done = record.evaluations.len();
     let end = match ending {
@@ -57,79 +59,66 @@ fn text(dir: &Path, record: &StudyRecord, ending: Ending, known: u64) -> String 
         lines.extend(on_bench::lines(bench));
         lines.push("by simulation alone:".to_owned());
     }
-    if let Some((task, nearest)) = record.unusable() {
-        lines.push(unusable(record, task, nearest));
-    } else if let Some(found) = record.recommendation() {
-        lines.extend(recommended::lines(record, &found));
-    } else if config.objective.single().is_none() && record.best().is_some() {
-        lines.extend(front_lines(record));
-    } else {
-        lines.push(none(record));
+    match (&answer.nothing_inserts, &answer.recommended, &answer.front) {
+        (Some(nothing), ..) => lines.push(unusable(nothing)),
+        (None, Some(_), Some(front)) => lines.extend(front_lines(record, front)),
+        (None, Some(found), None) => lines.extend(recommended::lines(answer, found)),
+        (None, None, _) => lines.push(none(answer)),
     }
     if known > 0 {
         lines.push(format!("cache         {known} evaluations were known from other studies"));
     }
     let page = dir.join(crate::session::PAGE);
     let place = format!("study         {} (see {})\n", dir.display(), page.display());
-    super::words::wrapped(&(lines.join("\n") + "\n")) + &place
+    wrapped(&(lines.join("\n") + "\n")) + &place
 }
 
 /// That a task is of no use as it is.
-fn unusable(record: &StudyRecord, task: usize, nearest: &Recorded) -> String {
-    let name = record.config.tasks().nth(task).unwrap_or_default();
+fn unusable(NothingInserts { task, nearest }: &NothingInserts) -> String {
     format!(
-        "no design inserts at the nominal start of {name}, so none is recommended\n\
-         nearest       {} (evaluation {})",
-        nearest.design.labelled(),
-        nearest.index
+        "no design inserts at the nominal start of {task}, so none is recommended\n\
+         nearest       {}",
+        evaluated(nearest)
     )
 }
 
 /// Why no design is recommended.
-fn none(record: &StudyRecord) -> String {
-    let Some(nearest) = nearest(record.current()) else {
+fn none(answer: &Answer) -> String {
+    let Some(Nearest { design, constraints }) = &answer.nearest else {
         return "no evaluation gave a value".to_owned();
     };
-    let tasks = nearest.tasks();
-    let words = record.config.constraints.iter().map(|constraint| constraint.words(&tasks));
     format!(
-        "no design keeps all constraints, so none is recommended\nnearest       {} (evaluation {}): {}",
-        nearest.design.labelled(),
-        nearest.index,
-        words.collect::<Vec<_>>().join("; ")
+        "no design keeps all constraints, so none is recommended\nnearest       {}: {}",
+        evaluated(design),
+        constraints.join("; ")
     )
 }
 
-fn front_lines(record: &StudyRecord) -> Vec<String> {
-    let (front, goals) = (record.front(), record.config.goals());
-    let objectives = &goals.objectives;
+fn front_lines(record: &StudyRecord, Front { designs, volume }: &Front) -> Vec<String> {
+    let objectives = &record.config.objective;
     let line = |recorded: &&Recorded| {
         let values = objectives.show(recorded.feasible().unwrap_or_default());
-        format!(
-            "              {values}: {} (evaluation {})",
-            recorded.design.labelled(),
-            recorded.index
-        )
+        format!("              {values}: {}", evaluated(recorded))
     };
-    let size = match front.len() {
+    let size = match designs.len() {
         1 => "one design is the best in all objectives".to_owned(),
         count => {
             format!("{count} designs; none is at least as good as another in all objectives")
         }
     };
     let mut lines = vec![format!("front         {size}")];
-    lines.extend(front.iter().map(line));
-    let found = volume(&goals, record.current());
+    lines.extend(designs.iter().map(line));
     lines.push(format!(
         "hypervolume   {:.3} {} from the reference {}",
-        found.hypervolume,
+        volume.hypervolume,
         volume_unit(objectives),
-        objectives.show(&found.reference)
+        objectives.show(&volume.reference)
     ));
     lines
 }
 
-fn to_json(record: &StudyRecord, ending: Ending, known: u64) -> Value {
+fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
+    let record = answer.record;
     let config = &record.config;
     let ending = match ending {
         Ending::BudgetSpent => "budget_spent",
@@ -137,8 +126,7 @@ fn to_json(record: &StudyRecord, ending: Ending, known: u64) -> Value {
         Ending::Converged => "converged",
         Ending::Interrupted => "interrupted",
     };
-    let single = config.objective.single();
-    let best = record.best().filter(|_| single.is_some());
+    let best = record.best().filter(|_| answer.front.is_none());
     let mut fields = json!({
         "task": config.task_name(),
         "space": config.space.name(),
@@ -154,40 +142,37 @@ fn to_json(record: &StudyRecord, ending: Ending, known: u64) -> Value {
         "ending": ending,
         "best": best.map(|best| recorded_json(record, best)),
     });
-    merge(&mut fields, recommended::to_json(record));
-    if !record.walked.is_empty() {
-        let one = |walked: &Walked| {
-            let mut fields = recorded_json(record, &walked.recorded);
-            let firm: Vec<f64> = walked.firm.iter().map(Firm::range_mm).collect();
-            merge(&mut fields, json!({"firm_range_mm": record.aggregated(Measure::Range, &firm)}));
+    merge(&mut fields, recommended::json(answer));
+    if !answer.walked.is_empty() {
+        let one = |&WalkedDesign { design, firm_range_mm }: &WalkedDesign| {
+            let mut fields = recorded_json(record, design);
+            merge(&mut fields, json!({ "firm_range_mm": firm_range_mm }));
             fields
         };
-        let walked: Vec<Value> = record.walked.iter().map(one).collect();
+        let walked: Vec<Value> = answer.walked.iter().map(one).collect();
         merge(&mut fields, json!({"walked": walked}));
     }
     if record.segments.len() > 1 {
         merge(&mut fields, json!({"segments": record.segments}));
     }
     if !config.constraints.is_empty() {
-        let feasible = record.current().iter().filter(|r| r.feasible().is_some()).count();
-        merge(&mut fields, json!({"constraints": config.constraints, "feasible": feasible}));
+        let limits = json!({"constraints": config.constraints, "feasible": answer.feasible});
+        merge(&mut fields, limits);
     }
     if let Some(aggregate) = &config.aggregate {
         merge(&mut fields, json!({"aggregate": aggregate}));
     }
-    if single.is_none() {
-        let found = volume(&config.goals(), record.current());
-        let front = record.front();
-        let front: Vec<Value> = front.iter().map(|r| recorded_json(record, r)).collect();
+    if let Some(Front { designs, volume }) = &answer.front {
+        let front: Vec<Value> = designs.iter().map(|r| recorded_json(record, r)).collect();
         let keys = config.objective.keys();
         let reference: serde_json::Map<_, _> =
-            keys.into_iter().zip(found.reference.iter().map(|&value| json!(value))).collect();
-        let volume = json!({
+            keys.into_iter().zip(volume.reference.iter().map(|&value| json!(value))).collect();
+        let found = json!({
             "front": front,
-            "hypervolume": found.hypervolume,
+            "hypervolume": volume.hypervolume,
             "hypervolume_reference": reference,
         });
-        merge(&mut fields, volume);
+        merge(&mut fields, found);
     }
     fields
 }
@@ -219,4 +204,22 @@ pub fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
         merge(&mut fields, json!({"tasks": tasks}));
     }
     fields
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lines of the committed studies, to the letter.
+    #[test]
+    fn the_summary_is_that_of_the_reference() {
+        for task in ["ket8", "rj45", "usb"] {
+            let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference").join(task);
+            let expected = std::fs::read_to_string(dir.join("summary.txt")).unwrap();
+            let record = StudyRecord::load(&dir).unwrap();
+            let lines = words(&dir, &record, Ending::BudgetSpent, 0, false);
+            let (lines, _) = lines.split_once("study   ").unwrap();
+            assert_eq!(lines, expected, "{task}");
+        }
+    }
 }

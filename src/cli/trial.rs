@@ -2,8 +2,9 @@
 
 use super::arguments::{FilmArguments, FingerArguments, RepeatArguments, SetupArguments};
 use super::terminal::merge;
-use super::words::{self, number};
+use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
+use crate::answer::words::number;
 use crate::session::{TrialDone, TrialRequest, given_offset};
 use clap::Args;
 use insertion::evaluation::grid_mm;

@@ -1,8 +1,8 @@
 //! What is printed of an evaluation.
 
+use crate::answer::words::{self, ends_mm, mm, span};
 use crate::study::ByRibs;
 use input::units::N_PER_MM;
-use insertion::evaluation::objective::Measure;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::surrogate::Prediction;
@@ -49,9 +49,8 @@ pub fn window(evaluation: &Evaluation) -> String {
         );
     }
     format!(
-        "window        {:.1} to {:+.1} mm\nends          {} below, {} above",
-        window.negative_mm(),
-        window.positive_mm(),
+        "window        {} mm\nends          {} below, {} above",
+        span(ends_mm(window)),
         end(window.end_negative),
         end(window.end_positive)
     )
@@ -64,12 +63,6 @@ fn end(outcome: Option<Outcome>) -> &'static str {
 /// A difference of numbers with one decimal, without the noise of the subtraction.
 pub fn rounded(mm: f64) -> f64 {
     (mm * 1e6).round() / 1e6
-}
-
-/// The largest force where anything inserted.
-pub fn force(evaluation: &Evaluation) -> Option<String> {
-    let force = Measure::PeakForce.value(evaluation)?;
-    Some(format!("peak force    {force:.1} N between plug and socket, over the inserted trials"))
 }
 
 /// Predicted stiffness, its uncertainty, and whether it is an extrapolation; two lines.
@@ -95,41 +88,13 @@ pub fn stiffness(prediction: &Prediction) -> String {
 
 /// Success rate and robust range, a line each, as far as they were measured.
 pub fn drawn_text(evaluation: &Evaluation) -> Vec<String> {
-    let mut lines = Vec::new();
-    if let Some(success) = &evaluation.success {
-        let rate = success.rate().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
-        let [low, high] = success.interval();
-        let [c1, c2, c3, c4] = success.failure_counts;
-        lines.push(format!(
-            "success rate  {rate}, {} % interval {low:.3} to {high:.3}: {} of {} trials\n\
-             \x20             failures {c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged",
-            100.0 * success.confidence,
-            success.inserted,
-            success.counted(),
-            success.diverged
-        ));
-    }
-    if let Some(robust) = &evaluation.robust {
-        let value = robust.value_mm.map_or("none".to_owned(), |value| format!("{value:.2} mm"));
-        lines.push(format!(
-            "robust range  {value}: {} windows of mean {}, deviation {}, {} diverged",
-            robust.ranges_mm.len(),
-            number(robust.mean_mm(), 2, "mm"),
-            number(robust.sd_mm(), 2, "mm"),
-            robust.diverged
-        ));
-    }
-    lines
-}
-
-/// A measured number with so many decimals and its unit, or that there is none.
-pub fn number(value: f64, decimals: usize, unit: &str) -> String {
-    if !value.is_finite() {
-        return "none".to_owned();
-    }
-    let value = format!("{value:.decimals$}");
-    // After a collision that a body was thrown far by.
-    if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
+    let success = evaluation.success.as_ref().map(|success| {
+        let [rate, failures] = words::success(success);
+        format!("success rate  {rate}\n              failures {failures}")
+    });
+    let robust = evaluation.robust.as_ref();
+    let robust = robust.map(|robust| format!("robust range  {}", words::robust(robust)));
+    success.into_iter().chain(robust).collect()
 }
 
 /// What the finger tolerates with springs computed from its ribs, a line a task, each ended.
@@ -147,9 +112,9 @@ fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
     if window.nominal != Outcome::Inserted {
         return format!("none: its nominal start ends with {}", window.nominal.label());
     }
-    let (range, low, high) = (window.range_mm(), window.negative_mm(), window.positive_mm());
-    let start = taught.map_or(String::new(), |by| format!(", start taught {:+.1}", grid_mm(by)));
-    format!("{range:.1} mm ({low:.1} to {high:+.1}{start}); --finger-model computed")
+    let start = words::taught(*taught, "");
+    let (range, ends) = (mm(window.range_mm()), span(ends_mm(window)));
+    format!("{range} ({ends}{start}); --finger-model computed")
 }
 
 /// Where a taught start came to lie; `None` if it was not taught.

@@ -1,7 +1,7 @@
 //! What measurements say of the fingers on the bench: what a study with measurements leads with.
 
 use super::elements::table;
-use super::text::infill;
+use crate::answer::words::{infill, interval, mm};
 use crate::study::{BenchFinger, OnBench, StudyRecord, Trust};
 use insertion::evaluation::objective::Measure;
 use insertion::outcome::FailureClass;
@@ -18,12 +18,12 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     Some(html! {
         p.big { (infill(&best.design)) }
         p {
-            "is predicted to tolerate a start shifted by " b { (format!("{:.1} mm", best.range_mm)) }
-            (format!(" in all on the bench (80 % interval {:.1} to {:.1} mm). ", best.low_mm, best.high_mm))
+            "is predicted to tolerate a start shifted by " b { (mm(best.range_mm)) }
+            " in all on the bench (80 % interval " (interval([best.low_mm, best.high_mm])) "). "
             "It is the best of all " (found.fingers) " fingers with a probability of "
             (format!("{:.1} %", 100.0 * best.probability_best))
             ": neighbours share that. The simulation alone gives it "
-            (simulated.map_or("no window".to_owned(), |range| format!("{range:.1} mm"))) "."
+            (simulated.map_or("no window".to_owned(), mm)) "."
         }
         div.card {
             p { (trust(found.measured, &found.trust)) }
@@ -58,8 +58,8 @@ fn row(finger: &BenchFinger) -> Vec<String> {
     let [below, above] = finger.failures.map(class);
     vec![
         infill(&finger.design),
-        format!("{:.1} mm", finger.range_mm),
-        format!("{:.1} to {:.1} mm", finger.low_mm, finger.high_mm),
+        mm(finger.range_mm),
+        interval([finger.low_mm, finger.high_mm]),
         format!("{:.1} %", 100.0 * finger.probability_best),
         format!("{below} | {above}"),
     ]

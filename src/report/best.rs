@@ -1,31 +1,28 @@
 //! The best design in words.
 
 use super::elements::definitions;
-use super::text::{design, outcome, stiffness, values};
 use super::{again, answer};
-use crate::study::{Recorded, StudyRecord, nearest};
+use crate::answer::words::{design, outcome, robust, stiffness, success};
+use crate::answer::{Answer, Nearest, OnTask, Recommended};
 use insertion::evaluation::objective::Measure;
-use insertion::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::Outcome;
 use maud::{Markup, html};
 
 /// The section; says so if no design can be recommended.
-pub(super) fn section(record: &StudyRecord) -> Markup {
-    let Some(best) = record.recommended() else { return none(record) };
-    let objectives = &record.config.objective;
-    let found = best.feasible().unwrap_or_default();
+pub(super) fn section(answer: &Answer) -> Markup {
+    let Some(found) = &answer.recommended else { return none(answer) };
+    let (best, objectives) = (found.design, &answer.record.config.objective);
     html! {
         p.big { (best.design.labelled()) }
-        (answer::card(record, best))
-        @if objectives.single().is_none() {
+        (answer::card(answer, found))
+        @if answer.front.is_some() {
             p {
-                "has the best " (objectives.first().name()) ": " (objectives.show(found))
+                "has the best " (objectives.first().name()) ": "
+                (objectives.show(best.feasible().unwrap_or_default()))
                 ". No one design is best in all objectives; see the front below."
             }
         }
-        @for (task, evaluation) in record.config.tasks().zip(best.tasks()) {
-            (unusable(record, task, &evaluation.window))
-        }
+        @for task in &found.tasks { (unusable(task, &found.on(task))) }
         @if !best.stiffness.inside_hull() {
             p.warn {
                 "Outside the hull of the measured designs, by "
@@ -34,17 +31,17 @@ pub(super) fn section(record: &StudyRecord) -> Markup {
                 result."
             }
         }
-        details { summary { "All its numbers" } (definitions(&facts(record, best, found))) }
+        details { summary { "All its numbers" } (definitions(&facts(answer, found))) }
         p {
             "The same study again, in its folder: "
-            code { @for word in again::words(record) { span { (word) } " " } }
+            code { @for word in again::words(answer.record) { span { (word) } " " } }
         }
     }
 }
 
-fn none(record: &StudyRecord) -> Markup {
-    let count = record.evaluations.len();
-    let Some(nearest) = nearest(&record.evaluations) else {
+fn none(answer: &Answer) -> Markup {
+    let count = answer.designs;
+    let Some(Nearest { design: nearest, constraints }) = &answer.nearest else {
         return html! {
             p.warn {
                 "No design has a value: of " (count) " evaluations none gave one (none were run, \
@@ -53,26 +50,23 @@ fn none(record: &StudyRecord) -> Markup {
             }
         };
     };
-    let tasks = nearest.tasks();
-    let words: Vec<String> = record.config.constraints.iter().map(|c| c.words(&tasks)).collect();
     html! {
         p.warn {
             "No design keeps all constraints, so none is recommended. Of " (count) " evaluations, \
             evaluation " (nearest.index) " (" (design(&nearest.design)) ") violates them least: "
-            (words.join("; ")) "."
+            (constraints.join("; ")) "."
         }
     }
 }
 
 /// That the best design is of no use on a task.
-fn unusable(record: &StudyRecord, task: &str, window: &Window) -> Markup {
-    let on = if record.config.several_tasks() { format!(" on {task}") } else { String::new() };
+fn unusable(task: &OnTask, on: &str) -> Markup {
+    let nominal = task.measured.window.nominal;
     html! {
-        @if window.nominal != Outcome::Inserted {
+        @if nominal != Outcome::Inserted {
             p.warn {
-                "Even the best design fails at the nominal start" (on) ": "
-                (outcome(window.nominal)) ", so its range is 0 mm. No design of this study is \
-                usable as it is."
+                "Even the best design fails at the nominal start" (on) ": " (outcome(nominal)) ", \
+                so its range is 0 mm. No design of this study is usable as it is."
             }
         }
     }
@@ -84,21 +78,20 @@ fn fact(name: &str, value: String) -> (String, String) {
     (name.to_owned(), value)
 }
 
-fn facts(record: &StudyRecord, best: &Recorded, found: &[f64]) -> Facts {
-    let config = &record.config;
-    let mut facts = Facts::new();
-    let name = config.objective.single().map_or(String::new(), |measure| format!("{measure} = "));
-    facts.push(fact("objective", name + &values(&config.objective, found)));
-    facts.extend(walked(record, best));
-    let tasks = best.tasks();
-    facts.extend(config.constraints.iter().map(|c| fact("constraint", c.words(&tasks))));
-    for (task, evaluation) in config.tasks().zip(&tasks) {
-        if config.several_tasks() {
-            facts.push(fact("on the task", task.to_owned()));
-        }
-        facts.extend(of_task(evaluation));
+/// What the card does not say.
+fn facts(answer: &Answer, found: &Recommended) -> Facts {
+    let (best, several) = (found.design, found.tasks.len() > 1);
+    let on_card = |measure| measure == Measure::Range && !several;
+    let objective = found.objective.filter(|(measure, _)| !on_card(*measure));
+    let show = |(measure, value): (Measure, f64)| format!("{measure} = {}", measure.show(value));
+    let mut facts: Facts = objective.map(|one| fact("objective", show(one))).into_iter().collect();
+    facts.extend(walked(answer, found));
+    facts.extend(found.constraints.iter().map(|(_, words)| fact("constraint", words.clone())));
+    for task in &found.tasks {
+        facts.extend(several.then(|| fact("on the task", task.name.to_owned())));
+        facts.extend(of_task(task));
     }
-    let of = format!("{} (the {} are counted from 0)", best.index, record.evaluations.len());
+    let of = format!("{} (the {} are counted from 0)", best.index, answer.record.evaluations.len());
     facts.extend([
         fact("compliance stiffness (y), one finger", stiffness(best.stiffness.compliance)),
         fact("assembly stiffness (z), one finger", stiffness(best.stiffness.assembly)),
@@ -107,73 +100,26 @@ fn facts(record: &StudyRecord, best: &Recorded, found: &[f64]) -> Facts {
     facts
 }
 
-/// That the best designs were walked, and what the search had found of this one.
-fn walked(record: &StudyRecord, best: &Recorded) -> Option<(String, String)> {
-    let count = record.walked.len();
-    let searched = record.current().iter().find(|recorded| recorded.index == best.index)?;
-    let before = values(&record.config.objective, searched.feasible().unwrap_or_default());
-    let words = format!("step by step, as the best {count}; the search had found {before}");
-    (count > 0).then(|| fact("walked", words))
+/// That the best designs were walked, and what the search had found of this one, if that fell.
+fn walked(answer: &Answer, found: &Recommended) -> Option<(String, String)> {
+    let (measure, _) = found.objective.filter(|_| !answer.walked.is_empty())?;
+    let before =
+        found.searched.map(|value| format!("; the search had found {}", measure.show(value)));
+    let count = answer.walked.len();
+    Some(fact("walked", format!("step by step, as the best {count}{}", before.unwrap_or_default())))
 }
 
-/// What was measured on one task.
-fn of_task(found: &Evaluation) -> Facts {
-    let mut facts = window(&found.window);
-    let most = |measure: Measure| {
-        let value = measure.value(found)?;
-        Some(format!("{} (over the inserted trials)", measure.show(value)))
-    };
-    let force = most(Measure::PeakForce);
-    facts.extend(force.map(|force| fact("largest contact force plug to socket", force)));
-    facts.extend(most(Measure::Slip).map(|slip| fact("largest slip in the grasp", slip)));
-    facts.extend(found.success.iter().flat_map(success));
-    facts.extend(found.robust.iter().map(robust));
-    facts
-}
-
-fn window(window: &Window) -> Facts {
-    if window.nominal != Outcome::Inserted {
-        let ends = outcome(window.nominal);
-        return vec![fact("window", format!("none: the nominal start ends with {ends}"))];
+/// What else was measured on one task.
+fn of_task(task: &OnTask) -> Facts {
+    let slip = Measure::Slip.value(task.measured);
+    let slip = slip.map(|slip| format!("{} (over the inserted trials)", Measure::Slip.show(slip)));
+    let mut facts: Facts =
+        slip.map(|slip| fact("largest slip in the grasp", slip)).into_iter().collect();
+    if let Some([rate, failures]) = task.measured.success.as_ref().map(success) {
+        facts.push(fact("success rate under drawn errors", rate));
+        facts.push(fact("failures under drawn errors", failures));
     }
-    let end = |end: Option<Outcome>| {
-        end.map_or("no failure up to the limit of the search".to_owned(), outcome)
-    };
-    let span = format!(
-        "{:+.1} mm to {:+.1} mm: the last 0.1 mm step found to insert on each side",
-        window.negative_mm(),
-        window.positive_mm()
-    );
-    vec![
-        fact("window", span),
-        fact("beyond the negative end", end(window.end_negative)),
-        fact("beyond the positive end", end(window.end_positive)),
-    ]
-}
-
-fn success(success: &SuccessRate) -> Facts {
-    let [low, high] = success.interval();
-    let rate = success.rate().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
-    let rate = format!(
-        "{rate} ({} of {} trials; {} % interval {low:.3} to {high:.3})",
-        success.inserted,
-        success.counted(),
-        100.0 * success.confidence
-    );
-    let classes = FailureClass::ALL.into_iter().zip(success.failure_counts);
-    let failed: Vec<String> = classes.map(|(class, n)| format!("{n} {}", class.label())).collect();
-    let failed = format!("{}, {} diverged", failed.join(", "), success.diverged);
-    vec![fact("success rate under drawn errors", rate), fact("failures under drawn errors", failed)]
-}
-
-fn robust(robust: &RobustRange) -> (String, String) {
-    let value = robust.value_mm.map_or("none".to_owned(), |value| format!("{value:.2} mm"));
-    let text = format!(
-        "{value}; {} windows of mean {:.2} mm and standard deviation {:.2} mm, {} diverged",
-        robust.ranges_mm.len(),
-        robust.mean_mm(),
-        robust.sd_mm(),
-        robust.diverged
-    );
-    fact("robust range under drawn errors", text)
+    let range = task.measured.robust.as_ref().map(robust);
+    facts.extend(range.map(|range| fact("robust range under drawn errors", range)));
+    facts
 }

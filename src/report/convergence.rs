@@ -5,8 +5,8 @@ use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet, wo
 use super::drawn::{drawn, turning};
 use super::elements::figure;
 use super::marks::{PointMark, line, points, stairs};
-use super::text::volume_unit;
 use super::theme::{BLUE, MUTED, ORANGE, RED};
+use crate::answer::words::volume_unit;
 use crate::study::{Recorded, StudyRecord, volume};
 use insertion::evaluation::objective::Measure;
 use maud::Markup;

@@ -3,7 +3,7 @@
 
 use super::drawn::drawn;
 use super::surface;
-use super::text::outcome;
+use crate::answer::words::{end, ends_mm};
 use crate::study::{Recorded, StudyRecord};
 use insertion::evaluation::objective::Measure;
 use insertion::outcome::Outcome;
@@ -75,13 +75,12 @@ fn to_json(record: &StudyRecord, model: Option<&surface::Model>) -> Value {
         let x: Vec<f64> = parameters.iter().filter_map(|p| recorded.design.get(&p.key)).collect();
         let window = recorded.on(0).map(|found| &found.window);
         let inserts = window.filter(|window| window.nominal == Outcome::Inserted);
-        let end = |end: Option<Outcome>| end.map_or("no failure".to_owned(), outcome);
         json!({
             "index": recorded.index,
             "x": x,
             "value": recorded.value(),
             "feasible": recorded.feasible().is_some(),
-            "window": inserts.map(|w| [w.negative_mm(), w.positive_mm()]),
+            "window": inserts.map(ends_mm),
             "ends": window.map(|w| [end(w.end_negative), end(w.end_positive)]),
             "force": recorded.on(0).and_then(|found| Measure::PeakForce.value(found)),
         })

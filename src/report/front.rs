@@ -5,9 +5,10 @@ use super::chart::{Area, AxisOf, Drawn, around, axes, legend, sheet};
 use super::drawn::drawn;
 use super::elements::{figure, table};
 use super::marks::{PointMark, line, points};
-use super::text::{design, stiffness, volume_unit};
 use super::theme::{BLUE, MUTED, ORANGE};
-use crate::study::{Recorded, StudyRecord, volume};
+use crate::answer::words::{design, stiffness, volume_unit};
+use crate::answer::{Answer, Front};
+use crate::study::{Recorded, StudyRecord};
 use maud::{Markup, html};
 use plotters::prelude::*;
 
@@ -23,19 +24,14 @@ pub(super) fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<Strin
 }
 
 /// The plot, hypervolume and designs; `None` for a single objective.
-pub(super) fn section(
-    record: &StudyRecord,
-    size: (u32, u32),
-) -> Result<Option<Markup>, ReportError> {
-    if record.config.objective.single().is_some() {
-        return Ok(None);
-    }
+pub(super) fn section(answer: &Answer, size: (u32, u32)) -> Result<Option<Markup>, ReportError> {
+    let Some(front) = &answer.front else { return Ok(None) };
     let caption = "All evaluated designs by their first two objectives. Rings: the designs \
                    among which nothing but preference decides.";
-    let svg = svg(record, size)?;
+    let svg = svg(answer.record, size)?;
     Ok(Some(html! {
         @if let Some(svg) = svg { (figure(&svg, "the front and all evaluations", caption)) }
-        (designs(record))
+        (designs(answer, front))
     }))
 }
 
@@ -64,9 +60,8 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
 }
 
 /// Hypervolume and designs of the front.
-fn designs(record: &StudyRecord) -> Markup {
-    let (front, goals) = (record.front(), record.config.goals());
-    let objectives = &goals.objectives;
+fn designs(answer: &Answer, Front { designs: front, volume: found }: &Front) -> Markup {
+    let objectives = &answer.record.config.objective;
     if front.is_empty() {
         return html! {
             p.warn {
@@ -75,7 +70,6 @@ fn designs(record: &StudyRecord) -> Markup {
             }
         };
     }
-    let found = volume(&goals, &record.evaluations);
     let names = objectives.measures().iter().map(|measure| measure.name());
     let head: Vec<&str> =
         ["evaluation", "design"].into_iter().chain(names).chain(["compliance stiffness"]).collect();
@@ -89,7 +83,7 @@ fn designs(record: &StudyRecord) -> Markup {
     };
     html! {
         p {
-            (front.len()) " of " (record.evaluations.len()) " evaluated designs are on the front: \
+            (front.len()) " of " (answer.designs) " evaluated designs are on the front: \
             no other design that was evaluated is at least as good in every objective and better \
             in one. They dominate a hypervolume of " (format!("{:.3}", found.hypervolume)) " "
             (volume_unit(objectives)) ", taken from the reference "

@@ -1,6 +1,7 @@
 //! What the numbers of a study do not say.
 
-use crate::calibration::order::{Order, OrderSource, order_on_bench, rank_correlation};
+use crate::answer::{Answer, TaskOrder};
+use crate::calibration::order::{Order, OrderSource, rank_correlation};
 use crate::study::StudyRecord;
 use insertion::evaluation::objective::Measure;
 use insertion::stiffness::Axis;
@@ -11,7 +12,8 @@ use maud::{Markup, html};
 const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
 
 /// The statements, one after the other.
-pub(super) fn section(record: &StudyRecord, model: &Model) -> Markup {
+pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
+    let record = answer.record;
     let goals = record.config.goals();
     html! {
         ul {
@@ -26,13 +28,13 @@ pub(super) fn section(record: &StudyRecord, model: &Model) -> Markup {
                     }
                 }
             }
-            li { (published_order(record)) }
+            li { (published_order(answer)) }
             li {
                 "The ends of a window are known to the 0.1 mm grid: the next step does not insert, \
                 so the end lies within 0.1 mm beyond the one given, and the range is up to 0.2 mm \
                 wider. Differences of 0.2 mm between designs are at this resolution."
             }
-            li { (gaps(record)) }
+            li { (gaps(answer)) }
             li { (stiffness(model, goals.need(Measure::RobustRange))) }
             @if goals.need_draws() {
                 li {
@@ -46,8 +48,8 @@ pub(super) fn section(record: &StudyRecord, model: &Model) -> Markup {
     }
 }
 
-fn gaps(record: &StudyRecord) -> String {
-    let walked = match record.walked.len() {
+fn gaps(answer: &Answer) -> String {
+    let walked = match answer.walked.len() {
         0 => "No design was walked, step by step. For any design ".to_owned(),
         count => format!("The best {count} designs were walked, step by step. For any other "),
     };
@@ -58,9 +60,8 @@ fn gaps(record: &StudyRecord) -> String {
     )
 }
 
-fn published_order(record: &StudyRecord) -> String {
-    let here = |(at, task): (usize, &str)| {
-        let Order { spearman, fingers, source } = order_on_bench(record, at)?;
+fn published_order(answer: &Answer) -> String {
+    let here = |&TaskOrder { task, order: Order { spearman, fingers, source } }: &TaskOrder| {
         let whose = match source {
             OrderSource::Study => "this study's",
             OrderSource::Validation => "our validated",
@@ -70,12 +71,12 @@ fn published_order(record: &StudyRecord) -> String {
         };
         let published = rank_correlation(task)
             .map_or(String::new(), |(r, n)| format!("; of the published ones {r:+.2} over {n}"));
-        Some(format!(
+        format!(
             " On {task} the rank correlation between {whose} simulated ranges and those of the bench \
              is {spearman:+.2} over {fingers} fingers (+1: same order, −1: opposite order){published}."
-        ))
+        )
     };
-    let here: String = record.config.tasks().enumerate().filter_map(here).collect();
+    let here: String = answer.orders.iter().map(here).collect();
     format!(
         "In the published simulation of these tasks, ranges rank the designs in the opposite \
          order to the robot on two of four tasks.{here} Confirm the best design, and a very \

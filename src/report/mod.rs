@@ -28,16 +28,13 @@ mod stiffness_plot;
 mod surface;
 #[cfg(test)]
 mod tests;
-mod text;
 mod theme;
 mod windows;
 
 use crate::study::StudyRecord;
 
-pub use answer::beyond_chance;
 pub use compare_plot::svg as compare_svg;
 pub use page::{Beside, Replay, card, page};
-pub use text::volume_unit;
 
 /// Why a plot could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -5,6 +5,7 @@ use super::{
     ReportError, bench, best, convergence, drawn, explore, front, limits, printer, provenance,
     published, shape, windows,
 };
+use crate::answer::Answer;
 use crate::study::StudyRecord;
 use insertion::surrogate::Model;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -39,7 +40,7 @@ pub struct Replay {
 pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<String, ReportError> {
     let config = &record.config;
     let title = format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed);
-    let sections = sections(record, model, beside)?;
+    let sections = sections(&Answer::of(record), model, beside)?;
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -87,7 +88,7 @@ pub fn card(record: &StudyRecord) -> String {
                 (bench)
                 h4 { "By simulation alone" }
             }
-            (best::section(record))
+            (best::section(&Answer::of(record)))
         }
     };
     card.into_string()
@@ -96,11 +97,8 @@ pub fn card(record: &StudyRecord) -> String {
 type Section = (&'static str, String, Markup);
 
 /// Id, title and body of each section; what does not apply is left out.
-fn sections(
-    record: &StudyRecord,
-    model: &Model,
-    beside: &Beside,
-) -> Result<Vec<Section>, ReportError> {
+fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Section>, ReportError> {
+    let record = answer.record;
     let windows = each_task(record, |task| Ok(windows::section(record, task)))?;
     let published = each_task(record, |task| published::section(record, task, PLOT))?;
     let section = |id, title: &str, body| Some((id, title.to_owned(), body));
@@ -110,7 +108,7 @@ fn sections(
     };
     let sections = [
         bench::section(record).and_then(|bench| section("bench", "Best on the bench", bench)),
-        section("best", best, best::section(record)),
+        section("best", best, best::section(answer)),
         films(&beside.replays).and_then(|films| section("replay", played, films)),
         explore::section(record).and_then(|views| section("explore-views", "All designs", views)),
         printer::section(record)
@@ -118,10 +116,10 @@ fn sections(
             .and_then(|printer| section("printer", "To the printer", printer)),
         section("windows", "Tolerance windows of the best designs", windows),
         shape::section(record).and_then(|shape| section("shape", "Beyond the infill alone", shape)),
-        front::section(record, PLOT)?
+        front::section(answer, PLOT)?
             .and_then(|front| section("front", "Between the objectives", front)),
         section("published", "Published ranges beside ours", published),
-        section("limits", "What this does not say", limits::section(record, model)),
+        section("limits", "What this does not say", limits::section(answer, model)),
         section("failures", "How the trials ended", provenance::outcomes(record)),
         section("convergence", "Convergence", convergence::section(record, PLOT)?),
         section("provenance", "Provenance", provenance::provenance(record)),

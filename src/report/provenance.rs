@@ -1,7 +1,7 @@
 //! How the trials of a study ended, and what decided its results.
 
 use super::elements::{definitions, table};
-use super::text;
+use crate::answer::words;
 use crate::study::{Provenance, Recorded, StudyRecord};
 use insertion::evaluation::Evaluation;
 use insertion::outcome::{FailureClass, Outcome};
@@ -26,7 +26,7 @@ pub(super) fn outcomes(record: &StudyRecord) -> Markup {
             0 => "–".to_owned(),
             _ => format!("{:.1} %", 100.0 * count as f64 / trials as f64),
         };
-        vec![text::outcome(outcome), count.to_string(), share]
+        vec![words::outcome(outcome), count.to_string(), share]
     };
     let outcomes = FailureClass::ALL.map(Outcome::Failed).into_iter();
     let rows: Vec<_> = outcomes.chain([Outcome::Diverged, Outcome::Inserted]).map(row).collect();

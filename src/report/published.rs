@@ -4,8 +4,8 @@ use super::ReportError;
 use super::chart::{Area, AxisOf, Drawn, around, axes, legend, sheet};
 use super::elements::{figure, table};
 use super::marks::{PointMark, points};
-use super::text::outcome;
 use super::theme::{BLUE, GREEN, ORANGE};
+use crate::answer::words::{mm, outcome};
 use crate::calibration::published::{Origin, Published, designs, of_task};
 use crate::study::{Recorded, StudyRecord};
 use input::units::N_PER_MM;
@@ -79,7 +79,7 @@ fn ours(window: &Window) -> String {
         })
     };
     let [negative, positive] = [window.end_negative, window.end_positive].map(class);
-    format!("{:.1} mm ({negative} | {positive})", window.range_mm())
+    format!("{} ({negative} | {positive})", mm(window.range_mm()))
 }
 
 /// The evaluation of a measured design, if the study has one.

@@ -2,10 +2,12 @@
 
 use super::elements::table;
 use super::printer::finger_file;
-use super::text::{design, stiffness};
+use crate::answer::words::{infill, mm, stiffness};
 use crate::study::{Recorded, StudyRecord};
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::Measure;
 use insertion::finger::file::is_shape;
-use insertion::space::{Design, Parameter, label};
+use insertion::space::{Parameter, label};
 use maud::{Markup, html};
 
 /// The section; `None` if the space has no such parameter.
@@ -57,23 +59,14 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     })
 }
 
-fn infill(of: &Design) -> String {
-    let infill = of.0.iter().filter(|(key, _)| super::text::is_infill(key));
-    design(&Design(infill.map(|(key, value)| (key.clone(), *value)).collect()))
-}
-
-fn range(recorded: &Recorded) -> Vec<f64> {
-    recorded.tasks.iter().map(|task| task.window.range_mm()).collect()
-}
-
 fn row(name: &str, recorded: &Recorded) -> Vec<String> {
-    let each = |value: &dyn Fn(usize) -> String| {
-        (0..recorded.tasks.len()).map(value).collect::<Vec<_>>().join(", ")
+    let each = |value: fn(&Evaluation) -> String| {
+        recorded.tasks.iter().map(value).collect::<Vec<_>>().join(", ")
     };
     vec![
         name.to_owned(),
-        each(&|i| format!("{:.1} mm", recorded.tasks[i].window.range_mm())),
-        each(&|i| format!("{:.1} N", recorded.tasks[i].peak_force_n)),
+        each(|task| mm(task.window.range_mm())),
+        each(|task| Measure::PeakForce.show(task.peak_force_n)),
         stiffness(recorded.stiffness.compliance),
         stiffness(recorded.stiffness.assembly),
     ]
@@ -81,15 +74,11 @@ fn row(name: &str, recorded: &Recorded) -> Vec<String> {
 
 /// How much more range, and at what force.
 fn gain(alone: &Recorded, best: &Recorded) -> String {
-    let of = |(i, (before, now)): (usize, (f64, f64))| {
-        let forces = [alone, best].map(|recorded| recorded.tasks[i].peak_force_n);
-        format!(
-            "{:+.1} mm of range, at {:.1} N in place of {:.1} N",
-            now - before,
-            forces[1],
-            forces[0]
-        )
+    let of = |(before, now): (&Evaluation, &Evaluation)| {
+        let [force, other] = [now, before].map(|task| Measure::PeakForce.show(task.peak_force_n));
+        let more = now.window.range_mm() - before.window.range_mm();
+        format!("{more:+.1} mm of range, at {force} in place of {other}")
     };
-    let ranges = range(alone).into_iter().zip(range(best)).enumerate();
-    format!("The finger's parameters give {}.", ranges.map(of).collect::<Vec<_>>().join("; "))
+    let gains = alone.tasks.iter().zip(&best.tasks).map(of);
+    format!("The finger's parameters give {}.", gains.collect::<Vec<_>>().join("; "))
 }

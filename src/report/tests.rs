@@ -1,4 +1,5 @@
 use super::*;
+use crate::answer::words;
 use crate::study::{Provenance, Recorded, Segment, StudyConfig, Timing};
 use finray::printed::PrintedFinger;
 use input::shipped::FINGERS;
@@ -173,10 +174,10 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
     let window = &best.tasks[0].window;
     for number in [
         format!("<b>{:.1} mm</b>", window.range_mm()),
-        format!("{:+.1} mm to {:+.1} mm: the last", window.negative_mm(), window.positive_mm()),
-        text::stiffness(best.stiffness.compliance),
-        text::stiffness(best.stiffness.assembly),
-        text::design(&best.design),
+        format!("{} mm: ", words::span(words::ends_mm(window))),
+        words::stiffness(best.stiffness.compliance),
+        words::stiffness(best.stiffness.assembly),
+        words::design(&best.design),
         "jammed (class 3)".to_owned(),
         "plug missed (class 2)".to_owned(),
         "9f86d081884c7d65".repeat(4),

@@ -1,7 +1,7 @@
 //! Tolerance windows of the best designs.
 
 use super::elements::table;
-use super::text;
+use crate::answer::words::{self, ends_mm, span};
 use crate::study::{Recorded, StudyRecord};
 use maud::{Markup, html};
 
@@ -36,11 +36,11 @@ fn as_table(record: &StudyRecord, best: &[(&Recorded, &[f64])], task: usize) -> 
         let window = &r.on(task)?.window;
         Some(vec![
             r.index.to_string(),
-            text::design(&r.design),
-            text::values(&record.config.objective, found),
-            format!("{:+.1} to {:+.1} mm", window.negative_mm(), window.positive_mm()),
-            format!("{} / {}", text::end(window.end_negative), text::end(window.end_positive)),
-            text::stiffness(r.stiffness.compliance),
+            words::design(&r.design),
+            words::values(&record.config.objective, found),
+            format!("{} mm", span(ends_mm(window))),
+            format!("{} / {}", words::end(window.end_negative), words::end(window.end_positive)),
+            words::stiffness(r.stiffness.compliance),
             if r.stiffness.inside_hull() { "inside" } else { "outside" }.to_owned(),
         ])
     };

@@ -1,0 +1,168 @@
+//! The recommended design: what it tolerates, how firm that is, and what is as good.
+
+use super::words;
+use crate::study::{ByRibs, Recommendation, Recorded, StudyRecord};
+use input::units::N_PER_MM;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::firm::Firm;
+
+/// The recommended design of a study. Of several tasks ranges and forces are aggregated, and a
+/// window is what all have in common.
+#[derive(Debug, Clone)]
+pub struct Recommended<'a> {
+    /// The design, with its stiffness, as it was walked if it was.
+    pub design: &'a Recorded,
+    /// The single objective and its value; `None` of a front.
+    pub objective: Option<(Measure, f64)>,
+    /// Each constraint: what it limits, and the design's value in words.
+    pub constraints: Vec<(Measure, String)>,
+    /// Range, mm; `None` if the nominal start diverged.
+    pub range_mm: Option<f64>,
+    /// Both ends of the window, mm.
+    pub window_mm: [f64; 2],
+    /// Range within which all repeats insert, mm; `None` if the ends were not repeated.
+    pub firm_range_mm: Option<f64>,
+    /// Both ends of that, mm; `None` also if there is no such window on a task.
+    pub firm_window_mm: Option<[f64; 2]>,
+    /// Largest force between plug and socket over the inserted trials, N.
+    pub peak_force_n: Option<f64>,
+    /// What was measured on each task.
+    pub tasks: Vec<OnTask<'a>>,
+    /// What it does with springs computed from its ribs, if that was measured.
+    pub by_ribs: Option<&'a ByRibs>,
+    /// Its range with those, mm.
+    pub by_ribs_range_mm: Option<f64>,
+    /// The objective as the search had found it, where the walk found another value.
+    pub searched: Option<f64>,
+    /// The widest range of the search, mm, where that is another design's, less firm when measured
+    /// again.
+    pub wider_mm: Option<f64>,
+    /// What is as good; `None` of a front.
+    pub as_good: Option<AsGood<'a>>,
+}
+
+/// The recommended design on one task.
+#[derive(Debug, Clone, Copy)]
+pub struct OnTask<'a> {
+    /// Name of the task.
+    pub name: &'a str,
+    /// What was measured: window and what ends it, errors drawn.
+    pub measured: &'a Evaluation,
+    /// Largest force between plug and socket over the inserted trials, N.
+    pub peak_force_n: Option<f64>,
+    /// What is firm of the window, if its ends were repeated.
+    pub firm: Option<&'a Firm>,
+}
+
+/// The designs that are as good as the recommended one.
+#[derive(Debug, Clone)]
+pub struct AsGood<'a> {
+    /// How many there are, with the recommended one.
+    pub designs: usize,
+    /// Which to take for other reasons; none if there is no other.
+    pub alternatives: Vec<Alternative<'a>>,
+}
+
+/// A design to take for another reason than the objective.
+#[derive(Debug, Clone, Copy)]
+pub struct Alternative<'a> {
+    /// The reason: `least force`.
+    pub reason: &'static str,
+    /// The design.
+    pub design: &'a Recorded,
+    /// What is least or most of it.
+    pub value: f64,
+    /// The unit of that.
+    pub unit: &'static str,
+}
+
+impl<'a> Recommended<'a> {
+    /// The recommended design of a study, if there is one.
+    pub(super) fn of(record: &'a StudyRecord) -> Option<Self> {
+        let (config, found) = (&record.config, record.recommendation());
+        let design = found.as_ref().map_or_else(|| record.best(), |found| Some(found.recorded))?;
+        let firm = found.as_ref().and_then(|found| found.firm);
+        let windows: Option<Vec<[f64; 2]>> =
+            firm.and_then(|firm| firm.iter().map(Firm::window_mm).collect());
+        let firm_ranges = found.as_ref().and_then(Recommendation::firm_ranges_mm);
+        let by_ribs = found.as_ref().and_then(|found| found.by_ribs);
+        let on = |(at, (name, measured)): (usize, (&'a str, &'a Evaluation))| OnTask {
+            name,
+            measured,
+            peak_force_n: Measure::PeakForce.value(measured),
+            firm: firm.and_then(|firm| firm.get(at)),
+        };
+        let tasks = design.tasks();
+        let limits = config.constraints.iter();
+        Some(Recommended {
+            design,
+            objective: config.objective.single().zip(design.value()),
+            constraints: limits.map(|limit| (limit.measure, limit.words(&tasks))).collect(),
+            range_mm: record.measure(design, Measure::Range),
+            window_mm: common(tasks.iter().map(|task| words::ends_mm(&task.window))),
+            firm_range_mm: firm_ranges.map(|mm| record.aggregated(Measure::Range, &mm)),
+            firm_window_mm: windows.map(|windows| common(windows.into_iter())),
+            peak_force_n: record.measure(design, Measure::PeakForce),
+            tasks: config.tasks().zip(&design.tasks).enumerate().map(on).collect(),
+            by_ribs,
+            by_ribs_range_mm: by_ribs.and_then(|found| range_mm(record, found)),
+            searched: searched(record, design),
+            wider_mm: wider_mm(record, design),
+            as_good: found.as_ref().map(|found| as_good(record, &found.equivalent)),
+        })
+    }
+
+    /// ` on usb` behind what is said of one of several tasks; empty of the only one.
+    pub fn on(&self, task: &OnTask) -> String {
+        if self.tasks.len() > 1 { format!(" on {}", task.name) } else { String::new() }
+    }
+}
+
+/// What all windows have in common.
+fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    windows
+        .fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])
+}
+
+fn range_mm(record: &StudyRecord, by_ribs: &ByRibs) -> Option<f64> {
+    let ByRibs::Measured(tasks) = by_ribs else { return None };
+    let ranges: Vec<f64> = tasks.iter().map(|task| task.window.range_mm()).collect();
+    Some(record.aggregated(Measure::Range, &ranges))
+}
+
+fn searched(record: &StudyRecord, design: &Recorded) -> Option<f64> {
+    let same = |recorded: &&Recorded| recorded.index == design.index;
+    let before = record.current().iter().find(same)?.value()?;
+    (Some(before) != design.value()).then_some(before)
+}
+
+fn wider_mm(record: &StudyRecord, design: &Recorded) -> Option<f64> {
+    let by_range = record.config.objective.single() == Some(Measure::Range);
+    let (own, [_, widest]) = (record.measure(design, Measure::Range)?, record.spread_mm()?);
+    // Half a step of the grid.
+    (by_range && !record.walked.is_empty() && widest > own + 0.05).then_some(widest)
+}
+
+fn as_good<'a>(record: &StudyRecord, equivalent: &[&'a Recorded]) -> AsGood<'a> {
+    let designs = equivalent.len();
+    let force = |r: &Recorded| record.measure(r, Measure::PeakForce).unwrap_or(f64::INFINITY);
+    let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
+    let valued = |of: &dyn Fn(&Recorded) -> f64| -> Vec<(&'a Recorded, f64)> {
+        // Without a second there is nothing to choose.
+        let equivalent = if designs < 2 { &[] } else { equivalent };
+        equivalent.iter().map(|&design| (design, of(design))).collect()
+    };
+    let (forces, stiffnesses) = (valued(&force), valued(&stiffness));
+    let value = |a: &&(&Recorded, f64), b: &&(&Recorded, f64)| a.1.total_cmp(&b.1);
+    let named = [
+        ("least force", forces.iter().min_by(value), "N"),
+        ("softest", stiffnesses.iter().min_by(value), "N/mm"),
+        ("stiffest", stiffnesses.iter().max_by(value), "N/mm"),
+    ];
+    let known = named.into_iter().filter_map(|(reason, found, unit)| {
+        let &(design, value) = found.filter(|(_, value)| value.is_finite())?;
+        Some(Alternative { reason, design, value, unit })
+    });
+    AsGood { designs, alternatives: known.collect() }
+}

@@ -1,0 +1,126 @@
+//! Words and numbers of answers, for terminal and page alike; every number with its unit.
+
+use crate::study::Recorded;
+use input::units::N_PER_MM;
+use insertion::evaluation::objective::{Measure, Objectives};
+use insertion::evaluation::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
+use insertion::outcome::Outcome;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::surrogate::Estimate;
+
+/// A range or another length of the 0.1 mm grid: `3.5 mm`.
+pub fn mm(length_mm: f64) -> String {
+    Measure::Range.show(length_mm)
+}
+
+/// An interval of lengths: `3.1 to 3.5 mm`.
+pub fn interval([low_mm, high_mm]: [f64; 2]) -> String {
+    format!("{low_mm:.1} to {high_mm:.1} mm")
+}
+
+/// Both ends of a window, whose unit the reader must be told: `-4.5 to +5.8`.
+pub fn span([low_mm, high_mm]: [f64; 2]) -> String {
+    format!("{low_mm:.1} to {high_mm:+.1}")
+}
+
+/// Both ends of a window, mm.
+pub fn ends_mm(window: &Window) -> [f64; 2] {
+    [window.negative_mm(), window.positive_mm()]
+}
+
+/// A taught start, `unit` behind it: `, start taught +0.3 mm`; empty of one that was not taught.
+pub fn taught(steps: Option<OffsetStep>, unit: &str) -> String {
+    steps.map_or(String::new(), |steps| format!(", start taught {:+.1}{unit}", grid_mm(steps)))
+}
+
+/// A stiffness with its standard deviation, N/mm.
+pub fn stiffness(estimate: Estimate) -> String {
+    let (mean, sd) = (estimate.mean / N_PER_MM, estimate.sd / N_PER_MM);
+    let digits = if mean >= 10.0 { 1 } else { 2 };
+    format!("{mean:.digits$} ± {sd:.digits$} N/mm")
+}
+
+/// A measured number with so many decimals and its unit, or that there is none.
+pub fn number(value: f64, decimals: usize, unit: &str) -> String {
+    if !value.is_finite() {
+        return "none".to_owned();
+    }
+    let value = format!("{value:.decimals$}");
+    // After a collision that a body was thrown far by.
+    if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
+}
+
+/// An outcome in words, a failure with its class: `jammed (class 3)`.
+pub fn outcome(outcome: Outcome) -> String {
+    let class = outcome.failure().map_or(String::new(), |number| format!(" (class {number})"));
+    format!("{}{class}", outcome.label())
+}
+
+/// What ended a window at one side.
+pub fn end(end: Option<Outcome>) -> String {
+    end.map_or("no failure".to_owned(), outcome)
+}
+
+/// How often a design inserts under drawn errors, and how it fails.
+pub fn success(success: &SuccessRate) -> [String; 2] {
+    let rate = success.rate().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
+    let [low, high] = success.interval();
+    let [c1, c2, c3, c4] = success.failure_counts;
+    [
+        format!(
+            "{rate}, {} % interval {low:.3} to {high:.3}: {} of {} trials",
+            100.0 * success.confidence,
+            success.inserted,
+            success.counted()
+        ),
+        format!("{c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged", success.diverged),
+    ]
+}
+
+/// The range under drawn errors, and what it is taken from.
+pub fn robust(robust: &RobustRange) -> String {
+    format!(
+        "{}: {} windows of mean {}, deviation {}, {} diverged",
+        robust.value_mm.map_or("none".to_owned(), |value| Measure::RobustRange.show(value)),
+        robust.ranges_mm.len(),
+        number(robust.mean_mm(), 2, "mm"),
+        number(robust.sd_mm(), 2, "mm"),
+        robust.diverged
+    )
+}
+
+/// A recorded design in words, and where it stands: `infill density 10 % (evaluation 41)`.
+pub fn evaluated(recorded: &Recorded) -> String {
+    format!("{} (evaluation {})", recorded.design.labelled(), recorded.index)
+}
+
+/// A design in words: infill first, then whatever else the space names.
+pub fn design(design: &Design) -> String {
+    let of_infill = [DENSITY_KEY, DIRECTION_KEY];
+    let others = design.0.iter().filter(|(key, _)| !of_infill.contains(&key.as_str()));
+    let mut parts = vec![infill(design)];
+    parts.retain(|infill| !infill.is_empty());
+    parts.extend(others.map(|(key, value)| format!("{key} {value}")));
+    parts.join(", ")
+}
+
+/// The infill of a design in words; empty if it has none.
+pub fn infill(design: &Design) -> String {
+    let density = design.get(DENSITY_KEY).map(|density| format!("{density} %"));
+    let direction = design.get(DIRECTION_KEY).map(|direction| format!("{direction}°"));
+    density.into_iter().chain(direction).collect::<Vec<_>>().join(", ")
+}
+
+/// The objectives' values: a single one without its name.
+pub fn values(objectives: &Objectives, values: &[f64]) -> String {
+    match (objectives.single(), values) {
+        (Some(measure), [value]) => measure.show(*value),
+        _ => objectives.show(values),
+    }
+}
+
+/// Unit of a hypervolume: `mm N`.
+pub fn volume_unit(objectives: &Objectives) -> String {
+    let units = objectives.measures().iter().map(|measure| measure.unit());
+    units.filter(|unit| !unit.is_empty()).collect::<Vec<_>>().join(" ")
+}

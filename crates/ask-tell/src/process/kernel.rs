@@ -23,7 +23,7 @@ pub fn distance2(a: &[f64], b: &[f64]) -> f64 {
 /// `exp(-s)` for `s >= 0` to a few parts in 1e16, without branches, so that loops over it
 /// run in vector registers; the same on every machine, being additions and products only.
 #[inline]
-pub fn exp_minus(s: f64) -> f64 {
+fn exp_minus(s: f64) -> f64 {
     /// Adding and subtracting it rounds to a whole number.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;

@@ -182,7 +182,7 @@ impl Evaluator {
     ) -> Result<Evaluation, RigError> {
         let taught = self.taught(specimen, stop)?;
         let rig = self.rig(specimen, taught, 1.0)?;
-        let rig = Stoppable { rig: &*rig, stop };
+        let rig = Stoppable { inner: &*rig, stop };
         let Specimen { finger, stiffness, .. } = specimen;
         let evaluation = robustness::evaluate(&rig, finger, stiffness, search, plan);
         Ok(Evaluation { taught, ..evaluation })
@@ -225,7 +225,7 @@ impl Evaluator {
         }
         let rig = |factor| self.rig(specimen, measured.taught, factor);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);
-        let [whole, half] = [&whole, &half].map(|rig| Stoppable { rig: &**rig, stop });
+        let [whole, half] = [&whole, &half].map(|rig| Stoppable { inner: &**rig, stop });
         let repeats = Repeats::new([&whole, &half], &specimen.finger, seed, firm::REPEATS);
         Ok(firm::measure(&repeats, &measured.window))
     }

@@ -189,15 +189,15 @@ impl Log {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::finger;
     use crate::outcome::FailureClass;
-    use crate::trial::fake::FakeRig;
-    use input::units::N_PER_MM;
-    use std::sync::atomic::AtomicBool;
+    use crate::trial::Grasp;
+    use crate::trial::fake::{Altered, FakeRig};
 
     #[test]
     fn both_searches_find_the_window_of_the_closed_form() {
         // -(2 + 4/3) = -3.33 and 1 + 20/50 = 1.4 mm.
-        let finger = Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM);
+        let finger = finger(3.0, 20.0);
         let walk = evaluate(&FakeRig::default(), &finger, Search::Walk);
         assert_eq!((walk.window.negative_mm(), walk.window.positive_mm()), (-3.3, 1.4));
         assert_eq!(walk.window.range_mm(), 4.7);
@@ -213,43 +213,25 @@ mod tests {
     #[test]
     fn the_two_searches_agree_over_the_designs() {
         for k in 1..40 {
-            let finger = Finger::new(f64::from(k) * 0.1 * N_PER_MM, f64::from(k) * N_PER_MM);
+            let finger = finger(f64::from(k) * 0.1, f64::from(k));
             let [a, b] = [Search::Walk, Search::Strides]
                 .map(|search| evaluate(&FakeRig::default(), &finger, search).window);
             assert_eq!(a, b, "{finger:?}");
         }
     }
 
-    /// Inserts up to 2 mm either way, but for some steps on the positive side.
-    struct Gap(std::ops::Range<OffsetStep>);
-
-    impl Rig for Gap {
-        fn grasp_until<'a>(
-            &'a self,
-            _: &Finger,
-            _: &Conditions,
-            _: &'a AtomicBool,
-        ) -> Box<dyn Grasped + 'a> {
-            Box::new(Gap(self.0.clone()))
-        }
-    }
-
-    impl Grasped for Gap {
-        fn trial(&self, offset: f64) -> Trial {
-            let step = (offset / (OFFSET_STEP_MM * MM)).round() as OffsetStep;
-            let inserts = step.abs() <= 20 && !self.0.contains(&step);
-            let any = FakeRig::default().grasp(&Finger::new(N_PER_MM, N_PER_MM)).trial(0.0);
-            let failed = Outcome::Failed(FailureClass::Jammed);
-            Trial { outcome: if inserts { Outcome::Inserted } else { failed }, ..any }
-        }
-    }
-
     #[test]
     fn the_walk_stops_at_a_gap_and_strides_may_step_over_a_narrow_one() {
-        let finger = Finger::new(N_PER_MM, N_PER_MM);
+        let finger = finger(1.0, 1.0);
         let mut over = 0;
         for (width, from) in (1..8).flat_map(|width| (1..20).map(move |from| (width, from))) {
-            let gap = Gap(from..from + width);
+            // Inserts up to 2 mm either way, but for some steps on the positive side.
+            let gap = Altered(|_: &Grasp, offset: f64, trial: Trial| {
+                let step = (offset / (OFFSET_STEP_MM * MM)).round() as OffsetStep;
+                let inserts = step.abs() <= 20 && !(from..from + width).contains(&step);
+                let failed = Outcome::Failed(FailureClass::Jammed);
+                Trial { outcome: if inserts { Outcome::Inserted } else { failed }, ..trial }
+            });
             let end = |search| evaluate(&gap, &finger, search).window.positive_steps;
             assert_eq!(end(Search::Walk), from - 1);
             let found = end(Search::Strides);

@@ -120,11 +120,12 @@ impl Solid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::task;
     use input::shipped::TASKS;
     use input::units::MM;
 
-    fn tasks() -> Vec<Task> {
-        TASKS.iter().map(|file| Task::parse(file.text, file.file).unwrap()).collect()
+    fn tasks() -> impl Iterator<Item = Task> {
+        TASKS.iter().map(|file| task(file.name))
     }
 
     #[test]
@@ -179,7 +180,7 @@ mod tests {
     #[test]
     fn friction_scales_the_latch_and_its_guides_too() {
         let slippery = Conditions { friction_socket: 0.5, ..Conditions::NOMINAL };
-        let rj45 = tasks().into_iter().find(|task| task.name == "rj45").unwrap();
+        let rj45 = task("rj45");
         let of = |task: &Task| -> Vec<f64> {
             let parts = task.plug.parts.iter().chain(&task.socket);
             let own = parts.filter_map(|part| part.friction);

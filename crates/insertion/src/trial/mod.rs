@@ -88,27 +88,38 @@ pub struct Trial {
 /// The flag of trials that nobody stops.
 pub static NEVER: AtomicBool = AtomicBool::new(false);
 
+/// How a part is grasped for trials.
+#[derive(Debug, Clone, Copy)]
+pub struct Grasp<'a> {
+    /// Both fingers.
+    pub finger: Finger,
+    /// Deviations from the task file.
+    pub conditions: Conditions,
+    /// Set when grasp and trials are to end at once, with a worthless result.
+    pub stop: &'a AtomicBool,
+}
+
+impl Grasp<'static> {
+    /// By such fingers in the world as the task file has it; nobody stops it.
+    pub fn of(finger: &Finger) -> Self {
+        Grasp { finger: *finger, conditions: Conditions::NOMINAL, stop: &NEVER }
+    }
+}
+
 /// A place where trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
-    /// Grasps the part with a pair of such fingers under these conditions; what
-    /// follows does not depend on the offset until the approach, so it is done once.
-    /// Grasp and trials end at once, with a worthless result, when `stop` is set; rigs whose
-    /// trials take no time need not ask.
-    fn grasp_until<'a>(
-        &'a self,
-        finger: &Finger,
-        conditions: &Conditions,
-        stop: &'a AtomicBool,
-    ) -> Box<dyn Grasped + 'a>;
+    /// Grasps the part; what follows does not depend on the offset until the approach, so it is
+    /// done once. Rigs whose trials take no time need not look at the stop flag.
+    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a>;
 
-    /// The same for trials that nobody stops.
+    /// Grasps for trials that nobody stops.
     fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
-        self.grasp_until(finger, conditions, &NEVER)
+        self.hold(Grasp { conditions: *conditions, ..Grasp::of(finger) })
     }
 
-    /// The same in the world as the task file says.
+    /// Grasps for trials that nobody stops, in the world as the task file has it.
     fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
-        self.grasp_in(finger, &Conditions::NOMINAL)
+        self.hold(Grasp::of(finger))
     }
 
     /// The trial of such a pair of fingers with the start shifted by `offset` metres along y, filmed

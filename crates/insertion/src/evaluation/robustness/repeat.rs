@@ -136,21 +136,16 @@ pub struct Bands {
 mod tests {
     use super::*;
     use crate::evaluation::tolerance::Search;
-    use crate::outcome::Outcome;
+    use crate::fixtures::finger;
     use crate::trial::fake::FakeRig;
-    use input::units::N_PER_MM;
-
-    fn finger() -> Finger {
-        Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM)
-    }
 
     /// The lower end of the closed form, -3.33 mm, moves by a tenth with friction, to
     /// -3.03 and -3.70; the upper one, 1.40 mm, with the start alone.
     #[test]
     fn the_bands_are_as_wide_as_the_closed_form_says() {
         let rig = FakeRig::default();
-        let repeats = Repeats::new([&rig, &rig], &finger(), 7, 200);
-        let window = tolerance::evaluate(&rig, &finger(), Search::Walk).window;
+        let repeats = Repeats::new([&rig, &rig], &finger(3.0, 20.0), 7, 200);
+        let window = tolerance::evaluate(&rig, &finger(3.0, 20.0), Search::Walk).window;
         let bands = repeats.bands(&window);
         let below = bands.negative.width_mm().unwrap();
         assert!((0.5..=0.7).contains(&below), "{bands:?}");
@@ -163,7 +158,8 @@ mod tests {
     #[test]
     fn repeats_are_a_function_of_the_seed() {
         let rig = FakeRig::default();
-        let of = |seed| Repeats::new([&rig, &rig], &finger(), seed, 60).outcomes(-3.33 * MM);
+        let of =
+            |seed| Repeats::new([&rig, &rig], &finger(3.0, 20.0), seed, 60).outcomes(-3.33 * MM);
         assert_eq!(of(1), of(1));
         assert_ne!(of(1), of(2));
         let inserted = of(1).iter().filter(|&&outcome| outcome == Outcome::Inserted).count();

@@ -183,13 +183,14 @@ fn checked(key: &str, value: f64) -> Result<f64, InputError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::task_file;
     use crate::task::{Ending, Sensed};
     use input::shipped::TASKS;
     use input::units::DEG;
     use std::collections::BTreeMap;
 
     fn usb() -> Template {
-        let file = TASKS.iter().find(|task| task.name == "usb").unwrap();
+        let file = task_file("usb");
         Template::parse(file.text, file.file).unwrap()
     }
 
@@ -274,8 +275,7 @@ mod tests {
 
     #[test]
     fn two_tables_of_one_name_are_told_apart_before_one_is_set() {
-        let file = TASKS.iter().find(|task| task.name == "usb").unwrap();
-        let text = file.text.replace("name = \"front\"", "name = \"back\"");
+        let text = task_file("usb").text.replace("name = \"front\"", "name = \"back\"");
         let template = Template::parse(&text, "my.toml").unwrap();
         let key = "task.strategy.phase.back.settle_s".to_owned();
         let error =

@@ -89,7 +89,7 @@ pub(in crate::evaluation) fn extremes(parameter: &Parameter) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::Robot;
+    use crate::fixtures::task_file;
     use crate::trial::run::EngineRig;
     use contact::direct::Direct;
     use input::shipped::{ROBOTS, SPACES, TASKS};
@@ -103,7 +103,7 @@ mod tests {
         };
         let text: String = infill.iter().chain(parameters).map(parameter).collect();
         let text = format!("name = 's'\ndescription = ''\n{text}");
-        let file = TASKS.iter().find(|task| task.name == "usb").unwrap();
+        let file = task_file("usb");
         let template = Template::parse(file.text, file.file).unwrap();
         template.check(&Space::parse(&text, "s.toml").unwrap(), "s.toml", &|_| Ok(()))
     }
@@ -115,7 +115,7 @@ mod tests {
             for task in TASKS {
                 let template = Template::parse(task.text, task.file).unwrap();
                 for robot in ROBOTS {
-                    let robot = Robot::parse(robot.text, robot.file).unwrap();
+                    let robot = crate::fixtures::robot(robot.name);
                     let fits = |task: &Task| {
                         let engine = Box::new(Direct::default());
                         EngineRig::new(task.clone(), &robot, engine).map(|_| ())

@@ -130,22 +130,12 @@ impl Driven {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finger::Finger;
+    use crate::fixtures::{finger, rig, task};
     use crate::outcome::FailureClass;
-    use crate::robot::Robot;
-    use crate::task::Task;
     use crate::trial::Rig;
-    use crate::trial::run::EngineRig;
-    use contact::direct::Direct;
-    use input::shipped::{ROBOTS, TASKS};
-    use input::units::N_PER_MM;
 
     fn driven() -> Driven {
-        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
-        let rig = EngineRig::new(task, &robot, Box::<Direct>::default()).unwrap();
-        rig.driven(&finger).unwrap()
+        rig(task("ket8")).driven(&finger(2.6, 45.0)).unwrap()
     }
 
     #[test]

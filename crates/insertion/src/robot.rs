@@ -152,15 +152,14 @@ impl Robot {
                 inertia_kg_m2,
                 damping_ratio,
             } => {
-                for k in stiffness_n_per_mm {
-                    positive("stiffness_n_per_mm", k)?;
-                }
-                for k in rotational_stiffness_nm_per_rad {
-                    positive("rotational_stiffness_nm_per_rad", k)?;
-                }
+                let positives = |key: &str, values| check.each(key, values, Check::positive);
+                let stiffness = positives("stiffness_n_per_mm", stiffness_n_per_mm)?;
                 let servo = Servo {
-                    stiffness: stiffness_n_per_mm.map(|k| k * N_PER_MM),
-                    rotational_stiffness: rotational_stiffness_nm_per_rad,
+                    stiffness: stiffness.map(|k| k * N_PER_MM),
+                    rotational_stiffness: positives(
+                        "rotational_stiffness_nm_per_rad",
+                        rotational_stiffness_nm_per_rad,
+                    )?,
                     mass: positive("mass_kg", mass_kg)?,
                     inertia: positive("inertia_kg_m2", inertia_kg_m2)?,
                     damping_ratio: positive("damping_ratio", damping_ratio)?,

@@ -106,10 +106,7 @@ pub struct Design(pub BTreeMap<String, f64>);
 impl Design {
     /// A design of infill density (percent) and direction (degrees).
     pub fn infill(density_percent: f64, direction_deg: f64) -> Self {
-        Design(BTreeMap::from([
-            (DENSITY_KEY.to_owned(), density_percent),
-            (DIRECTION_KEY.to_owned(), direction_deg),
-        ]))
+        Design::default().with(DENSITY_KEY, density_percent).with(DIRECTION_KEY, direction_deg)
     }
 
     /// The infill that a finger is printed with, its first rib at `phase_mm`, else where the finger
@@ -123,13 +120,18 @@ impl Design {
         }
     }
 
+    /// The same design with this value under a key, in the unit of the key.
+    pub fn with(&self, key: &str, value: f64) -> Self {
+        let mut design = self.clone();
+        design.0.insert(key.to_owned(), value);
+        design
+    }
+
     /// The value of a key, in the unit of the key.
     pub fn get(&self, key: &str) -> Option<f64> {
         self.0.get(key).copied()
     }
-}
 
-impl Design {
     /// `infill density 20 %, infill direction 10°`: for readers.
     pub fn labelled(&self) -> String {
         let value = |(key, value): (&String, &f64)| {

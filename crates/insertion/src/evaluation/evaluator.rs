@@ -20,13 +20,12 @@ use crate::task::{StartRule, Task};
 use crate::trial::Rig;
 use crate::trial::engine::EngineKind;
 use crate::trial::run::RigError;
+use input::numbers::DESIGN;
 use input::units::N_PER_MM;
-use input::{Check, InputError, shown};
+use input::{InputError, shown};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// What a stiffness is called in errors.
-const DESIGN: &str = "design";
 /// Stiffest finger, N/mm: a thousand times that of a solid one.
 const STIFFEST_N_PER_MM: f64 = 1e6;
 
@@ -57,18 +56,14 @@ pub struct Specimen {
     pub stiffness: Prediction,
 }
 
-/// Whether a finger of this stiffness, N/mm, can be simulated: the model may give none far
-/// from what was measured.
+/// Refuses a stiffness, N/mm, that cannot be simulated: far from what was measured the model may
+/// give any.
 fn check_stiffness(key: &str, n_per_mm: f64) -> Result<(), InputError> {
-    let check = Check { file: DESIGN };
-    match check.positive(key, n_per_mm)? <= STIFFEST_N_PER_MM {
-        true => Ok(()),
-        false => {
-            let found = shown(n_per_mm);
-            let problem = format!("is {found} N/mm; it may be {STIFFEST_N_PER_MM} at most");
-            check.fail(key, problem)
-        }
+    if DESIGN.positive(key, n_per_mm)? <= STIFFEST_N_PER_MM {
+        return Ok(());
     }
+    let found = shown(n_per_mm);
+    DESIGN.fail(key, format!("is {found} N/mm; it may be {STIFFEST_N_PER_MM} at most"))
 }
 
 /// What is known of one design after its evaluation.
@@ -124,10 +119,9 @@ impl Evaluator {
             ("assembly stiffness", stiffness.assembly),
         ] {
             check_stiffness(key, axis.mean / N_PER_MM)?;
-            Check { file: DESIGN }.not_negative(key, axis.sd / N_PER_MM)?;
+            DESIGN.not_negative(key, axis.sd / N_PER_MM)?;
         }
-        let (compliance, assembly) = (stiffness.compliance.mean, stiffness.assembly.mean);
-        let at_pad = AtPad { compliance, assembly };
+        let at_pad = AtPad::of(&stiffness);
         let (task, Made { finger, centre }) = template.apply(design, &self.fingers, at_pad)?;
         Ok(Specimen { task, finger, centre, stiffness })
     }

@@ -98,17 +98,21 @@ pub struct Evaluation {
     pub robust: Option<RobustRange>,
 }
 
-/// How trials under drawn errors ended.
-#[derive(Debug, Clone, PartialEq)]
+/// Outcomes of trials under sampled errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SuccessRate {
+    /// Probability with which [`interval`](Self::interval) holds the true rate, 0 to 1.
+    #[serde(rename = "success_confidence")]
+    pub confidence: f64,
     /// Trials that inserted.
+    #[serde(rename = "success_inserted")]
     pub inserted: u32,
     /// Trials that failed with class 1 to 4.
+    #[serde(rename = "success_failure_counts")]
     pub failure_counts: [u32; 4],
-    /// Trials that diverged; they say nothing and count for nothing.
+    /// Trials that diverged; they do not count.
+    #[serde(rename = "success_diverged")]
     pub diverged: u32,
-    /// Probability with which [`interval`](Self::interval) holds the true rate, 0 to 1.
-    pub confidence: f64,
 }
 
 impl SuccessRate {

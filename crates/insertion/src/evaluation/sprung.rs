@@ -1,7 +1,10 @@
 //! Whether every computed finger of a space has springs, asked before the first one is simulated.
 
 use super::evaluator::Evaluator;
-use super::template::{Impossible, is_infill, space::extremes};
+use super::template::{
+    Impossible, is_infill,
+    space::{combined, extremes},
+};
 use crate::finger::computed::AtPad;
 use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
 use crate::space::{Design, Space};
@@ -21,14 +24,7 @@ pub fn check(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Inp
     };
     let mut designs = vec![Design::default()];
     for parameter in space.parameters().iter().filter(|p| sets(&p.key) || is_infill(&p.key)) {
-        let with = |(design, value): (&Design, f64)| {
-            let mut design = design.clone();
-            design.0.insert(parameter.key.clone(), value);
-            design
-        };
-        let values = extremes(parameter);
-        let each = |design| values.iter().map(move |&value| with((design, value)));
-        designs = designs.iter().flat_map(each).collect();
+        designs = combined(&designs, &parameter.key, &extremes(parameter));
     }
     for design in designs {
         if let Err(error) = springs(evaluator, &design) {
@@ -40,9 +36,8 @@ pub fn check(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Inp
 
 fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), Impossible> {
     let stiffness = evaluator.predict(design)?;
-    let at_pad = AtPad { compliance: stiffness.compliance.mean, assembly: stiffness.assembly.mean };
     for template in &evaluator.templates {
-        evaluator.fingers.make(at_pad, design, template.task())?;
+        evaluator.fingers.make(AtPad::of(&stiffness), design, template.task())?;
     }
     Ok(())
 }

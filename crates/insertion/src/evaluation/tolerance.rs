@@ -10,7 +10,8 @@ use input::units::MM;
 pub const OFFSET_LIMIT_STEPS: OffsetStep = 150;
 
 /// How the window's ends are looked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Search {
     /// Step by step outward to the first failure: the paper's way.
     Walk,

@@ -13,6 +13,7 @@
 //! pad is carried over to the same joint whole, with its coupling of x to ry and rz.
 
 use super::{Finger, Pad};
+use crate::surrogate::Prediction;
 use crate::task::finger::Coupling;
 use finray::FingerError;
 use finray::mechanics::FingerStiffness;
@@ -64,6 +65,13 @@ pub struct AtPad {
     pub compliance: f64,
     /// In the assembly direction.
     pub assembly: f64,
+}
+
+impl AtPad {
+    /// The predicted means.
+    pub fn of(predicted: &Prediction) -> Self {
+        AtPad { compliance: predicted.compliance.mean, assembly: predicted.assembly.mean }
+    }
 }
 
 impl Pad {

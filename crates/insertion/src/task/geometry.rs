@@ -6,6 +6,15 @@ use nalgebra::{Matrix3, Point3, Translation3, Vector3};
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::parry::transformation::try_convex_hull;
 
+/// A coordinate axis, as files name it; its number is that of the coordinate.
+#[derive(serde::Deserialize, Clone, Copy)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Axis {
+    X,
+    Y,
+    Z,
+}
+
 /// A convex part of a plug or socket.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
@@ -128,7 +137,7 @@ impl Solid {
 }
 
 /// The two axes that are not `axis`, in the order x, y, z.
-fn other_axes(axis: usize) -> (usize, usize) {
+pub(crate) fn other_axes(axis: usize) -> (usize, usize) {
     match axis {
         0 => (1, 2),
         1 => (0, 2),

@@ -14,7 +14,6 @@ pub use geometry::{Part, Solid};
 pub use latch::Latch;
 
 use crate::task::finger::FingerModel;
-use input::InputError;
 
 /// A checked task, in SI units, in the task frame: origin at the centre of the
 /// socket's opening on its top surface, z out of the socket, y the direction
@@ -150,7 +149,8 @@ pub enum StartRule {
 }
 
 /// What part of the trial a phase belongs to; decides the failure class.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Stage {
     /// Through the air; touches nothing.
     Approach,
@@ -213,16 +213,4 @@ pub struct Success {
     pub depth: f64,
     /// Largest angle between the plug's axis and z, rad.
     pub tilt: f64,
-}
-
-impl Task {
-    /// Reads and checks a task; `file` is named in errors.
-    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        raw::parse(text, file)
-    }
-
-    /// Checks a task file that was read as TOML already; `file` is named in errors.
-    pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
-        raw::from_table(table, file)
-    }
 }

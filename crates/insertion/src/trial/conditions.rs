@@ -2,6 +2,7 @@
 
 use super::cell::WorkCell;
 use crate::finger::{Pad, ROOF_GAP};
+use crate::task::geometry::other_axes;
 use crate::task::{PadTorsion, Part, Solid, Task};
 use contact::scene::Pose;
 
@@ -102,15 +103,11 @@ impl Solid {
                 }
             }
             Solid::Prism { axis, outline, span } => {
-                // The outline's two axes, in the order x, y, z.
-                let (along, first, second) = match axis {
-                    0 => (x, y, 0.0),
-                    1 => (y, x, 0.0),
-                    _ => (0.0, x, y),
-                };
-                *span = span.map(|at| at + along);
+                let by = [x, y, 0.0];
+                let (first, second) = other_axes(*axis);
+                *span = span.map(|at| at + by[*axis]);
                 for corner in outline {
-                    *corner = [corner[0] + first, corner[1] + second];
+                    *corner = [corner[0] + by[first], corner[1] + by[second]];
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Whether every finger of a space can be printed, asked before the first one is simulated.
 
-use super::space::extremes;
+use super::space::{combined, extremes};
 use crate::finger::file::{FingerFile, is_shape};
 use crate::space::{Design, Space};
 use finray::geometry::Geometry;
@@ -23,18 +23,11 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
         }
         let values = extremes(parameter);
         for &value in values.iter().filter(|_| shape) {
-            let alone = Design([(parameter.key.clone(), value)].into());
-            if let Err(error) = finger.with(&alone) {
+            if let Err(error) = finger.with(&Design::default().with(&parameter.key, value)) {
                 return check.fail(&parameter.key, format!("cannot be {value}: {error}"));
             }
         }
-        let with = |(design, value): (&Design, f64)| {
-            let mut design = design.clone();
-            design.0.insert(parameter.key.clone(), value);
-            design
-        };
-        let each = |design| values.iter().map(move |&value| with((design, value)));
-        designs = designs.iter().flat_map(each).collect();
+        designs = combined(&designs, &parameter.key, &values);
     }
     for design in designs {
         let finger = finger.with(&design)?;

@@ -36,7 +36,7 @@ impl Template {
         for parameter in parameters() {
             let values = extremes(parameter);
             for &value in &values {
-                let design = Design([(parameter.key.clone(), value)].into());
+                let design = Design::default().with(&parameter.key, value);
                 if let Err(error) = self.possible(&design, fits) {
                     return match error {
                         Impossible::Value(InputError::Value { key, problem, .. })
@@ -49,13 +49,7 @@ impl Template {
                 }
             }
             if designs.len() * values.len() <= COMBINATIONS {
-                let with = |design: &Design, value| {
-                    let mut design = design.clone();
-                    design.0.insert(parameter.key.clone(), value);
-                    design
-                };
-                let each = |design: &Design| values.iter().map(|&v| with(design, v)).collect();
-                designs = designs.iter().flat_map::<Vec<Design>, _>(each).collect();
+                designs = combined(&designs, &parameter.key, &values);
             }
         }
         for design in designs {
@@ -74,6 +68,16 @@ impl Template {
         let (task, _) = self.apply(&design, &FingerSource::Paper, at_pad)?;
         Ok(fits(&task)?)
     }
+}
+
+/// Each design with each of these values under a key.
+pub(in crate::evaluation) fn combined(
+    designs: &[Design],
+    key: &str,
+    values: &[f64],
+) -> Vec<Design> {
+    let each = |design: &Design| values.iter().map(|&value| design.with(key, value)).collect();
+    designs.iter().flat_map::<Vec<Design>, _>(each).collect()
 }
 
 /// The smallest and the largest value, and the one nearest to zero.

@@ -7,7 +7,6 @@ mod raw;
 pub use draw::{Draw, draws};
 
 use crate::evaluation::tolerance::Search;
-use input::InputError;
 
 /// A checked distribution of errors, and how many draws each measure takes; SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,11 +69,4 @@ pub enum Statistic {
     MeanMinusSd(f64),
     /// Mean of the lowest share (0 to 1) of the samples, at least one of them.
     LowerTail(f64),
-}
-
-impl Uncertainty {
-    /// Reads and checks a distribution; `file` is named in errors.
-    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        raw::parse(text, file)
-    }
 }

@@ -14,7 +14,7 @@ pub mod units;
 
 use serde::de::DeserializeOwned;
 
-/// What is wrong with a task, space or robot file.
+/// Error of an input file: not TOML of its shape, or a value that cannot be used.
 #[derive(Debug, Clone, thiserror::Error, PartialEq)]
 pub enum InputError {
     /// Not TOML, an unknown key or a missing field; the text names the line.
@@ -30,9 +30,9 @@ pub enum InputError {
     Value {
         /// The file as given.
         file: String,
-        /// The field.
+        /// Path of the field in the file.
         key: String,
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
 }

@@ -103,7 +103,7 @@ fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)>
     }
 }
 
-/// What is wrong with a key that is none of `keys`: how a key that begins like it goes on.
+/// Problem of a key that is none of `keys`: how a key that begins like it goes on.
 fn unknown(key: &str, keys: &[&str]) -> String {
     let mut end = key.len();
     loop {

@@ -21,7 +21,7 @@ impl Axis {
     /// Both axes, assembly first, as in the measured file.
     pub const ALL: [Axis; 2] = [Axis::Assembly, Axis::Compliance];
 
-    /// A short name for tables and plots.
+    /// Short name for tables and plots.
     pub fn label(self) -> &'static str {
         match self {
             Axis::Assembly => "assembly (z)",
@@ -89,7 +89,7 @@ impl Measurement {
     }
 }
 
-/// Why measurements cannot be used.
+/// Error of measurements that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurrogateError {
     /// Not a CSV table with the columns of [`HEADER`].
@@ -107,7 +107,7 @@ pub enum SurrogateError {
         place: String,
         /// Column, as in the header of a file.
         column: &'static str,
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// No design at all.
@@ -119,7 +119,7 @@ pub enum SurrogateError {
          are nearly alike"
     )]
     TooMany {
-        /// Designs given.
+        /// Number of designs given.
         found: usize,
     },
     /// No model could be fitted.
@@ -128,7 +128,7 @@ pub enum SurrogateError {
          the designs must differ in density and in direction"
     )]
     Unfittable {
-        /// Axis, as [`Axis::label`].
+        /// Axis as [`Axis::label`] has it.
         axis: &'static str,
     },
 }

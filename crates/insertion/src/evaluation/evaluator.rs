@@ -37,9 +37,9 @@ pub struct Evaluator {
     pub fingers: FingerSource,
     /// The tasks, whose numbers a design may set; at least one.
     pub templates: Vec<Template>,
-    /// The robot.
+    /// Robot that carries the fingers.
     pub robot: Robot,
-    /// What computes the contacts.
+    /// Contact engine.
     pub engine: EngineKind,
 }
 
@@ -48,9 +48,9 @@ pub struct Evaluator {
 pub struct Specimen {
     /// The task, with the numbers that the design sets.
     pub task: Task,
-    /// The finger.
+    /// Finger that the design gives.
     pub finger: Finger,
-    /// What places its remote centre.
+    /// Source of the finger's remote centre.
     pub centre: CentreFrom,
     /// The stiffness that the finger was given, with its error.
     pub stiffness: Prediction,
@@ -66,12 +66,12 @@ fn check_stiffness(key: &str, n_per_mm: f64) -> Result<(), InputError> {
     DESIGN.fail(key, format!("is {found} N/mm; it may be {STIFFEST_N_PER_MM} at most"))
 }
 
-/// What is known of one design after its evaluation.
+/// Evaluation of one design on all tasks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Stiffness predicted for it.
     pub stiffness: Prediction,
-    /// What was measured on each task, in their order.
+    /// Evaluation on each task, in their order.
     pub tasks: Vec<Evaluation>,
     /// For each task whether it was not simulated now but known from before; empty where
     /// nothing could be.
@@ -182,7 +182,7 @@ impl Evaluator {
         Ok(Evaluation { taught, ..evaluation })
     }
 
-    /// The same; if the nominal start does not insert, once more with the start taught.
+    /// As [`measure`](Self::measure); if the nominal start fails, once more with a taught start.
     ///
     /// # Errors
     /// If robot or engine cannot do the task.

@@ -5,7 +5,7 @@ use super::{Evaluation, RobustRange, SuccessRate, Window, grid_mm};
 use crate::outcome::{FailureClass, Outcome};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// An [`Evaluation`], flat.
+/// An [`Evaluation`] as flat keys.
 #[derive(Serialize, Deserialize)]
 pub(super) struct EvaluationRow {
     range_mm: f64,

@@ -14,7 +14,7 @@ pub struct Stoppable<'a, T> {
 }
 
 impl Rig for Stoppable<'_, &dyn Rig> {
-    /// By its own flag; that of the call is for rigs that have none.
+    /// Watches its own flag in place of that of the grasp.
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
         let held = || self.inner.hold(Grasp { stop: self.stop, ..grasp });
         let held = (!self.stop.load(Ordering::SeqCst)).then(held);

@@ -41,7 +41,7 @@ fn middle(window: &Window) -> OffsetStep {
 pub struct Moved<R> {
     /// Rig or grasped part.
     pub rig: R,
-    /// By how much, in grid steps.
+    /// Shift of the start, in grid steps.
     pub by: OffsetStep,
 }
 

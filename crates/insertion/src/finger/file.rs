@@ -8,7 +8,7 @@ use finray::printed::PrintedFinger;
 use input::InputError;
 use input::numbers::NumberFile;
 
-/// A finger file.
+/// A finger file, the numbers of which a design may set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FingerFile {
     numbers: NumberFile,

@@ -18,18 +18,18 @@ pub(crate) enum Axis {
 /// A convex part of a plug or socket.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// For pictures and errors.
+    /// Name for pictures and errors.
     pub name: String,
-    /// Its shape, m.
+    /// Shape in metres.
     pub solid: Solid,
-    /// Its own coefficient of friction, where it has one.
+    /// Coefficient of friction of its own, if any.
     pub friction: Option<f64>,
 }
 
 /// The solids a task file may name; all in metres.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Solid {
-    /// An upright box.
+    /// A box along the axes.
     Box {
         /// Smallest x, y and z.
         min: Vector3<f64>,
@@ -40,9 +40,9 @@ pub enum Solid {
     Cylinder {
         /// Axis position (x, y).
         centre: [f64; 2],
-        /// Radius.
+        /// Radius of the cylinder.
         radius: f64,
-        /// Bottom and top.
+        /// Bottom and top in z.
         z: [f64; 2],
     },
     /// A convex outline in two axes, extruded along the third.
@@ -56,7 +56,7 @@ pub enum Solid {
     },
     /// The convex hull of some points.
     Hull {
-        /// Its corners.
+        /// Corners of the hull.
         points: Vec<Point3<f64>>,
     },
 }

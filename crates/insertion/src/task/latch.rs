@@ -25,9 +25,9 @@ pub struct Latch {
     pub hinge: Point3<f64>,
     /// Axis about which it turns (0 x, 1 y, 2 z).
     pub axis: usize,
-    /// Of the hinge, N m/rad.
+    /// Stiffness of the hinge, N m/rad.
     pub stiffness: f64,
-    /// From where to where its flexure goes, plug frame, m.
+    /// Root and end of its flexure, plug frame, m.
     pub flexure: [Point3<f64>; 2],
 }
 

@@ -312,7 +312,7 @@ fn phase(check: Check<'_>, raw: &RawPhase) -> Result<Phase, InputError> {
     })
 }
 
-/// How a touch is felt.
+/// Detection of a touch.
 fn sensed(check: Check<'_>, raw: &RawPhase) -> Result<Sensed, InputError> {
     let at = |field: &str| format!("strategy.phase \"{}\" {field}", raw.name);
     for (field, value) in [("touch_force_n", raw.touch_force_n), ("latency_s", raw.latency_s)] {

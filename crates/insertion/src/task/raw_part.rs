@@ -128,7 +128,7 @@ fn outline(check: Check<'_>, key: &str, outline: &[[f64; 2]]) -> Result<Vec<[f64
     Ok(outline.iter().map(|p| [p[0] * MM, p[1] * MM]).collect())
 }
 
-/// What is left of a box.
+/// The solid that is left of a box.
 fn without_edges(
     check: Check<'_>,
     key: &str,

@@ -12,7 +12,7 @@ use contact::mujoco::Mujoco;
 use contact::rapier::Rapier;
 use serde::{Deserialize, Serialize};
 
-/// What computes the contacts.
+/// Contact engine by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum EngineKind {
     /// Contact simulation in rapier3d
@@ -41,7 +41,7 @@ pub struct EngineRecord {
 }
 
 impl EngineKind {
-    /// Its name on the command line and in study files.
+    /// Name on the command line and in study files.
     pub fn name(self) -> &'static str {
         match self {
             EngineKind::Rapier => "rapier",
@@ -109,7 +109,7 @@ impl EngineKind {
         Ok(Box::new(EngineRig::with(task.clone(), robot, finger, self.build(step_factor))?))
     }
 
-    /// What a study records of it.
+    /// The engine as a study records it.
     pub fn record(self) -> EngineRecord {
         let name = self.name().to_owned();
         if !self.simulates() {

@@ -41,7 +41,7 @@ pub fn window_mm(finger: &Finger) -> (f64, f64) {
     window_in_mm(finger, &Conditions::NOMINAL)
 }
 
-/// The same under these conditions.
+/// The window's ends under these conditions, mm.
 pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     let compliance = finger.compliance / N_PER_MM;
     let assembly = finger.assembly / N_PER_MM;

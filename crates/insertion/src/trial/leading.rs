@@ -22,7 +22,7 @@ pub(super) struct LeadingEdge {
 }
 
 impl LeadingEdge {
-    /// Of a task's plug.
+    /// Leading edge of a task's plug.
     pub fn new(task: &Task) -> Self {
         // A latch gives way, and leads nothing.
         let corners = task.plug.rigid().flat_map(|part| part.solid.corners());

@@ -42,7 +42,7 @@ pub struct PhaseEnd {
     pub slip_mm: f64,
     /// Largest contact force plug-socket during the phase, N.
     pub peak_force_n: f64,
-    /// Where the bodies are, task frame, m; for pictures.
+    /// Poses of the bodies, task frame, m; for pictures.
     #[serde(skip)]
     pub poses: Poses,
     /// Points at which the socket presses the plug, task frame; for pictures.
@@ -50,21 +50,21 @@ pub struct PhaseEnd {
     pub contacts: Vec<ContactPoint>,
 }
 
-/// Where plug and fingers are, task frame, m.
+/// Poses of plug and fingers, task frame, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Poses {
-    /// The plug.
+    /// Plug without its latch.
     pub plug: Pose,
-    /// Its latch, if that springs.
+    /// Latch of the plug, if it springs.
     pub latch: Option<Pose>,
     /// The finger at -y and the finger at +y.
     pub fingers: [Pose; 2],
 }
 
-/// What one trial measured.
+/// Result of one trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
-    /// How it ended.
+    /// Outcome of the trial.
     pub outcome: Outcome,
     /// How clearly, from -1 to 1: what it has beyond the success criterion that it meets
     /// least, as a share of that criterion; below 0 if it failed, 0 if it diverged.
@@ -79,7 +79,7 @@ pub struct Trial {
     pub slip_mm: f64,
     /// State at the end of each phase that was begun.
     pub phases: Vec<PhaseEnd>,
-    /// Simulated time, s.
+    /// Simulated time of the trial, s.
     pub simulated_s: f64,
     /// Whether it diverged at first and was run again at half the step.
     pub retried: bool,
@@ -88,10 +88,10 @@ pub struct Trial {
 /// The flag of trials that nobody stops.
 pub static NEVER: AtomicBool = AtomicBool::new(false);
 
-/// How a part is grasped for trials.
+/// Fingers and conditions of a grasp.
 #[derive(Debug, Clone, Copy)]
 pub struct Grasp<'a> {
-    /// Both fingers.
+    /// Model of both fingers.
     pub finger: Finger,
     /// Deviations from the task file.
     pub conditions: Conditions,

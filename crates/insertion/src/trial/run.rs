@@ -17,13 +17,13 @@ use std::sync::{Arc, OnceLock};
 
 /// A task, a robot in place for it, and an engine that can simulate both.
 pub struct EngineRig {
-    /// The task.
+    /// Task that the robot is in place for.
     pub task: Task,
     robot: Arc<Mounted>,
     engine: Box<dyn Engine>,
 }
 
-/// Why a task, a robot and an engine do not go together.
+/// Error of task, robot and engine that do not go together.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
     /// The robot cannot do the task.
@@ -33,7 +33,7 @@ pub enum RigError {
         robot: String,
         /// Name of the task.
         task: String,
-        /// What its arm lacks.
+        /// Cause in its arm.
         error: ArmError,
     },
     /// A trial would not end in time.
@@ -60,7 +60,7 @@ impl EngineRig {
         Self::with(task, robot, &any, engine)
     }
 
-    /// The same for such fingers.
+    /// Puts the robot in place for such fingers.
     pub fn with(
         task: Task,
         robot: &Robot,
@@ -132,7 +132,7 @@ struct Ready<'a> {
     rig: &'a EngineRig,
     grasp: Grasp<'a>,
     prepared: Prepared<'a>,
-    /// The same at half the step, once a trial has diverged.
+    /// Prepared at half the step, once a trial has diverged.
     halved: OnceLock<Prepared<'a>>,
 }
 
@@ -173,7 +173,7 @@ impl<'a> Prepared<'a> {
         (trial, samples)
     }
 
-    /// What every offset may start from, if nobody looks at the way through the air.
+    /// Common start of all offsets, where nobody looks at the way through the air.
     fn descended(&self) -> Option<&Attempt<'a>> {
         self.end.ok()?;
         self.descended.get_or_init(|| self.attempt.descended()).as_ref()

@@ -9,32 +9,32 @@ use crate::evaluation::{OffsetStep, Window, grid_mm};
 use crate::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 
-/// How often both ends are repeated.
+/// Repeats at each end.
 pub const REPEATS: u32 = 6;
 
 /// The outermost offsets at which all repeats insert, in grid steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FirmWindow {
-    /// At the negative end.
+    /// Outermost step at the negative end.
     pub negative_steps: OffsetStep,
-    /// At the positive end.
+    /// Outermost step at the positive end.
     pub positive_steps: OffsetStep,
 }
 
 impl FirmWindow {
-    /// Its width, mm.
+    /// Width of the firm window, mm.
     pub fn range_mm(&self) -> f64 {
         grid_mm(self.positive_steps - self.negative_steps)
     }
 }
 
-/// What the repeats at both ends of a window found.
+/// Result of the repeats at both ends of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Firm {
     /// The firm window; `None` if there is no offset from an end to the nominal start, or no
     /// window at all, at which all repeats insert.
     pub window: Option<FirmWindow>,
-    /// Trials run.
+    /// Trials of all repeats.
     pub trials: u32,
 }
 

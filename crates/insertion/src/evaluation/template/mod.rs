@@ -32,13 +32,13 @@ pub struct Template {
     task: Task,
 }
 
-/// Why a design cannot be simulated.
+/// Error of a design that cannot be simulated.
 #[derive(Debug, thiserror::Error)]
 pub enum Impossible {
     /// It sets what does not exist, or to what cannot be.
     #[error(transparent)]
     Value(#[from] InputError),
-    /// Its finger cannot be printed, or cannot be so stiff.
+    /// Its finger cannot be printed, or not with this stiffness.
     #[error(transparent)]
     Finger(#[from] FingerError),
     /// The robot or the engine cannot do the task that it makes.

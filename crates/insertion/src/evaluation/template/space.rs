@@ -9,7 +9,7 @@ use crate::task::Task;
 use crate::trial::run::RigError;
 use input::{Check, InputError};
 
-/// Whether robot and engine can do a task.
+/// Check whether robot and engine can do a task.
 pub type Fits<'a> = dyn Fn(&Task) -> Result<(), RigError> + 'a;
 
 /// Most combinations of extreme values that are tried.

@@ -17,7 +17,7 @@ const PURPOSE: &str = "errors";
 pub struct Draw {
     /// Shift of the start along y, m.
     pub offset: f64,
-    /// What else differs in the world.
+    /// Deviations of the world from the task file.
     pub conditions: Conditions,
     /// Standard normal deviates of the compliance and the assembly stiffness.
     stiffness: [f64; 2],

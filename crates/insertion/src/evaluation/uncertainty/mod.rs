@@ -15,11 +15,11 @@ pub struct Uncertainty {
     pub name: String,
     /// One line for lists.
     pub description: String,
-    /// The errors.
+    /// Spread of each error.
     pub errors: Errors,
-    /// Settings of the success rate.
+    /// Settings of success-rate measurements.
     pub success: SuccessSettings,
-    /// Settings of the robust range.
+    /// Settings of robust-range measurements.
     pub robust: RobustSettings,
 }
 
@@ -42,23 +42,23 @@ pub struct Errors {
     pub grasp_low_max: f64,
 }
 
-/// How a success rate is measured.
+/// Settings of a success-rate measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SuccessSettings {
-    /// Trials per design.
+    /// Trials of each design.
     pub trials: u32,
     /// Probability with which the interval holds the true rate, 0 to 1.
     pub confidence: f64,
 }
 
-/// How a robust range is measured.
+/// Settings of a robust-range measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RobustSettings {
-    /// Windows per design.
+    /// Windows of each design.
     pub samples: u32,
-    /// What is made of them.
+    /// Statistic of their ranges.
     pub statistic: Statistic,
-    /// How each window is looked for.
+    /// Search for the ends of each window.
     pub search: Search,
 }
 

@@ -23,7 +23,7 @@ pub struct Driven {
     seated_s: f64,
 }
 
-/// How things stand after a command.
+/// State of the trial after a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
     /// Simulated time since the start of the search, s.
@@ -44,7 +44,7 @@ pub struct State {
     pub slip_mm: f64,
     /// From the tip to where it counts as inserted, mm.
     pub distance_mm: f64,
-    /// How it ended, if it did.
+    /// Outcome, once it has ended.
     pub outcome: Option<Outcome>,
 }
 
@@ -80,7 +80,7 @@ impl Driven {
         self.state()
     }
 
-    /// What a strategy knows by its phases: when the push begins, and when the part is at rest.
+    /// Detects what a strategy knows by its phases: the begin of the push, and the part at rest.
     fn watch(&mut self, dt: f64) {
         let attempt = &mut self.attempt;
         if attempt.watch.entered && attempt.stage == Stage::Search {

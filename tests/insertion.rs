@@ -25,7 +25,7 @@ use insertion::task::finger::Coupling;
 use insertion::task::{PadTorsion, Task};
 use insertion::trial::cell;
 use insertion::trial::run::EngineRig;
-use insertion::trial::{Conditions, Rig, Trial, picture};
+use insertion::trial::{Conditions, PhaseEnd, Rig, Trial, picture};
 use nalgebra::Vector3;
 
 fn task(name: &str) -> Task {
@@ -33,18 +33,24 @@ fn task(name: &str) -> Task {
     Task::parse(file.text, file.file).unwrap()
 }
 
-fn rig(name: &str, engine: Box<dyn Engine>) -> EngineRig {
-    with_robot(name, "servo", engine)
+fn robot(name: &str) -> Robot {
+    let file = ROBOTS.iter().find(|file| file.name == name).unwrap();
+    Robot::parse(file.text, file.file).unwrap()
 }
 
-fn with_robot(name: &str, robot: &str, engine: Box<dyn Engine>) -> EngineRig {
-    let file = ROBOTS.iter().find(|file| file.name == robot).unwrap();
-    let robot = Robot::parse(file.text, file.file).unwrap();
-    EngineRig::new(task(name), &robot, engine).unwrap()
+/// A task on a robot in the engine `direct`.
+fn rig(task: Task, name: &str) -> EngineRig {
+    EngineRig::new(task, &robot(name), Box::<Direct>::default()).unwrap()
 }
 
+/// A shipped task on the robot `servo` in the engine `direct`.
 fn direct(name: &str) -> EngineRig {
-    rig(name, Box::new(Direct::default()))
+    rig(task(name), "servo")
+}
+
+/// The end of a trial's phase of that name.
+fn phase<'a>(trial: &'a Trial, name: &str) -> &'a PhaseEnd {
+    trial.phases.iter().find(|phase| phase.name == name).unwrap()
 }
 
 fn finger(compliance: f64, assembly: f64) -> Finger {
@@ -72,7 +78,7 @@ fn all_measured_fingers_insert_at_each_nominal_start() {
 #[test]
 fn the_arm_inserts_all_four_plugs() {
     for name in ["ket8", "ket12", "rj45", "usb"] {
-        let rig = with_robot(name, "ur5e", Box::new(Direct::default()));
+        let rig = rig(task(name), "ur5e");
         for finger in [finger(1.2, 52.4), finger(2.6, 45.0), finger(3.84, 35.0)] {
             let outcome = trial(&rig, &finger, 0.0).outcome;
             assert_eq!(outcome, Outcome::Inserted, "{name} {finger:?}");
@@ -84,11 +90,7 @@ fn the_arm_inserts_all_four_plugs() {
 #[test]
 fn a_rigid_flange_inserts_with_more_force_than_a_soft_one() {
     let peak = |robot| {
-        let trial = trial(
-            &with_robot("ket12", robot, Box::new(Direct::default())),
-            &finger(2.6, 45.0),
-            0.0,
-        );
+        let trial = trial(&rig(task("ket12"), robot), &finger(2.6, 45.0), 0.0);
         assert_eq!(trial.outcome, Outcome::Inserted, "{robot}");
         trial.peak_force_n
     };
@@ -99,7 +101,8 @@ fn a_rigid_flange_inserts_with_more_force_than_a_soft_one() {
 #[test]
 fn rapier_inserts_all_four_plugs_too() {
     for file in TASKS {
-        let rig = rig(file.name, Box::new(Rapier::default()));
+        let engine = Box::<Rapier>::default();
+        let rig = EngineRig::new(task(file.name), &robot("servo"), engine).unwrap();
         let trial = trial(&rig, &finger(1.2, 52.4), 0.0);
         assert_eq!(trial.outcome, Outcome::Inserted, "{}", file.name);
     }
@@ -125,19 +128,11 @@ fn far_outside_every_task_fails_and_never_diverges() {
         let grasped = rig.grasp(&finger(3.0, 30.0));
         for offset_mm in [-12.0, 12.0] {
             let outcome = grasped.trial(offset_mm * MM).outcome;
-            assert!(
-                matches!(outcome, Outcome::Failed(_)),
-                "{} {offset_mm}: {outcome:?}",
-                file.name
-            );
+            let Outcome::Failed(class) = outcome else { panic!("{}: {outcome:?}", file.name) };
+            // A key set down beside its slot is missed.
+            assert!((file.name, offset_mm) != ("ket8", 12.0) || class == FailureClass::PlugMissed);
         }
     }
-}
-
-#[test]
-fn a_key_set_down_beside_its_slot_is_missed() {
-    let outcome = trial(&direct("ket8"), &finger(3.0, 30.0), 12.0).outcome;
-    assert_eq!(outcome, Outcome::Failed(FailureClass::PlugMissed));
 }
 
 #[test]
@@ -199,10 +194,7 @@ fn a_finger_soft_in_assembly_presses_the_key_less_deep_and_tolerates_less() {
     let rig = direct("ket8");
     let (soft, stiff) = (finger(2.6, 25.0), finger(2.6, 75.0));
     let trials = |offset_mm: f64| [&soft, &stiff].map(|finger| trial(&rig, finger, offset_mm));
-    let deep = |trial: &Trial| {
-        let end = trial.phases.iter().find(|phase| phase.name == "side").unwrap();
-        -end.tip_mm[2]
-    };
+    let deep = |trial: &Trial| -phase(trial, "side").tip_mm[2];
     let inside = trials(-1.5);
     assert!(inside.iter().all(|trial| trial.outcome == Outcome::Inserted));
     let outside = trials(-2.5);
@@ -236,8 +228,7 @@ fn a_part_low_in_the_gripper_is_touched_that_much_earlier() {
     let soft = finger(1.2, 52.4);
     let touch = |grasp_low: f64| {
         let conditions = Conditions { grasp_low, ..Conditions::NOMINAL };
-        let trial = rig.grasp_in(&soft, &conditions).trial(0.0);
-        trial.phases.iter().find(|phase| phase.name == "approach").unwrap().tip_mm[2]
+        phase(&rig.grasp_in(&soft, &conditions).trial(0.0), "approach").tip_mm[2]
     };
     let lower = touch(0.0) - touch(0.3 * MM);
     assert!((lower - 0.3).abs() < 0.05, "{lower} mm");
@@ -246,8 +237,7 @@ fn a_part_low_in_the_gripper_is_touched_that_much_earlier() {
 /// Under drawn errors the finger with the wider window inserts more often.
 #[test]
 fn the_success_rate_follows_the_window() {
-    let typical = UNCERTAINTIES[0];
-    let mut typical = Uncertainty::parse(typical.text, typical.file).unwrap();
+    let mut typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
     typical.success.trials = 40;
     let plan = Plan::new(&typical, 0, true, false);
     let rig = direct("usb");
@@ -272,8 +262,7 @@ fn the_success_rate_follows_the_window() {
 /// window are firm (those of usb are not: `docs/notes/simulation.md`).
 #[test]
 fn a_robust_range_is_smaller_than_the_range() {
-    let typical = UNCERTAINTIES[0];
-    let mut typical = Uncertainty::parse(typical.text, typical.file).unwrap();
+    let mut typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
     typical.robust.samples = 6;
     typical.robust.search = Search::Strides;
     let plan = Plan::new(&typical, 0, false, true);
@@ -336,8 +325,7 @@ fn mounted(scene: &mut Scene, finger: &Finger, side: f64, inward: f64, geoms: Ve
 #[test]
 fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
     let shoulder = direct("rj45").task.grip.shoulder();
-    let touching = [Touching::Pad, Touching::PadAndRoof];
-    for touching in touching {
+    for touching in [Touching::Pad, Touching::PadAndRoof] {
         let finger = computed(touching);
         for side in [-1.0, 1.0] {
             let mut scene = Scene::default();
@@ -377,20 +365,12 @@ fn pushed_up_a_part_is_gripped_harder_by_coupled_fingers() {
     });
     // The pads' faces meet in the middle: the part is a thin plate between them.
     let half = Vector3::new(6.0, 1e-3, 60.0) * MM;
-    let plate = Geom {
-        name: "part".into(),
-        shape: Shape::Box { half },
-        pose: Pose::identity(),
-        friction: None,
-    };
+    let (shape, pose) = (Shape::Box { half }, Pose::identity());
+    let plate = Geom { name: "part".into(), shape, pose, friction: None };
     let inertia =
         Inertia { mass: 5e-3, centre: Default::default(), moments: Vector3::repeat(1e-5) };
-    let part = scene.body(Body {
-        name: "part".into(),
-        motion: Motion::Free(inertia),
-        pose: Pose::identity(),
-        geoms: vec![plate],
-    });
+    let motion = Motion::Free(inertia);
+    let part = scene.body(Body { name: "part".into(), motion, pose, geoms: vec![plate] });
     for body in fingers {
         scene.contact(body, part, Friction::hard(1.0));
     }
@@ -417,8 +397,7 @@ fn pushed_up_a_part_is_gripped_harder_by_coupled_fingers() {
 
 /// The moment about the pads' normal, N m, at which a key held by two such fingers begins to turn.
 fn moment_that_turns(task: &Task, finger: &Finger) -> f64 {
-    let file = ROBOTS.iter().find(|file| file.name == "rigid").unwrap();
-    let robot = Robot::parse(file.text, file.file).unwrap().mount(0.0, 0.0).unwrap();
+    let robot = robot("rigid").mount(0.0, 0.0).unwrap();
     let mut cell = cell::build(task, &robot, finger);
     cell.scene.gravity = Vector3::zeros();
     let mut world = Direct::default().world(&cell.scene);
@@ -479,12 +458,8 @@ fn a_touch_felt_at_a_force_and_late_presses_harder() {
         Task::parse(&file.text.replacen(&from, &format!("{from}{keys}\n"), 1), file.file)
     };
     let peak = |keys: &str| {
-        let task = with(keys, "touch").unwrap();
-        let robot = ROBOTS.iter().find(|file| file.name == "rigid").unwrap();
-        let robot = Robot::parse(robot.text, robot.file).unwrap();
-        let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
-        let trial = trial(&rig, &finger(2.6, 45.0), 0.0);
-        trial.phases.iter().find(|phase| phase.name == "touch").unwrap().peak_force_n
+        let rig = rig(with(keys, "touch").unwrap(), "rigid");
+        phase(&trial(&rig, &finger(2.6, 45.0), 0.0), "touch").peak_force_n
     };
     let at = ["", "touch_force_n = 5.0", "touch_force_n = 5.0\nlatency_s = 0.01"].map(peak);
     assert!(at[0] + 2.0 < at[1] && at[1] + 2.0 < at[2], "{at:?} N");
@@ -506,9 +481,7 @@ fn a_latch_snaps_behind_its_lips() {
     let task = Task::parse(include_str!("../tasks/rj45_latch.toml"), "rj45_latch.toml").unwrap();
     let hinge = task.plug.latch.as_ref().unwrap().hinge;
     for robot in ["servo", "ur5e_position"] {
-        let file = ROBOTS.iter().find(|file| file.name == robot).unwrap();
-        let robot = Robot::parse(file.text, file.file).unwrap();
-        let rig = EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap();
+        let rig = rig(task.clone(), robot);
         let recording = rig.record(&finger(2.6, 45.0), 0.0).unwrap();
         assert_eq!(recording.trial.outcome, Outcome::Inserted, "{:?}", recording.trial);
         let turns = recording.frames.iter().map(|frame| {
@@ -534,9 +507,7 @@ fn a_latch_snaps_behind_its_lips() {
 fn a_usb_a_plug_goes_over_its_tongue() {
     let task = Task::parse(include_str!("../tasks/usb_a.toml"), "usb_a.toml").unwrap();
     for robot in ["servo", "ur5e_position"] {
-        let file = ROBOTS.iter().find(|file| file.name == robot).unwrap();
-        let robot = Robot::parse(file.text, file.file).unwrap();
-        let rig = EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap();
+        let rig = rig(task.clone(), robot);
         let trial = trial(&rig, &finger(2.6, 45.0), 0.0);
         assert_eq!(trial.outcome, Outcome::Inserted, "{trial:?}");
     }

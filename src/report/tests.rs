@@ -13,11 +13,10 @@ use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use insertion::stiffness::{Axis, SHIPPED_CSV, SHIPPED_FILE, parse};
 use insertion::surrogate::{Model, fit};
 use insertion::trial::engine::EngineKind;
-use insertion::trial::fake::FakeRig;
-use insertion::trial::{Conditions, Grasped, Rig, Trial};
+use insertion::trial::fake::{Altered, FakeRig};
+use insertion::trial::{Grasp, Trial};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
-use std::sync::atomic::AtomicBool;
 
 fn finray9() -> PrintedFinger {
     PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
@@ -330,39 +329,17 @@ fn other_spaces_have_a_page() {
     check_page(&html);
 }
 
-/// The closed-form rig with a gap: it jams at 0.2 mm.
-struct GapRig;
-
-struct GapGrasp<'a>(Box<dyn Grasped + 'a>);
-
-impl Rig for GapRig {
-    fn grasp_until<'a>(
-        &'a self,
-        finger: &Finger,
-        conditions: &Conditions,
-        stop: &'a AtomicBool,
-    ) -> Box<dyn Grasped + 'a> {
-        static RIG: FakeRig = FakeRig { delay: std::time::Duration::ZERO };
-        Box::new(GapGrasp(RIG.grasp_until(finger, conditions, stop)))
-    }
-}
-
-impl Grasped for GapGrasp<'_> {
-    fn trial(&self, offset: f64) -> Trial {
-        let trial = self.0.trial(offset);
-        match (offset - 0.2 * MM).abs() < 1e-9 {
-            true => Trial { outcome: Outcome::Failed(FailureClass::Jammed), ..trial },
-            false => trial,
-        }
-    }
-}
-
 /// What the page says of its own limits holds for the searches, models and spaces there are.
 #[test]
 fn the_limits_are_those_of_what_was_done() {
     // Ends at -4.0 and 1.8 mm with a gap at 0.2 mm: the default search steps over it.
     let finger = Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM);
-    let range = |search| evaluate(&GapRig, &finger, search).window.range_mm();
+    let gap =
+        Altered(|_: &Grasp, offset: f64, trial: Trial| match (offset - 0.2 * MM).abs() < 1e-9 {
+            true => Trial { outcome: Outcome::Failed(FailureClass::Jammed), ..trial },
+            false => trial,
+        });
+    let range = |search| evaluate(&gap, &finger, search).window.range_mm();
     assert_eq!((range(Search::Strides), range(Search::Walk)), (5.8, 4.1));
     let html = page(&study(), model(), &Beside::default()).unwrap();
     for statement in [

@@ -19,7 +19,7 @@ pub const LARGEST_OWN: u64 = 64 << 20;
 /// Most bytes of a journal: over a million evaluations.
 pub const LARGEST_JOURNAL: u64 = 2 << 30;
 
-/// What a temporary file is called, with process and number between the two.
+/// Begin and end of a temporary file's name; process and number stand between.
 const TEMPORARY: [&str; 2] = [".optimize-", ".new"];
 /// A temporary file of this age was left by a process that was killed.
 const ABANDONED: Duration = Duration::from_secs(3600);

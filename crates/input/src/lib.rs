@@ -14,7 +14,7 @@ pub mod units;
 
 use serde::de::DeserializeOwned;
 
-/// What is wrong with a task, space or robot file.
+/// Error of an input file: not TOML of its shape, or a value that cannot be used.
 #[derive(Debug, Clone, thiserror::Error, PartialEq)]
 pub enum InputError {
     /// Not TOML, an unknown key or a missing field; the text names the line.
@@ -30,9 +30,9 @@ pub enum InputError {
     Value {
         /// The file as given.
         file: String,
-        /// The field.
+        /// Path of the field in the file.
         key: String,
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
 }
@@ -45,14 +45,18 @@ const SMALLEST: f64 = 1e-9;
 /// Longest length and largest coordinate, mm.
 const LONGEST_MM: f64 = 1000.0;
 
+/// The error of a file that is not TOML, or not of the shape asked for.
+pub fn syntax(file: &str, error: &toml::de::Error) -> InputError {
+    InputError::Syntax { file: file.to_owned(), message: error.to_string().trim_end().to_owned() }
+}
+
 /// Reads TOML; `file` is named in errors.
+///
+/// # Errors
+/// If the text is not TOML of this shape, or has a control character.
 pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError> {
-    let syntax = |error: toml::de::Error| InputError::Syntax {
-        file: file.to_owned(),
-        message: error.to_string().trim_end().to_owned(),
-    };
-    let found = toml::from_str(text).map_err(syntax)?;
-    let table: toml::Table = toml::from_str(text).map_err(syntax)?;
+    let found = toml::from_str(text).map_err(|error| syntax(file, &error))?;
+    let table: toml::Table = toml::from_str(text).map_err(|error| syntax(file, &error))?;
     match control_character(&table) {
         Some(key) => Check { file }.fail(&key, "has a control character, such as \\u001b"),
         None => Ok(found),
@@ -95,6 +99,20 @@ impl Check<'_> {
             key: key.to_owned(),
             problem: problem.into(),
         })
+    }
+
+    /// The values, if each passes a check of one value, such as [`Check::finite`].
+    ///
+    /// # Errors
+    /// That of the first value that does not.
+    pub fn each<const N: usize>(
+        &self,
+        key: &str,
+        values: [f64; N],
+        one: fn(&Self, &str, f64) -> Result<f64, InputError>,
+    ) -> Result<[f64; N], InputError> {
+        values.iter().try_for_each(|&value| one(self, key, value).map(drop))?;
+        Ok(values)
     }
 
     /// The value, if it is finite and not beyond [`LARGEST`].

@@ -1,24 +1,100 @@
-//! The numbers of a TOML file by their paths.
+//! TOML files, the numbers of which a design may set by their paths.
 
+use crate::{Check, InputError, read};
 use std::collections::BTreeSet;
-use toml::Value;
+use toml::{Table, Value};
+
+/// Errors about values of a design, which stand in no file.
+pub const DESIGN: Check<'static> = Check { file: "design" };
 
 const VECTOR: [&str; 3] = ["x", "y", "z"];
 
-/// Every number within `value` with its path, which begins with `path`.
-pub fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)> {
+/// A TOML file as read. A number's key is the root, then its path in the file: tables and keys as
+/// they stand there; one of several tables by its `name`; a number of a vector by `x`, `y`, `z`, of
+/// any other list by its place, counted from 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NumberFile {
+    root: &'static str,
+    file: String,
+    table: Table,
+}
+
+impl NumberFile {
+    /// Reads a file; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not TOML.
+    pub fn parse(root: &'static str, text: &str, file: &str) -> Result<Self, InputError> {
+        Ok(NumberFile { root, file: file.to_owned(), table: read(text, file)? })
+    }
+
+    /// The file as given.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The keys of all numbers, in alphabetical order.
+    pub fn keys(&self) -> Vec<String> {
+        let mut table = self.table.clone();
+        let mut keys: Vec<String> =
+            of_table(self.root, &mut table).into_iter().map(|(key, _)| key).collect();
+        keys.sort();
+        keys
+    }
+
+    /// The number under a key, in the unit of the key.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        let mut table = self.table.clone();
+        let number = of_table(self.root, &mut table).into_iter().find(|(name, _)| name == key)?.1;
+        number.as_float().or_else(|| number.as_integer().map(|whole| whole as f64))
+    }
+
+    /// The table with these numbers in place of its own.
+    ///
+    /// # Errors
+    /// If a key sets no number, or two; the message names the keys there are, `elsewhere` included.
+    pub fn with<'k>(
+        &self,
+        values: impl IntoIterator<Item = (&'k str, f64)>,
+        elsewhere: &[&str],
+    ) -> Result<Table, InputError> {
+        let mut table = self.table.clone();
+        let mut numbers = of_table(self.root, &mut table);
+        for (key, value) in values {
+            let mut found = numbers.iter_mut().filter(|(name, _)| name == key);
+            match (found.next(), found.next()) {
+                (Some((_, number)), None) => **number = Value::Float(value),
+                (Some(_), Some(_)) => {
+                    let problem = "is two numbers: two tables have the same name; rename one";
+                    return Check { file: &self.file }.fail(key, problem);
+                }
+                (None, _) => {
+                    let keys = numbers.iter().map(|(name, _)| name.as_str());
+                    let keys: Vec<&str> = keys.chain(elsewhere.iter().copied()).collect();
+                    return DESIGN.fail(key, unknown(key, &keys));
+                }
+            }
+        }
+        Ok(table)
+    }
+}
+
+/// Every number within a table with its path, which begins with `path`.
+fn of_table<'a>(path: &str, table: &'a mut Table) -> Vec<(String, &'a mut Value)> {
     let below = |name: &str| format!("{path}.{name}");
+    table.iter_mut().flat_map(|(key, value)| numbers(&below(key), value)).collect()
+}
+
+fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)> {
     match value {
         Value::Integer(_) | Value::Float(_) => vec![(path.to_owned(), value)],
-        Value::Table(table) => {
-            table.iter_mut().flat_map(|(key, value)| numbers(&below(key), value)).collect()
-        }
+        Value::Table(table) => of_table(path, table),
         Value::Array(items) => {
             let vector = items.len() == VECTOR.len() && items.iter().all(Value::is_float);
             let name = |place: usize, item: &Value| match item.get("name").and_then(Value::as_str) {
-                Some(name) => below(name),
-                None if vector => below(VECTOR[place]),
-                None => below(&place.to_string()),
+                Some(name) => format!("{path}.{name}"),
+                None if vector => format!("{path}.{}", VECTOR[place]),
+                None => format!("{path}.{place}"),
             };
             let items = items.iter_mut().enumerate();
             items.flat_map(|(place, item)| numbers(&name(place, item), item)).collect()
@@ -27,15 +103,12 @@ pub fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Val
     }
 }
 
-/// What is wrong with a key that is none of `keys`: how a key that begins like it goes on.
-pub fn unknown(key: &str, keys: &[&str]) -> String {
+/// Problem of a key that is none of `keys`: how a key that begins like it goes on.
+fn unknown(key: &str, keys: &[&str]) -> String {
     let mut end = key.len();
     loop {
         let prefix = if end == 0 { String::new() } else { format!("{}.", &key[..end]) };
-        let next = |other: &&str| {
-            let rest = other.strip_prefix(&prefix)?;
-            Some(rest.split('.').next().unwrap_or(rest).to_owned())
-        };
+        let next = |other: &&str| Some(other.strip_prefix(&prefix)?.split('.').next()?.to_owned());
         let next: BTreeSet<String> = keys.iter().filter_map(next).collect();
         if !next.is_empty() {
             let names: Vec<String> = next.into_iter().collect();

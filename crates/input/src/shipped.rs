@@ -4,14 +4,14 @@ use crate::files::{self, LARGEST_INPUT};
 use std::path::Path;
 use strsim::levenshtein;
 
-/// One shipped file.
+/// A file within the program.
 #[derive(Debug, Clone, Copy)]
 pub struct Shipped {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// Its path in the project, for messages.
+    /// Path in the project, for messages.
     pub file: &'static str,
-    /// Its contents.
+    /// Text of the file.
     pub text: &'static str,
 }
 
@@ -25,7 +25,7 @@ macro_rules! shipped {
     };
 }
 
-/// Tasks.
+/// Connector insertion tasks.
 pub const TASKS: &[Shipped] = shipped! {
     "ket8": "tasks/ket8.toml",
     "ket12": "tasks/ket12.toml",
@@ -33,14 +33,14 @@ pub const TASKS: &[Shipped] = shipped! {
     "usb": "tasks/usb.toml",
 };
 
-/// Search spaces.
+/// Search spaces of finger and strategy.
 pub const SPACES: &[Shipped] = shipped! {
     "infill": "spaces/infill.toml",
     "codesign": "spaces/codesign.toml",
     "finger": "spaces/finger.toml",
 };
 
-/// Robots.
+/// Robots, from rigid to a compliant arm.
 pub const ROBOTS: &[Shipped] = shipped! {
     "servo": "robots/servo.toml",
     "rigid": "robots/rigid.toml",
@@ -48,7 +48,7 @@ pub const ROBOTS: &[Shipped] = shipped! {
     "ur5e_position": "robots/ur5e_position.toml",
 };
 
-/// Printed fingers.
+/// Geometry and material of printed fingers.
 pub const FINGERS: &[Shipped] = shipped! { "finray9": "fingers/finray9.toml" };
 
 /// Distributions of the errors under which a finger is to work.
@@ -68,11 +68,11 @@ pub const MEASUREMENTS: &[Shipped] = shipped! { "published": "data/published_ben
 pub struct Source {
     /// File name as the user knows it.
     pub file: String,
-    /// Contents.
+    /// Text of the file.
     pub text: String,
 }
 
-/// Why a name or path gives no text.
+/// Error of a name or path that gives no text.
 #[derive(Debug, thiserror::Error)]
 pub enum ShippedError {
     /// Not a shipped name.
@@ -81,23 +81,23 @@ pub enum ShippedError {
         hint(nearest)
     )]
     Unknown {
-        /// "task", "space", ...
+        /// Kind of file: "task", "space", ...
         kind: &'static str,
-        /// What was given.
+        /// Name as given.
         name: String,
         /// The shipped name most like it.
         nearest: Option<&'static str>,
-        /// All shipped names.
+        /// All shipped names, comma-separated.
         names: String,
     },
     /// A path that cannot be read.
     #[error("{file}: cannot read the {kind}: {source}")]
     Unreadable {
-        /// The path.
+        /// Path as given.
         file: String,
-        /// "task", "space", ...
+        /// Kind of file: "task", "space", ...
         kind: &'static str,
-        /// The system's answer.
+        /// Error of the operating system.
         source: std::io::Error,
     },
 }

@@ -16,6 +16,8 @@
 pub mod arm;
 pub mod evaluation;
 pub mod finger;
+#[cfg(test)]
+mod fixtures;
 pub mod outcome;
 pub mod robot;
 pub mod space;

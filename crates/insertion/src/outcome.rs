@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How a trial failed; the numbers are the paper's (Table "Failure Cases").
+/// Failure class of a trial; the numbers are the paper's (Table "Failure Cases").
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(into = "u8", try_from = "u8")]
 pub enum FailureClass {
@@ -30,24 +30,16 @@ impl FailureClass {
         self as u8 + 1
     }
 
-    /// Its name, for texts and tables.
+    /// Name for texts and tables.
     pub fn label(self) -> &'static str {
-        match self {
-            FailureClass::ContactLossBeforeSearch => "contact loss before search",
-            FailureClass::PlugMissed => "plug missed",
-            FailureClass::Jammed => "jammed",
-            FailureClass::ContactLossInInsertion => "contact loss in insertion",
-        }
+        let labels =
+            ["contact loss before search", "plug missed", "jammed", "contact loss in insertion"];
+        labels[self as usize]
     }
 
-    /// A word or two, for plots.
+    /// Short name for plots.
     pub fn short(self) -> &'static str {
-        match self {
-            FailureClass::ContactLossBeforeSearch => "lost early",
-            FailureClass::PlugMissed => "missed",
-            FailureClass::Jammed => "jammed",
-            FailureClass::ContactLossInInsertion => "lost",
-        }
+        ["lost early", "missed", "jammed", "lost"][self as usize]
     }
 }
 
@@ -67,7 +59,7 @@ impl TryFrom<u8> for FailureClass {
     }
 }
 
-/// How one trial ended.
+/// Outcome of one trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -89,7 +81,7 @@ impl Outcome {
         }
     }
 
-    /// The same for readers: of a failure the name of its class.
+    /// Words for readers; of a failure the name of its class.
     pub fn label(self) -> &'static str {
         match self {
             Outcome::Failed(class) => class.label(),
@@ -97,7 +89,7 @@ impl Outcome {
         }
     }
 
-    /// A word or two, for plots.
+    /// Short name for plots.
     pub fn short(self) -> &'static str {
         match self {
             Outcome::Failed(class) => class.short(),

@@ -10,20 +10,20 @@ use serde::Deserialize;
 /// A checked robot, SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robot {
-    /// Name, as used on the command line.
+    /// Name on the command line.
     pub name: String,
-    /// One line for lists.
+    /// One-line description for lists.
     pub description: String,
-    /// What holds the flange.
+    /// Suspension of the flange.
     pub drive: Drive,
     /// Plug-socket contact force at which the robot stops moving, N.
     pub stop_force: f64,
 }
 
-/// What holds a robot's flange.
+/// Suspension of a robot's flange.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Drive {
-    /// Nothing gives.
+    /// Rigid: the flange does not give.
     Ideal,
     /// A spring and damper per Cartesian axis at the TCP.
     Servo(Servo),
@@ -42,22 +42,22 @@ pub struct Servo {
     pub mass: f64,
     /// Moment of inertia felt about each axis, kg m2.
     pub inertia: f64,
-    /// 1 is critical.
+    /// Damping ratio; 1 is critical.
     pub damping_ratio: f64,
 }
 
 /// A robot in place for a task: what its flange feels like there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mounted {
-    /// How the flange follows its command.
+    /// Response of the flange to its command.
     pub flange: Flange,
     stop_force: f64,
 }
 
-/// How a flange follows its command.
+/// Response of a flange to its command.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Flange {
-    /// Exactly.
+    /// Follows exactly.
     Ideal,
     /// Through a spring and damper per Cartesian axis at the TCP.
     Servo(Servo),
@@ -86,28 +86,26 @@ impl Mounted {
     /// the arm gives under its assembly force. A soft arm that is sent to where the
     /// part should be hardly pushes it there.
     pub fn lead(&self, along: &Vector3<f64>) -> f64 {
-        match &self.flange {
-            Flange::Reduced(arm) => arm.assembly_force * along.dot(&(arm.compliance * along)),
-            Flange::Ideal | Flange::Servo(_) => 0.0,
-        }
+        let lead = |arm: &Reduced| arm.assembly_force * along.dot(&(arm.compliance * along));
+        self.arm().map_or(0.0, lead)
     }
 
-    /// How long the robot takes to follow a command, s.
+    /// Time that the robot takes to follow a command, s.
     pub fn settling(&self) -> f64 {
-        match &self.flange {
-            Flange::Reduced(arm) => SETTLED * arm.time_constant,
-            Flange::Ideal | Flange::Servo(_) => 0.0,
-        }
+        self.arm().map_or(0.0, |arm| SETTLED * arm.time_constant)
     }
 
     /// Whether the robot stops at this plug-socket force, N, task axes: a protective
     /// stop, or a joint at its torque limit.
     pub fn stops(&self, force: &Vector3<f64>) -> bool {
-        let overloaded = match &self.flange {
-            Flange::Reduced(arm) => arm.overloaded(force),
-            Flange::Ideal | Flange::Servo(_) => false,
-        };
-        overloaded || force.norm() > self.stop_force
+        self.arm().is_some_and(|arm| arm.overloaded(force)) || force.norm() > self.stop_force
+    }
+
+    fn arm(&self) -> Option<&Reduced> {
+        match &self.flange {
+            Flange::Reduced(arm) => Some(arm),
+            Flange::Ideal | Flange::Servo(_) => None,
+        }
     }
 }
 
@@ -152,15 +150,14 @@ impl Robot {
                 inertia_kg_m2,
                 damping_ratio,
             } => {
-                for k in stiffness_n_per_mm {
-                    positive("stiffness_n_per_mm", k)?;
-                }
-                for k in rotational_stiffness_nm_per_rad {
-                    positive("rotational_stiffness_nm_per_rad", k)?;
-                }
+                let positives = |key: &str, values| check.each(key, values, Check::positive);
+                let stiffness = positives("stiffness_n_per_mm", stiffness_n_per_mm)?;
                 let servo = Servo {
-                    stiffness: stiffness_n_per_mm.map(|k| k * N_PER_MM),
-                    rotational_stiffness: rotational_stiffness_nm_per_rad,
+                    stiffness: stiffness.map(|k| k * N_PER_MM),
+                    rotational_stiffness: positives(
+                        "rotational_stiffness_nm_per_rad",
+                        rotational_stiffness_nm_per_rad,
+                    )?,
                     mass: positive("mass_kg", mass_kg)?,
                     inertia: positive("inertia_kg_m2", inertia_kg_m2)?,
                     damping_ratio: positive("damping_ratio", damping_ratio)?,

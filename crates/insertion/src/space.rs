@@ -15,14 +15,14 @@ pub const DENSITY_KEY: &str = "infill_density_percent";
 /// Key of the infill direction, degrees.
 pub const DIRECTION_KEY: &str = "infill_direction_deg";
 
-/// How the values of a parameter follow one another.
+/// Spacing of the values of a parameter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
-    /// By a difference.
+    /// Equal differences.
     #[default]
     Linear,
-    /// By a factor.
+    /// Equal factors.
     Log,
 }
 
@@ -36,7 +36,7 @@ impl Scale {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
-    /// What it sets; carries its unit (`infill_density_percent`).
+    /// Name of the number it sets, with its unit (`infill_density_percent`).
     pub key: String,
     /// Smallest value, in the unit of the key.
     pub low: f64,
@@ -45,10 +45,10 @@ pub struct Parameter {
     /// Smallest difference that can be made (printed, set), same unit; on a log scale the factor
     /// between neighbours.
     pub step: f64,
-    /// How the values follow one another.
+    /// Spacing of the values.
     #[serde(default, skip_serializing_if = "Scale::is_linear")]
     pub scale: Scale,
-    /// Where the bounds come from.
+    /// Source of the bounds.
     pub source: String,
 }
 
@@ -58,21 +58,21 @@ impl Parameter {
         self.steps().round() as u32 + 1
     }
 
-    /// Steps from the lowest to the highest value.
+    /// Steps from the lowest value to the highest.
     fn steps(&self) -> f64 {
+        self.steps_to(self.high)
+    }
+
+    fn steps_to(&self, value: f64) -> f64 {
         match self.scale {
-            Scale::Linear => (self.high - self.low) / self.step,
-            Scale::Log => libm::log(self.high / self.low) / libm::log(self.step),
+            Scale::Linear => (value - self.low) / self.step,
+            Scale::Log => libm::log(value / self.low) / libm::log(self.step),
         }
     }
 
     /// The level whose value is nearest.
     pub fn nearest(&self, value: f64) -> u32 {
-        let steps = match self.scale {
-            Scale::Linear => (value - self.low) / self.step,
-            Scale::Log => libm::log(value / self.low) / libm::log(self.step),
-        };
-        steps.round().clamp(0.0, f64::from(self.levels() - 1)) as u32
+        self.steps_to(value).round().clamp(0.0, f64::from(self.levels() - 1)) as u32
     }
 
     /// The value of level `k`, rounded so that it prints as it was written.
@@ -110,10 +110,7 @@ pub struct Design(pub BTreeMap<String, f64>);
 impl Design {
     /// A design of infill density (percent) and direction (degrees).
     pub fn infill(density_percent: f64, direction_deg: f64) -> Self {
-        Design(BTreeMap::from([
-            (DENSITY_KEY.to_owned(), density_percent),
-            (DIRECTION_KEY.to_owned(), direction_deg),
-        ]))
+        Design::default().with(DENSITY_KEY, density_percent).with(DIRECTION_KEY, direction_deg)
     }
 
     /// The infill that a finger is printed with, its first rib at `phase_mm`, else where the finger
@@ -127,13 +124,18 @@ impl Design {
         }
     }
 
+    /// The design with this value under a key, in the unit of the key.
+    pub fn with(&self, key: &str, value: f64) -> Self {
+        let mut design = self.clone();
+        design.0.insert(key.to_owned(), value);
+        design
+    }
+
     /// The value of a key, in the unit of the key.
     pub fn get(&self, key: &str) -> Option<f64> {
         self.0.get(key).copied()
     }
-}
 
-impl Design {
     /// `infill density 20 %, infill direction 10°`: for readers.
     pub fn labelled(&self) -> String {
         let value = |(key, value): (&String, &f64)| {
@@ -156,7 +158,7 @@ const UNITS: [(&str, &str); 9] = [
     ("_kg", " kg"),
     ("_s", " s"),
 ];
-/// What a path in a task file begins with and a reader does not need.
+/// Tables of a task file that labels leave out.
 const TABLES: [&str; 5] = ["task", "strategy", "phase", "grip", "finger"];
 
 /// The name of a key in words, and its unit: `task.strategy.tilt_deg` is `tilt`, in `°`.
@@ -266,7 +268,7 @@ impl Space {
         &self.name
     }
 
-    /// One line for lists.
+    /// One-line description for lists.
     pub fn description(&self) -> &str {
         &self.description
     }
@@ -304,10 +306,12 @@ source = "paper"
 "#;
 
     #[test]
-    fn the_last_level_is_the_upper_bound() {
+    fn a_linear_scale_holds_its_ends_and_finds_the_nearest_level() {
         let space = Space::parse(GOOD, "s.toml").unwrap();
         assert_eq!(space.levels(), vec![21]);
         assert_eq!(space.design(&GridPoint(vec![20])).get(DENSITY_KEY), Some(30.0));
+        let parameter = &space.parameters()[0];
+        assert_eq!([0.0, 12.4, 30.0].map(|value| parameter.nearest(value)), [0, 2, 20]);
     }
 
     #[test]
@@ -324,13 +328,6 @@ source = "paper"
         assert!(error.to_string().contains("log scale"), "{error}");
         let again: Space = toml::from_str(&toml::to_string(&space).unwrap()).unwrap();
         assert_eq!(again, space);
-    }
-
-    #[test]
-    fn the_nearest_level_of_a_linear_scale() {
-        let space = Space::parse(GOOD, "s.toml").unwrap();
-        let parameter = &space.parameters()[0];
-        assert_eq!([0.0, 12.4, 30.0].map(|value| parameter.nearest(value)), [0, 2, 20]);
     }
 
     #[test]

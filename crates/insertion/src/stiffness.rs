@@ -21,7 +21,7 @@ impl Axis {
     /// Both axes, assembly first, as in the measured file.
     pub const ALL: [Axis; 2] = [Axis::Assembly, Axis::Compliance];
 
-    /// A short name for tables and plots.
+    /// Short name for tables and plots.
     pub fn label(self) -> &'static str {
         match self {
             Axis::Assembly => "assembly (z)",
@@ -76,76 +76,38 @@ impl Measurement {
 
     /// The first column with a value that cannot be used, and what would be right.
     fn problem(&self) -> Option<(&'static str, &'static str)> {
-        let within = |value: f64, low: f64, high: f64| value >= low && value <= high;
-        if !(within(self.density_percent, 0.0, 100.0) && self.density_percent > 0.0) {
-            return Some((HEADER[1], "must be a number above 0 and at most 100 (percent)"));
-        }
-        if !within(self.direction_deg, 0.0, 90.0) {
-            return Some((HEADER[2], "must be a number from 0 to 90 (degrees)"));
-        }
-        for (column, stiffness) in [(HEADER[3], self.assembly), (HEADER[4], self.compliance)] {
-            if !(stiffness > 0.0 && stiffness.is_finite()) {
-                return Some((column, "must be a finite number above 0 (N/mm)"));
-            }
-        }
-        None
+        let stiff = |value: f64| value > 0.0 && value.is_finite();
+        let density = (0.0..=100.0).contains(&self.density_percent) && self.density_percent > 0.0;
+        let columns = [
+            (density, "must be a number above 0 and at most 100 (percent)"),
+            ((0.0..=90.0).contains(&self.direction_deg), "must be a number from 0 to 90 (degrees)"),
+            (stiff(self.assembly), "must be a finite number above 0 (N/mm)"),
+            (stiff(self.compliance), "must be a finite number above 0 (N/mm)"),
+        ];
+        let named = HEADER[1..].iter().zip(columns);
+        named.into_iter().find(|(_, (good, _))| !good).map(|(name, (_, right))| (*name, right))
     }
 }
 
-/// Why measurements cannot be used.
+/// Error of measurements that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurrogateError {
-    /// Not a CSV table with five columns.
+    /// Not a CSV table with the columns of [`HEADER`].
     #[error("{file}: {message}")]
     Syntax {
         /// The file as given.
         file: String,
-        /// What the reader found, with the line.
+        /// The reader's message, with the line.
         message: String,
     },
-    /// The first line is not [`HEADER`].
-    #[error("{file}: line 1: the header must be exactly `{}`", HEADER.join(","))]
-    Header {
-        /// The file as given.
-        file: String,
-    },
-    /// A field that cannot be used.
-    #[error("{file}: line {line}: {column}: {problem}")]
-    Field {
-        /// The file as given.
-        file: String,
-        /// Line in the file, from 1.
-        line: u64,
-        /// Column, as in the header.
-        column: &'static str,
-        /// What is wrong and what would be right.
-        problem: String,
-    },
-    /// A column in another unit.
-    #[error(
-        "{file}: {column}: the middle value is {own} N/mm, that of the measured printed fingers is {usual}; \
-         {question}"
-    )]
-    Unit {
-        /// The file as given.
-        file: String,
-        /// Column, as in the header.
-        column: &'static str,
-        /// Its middle value, N/mm.
-        own: f64,
-        /// The same of the shipped measurements, N/mm.
-        usual: f64,
-        /// What it may be.
-        question: &'static str,
-    },
-    /// A measurement, not read from a file, that cannot be used.
-    #[error("design {design}: {column}: {problem}")]
+    /// A value, or a column in another unit, that cannot be used.
+    #[error("{place}: {column}: {problem}")]
     Value {
-        /// Number of the design.
-        design: u32,
+        /// The file as given, with the line if it is one value; without a file the design.
+        place: String,
         /// Column, as in the header of a file.
         column: &'static str,
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// No design at all.
@@ -157,7 +119,7 @@ pub enum SurrogateError {
          are nearly alike"
     )]
     TooMany {
-        /// Designs given.
+        /// Number of designs given.
         found: usize,
     },
     /// No model could be fitted.
@@ -166,7 +128,7 @@ pub enum SurrogateError {
          the designs must differ in density and in direction"
     )]
     Unfittable {
-        /// Axis, as [`Axis::label`].
+        /// Axis as [`Axis::label`] has it.
         axis: &'static str,
     },
 }
@@ -181,25 +143,19 @@ fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     // The reader counts a line of a "\r\n" file too few.
     let text = text.replace("\r\n", "\n");
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let syntax = |error: csv::Error| SurrogateError::Syntax {
-        file: file.to_owned(),
-        message: error.to_string(),
-    };
+    let message = |message| SurrogateError::Syntax { file: file.to_owned(), message };
+    let syntax = |error: csv::Error| message(error.to_string());
     if reader.headers().map_err(syntax)?.iter().ne(HEADER) {
-        return Err(SurrogateError::Header { file: file.to_owned() });
+        let header = HEADER.join(",");
+        return Err(message(format!("line 1: the header must be exactly `{header}`")));
     }
     let mut found: Vec<Measurement> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(syntax)?;
         let line = record.position().map_or(0, csv::Position::line);
-        let fail = |(column, problem): (&'static str, String)| SurrogateError::Field {
-            file: file.to_owned(),
-            line,
-            column,
-            problem,
-        };
-        let measurement = row(&record).map_err(fail)?;
-        check(&measurement, &found).map_err(fail)?;
+        let refused = refused(format!("{file}: line {line}"));
+        let measurement = row(&record).map_err(&refused)?;
+        check(&measurement, &found).map_err(&refused)?;
         found.push(measurement);
     }
     enough(&found)?;
@@ -220,7 +176,11 @@ fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, Surroga
             ratio if ratio < 1.0 / OTHER_UNIT => "are these N/um or kN/mm? multiply them by 1000",
             _ => continue,
         };
-        return Err(SurrogateError::Unit { file: file.to_owned(), column, own, usual, question });
+        let problem = format!(
+            "the middle value is {own} N/mm, that of the measured printed fingers is {usual}; \
+             {question}"
+        );
+        return Err(refused(file.to_owned())((column, problem)));
     }
     Ok(found)
 }
@@ -234,11 +194,15 @@ fn median(all: &[Measurement], axis: Axis) -> f64 {
 /// Checks measurements that were not read from a file.
 pub(crate) fn check_all(measurements: &[Measurement]) -> Result<(), SurrogateError> {
     for (i, measurement) in measurements.iter().enumerate() {
-        check(measurement, &measurements[..i]).map_err(|(column, problem)| {
-            SurrogateError::Value { design: measurement.design, column, problem }
-        })?;
+        let refused = refused(format!("design {}", measurement.design));
+        check(measurement, &measurements[..i]).map_err(refused)?;
     }
     enough(measurements)
+}
+
+/// The error of a column at a place.
+fn refused(place: String) -> impl Fn((&'static str, String)) -> SurrogateError {
+    move |(column, problem)| SurrogateError::Value { place: place.clone(), column, problem }
 }
 
 fn enough(measurements: &[Measurement]) -> Result<(), SurrogateError> {

@@ -109,8 +109,7 @@ fn every_geom_joint_and_pair_is_there_under_a_name_of_its_own() {
 
 #[test]
 fn lengths_are_metres_and_springs_are_the_finger_s() {
-    let scene = scene("usb", "servo");
-    let text = model(&scene);
+    let text = model(&scene("usb", "servo"));
     let document = Document::parse(&text).unwrap();
     let shell = named(&document, "geom", "plug: metal shell");
     let close = |found: Vec<f64>, expected: &[f64]| {
@@ -139,8 +138,7 @@ fn lengths_are_metres_and_springs_are_the_finger_s() {
 #[test]
 fn contacts_have_the_stiffness_and_friction_of_the_pair() {
     let settings = MjcfSettings::default();
-    let scene = scene("ket8", "servo");
-    let text = model(&scene);
+    let text = model(&scene("ket8", "servo"));
     let document = Document::parse(&text).unwrap();
     let pair = |a: &str, b: &str| {
         let ends = [Some(a), Some(b)];
@@ -196,9 +194,9 @@ fn geoms_of_one_name_are_told_apart() {
     let plug = scene.bodies.iter_mut().find(|body| body.name == "plug").unwrap();
     let key = plug.geoms[0].clone();
     plug.geoms.extend([key.clone(), key]);
-    let names =
-        geom_names(&scene).into_iter().find(|names| names[..].contains(&"plug: key".into()));
-    assert_eq!(names.unwrap(), ["plug: key", "plug: key 2", "plug: key 3"]);
+    let names = geom_names(&scene);
+    let names = names.iter().find(|names| names.contains(&"plug: key".into())).unwrap();
+    assert_eq!(names[..], ["plug: key", "plug: key 2", "plug: key 3"]);
 }
 
 /// No contact's impedance is at an end of what MuJoCo can represent: there it would be softer than

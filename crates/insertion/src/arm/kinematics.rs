@@ -16,7 +16,7 @@ pub struct Posture {
 }
 
 impl Arm {
-    /// Where everything is at these angles.
+    /// Link frames, joint axes and TCP at these angles.
     pub fn at(&self, angles: &Angles) -> Posture {
         let mut links = [Pose::identity(); JOINTS];
         let mut axes = [Vector3::zeros(); JOINTS];

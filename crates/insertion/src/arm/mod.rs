@@ -24,16 +24,16 @@ pub use reduced::Reduced;
 use contact::scene::{Inertia, Pose};
 use nalgebra::{Unit, Vector3};
 
-/// Number of joints.
+/// Number of joints of an arm.
 pub const JOINTS: usize = 6;
 
-/// Joint angles, rad.
+/// Angles of the joints from base to tool, rad.
 pub type Angles = nalgebra::SVector<f64, JOINTS>;
 
-/// A checked arm, SI units.
+/// Six-axis arm model of a robot file, SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
-    /// From the base to the tool.
+    /// Joints from the base to the tool.
     pub joints: [Joint; JOINTS],
     /// The TCP in the last link's frame.
     pub tool: Pose,
@@ -48,11 +48,11 @@ pub struct Arm {
 /// One joint and the link that it moves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
-    /// Name in messages.
+    /// Name for messages.
     pub name: String,
     /// Joint frame in the frame of the link before.
     pub frame: Pose,
-    /// Its axis in that frame.
+    /// Axis of rotation in that frame.
     pub axis: Unit<Vector3<f64>>,
     /// Gain of its servo, N m/rad.
     pub stiffness: f64,
@@ -60,11 +60,11 @@ pub struct Joint {
     pub damping: f64,
     /// Largest torque, N m.
     pub limit: f64,
-    /// Of its link, in the frame that turns with it.
+    /// Mass properties of its link, in the frame that turns with it.
     pub link: Inertia,
 }
 
-/// Why an arm cannot work at a pose.
+/// Error of an arm that cannot work at a pose.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ArmError {
     /// The inverse kinematics ends elsewhere.

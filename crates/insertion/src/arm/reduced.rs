@@ -89,13 +89,13 @@ impl Arm {
 }
 
 impl Reduced {
-    /// What ties the flange to its command.
+    /// Spring and damper between the command and the flange.
     pub fn servo(&self) -> Coupled {
         let damping = if self.feed_forward { self.damping } else { Matrix6::zeros() };
         Coupled { stiffness: self.stiffness, damping }
     }
 
-    /// What ties it to the world, if its own speed is damped.
+    /// Damper between the flange and the world, if the flange's own speed is damped.
     pub fn brake(&self) -> Option<Coupled> {
         let brake = Coupled { stiffness: Matrix6::zeros(), damping: self.damping };
         (!self.feed_forward).then_some(brake)

@@ -20,13 +20,12 @@ use crate::task::{StartRule, Task};
 use crate::trial::Rig;
 use crate::trial::engine::EngineKind;
 use crate::trial::run::RigError;
+use input::numbers::DESIGN;
 use input::units::N_PER_MM;
-use input::{Check, InputError, shown};
+use input::{InputError, shown};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// What a stiffness is called in errors.
-const DESIGN: &str = "design";
 /// Stiffest finger, N/mm: a thousand times that of a solid one.
 const STIFFEST_N_PER_MM: f64 = 1e6;
 
@@ -38,9 +37,9 @@ pub struct Evaluator {
     pub fingers: FingerSource,
     /// The tasks, whose numbers a design may set; at least one.
     pub templates: Vec<Template>,
-    /// The robot.
+    /// Robot that carries the fingers.
     pub robot: Robot,
-    /// What computes the contacts.
+    /// Contact engine.
     pub engine: EngineKind,
 }
 
@@ -49,34 +48,30 @@ pub struct Evaluator {
 pub struct Specimen {
     /// The task, with the numbers that the design sets.
     pub task: Task,
-    /// The finger.
+    /// Finger that the design gives.
     pub finger: Finger,
-    /// What places its remote centre.
+    /// Source of the finger's remote centre.
     pub centre: CentreFrom,
     /// The stiffness that the finger was given, with its error.
     pub stiffness: Prediction,
 }
 
-/// Whether a finger of this stiffness, N/mm, can be simulated: the model may give none far
-/// from what was measured.
+/// Refuses a stiffness, N/mm, that cannot be simulated: far from what was measured the model may
+/// give any.
 fn check_stiffness(key: &str, n_per_mm: f64) -> Result<(), InputError> {
-    let check = Check { file: DESIGN };
-    match check.positive(key, n_per_mm)? <= STIFFEST_N_PER_MM {
-        true => Ok(()),
-        false => {
-            let found = shown(n_per_mm);
-            let problem = format!("is {found} N/mm; it may be {STIFFEST_N_PER_MM} at most");
-            check.fail(key, problem)
-        }
+    if DESIGN.positive(key, n_per_mm)? <= STIFFEST_N_PER_MM {
+        return Ok(());
     }
+    let found = shown(n_per_mm);
+    DESIGN.fail(key, format!("is {found} N/mm; it may be {STIFFEST_N_PER_MM} at most"))
 }
 
-/// What is known of one design after its evaluation.
+/// Evaluation of one design on all tasks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Stiffness predicted for it.
     pub stiffness: Prediction,
-    /// What was measured on each task, in their order.
+    /// Evaluation on each task, in their order.
     pub tasks: Vec<Evaluation>,
     /// For each task whether it was not simulated now but known from before; empty where
     /// nothing could be.
@@ -124,10 +119,9 @@ impl Evaluator {
             ("assembly stiffness", stiffness.assembly),
         ] {
             check_stiffness(key, axis.mean / N_PER_MM)?;
-            Check { file: DESIGN }.not_negative(key, axis.sd / N_PER_MM)?;
+            DESIGN.not_negative(key, axis.sd / N_PER_MM)?;
         }
-        let (compliance, assembly) = (stiffness.compliance.mean, stiffness.assembly.mean);
-        let at_pad = AtPad { compliance, assembly };
+        let at_pad = AtPad::of(&stiffness);
         let (task, Made { finger, centre }) = template.apply(design, &self.fingers, at_pad)?;
         Ok(Specimen { task, finger, centre, stiffness })
     }
@@ -182,13 +176,13 @@ impl Evaluator {
     ) -> Result<Evaluation, RigError> {
         let taught = self.taught(specimen, stop)?;
         let rig = self.rig(specimen, taught, 1.0)?;
-        let rig = Stoppable { rig: &*rig, stop };
+        let rig = Stoppable { inner: &*rig, stop };
         let Specimen { finger, stiffness, .. } = specimen;
         let evaluation = robustness::evaluate(&rig, finger, stiffness, search, plan);
         Ok(Evaluation { taught, ..evaluation })
     }
 
-    /// The same; if the nominal start does not insert, once more with the start taught.
+    /// As [`measure`](Self::measure); if the nominal start fails, once more with a taught start.
     ///
     /// # Errors
     /// If robot or engine cannot do the task.
@@ -225,7 +219,7 @@ impl Evaluator {
         }
         let rig = |factor| self.rig(specimen, measured.taught, factor);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);
-        let [whole, half] = [&whole, &half].map(|rig| Stoppable { rig: &**rig, stop });
+        let [whole, half] = [&whole, &half].map(|rig| Stoppable { inner: &**rig, stop });
         let repeats = Repeats::new([&whole, &half], &specimen.finger, seed, firm::REPEATS);
         Ok(firm::measure(&repeats, &measured.window))
     }

@@ -80,6 +80,7 @@ fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 
 mod tests {
     use super::*;
     use crate::finger::file::FingerFile;
+    use crate::fixtures::predicted;
     use crate::space::{DENSITY_KEY, DIRECTION_KEY};
     use input::shipped::FINGERS;
     use input::units::N_PER_MM;
@@ -92,12 +93,7 @@ mod tests {
     }
 
     fn plain() -> Prediction {
-        let estimate = |mean: f64, sd: f64| Estimate { mean: mean * N_PER_MM, sd: sd * N_PER_MM };
-        Prediction {
-            compliance: estimate(2.4, 0.1),
-            assembly: estimate(40.0, 1.0),
-            hull_distance: 0.0,
-        }
+        predicted([2.4, 0.1], [40.0, 1.0])
     }
 
     fn design(more: &[(&str, f64)]) -> Design {

@@ -38,7 +38,7 @@ pub struct Window {
     /// What the first failing offset below `negative_steps` did; `None` if the
     /// search reached its limit without a failure.
     pub end_negative: Option<Outcome>,
-    /// The same above `positive_steps`.
+    /// Outcome of the first failing offset above `positive_steps`.
     pub end_positive: Option<Outcome>,
 }
 
@@ -72,13 +72,13 @@ pub fn grid_mm(steps: OffsetStep) -> f64 {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(into = "schema::EvaluationRow", try_from = "schema::EvaluationRow")]
 pub struct Evaluation {
-    /// The tolerance window.
+    /// Tolerance window around the nominal start.
     pub window: Window,
     /// Trials that failed with class 1 to 4, over all trials run.
     pub failure_counts: [u32; 4],
-    /// Trials that diverged.
+    /// Trials that diverged numerically.
     pub diverged: u32,
-    /// Trials run.
+    /// Trials of the window search.
     pub trials: u32,
     /// Largest contact force between plug and socket over the inserted trials, N.
     pub peak_force_n: f64,
@@ -90,25 +90,29 @@ pub struct Evaluation {
     /// a share of it, 0 to 1: interpolated over [`Trial::margin`](crate::trial::Trial::margin).
     /// If the nominal start fails, its margin, -1 to 0.
     pub end_shares: [f64; 2],
-    /// By how much the start was moved from that of the task file, in grid steps, if it was taught.
+    /// Shift of a taught start from that of the task file, in grid steps.
     pub taught: Option<OffsetStep>,
-    /// How often the design inserts under errors, if that was measured.
+    /// Success rate under sampled errors, if measured.
     pub success: Option<SuccessRate>,
-    /// How its range holds under errors, if that was measured.
+    /// Range under sampled errors, if measured.
     pub robust: Option<RobustRange>,
 }
 
-/// How trials under drawn errors ended.
-#[derive(Debug, Clone, PartialEq)]
+/// Outcomes of trials under sampled errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SuccessRate {
-    /// Trials that inserted.
+    /// Probability with which [`interval`](Self::interval) holds the true rate, 0 to 1.
+    #[serde(rename = "success_confidence")]
+    pub confidence: f64,
+    /// Trials that ended inserted.
+    #[serde(rename = "success_inserted")]
     pub inserted: u32,
     /// Trials that failed with class 1 to 4.
+    #[serde(rename = "success_failure_counts")]
     pub failure_counts: [u32; 4],
-    /// Trials that diverged; they say nothing and count for nothing.
+    /// Trials that diverged; they do not count.
+    #[serde(rename = "success_diverged")]
     pub diverged: u32,
-    /// Probability with which [`interval`](Self::interval) holds the true rate, 0 to 1.
-    pub confidence: f64,
 }
 
 impl SuccessRate {
@@ -146,12 +150,12 @@ fn normal_quantile(probability: f64) -> f64 {
     low
 }
 
-/// Ranges of one design under drawn errors.
+/// Ranges of one design under sampled errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobustRange {
-    /// The range of each draw, mm; a draw whose nominal start diverged has none.
+    /// Range under each sample, mm; a sample whose nominal start diverged has none.
     pub ranges_mm: Vec<f64>,
-    /// Draws whose nominal start diverged.
+    /// Samples whose nominal start diverged.
     pub diverged: u32,
     /// The statistic the settings ask for, mm; `None` with fewer than two ranges.
     pub value_mm: Option<f64>,
@@ -199,14 +203,6 @@ mod tests {
         assert_eq!(success(0, 0).interval(), [0.0, 1.0]);
         assert_eq!(success(0, 0).rate(), None);
         assert_eq!(success(3, 1).rate(), Some(0.75));
-    }
-
-    #[test]
-    fn quantiles_of_the_normal_distribution() {
-        for (probability, quantile) in [(0.5, 0.0), (0.975, 1.959_963_985), (0.05, -1.644_853_627)]
-        {
-            assert!((normal_quantile(probability) - quantile).abs() < 1e-8);
-        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::{Evaluation, RobustRange, SuccessRate, Window, grid_mm};
 use crate::outcome::{FailureClass, Outcome};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// An [`Evaluation`], flat.
+/// An [`Evaluation`] as flat keys.
 #[derive(Serialize, Deserialize)]
 pub(super) struct EvaluationRow {
     range_mm: f64,
@@ -32,7 +32,7 @@ pub(super) struct EvaluationRow {
     robust: Option<RobustRow>,
 }
 
-/// `inserted`, `failed` or `diverged`.
+/// An outcome without its class.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum OutcomeWord {
@@ -41,7 +41,7 @@ enum OutcomeWord {
     Diverged,
 }
 
-/// What stopped the search at an end: the failure class, 1 to 4, or `diverged`.
+/// Outcome that ended the search at one side: the failure class, 1 to 4, or `diverged`.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum FailureWord {
@@ -49,16 +49,14 @@ enum FailureWord {
     Other(OutcomeWord),
 }
 
-/// The counts, and for other readers what follows from them.
+/// Success rate with its interval, for readers outside, and the counts they follow from.
 #[derive(Serialize, Deserialize)]
 struct SuccessRow {
     success_rate: Option<f64>,
     success_low: f64,
     success_high: f64,
-    success_confidence: f64,
-    success_inserted: u32,
-    success_failure_counts: [u32; 4],
-    success_diverged: u32,
+    #[serde(flatten)]
+    counts: SuccessRate,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -128,7 +126,7 @@ impl From<Evaluation> for EvaluationRow {
                 .end_shares
                 .map(|share| if share.is_finite() { share } else { 0.0 }),
             taught_start_mm: evaluation.taught.map(grid_mm),
-            success: evaluation.success.as_ref().map(SuccessRow::from),
+            success: evaluation.success.map(SuccessRow::from),
             robust: evaluation.robust.map(RobustRow::from),
         }
     }
@@ -163,35 +161,16 @@ impl TryFrom<EvaluationRow> for Evaluation {
             simulated_s: row.simulated_s,
             end_shares: row.end_shares,
             taught: row.taught_start_mm.map(steps),
-            success: row.success.map(SuccessRate::from),
+            success: row.success.map(|row| row.counts),
             robust: row.robust.map(RobustRange::from),
         })
     }
 }
 
-impl From<&SuccessRate> for SuccessRow {
-    fn from(success: &SuccessRate) -> Self {
-        let [success_low, success_high] = success.interval();
-        SuccessRow {
-            success_rate: success.rate(),
-            success_low,
-            success_high,
-            success_confidence: success.confidence,
-            success_inserted: success.inserted,
-            success_failure_counts: success.failure_counts,
-            success_diverged: success.diverged,
-        }
-    }
-}
-
-impl From<SuccessRow> for SuccessRate {
-    fn from(row: SuccessRow) -> Self {
-        SuccessRate {
-            inserted: row.success_inserted,
-            failure_counts: row.success_failure_counts,
-            diverged: row.success_diverged,
-            confidence: row.success_confidence,
-        }
+impl From<SuccessRate> for SuccessRow {
+    fn from(counts: SuccessRate) -> Self {
+        let [success_low, success_high] = counts.interval();
+        SuccessRow { success_rate: counts.rate(), success_low, success_high, counts }
     }
 }
 

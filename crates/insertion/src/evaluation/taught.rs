@@ -9,7 +9,7 @@ use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
 use super::{OffsetStep, Window};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
-use crate::trial::{Conditions, Grasped, Recording, Rig, Sample, Trial};
+use crate::trial::{Grasp, Grasped, Recording, Rig, Sample, Trial};
 use std::ops::Deref;
 use std::sync::atomic::AtomicBool;
 
@@ -21,7 +21,7 @@ const FARTHEST: OffsetStep = 100;
 /// By how much the start is moved, in grid steps; `None` if none inserts. Ends early, with a
 /// worthless result, once `stop` is set.
 pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Option<OffsetStep> {
-    let rig: &dyn Rig = &Stoppable { rig, stop };
+    let rig: &dyn Rig = &Stoppable { inner: rig, stop };
     let grasped = rig.grasp(finger);
     let inserts = |step| grasped.trial(offset(step)).outcome == Outcome::Inserted;
     let outward = (1..=FARTHEST / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
@@ -37,23 +37,17 @@ fn middle(window: &Window) -> OffsetStep {
         / 2
 }
 
-/// A rig whose start is moved.
+/// A rig, or a grasped part, whose start is moved.
 pub struct Moved<R> {
-    /// Where trials are run.
+    /// Rig or grasped part.
     pub rig: R,
-    /// By how much, in grid steps.
+    /// Shift of the start, in grid steps.
     pub by: OffsetStep,
 }
 
 impl<R: Deref<Target: Rig> + Send + Sync> Rig for Moved<R> {
-    fn grasp_until<'a>(
-        &'a self,
-        finger: &Finger,
-        conditions: &Conditions,
-        stop: &'a AtomicBool,
-    ) -> Box<dyn Grasped + 'a> {
-        let grasped = self.rig.grasp_until(finger, conditions, stop);
-        Box::new(MovedGrasp { grasped, by: offset(self.by) })
+    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
+        Box::new(Moved { rig: self.rig.hold(grasp), by: self.by })
     }
 
     fn record(&self, finger: &Finger, shift: f64) -> Option<Recording> {
@@ -61,33 +55,28 @@ impl<R: Deref<Target: Rig> + Send + Sync> Rig for Moved<R> {
     }
 }
 
-struct MovedGrasp<'a> {
-    grasped: Box<dyn Grasped + 'a>,
-    by: f64,
-}
-
-impl Grasped for MovedGrasp<'_> {
-    fn trial(&self, offset: f64) -> Trial {
-        self.grasped.trial(offset + self.by)
+impl Grasped for Moved<Box<dyn Grasped + '_>> {
+    fn trial(&self, shift: f64) -> Trial {
+        self.rig.trial(shift + offset(self.by))
     }
 
-    fn traced(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        self.grasped.traced(offset + self.by, every_s)
+    fn traced(&self, shift: f64, every_s: f64) -> (Trial, Vec<Sample>) {
+        self.rig.traced(shift + offset(self.by), every_s)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::NEVER;
-    use crate::trial::fake::FakeRig;
-    use input::units::N_PER_MM;
+    use crate::fixtures::finger;
+    use crate::trial::fake::{Altered, FakeRig};
+    use crate::trial::{Conditions, NEVER};
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
     fn the_taught_start_is_the_middle_of_the_nearest_window() {
         // -(2 + 4/3) = -3.33 and 1 + 20/50 = 1.4 mm.
-        let finger = Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM);
+        let finger = finger(3.0, 20.0);
         let fake = FakeRig::default();
         for (away, taught) in [(0, -9), (30, -39), (-50, 41)] {
             let moved = Moved { rig: &fake as &dyn Rig, by: away };
@@ -101,67 +90,31 @@ mod tests {
         let far = Moved { rig: &fake as &dyn Rig, by: 200 };
         assert_eq!(teach(&far, &finger, &NEVER), None);
     }
-    /// The closed-form rig, which sets the flag after so many trials and counts all.
-    struct Interrupted {
-        after: usize,
-        stop: AtomicBool,
-        trials: AtomicUsize,
-    }
-
-    struct InterruptedGrasp<'a>(&'a Interrupted, Box<dyn Grasped + 'a>);
-
-    impl Rig for Interrupted {
-        fn grasp_until<'a>(
-            &'a self,
-            finger: &Finger,
-            conditions: &Conditions,
-            stop: &'a AtomicBool,
-        ) -> Box<dyn Grasped + 'a> {
-            static RIG: FakeRig = FakeRig { delay: std::time::Duration::ZERO };
-            Box::new(InterruptedGrasp(self, RIG.grasp_until(finger, conditions, stop)))
-        }
-    }
-
-    impl Grasped for InterruptedGrasp<'_> {
-        fn trial(&self, offset: f64) -> Trial {
-            let trials = self.0.trials.fetch_add(1, Ordering::SeqCst) + 1;
-            self.0.stop.fetch_or(trials >= self.0.after, Ordering::SeqCst);
-            self.1.trial(offset)
-        }
-    }
 
     #[test]
     fn teaching_ends_when_it_is_to_stop() {
-        let finger = Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM);
+        let finger = finger(3.0, 20.0);
         for after in [1, 2, 5] {
-            let counter =
-                Interrupted { after, stop: AtomicBool::new(false), trials: AtomicUsize::new(0) };
-            let far = Moved { rig: &counter as &dyn Rig, by: 30 };
-            teach(&far, &finger, &counter.stop);
-            assert_eq!(counter.trials.load(Ordering::SeqCst), after);
+            let (stop, trials) = (AtomicBool::new(false), AtomicUsize::new(0));
+            let counted = Altered(|_: &Grasp, _: f64, trial: Trial| {
+                let trials = trials.fetch_add(1, Ordering::SeqCst) + 1;
+                stop.fetch_or(trials >= after, Ordering::SeqCst);
+                trial
+            });
+            teach(&Moved { rig: &counted as &dyn Rig, by: 30 }, &finger, &stop);
+            assert_eq!(trials.load(Ordering::SeqCst), after);
         }
     }
 
     /// `stop` reaches the rig below, whose running trial it is to end.
     #[test]
     fn a_moved_rig_hands_the_flag_on() {
-        struct Asked(AtomicBool);
-        impl Rig for Asked {
-            fn grasp_until<'a>(
-                &'a self,
-                finger: &Finger,
-                conditions: &Conditions,
-                stop: &'a AtomicBool,
-            ) -> Box<dyn Grasped + 'a> {
-                self.0.store(stop.load(Ordering::SeqCst), Ordering::SeqCst);
-                static RIG: FakeRig = FakeRig { delay: std::time::Duration::ZERO };
-                RIG.grasp_until(finger, conditions, stop)
-            }
-        }
-        let (asked, stop) = (Asked(AtomicBool::new(false)), AtomicBool::new(true));
-        let finger = Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM);
-        let moved = Moved { rig: &asked as &dyn Rig, by: 3 };
-        drop(moved.grasp_until(&finger, &Conditions::NOMINAL, &stop));
-        assert!(asked.0.load(Ordering::SeqCst));
+        let asking = Altered(|grasp: &Grasp, _: f64, trial: Trial| {
+            assert!(grasp.stop.load(Ordering::SeqCst));
+            trial
+        });
+        let (finger, conditions) = (finger(3.0, 20.0), Conditions::NOMINAL);
+        let moved = Moved { rig: &asking as &dyn Rig, by: 3 };
+        moved.hold(Grasp { finger, conditions, stop: &AtomicBool::new(true) }).trial(0.0);
     }
 }

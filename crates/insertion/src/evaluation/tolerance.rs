@@ -9,8 +9,9 @@ use input::units::MM;
 /// Farthest offset tried, in grid steps: well beyond any published window (9 mm).
 pub const OFFSET_LIMIT_STEPS: OffsetStep = 150;
 
-/// How the window's ends are looked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// Search for the ends of a window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Search {
     /// Step by step outward to the first failure: the paper's way.
     Walk,
@@ -39,7 +40,7 @@ pub fn evaluate(rig: &dyn Rig, finger: &Finger, search: Search) -> Evaluation {
     evaluate_in(rig, finger, &Conditions::NOMINAL, search)
 }
 
-/// The same under other conditions than those of the task file.
+/// As [`evaluate`], under other conditions than those of the task file.
 pub fn evaluate_in(
     rig: &dyn Rig,
     finger: &Finger,
@@ -47,80 +48,67 @@ pub fn evaluate_in(
     search: Search,
 ) -> Evaluation {
     let grasped = rig.grasp_in(finger, conditions);
-    let nominal = grasped.trial(0.0);
-    let mut log = Log::default();
-    log.add(&nominal);
-    if nominal.outcome != Outcome::Inserted {
-        let window = Window {
-            nominal: nominal.outcome,
-            negative_steps: 0,
-            positive_steps: 0,
-            end_negative: Some(nominal.outcome),
-            end_positive: Some(nominal.outcome),
-        };
-        return log.evaluation(window, [nominal.margin; 2]);
-    }
-    let ((negative, log_negative), (positive, log_positive)) = rayon::join(
-        || find_end(&*grasped, nominal.margin, -1, search.stride()),
-        || find_end(&*grasped, nominal.margin, 1, search.stride()),
-    );
-    log.merge(&log_negative);
-    log.merge(&log_positive);
+    let nominal = [grasped.trial(0.0)];
+    let Trial { outcome, margin, .. } = nominal[0];
+    let ([negative, positive], sides) = if outcome == Outcome::Inserted {
+        let end = |sign| find_end(&*grasped, margin, sign, search.stride());
+        let (negative, positive) = rayon::join(|| end(-1), || end(1));
+        ([negative.0, positive.0], [negative.1, positive.1])
+    } else {
+        ([End { step: 0, failure: Some(outcome), share: margin }; 2], [vec![], vec![]])
+    };
     let window = Window {
-        nominal: nominal.outcome,
+        nominal: outcome,
         negative_steps: -negative.step,
         positive_steps: positive.step,
         end_negative: negative.failure,
         end_positive: positive.failure,
     };
-    log.evaluation(window, [negative.share, positive.share])
+    let mut evaluation = Evaluation::of(window, [negative.share, positive.share]);
+    for trials in [&nominal[..], &sides[0], &sides[1]] {
+        evaluation.count(trials);
+    }
+    evaluation
 }
 
 /// One end of a window.
+#[derive(Clone, Copy)]
 struct End {
-    /// The last inserting step.
+    /// The last inserting step, outward from the nominal start.
     step: OffsetStep,
-    /// What the next one did.
+    /// Outcome of the next one; `None` beyond [`OFFSET_LIMIT_STEPS`].
     failure: Option<Outcome>,
-    /// Where between the two the outcome turns, 0 to 1.
+    /// Where between the two the outcome turns, 0 to 1; without a window the nominal margin.
     share: f64,
 }
 
-/// A step that was tried: where, how it ended and how clearly.
-#[derive(Clone, Copy)]
-struct Tried {
-    step: OffsetStep,
-    outcome: Outcome,
-    margin: f64,
-}
-
-/// One end, looked for from the nominal start, of that margin, outward.
+/// One end, looked for from the nominal start, of that margin, outward; and the trials made.
 fn find_end(
     grasped: &dyn Grasped,
     nominal_margin: f64,
     sign: OffsetStep,
     stride: OffsetStep,
-) -> (End, Log) {
-    let mut log = Log::default();
-    let mut inside = Tried { step: 0, outcome: Outcome::Inserted, margin: nominal_margin };
-    let mut outside: Option<Tried> = None;
+) -> (End, Vec<Trial>) {
+    let mut trials = Vec::new();
+    let (mut step, mut margin) = (0, nominal_margin);
+    // Step, outcome and margin of the innermost start that fails.
+    let mut outside: Option<(OffsetStep, Outcome, f64)> = None;
     loop {
-        let step = match outside {
-            None if inside.step >= OFFSET_LIMIT_STEPS => break,
-            None => (inside.step + stride).min(OFFSET_LIMIT_STEPS),
-            Some(outside) if outside.step - inside.step <= 1 => break,
-            Some(outside) => (inside.step + outside.step) / 2,
+        let next = match outside {
+            None if step >= OFFSET_LIMIT_STEPS => break,
+            None => (step + stride).min(OFFSET_LIMIT_STEPS),
+            Some((outside, ..)) if outside - step <= 1 => break,
+            Some((outside, ..)) => (step + outside) / 2,
         };
-        let trial = grasped.trial(offset(sign * step));
-        log.add(&trial);
-        let tried = Tried { step, outcome: trial.outcome, margin: trial.margin };
-        match tried.outcome {
-            Outcome::Inserted => inside = tried,
-            Outcome::Failed(_) | Outcome::Diverged => outside = Some(tried),
+        let trial = grasped.trial(offset(sign * next));
+        match trial.outcome {
+            Outcome::Inserted => (step, margin) = (next, trial.margin),
+            failure => outside = Some((next, failure, trial.margin)),
         }
+        trials.push(trial);
     }
-    let share = outside.map_or(0.0, |outside| share(inside.margin, outside.margin));
-    (End { step: inside.step, failure: outside.map(|outside| outside.outcome), share }, log)
+    let share = outside.map_or(0.0, |(_, _, beyond)| share(margin, beyond));
+    (End { step, failure: outside.map(|(_, failure, _)| failure), share }, trials)
 }
 
 /// Where a line from a margin of 0 or above to one of 0 or below crosses 0, from 0 to 1.
@@ -134,54 +122,37 @@ pub fn offset(step: OffsetStep) -> f64 {
     f64::from(step) * OFFSET_STEP_MM * MM
 }
 
-#[derive(Default)]
-struct Log {
-    failure_counts: [u32; 4],
-    diverged: u32,
-    trials: u32,
-    peak_force_n: f64,
-    slip_mm: f64,
-    simulated_s: f64,
-}
-
-impl Log {
-    fn add(&mut self, trial: &Trial) {
-        self.trials += 1;
-        self.simulated_s += trial.simulated_s;
-        match trial.outcome {
-            Outcome::Inserted => {
-                self.peak_force_n = self.peak_force_n.max(trial.peak_force_n);
-                self.slip_mm = self.slip_mm.max(trial.slip_mm);
-            }
-            Outcome::Failed(class) => self.failure_counts[class as usize] += 1,
-            Outcome::Diverged => self.diverged += 1,
-        }
-    }
-
-    fn merge(&mut self, other: &Log) {
-        for (mine, theirs) in self.failure_counts.iter_mut().zip(other.failure_counts) {
-            *mine += theirs;
-        }
-        self.diverged += other.diverged;
-        self.trials += other.trials;
-        self.peak_force_n = self.peak_force_n.max(other.peak_force_n);
-        self.slip_mm = self.slip_mm.max(other.slip_mm);
-        self.simulated_s += other.simulated_s;
-    }
-
-    fn evaluation(self, window: Window, end_shares: [f64; 2]) -> Evaluation {
+impl Evaluation {
+    /// A window without the trials by which it was found.
+    fn of(window: Window, end_shares: [f64; 2]) -> Self {
         Evaluation {
             window,
-            failure_counts: self.failure_counts,
-            diverged: self.diverged,
-            trials: self.trials,
-            peak_force_n: self.peak_force_n,
-            slip_mm: self.slip_mm,
-            simulated_s: self.simulated_s,
+            failure_counts: [0; 4],
+            diverged: 0,
+            trials: 0,
+            peak_force_n: 0.0,
+            slip_mm: 0.0,
+            simulated_s: 0.0,
             end_shares,
             taught: None,
             success: None,
             robust: None,
+        }
+    }
+
+    /// Counts some of the trials by which the window was found.
+    fn count(&mut self, trials: &[Trial]) {
+        self.trials += trials.len() as u32;
+        self.simulated_s += trials.iter().map(|trial| trial.simulated_s).sum::<f64>();
+        for trial in trials {
+            match trial.outcome {
+                Outcome::Inserted => {
+                    self.peak_force_n = self.peak_force_n.max(trial.peak_force_n);
+                    self.slip_mm = self.slip_mm.max(trial.slip_mm);
+                }
+                Outcome::Failed(class) => self.failure_counts[class as usize] += 1,
+                Outcome::Diverged => self.diverged += 1,
+            }
         }
     }
 }
@@ -189,15 +160,15 @@ impl Log {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::finger;
     use crate::outcome::FailureClass;
-    use crate::trial::fake::FakeRig;
-    use input::units::N_PER_MM;
-    use std::sync::atomic::AtomicBool;
+    use crate::trial::Grasp;
+    use crate::trial::fake::{Altered, FakeRig};
 
     #[test]
     fn both_searches_find_the_window_of_the_closed_form() {
         // -(2 + 4/3) = -3.33 and 1 + 20/50 = 1.4 mm.
-        let finger = Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM);
+        let finger = finger(3.0, 20.0);
         let walk = evaluate(&FakeRig::default(), &finger, Search::Walk);
         assert_eq!((walk.window.negative_mm(), walk.window.positive_mm()), (-3.3, 1.4));
         assert_eq!(walk.window.range_mm(), 4.7);
@@ -213,43 +184,25 @@ mod tests {
     #[test]
     fn the_two_searches_agree_over_the_designs() {
         for k in 1..40 {
-            let finger = Finger::new(f64::from(k) * 0.1 * N_PER_MM, f64::from(k) * N_PER_MM);
+            let finger = finger(f64::from(k) * 0.1, f64::from(k));
             let [a, b] = [Search::Walk, Search::Strides]
                 .map(|search| evaluate(&FakeRig::default(), &finger, search).window);
             assert_eq!(a, b, "{finger:?}");
         }
     }
 
-    /// Inserts up to 2 mm either way, but for some steps on the positive side.
-    struct Gap(std::ops::Range<OffsetStep>);
-
-    impl Rig for Gap {
-        fn grasp_until<'a>(
-            &'a self,
-            _: &Finger,
-            _: &Conditions,
-            _: &'a AtomicBool,
-        ) -> Box<dyn Grasped + 'a> {
-            Box::new(Gap(self.0.clone()))
-        }
-    }
-
-    impl Grasped for Gap {
-        fn trial(&self, offset: f64) -> Trial {
-            let step = (offset / (OFFSET_STEP_MM * MM)).round() as OffsetStep;
-            let inserts = step.abs() <= 20 && !self.0.contains(&step);
-            let any = FakeRig::default().grasp(&Finger::new(N_PER_MM, N_PER_MM)).trial(0.0);
-            let failed = Outcome::Failed(FailureClass::Jammed);
-            Trial { outcome: if inserts { Outcome::Inserted } else { failed }, ..any }
-        }
-    }
-
     #[test]
     fn the_walk_stops_at_a_gap_and_strides_may_step_over_a_narrow_one() {
-        let finger = Finger::new(N_PER_MM, N_PER_MM);
+        let finger = finger(1.0, 1.0);
         let mut over = 0;
         for (width, from) in (1..8).flat_map(|width| (1..20).map(move |from| (width, from))) {
-            let gap = Gap(from..from + width);
+            // Inserts up to 2 mm either way, but for some steps on the positive side.
+            let gap = Altered(|_: &Grasp, offset: f64, trial: Trial| {
+                let step = (offset / (OFFSET_STEP_MM * MM)).round() as OffsetStep;
+                let inserts = step.abs() <= 20 && !(from..from + width).contains(&step);
+                let failed = Outcome::Failed(FailureClass::Jammed);
+                Trial { outcome: if inserts { Outcome::Inserted } else { failed }, ..trial }
+            });
             let end = |search| evaluate(&gap, &finger, search).window.positive_steps;
             assert_eq!(end(Search::Walk), from - 1);
             let found = end(Search::Strides);

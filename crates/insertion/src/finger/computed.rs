@@ -13,6 +13,7 @@
 //! pad is carried over to the same joint whole, with its coupling of x to ry and rz.
 
 use super::{Finger, Pad};
+use crate::surrogate::Prediction;
 use crate::task::finger::Coupling;
 use finray::FingerError;
 use finray::mechanics::FingerStiffness;
@@ -21,7 +22,7 @@ use finray::stiffness::PlanarStiffness;
 use input::units::{MM, N_PER_MM};
 use nalgebra::{Matrix3, Matrix6};
 
-/// What presses a finger when its stiffness is computed.
+/// Contact surfaces of a finger whose stiffness is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Touching {
     /// The part touches the pad alone; whether it touches the roof, the contacts decide.
@@ -39,7 +40,7 @@ impl Touching {
         }
     }
 
-    /// The same, to be corrected.
+    /// The computed stiffness in the finger's plane, to be corrected.
     pub(super) fn of_mut(self, computed: &mut FingerStiffness) -> &mut PlanarStiffness {
         match self {
             Touching::Pad => &mut computed.pad,
@@ -48,7 +49,7 @@ impl Touching {
     }
 }
 
-/// What a task file or a design says in place of the computed values.
+/// Values of a task file or a design in place of the computed ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Given {
     /// Distance of the remote centre below the TCP, m.
@@ -66,8 +67,15 @@ pub struct AtPad {
     pub assembly: f64,
 }
 
+impl AtPad {
+    /// The means of a prediction.
+    pub fn of(predicted: &Prediction) -> Self {
+        AtPad { compliance: predicted.compliance.mean, assembly: predicted.assembly.mean }
+    }
+}
+
 impl Pad {
-    /// Of a printed finger.
+    /// Pad and roof of a printed finger.
     pub fn of(outline: &Outline) -> Self {
         Pad { width: outline.depth, height: outline.pad, roof: outline.roof }
     }

@@ -5,18 +5,13 @@
 
 use crate::space::Design;
 use finray::printed::PrintedFinger;
-use input::numbers::{self, numbers};
-use input::{Check, InputError, read};
+use input::InputError;
+use input::numbers::NumberFile;
 
-const FINGER: &str = "finger";
-/// What values are called in errors that concern no file.
-const DESIGN: &str = "design";
-
-/// A finger file.
+/// A finger file, the numbers of which a design may set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FingerFile {
-    file: String,
-    table: toml::Value,
+    numbers: NumberFile,
     finger: PrintedFinger,
 }
 
@@ -33,11 +28,7 @@ impl FingerFile {
     /// As of [`PrintedFinger::parse`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let finger = PrintedFinger::parse(text, file)?;
-        Ok(FingerFile {
-            file: file.to_owned(),
-            table: toml::Value::Table(read(text, file)?),
-            finger,
-        })
+        Ok(FingerFile { numbers: NumberFile::parse("finger", text, file)?, finger })
     }
 
     /// The finger as the file has it.
@@ -45,12 +36,9 @@ impl FingerFile {
         &self.finger
     }
 
-    /// The value that the file has for a key.
+    /// The value that the file has under a key, in the unit of the key.
     pub fn value(&self, key: &str) -> Option<f64> {
-        let mut table = self.table.clone();
-        let numbers = numbers(FINGER, &mut table);
-        let (_, value) = numbers.into_iter().find(|(name, _)| name == key)?;
-        value.as_float().or(value.as_integer().map(|value| value as f64))
+        self.numbers.number(key)
     }
 
     /// The finger with the numbers that a design sets; keys of anything else are left alone.
@@ -61,19 +49,9 @@ impl FingerFile {
         if !design.0.keys().any(|key| is_shape(key)) {
             return Ok(self.finger.clone());
         }
-        let mut table = self.table.clone();
-        let mut found = numbers(FINGER, &mut table);
-        for (key, &value) in design.0.iter().filter(|(key, _)| is_shape(key)) {
-            match found.iter_mut().find(|(name, _)| name == key) {
-                Some((_, number)) => **number = toml::Value::Float(value),
-                None => {
-                    let keys: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
-                    return Check { file: DESIGN }.fail(key, numbers::unknown(key, &keys));
-                }
-            }
-        }
-        let toml::Value::Table(table) = table else { return Ok(self.finger.clone()) };
-        PrintedFinger::from_table(table, &self.file)
+        let values = design.0.iter().map(|(key, &value)| (key.as_str(), value));
+        let table = self.numbers.with(values.filter(|(key, _)| is_shape(key)), &[])?;
+        PrintedFinger::from_table(table, self.numbers.file())
     }
 }
 

@@ -26,15 +26,15 @@ pub struct Finger {
     pub rcc: f64,
     /// Distance of the RCC in front of the pad's face, into the part, m.
     pub ahead: f64,
-    /// Its pad and roof.
+    /// Pad that presses the part, and roof above it.
     pub pad: Pad,
-    /// Mass, kg.
+    /// Mass of one finger, kg.
     pub mass: f64,
     /// Translational damping of the springs, N s/m.
     pub damping: f64,
     /// Rotational damping of the springs, N m s/rad.
     pub rotational_damping: f64,
-    /// How the springs pull at one another; they do not in the paper.
+    /// Coupling of the springs; the paper has none.
     pub coupling: Option<Coupling>,
 }
 
@@ -62,7 +62,7 @@ impl Finger {
         }
     }
 
-    /// The same with what a task file says of its fingers, the infill in this direction, degrees.
+    /// The finger with what a task file says of it, the infill in this direction, degrees.
     pub fn shaped(self, model: &FingerModel, direction_deg: f64) -> Self {
         let rcc = model.rcc.unwrap_or(Rcc::PAPER).at(direction_deg);
         Finger { rcc, coupling: model.coupling, ..self }
@@ -77,12 +77,12 @@ pub struct Pad {
     pub width: f64,
     /// Height of the pad, downward from the roof.
     pub height: f64,
-    /// How far the roof reaches over the part in y.
+    /// Overhang of the roof over the part in y.
     pub roof: f64,
 }
 
 impl Pad {
-    /// That of the published simulation.
+    /// Dimensions of the published simulation.
     pub const PAPER: Pad = Pad { width: 12.0 * MM, height: 8.4 * MM, roof: 2.5 * MM };
 
     /// Height of its middle above the TCP, m; `shoulder` as of [`Pad::geoms`].
@@ -134,12 +134,12 @@ impl Finger {
 }
 
 impl Finger {
-    /// Where the RCC is in the finger frame, m; `side` as of [`Pad::geoms`].
+    /// Place of the RCC in the finger frame, m; `side` as of [`Pad::geoms`].
     pub fn centre(&self, side: f64) -> Point3<f64> {
         Point3::new(0.0, -side * self.ahead, -self.rcc)
     }
 
-    /// What ties the finger to its jaw at the RCC; `side` as of [`Pad::geoms`].
+    /// Springs between finger and jaw at the RCC; `side` as of [`Pad::geoms`].
     pub fn mounted(&self, side: f64) -> Springs {
         let springs = self.springs();
         match &self.coupling {

@@ -29,7 +29,7 @@ pub enum FingerModelKind {
 }
 
 impl FingerModelKind {
-    /// Its name on the command line and in study files.
+    /// Name on the command line and in study files.
     pub fn name(self) -> &'static str {
         match self {
             FingerModelKind::Paper => "paper",
@@ -47,12 +47,12 @@ pub enum FingerSource {
     Computed(Box<ComputedFingers>),
 }
 
-/// FingerSource computed from a finger file.
+/// Fingers computed from a finger file.
 #[derive(Debug)]
 pub struct ComputedFingers {
-    /// The finger file.
+    /// File of shape and material.
     pub file: FingerFile,
-    /// What presses them.
+    /// Contact surfaces that the computed stiffness assumes.
     pub touching: Touching,
     known: Known,
 }
@@ -60,25 +60,25 @@ pub struct ComputedFingers {
 /// A finger, and where its remote centre comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Made {
-    /// The finger.
+    /// Finger with its springs.
     pub finger: Finger,
-    /// What places its remote centre.
+    /// Source of its remote centre.
     pub centre: CentreFrom,
 }
 
-/// What places a remote centre.
+/// Source of a finger's remote centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CentreFrom {
-    /// The finger model.
+    /// The finger source itself.
     Model,
     /// `rcc_mm` of the task file.
     TaskFile,
-    /// The design's [`RCC_KEY`].
+    /// [`RCC_KEY`] of the design.
     Design,
 }
 
 impl FingerSource {
-    /// Its name.
+    /// Name of the source.
     pub fn kind(&self) -> FingerModelKind {
         match self {
             FingerSource::Paper => FingerModelKind::Paper,
@@ -128,7 +128,7 @@ impl FingerSource {
 }
 
 impl ComputedFingers {
-    /// FingerSource of a file, with its rib phase.
+    /// Fingers of a file, with its rib phase.
     pub fn new(file: FingerFile, touching: Touching) -> Self {
         ComputedFingers { file, touching, known: Known::default() }
     }

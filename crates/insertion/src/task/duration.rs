@@ -2,7 +2,7 @@
 
 use super::{Ending, Phase, Strategy};
 
-/// Longest trial, s.
+/// Longest trial that is accepted, s.
 pub const LONGEST_TRIAL_S: f64 = 60.0;
 /// Shortest move, s: a tiny displacement is not made in one jerk.
 pub const SHORTEST_MOVE_S: f64 = 0.02;

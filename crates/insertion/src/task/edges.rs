@@ -18,7 +18,7 @@ pub struct Face {
     high: bool,
 }
 
-/// What is taken off an edge, m.
+/// Cut along an edge, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cut {
     /// A flat at 45 degrees, so far along either face.
@@ -73,7 +73,7 @@ impl Face {
     }
 }
 
-/// Why a box cannot be cut so.
+/// Error of a box that cannot be cut so.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Uncut {
     /// The cuts take more than a face has.
@@ -82,7 +82,7 @@ pub enum Uncut {
     Thin,
 }
 
-/// What the cuts leave of a box.
+/// The solid that the cuts leave of a box.
 pub fn cut(min: &Vector3<f64>, max: &Vector3<f64>, edges: &[(Edge, Cut)]) -> Result<Solid, Uncut> {
     if !fit(&(max - min), edges) {
         return Err(Uncut::Room);

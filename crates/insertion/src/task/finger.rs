@@ -6,9 +6,9 @@ use nalgebra::Matrix6;
 /// The part of a finger that the task file decides; the default leaves it as it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FingerModel {
-    /// Where its remote centre of compliance is, if the file says so.
+    /// Remote centre of compliance, if the file gives it.
     pub rcc: Option<Rcc>,
-    /// How its springs pull at one another, if they do.
+    /// Coupling of its springs, if the file gives it.
     pub coupling: Option<Coupling>,
 }
 

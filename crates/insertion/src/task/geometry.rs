@@ -6,21 +6,30 @@ use nalgebra::{Matrix3, Point3, Translation3, Vector3};
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::parry::transformation::try_convex_hull;
 
+/// A coordinate axis, as files name it; its number is that of the coordinate.
+#[derive(serde::Deserialize, Clone, Copy)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Axis {
+    X,
+    Y,
+    Z,
+}
+
 /// A convex part of a plug or socket.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// For pictures and errors.
+    /// Name for pictures and errors.
     pub name: String,
-    /// Its shape, m.
+    /// Shape in metres.
     pub solid: Solid,
-    /// Its own coefficient of friction, where it has one.
+    /// Coefficient of friction of its own, if any.
     pub friction: Option<f64>,
 }
 
 /// The solids a task file may name; all in metres.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Solid {
-    /// An upright box.
+    /// A box along the axes.
     Box {
         /// Smallest x, y and z.
         min: Vector3<f64>,
@@ -31,9 +40,9 @@ pub enum Solid {
     Cylinder {
         /// Axis position (x, y).
         centre: [f64; 2],
-        /// Radius.
+        /// Radius of the cylinder.
         radius: f64,
-        /// Bottom and top.
+        /// Bottom and top in z.
         z: [f64; 2],
     },
     /// A convex outline in two axes, extruded along the third.
@@ -47,7 +56,7 @@ pub enum Solid {
     },
     /// The convex hull of some points.
     Hull {
-        /// Its corners.
+        /// Corners of the hull.
         points: Vec<Point3<f64>>,
     },
 }
@@ -128,7 +137,7 @@ impl Solid {
 }
 
 /// The two axes that are not `axis`, in the order x, y, z.
-fn other_axes(axis: usize) -> (usize, usize) {
+pub(crate) fn other_axes(axis: usize) -> (usize, usize) {
     match axis {
         0 => (1, 2),
         1 => (0, 2),

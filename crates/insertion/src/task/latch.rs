@@ -1,8 +1,8 @@
 //! A latch that springs: parts of the plug on a flexure.
 
 use super::Part;
+use super::geometry::Axis;
 use super::raw::size;
-use super::raw_part::RawAxis;
 use input::units::{GPA, MM};
 use input::{Check, InputError};
 use nalgebra::{Point3, Vector3};
@@ -25,9 +25,9 @@ pub struct Latch {
     pub hinge: Point3<f64>,
     /// Axis about which it turns (0 x, 1 y, 2 z).
     pub axis: usize,
-    /// Of the hinge, N m/rad.
+    /// Stiffness of the hinge, N m/rad.
     pub stiffness: f64,
-    /// From where to where its flexure goes, plug frame, m.
+    /// Root and end of its flexure, plug frame, m.
     pub flexure: [Point3<f64>; 2],
 }
 
@@ -36,7 +36,7 @@ pub struct Latch {
 #[serde(deny_unknown_fields)]
 pub struct RawLatch {
     parts: Vec<String>,
-    axis: RawAxis,
+    axis: Axis,
     root_mm: [f64; 3],
     end_mm: [f64; 3],
     width_mm: f64,
@@ -71,12 +71,9 @@ pub fn latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, 
         return check.fail("plug.latch.parts", "must be some of the plug's parts, not all");
     }
     found.sort_unstable();
-    let [root, end] = [("root_mm", raw.root_mm), ("end_mm", raw.end_mm)].map(|(key, point)| {
-        let key = format!("plug.latch.{key}");
-        point.into_iter().try_for_each(|mm| check.distance(&key, mm).map(|_| ()))?;
-        Ok(Vector3::from(point) * MM)
-    });
-    let (root, end) = (root?, end?);
+    let point = |key, point| Ok(Vector3::from(check.each(key, point, Check::distance)?) * MM);
+    let root = point("plug.latch.root_mm", raw.root_mm)?;
+    let end = point("plug.latch.end_mm", raw.end_mm)?;
     let along = end - root;
     let axis = raw.axis as usize;
     let length = size(check, "plug.latch.end_mm: its distance from root_mm", along.norm() / MM)?;

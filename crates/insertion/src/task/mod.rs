@@ -14,16 +14,15 @@ pub use geometry::{Part, Solid};
 pub use latch::Latch;
 
 use crate::task::finger::FingerModel;
-use input::InputError;
 
 /// A checked task, in SI units, in the task frame: origin at the centre of the
 /// socket's opening on its top surface, z out of the socket, y the direction
 /// in which the jaws close and the start is shifted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Task {
-    /// Name, as used in study folders.
+    /// Name in study folders.
     pub name: String,
-    /// One line for lists.
+    /// One-line description for lists.
     pub description: String,
     /// Turn of the task frame about z in the robot's base frame, rad.
     pub turn: f64,
@@ -33,22 +32,22 @@ pub struct Task {
     pub socket: Vec<Part>,
     /// The opening on the socket's top, m: x and y from, to.
     pub opening: [[f64; 2]; 2],
-    /// How the plug is held.
+    /// Grasp of the plug.
     pub grip: Grip,
-    /// Coefficients of friction.
+    /// Coefficients of friction of the contact pairs.
     pub friction: Friction,
-    /// What the fingers are like beside their measured stiffness.
+    /// Properties of the fingers beside their measured stiffness.
     pub finger: FingerModel,
-    /// How the plug is brought in.
+    /// Start and moves of the search strategy.
     pub strategy: Strategy,
-    /// What counts as inserted.
+    /// Criterion of an insertion.
     pub success: Success,
 }
 
-/// The moving part.
+/// The connector half that the fingers hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plug {
-    /// Its convex parts, m.
+    /// Convex parts, m.
     pub parts: Vec<Part>,
     /// Total mass, kg; spread evenly over the volume of the parts.
     pub mass: f64,
@@ -70,7 +69,7 @@ impl Plug {
     }
 }
 
-/// Where the fingers hold the plug, plug frame.
+/// Grasp of the plug, plug frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grip {
     /// Height of the grasp point (TCP) on the plug's axis, m.
@@ -81,7 +80,7 @@ pub struct Grip {
     pub faces_y: [f64; 2],
     /// Force with which the jaws close, N.
     pub force: f64,
-    /// When the jaws are held.
+    /// Phases in which the jaws are held.
     pub hold: Hold,
     /// Slip of the part in the grasp that counts as contact lost, m.
     pub slip_limit: f64,
@@ -105,12 +104,12 @@ pub enum Hold {
     Assembly,
 }
 
-/// Coefficients of friction.
+/// Coefficients of friction of the contact pairs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
-    /// Finger on plug.
+    /// Friction between finger and plug.
     pub finger_plug: f64,
-    /// How a pad resists a turn of the plug about the pad's normal.
+    /// Resistance of a pad to a turn of the plug about the pad's normal.
     pub finger_torsion: PadTorsion,
     /// Plug on socket, unless a socket part has its own.
     pub plug_socket: f64,
@@ -121,7 +120,7 @@ pub struct Friction {
 pub enum PadTorsion {
     /// So much moment per normal force at each contact point, m, beside the points' own levers.
     Points(f64),
-    /// That of the pressed patch, and no more.
+    /// Friction of the contact patch, and no more.
     Patch,
 }
 
@@ -132,13 +131,13 @@ pub struct Strategy {
     pub tilt: f64,
     /// TCP at the nominal start, m.
     pub start: [f64; 3],
-    /// What becomes of it.
+    /// Rule for the nominal start.
     pub rule: StartRule,
     /// Moves, each from where the one before was to end.
     pub phases: Vec<Phase>,
 }
 
-/// What becomes of the nominal start.
+/// Rule for the nominal start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartRule {
@@ -149,8 +148,9 @@ pub enum StartRule {
     Taught,
 }
 
-/// What part of the trial a phase belongs to; decides the failure class.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Part of the trial that a phase belongs to; decides the failure class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Stage {
     /// Through the air; touches nothing.
     Approach,
@@ -160,7 +160,7 @@ pub enum Stage {
     Assembly,
 }
 
-/// How a move ends.
+/// Condition that ends a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ending {
     /// When every coordinate of the TCP is within this distance of the target, m.
@@ -172,57 +172,45 @@ pub enum Ending {
     Touch {
         /// Distance beyond where the move was stopped, m.
         preload: f64,
-        /// What tells the touch.
+        /// Detection of the touch.
         sensed: Sensed,
     },
 }
 
-/// How a touch is felt.
+/// Detection of a touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensed {
     /// Sum of the normal forces from which on it is one, N.
     pub force: f64,
-    /// How long the move goes on then, s.
+    /// Time for which the move goes on after that, s.
     pub latency: f64,
 }
 
 impl Sensed {
-    /// At first contact, at once.
+    /// At first contact, without delay.
     pub const FIRST: Sensed = Sensed { force: 0.05, latency: 0.0 };
 }
 
 /// One move of the TCP.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phase {
-    /// Name in reports.
+    /// Name for reports.
     pub name: String,
-    /// Search or assembly.
+    /// Stage of the trial.
     pub stage: Stage,
     /// Displacement from the previous target, m.
     pub displacement: [f64; 3],
     /// Mean speed of the commanded motion, m/s.
     pub speed: f64,
-    /// How it ends.
+    /// Condition that ends the move.
     pub ending: Ending,
 }
 
-/// What counts as inserted.
+/// Criterion of an insertion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Success {
     /// Depth of the tip below the socket's top, m.
     pub depth: f64,
     /// Largest angle between the plug's axis and z, rad.
     pub tilt: f64,
-}
-
-impl Task {
-    /// Reads and checks a task; `file` is named in errors.
-    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        raw::parse(text, file)
-    }
-
-    /// Checks a task file that was read as TOML already; `file` is named in errors.
-    pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
-        raw::from_table(table, file)
-    }
 }

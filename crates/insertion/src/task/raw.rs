@@ -1,16 +1,14 @@
 //! The task file as written, and the checks that turn it into a [`Task`].
 
 use super::latch::{RawLatch, latch};
-use super::raw_finger::RawFinger;
-use super::raw_finger::finger;
-use super::raw_part::RawPart;
-use super::raw_part::parts;
+use super::raw_finger::{RawFinger, finger};
+use super::raw_part::{RawPart, parts};
 use super::{
     Ending, Friction, Grip, Hold, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
     Success, Task,
 };
 use input::units::{DEG, GRAM, MM};
-use input::{Check, InputError, read, shown};
+use input::{Check, InputError, read, shown, syntax};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -92,7 +90,7 @@ struct RawStrategy {
 #[serde(deny_unknown_fields)]
 struct RawPhase {
     name: String,
-    stage: RawStage,
+    stage: Stage,
     move_mm: [f64; 3],
     speed_mm_per_s: f64,
     motion: RawMotion,
@@ -101,14 +99,6 @@ struct RawPhase {
     preload_mm: Option<f64>,
     touch_force_n: Option<f64>,
     latency_s: Option<f64>,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum RawStage {
-    Approach,
-    Search,
-    Assembly,
 }
 
 #[derive(Deserialize, Clone, Copy)]
@@ -133,18 +123,22 @@ const MOST_PHASES: usize = 100;
 /// Largest radius of the patch that torsional friction stands for, mm: larger is none.
 const LARGEST_PATCH_MM: f64 = 100.0;
 
-/// Reads and checks a task; `file` is named in errors.
-pub fn parse(text: &str, file: &str) -> Result<Task, InputError> {
-    check(read(text, file)?, file)
-}
+impl Task {
+    /// Reads and checks a task; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not such a file, or a value cannot be used.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        check(read(text, file)?, file)
+    }
 
-/// Checks a task that was read already; `file` is named in errors.
-pub fn from_table(table: toml::Table, file: &str) -> Result<Task, InputError> {
-    let raw = table.try_into().map_err(|error: toml::de::Error| InputError::Syntax {
-        file: file.to_owned(),
-        message: error.to_string().trim_end().to_owned(),
-    })?;
-    check(raw, file)
+    /// Checks a task file that was read as TOML already; `file` is named in errors.
+    ///
+    /// # Errors
+    /// As of [`Task::parse`].
+    pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
+        check(table.try_into().map_err(|error| syntax(file, &error))?, file)
+    }
 }
 
 fn check(raw: RawTask, file: &str) -> Result<Task, InputError> {
@@ -231,15 +225,13 @@ fn torsion(check: Check<'_>, mm: f64, finger_plug: f64) -> Result<f64, InputErro
 }
 
 pub fn span(check: Check<'_>, key: &str, span: [f64; 2]) -> Result<[f64; 2], InputError> {
-    let [a, b] = span;
-    check.distance(key, a)?;
-    check.distance(key, b)?;
+    let [a, b] = check.each(key, span, Check::distance)?;
     if b - a < THINNEST_MM {
         let problem =
             format!("is [{a}, {b}]; the first must be below the second by {THINNEST_MM} mm");
         return check.fail(key, problem);
     }
-    Ok([span[0] * MM, span[1] * MM])
+    Ok([a * MM, b * MM])
 }
 
 fn grip(check: Check<'_>, raw: &RawGrip) -> Result<Grip, InputError> {
@@ -263,9 +255,7 @@ fn strategy(check: Check<'_>, raw: &RawStrategy) -> Result<Strategy, InputError>
     if tilt.abs() > 45.0 {
         return check.fail("strategy.tilt_deg", "must lie in -45 .. 45");
     }
-    for value in raw.start_mm {
-        check.distance("strategy.start_mm", value)?;
-    }
+    let start = check.each("strategy.start_mm", raw.start_mm, Check::distance)?;
     if raw.phase.len() > MOST_PHASES {
         let count = raw.phase.len();
         return check.fail("strategy.phase", format!("are {count}; there may be {MOST_PHASES}"));
@@ -280,7 +270,7 @@ fn strategy(check: Check<'_>, raw: &RawStrategy) -> Result<Strategy, InputError>
         return check.fail("strategy.phase", "phases with stage = \"approach\" come first");
     }
     let strategy =
-        Strategy { tilt: tilt * DEG, start: raw.start_mm.map(|v| v * MM), rule: raw.start, phases };
+        Strategy { tilt: tilt * DEG, start: start.map(|v| v * MM), rule: raw.start, phases };
     match strategy.too_long(|_| 0.0, 0.0) {
         Some(problem) => check.fail("strategy.phase", problem),
         None => Ok(strategy),
@@ -289,10 +279,7 @@ fn strategy(check: Check<'_>, raw: &RawStrategy) -> Result<Strategy, InputError>
 
 fn phase(check: Check<'_>, raw: &RawPhase) -> Result<Phase, InputError> {
     let at = |field: &str| format!("strategy.phase \"{}\" {field}", raw.name);
-    for value in raw.move_mm {
-        check.distance(&at("move_mm"), value)?;
-    }
-    if raw.move_mm == [0.0; 3] {
+    if check.each(&at("move_mm"), raw.move_mm, Check::distance)? == [0.0; 3] {
         return check.fail(&at("move_mm"), "is zero; a phase must move");
     }
     let given = [
@@ -314,11 +301,7 @@ fn phase(check: Check<'_>, raw: &RawPhase) -> Result<Phase, InputError> {
     let sensed = sensed(check, raw)?;
     Ok(Phase {
         name: raw.name.clone(),
-        stage: match raw.stage {
-            RawStage::Approach => Stage::Approach,
-            RawStage::Search => Stage::Search,
-            RawStage::Assembly => Stage::Assembly,
-        },
+        stage: raw.stage,
         displacement: raw.move_mm.map(|v| v * MM),
         speed: check.positive(&at("speed_mm_per_s"), raw.speed_mm_per_s)? * MM,
         ending: match raw.motion {
@@ -329,7 +312,7 @@ fn phase(check: Check<'_>, raw: &RawPhase) -> Result<Phase, InputError> {
     })
 }
 
-/// How a touch is felt.
+/// Detection of a touch.
 fn sensed(check: Check<'_>, raw: &RawPhase) -> Result<Sensed, InputError> {
     let at = |field: &str| format!("strategy.phase \"{}\" {field}", raw.name);
     for (field, value) in [("touch_force_n", raw.touch_force_n), ("latency_s", raw.latency_s)] {

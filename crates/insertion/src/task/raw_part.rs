@@ -1,7 +1,7 @@
 //! Parts as written, and the checks that turn them into solids.
 
 use super::edges::{self, Cut, Edge, Uncut};
-use super::geometry::{self, Part, Solid};
+use super::geometry::{self, Axis, Part, Solid};
 use super::raw::{coefficient, size, span};
 use input::units::MM;
 use input::{Check, InputError};
@@ -29,7 +29,7 @@ pub enum RawPart {
     },
     Prism {
         name: String,
-        axis: RawAxis,
+        axis: Axis,
         outline_mm: Vec<[f64; 2]>,
         span_mm: [f64; 2],
         friction: Option<f64>,
@@ -47,14 +47,6 @@ pub struct RawEdges {
     at: String,
     chamfer_mm: Option<f64>,
     radius_mm: Option<f64>,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawAxis {
-    X,
-    Y,
-    Z,
 }
 
 /// Most parts of a plug or a socket: what a collision costs grows with their product.
@@ -86,15 +78,11 @@ fn part(check: Check<'_>, key: &str, part: &RawPart) -> Result<Part, InputError>
             let x = span(check, &at("x_mm"), *x_mm)?;
             let y = span(check, &at("y_mm"), *y_mm)?;
             let z = span(check, &at("z_mm"), *z_mm)?;
-            let min = Vector3::new(x[0], y[0], z[0]);
-            let max = Vector3::new(x[1], y[1], z[1]);
-            without_edges(check, &at("edges"), [min, max], edges)?
+            let corners = [0, 1].map(|end| Vector3::new(x[end], y[end], z[end]));
+            without_edges(check, &at("edges"), corners, edges)?
         }
         RawPart::Cylinder { centre_mm, diameter_mm, z_mm, .. } => Solid::Cylinder {
-            centre: [
-                check.distance(&at("centre_mm"), centre_mm[0])? * MM,
-                check.distance(&at("centre_mm"), centre_mm[1])? * MM,
-            ],
+            centre: check.each(&at("centre_mm"), *centre_mm, Check::distance)?.map(|v| v * MM),
             radius: size(check, &at("diameter_mm"), *diameter_mm)? / 2.0,
             z: span(check, &at("z_mm"), *z_mm)?,
         },
@@ -130,8 +118,7 @@ fn outline(check: Check<'_>, key: &str, outline: &[[f64; 2]]) -> Result<Vec<[f64
     let mut turns = Vec::with_capacity(n);
     for i in 0..n {
         let [a, b, c] = [outline[i], outline[(i + 1) % n], outline[(i + 2) % n]];
-        check.distance(key, a[0])?;
-        check.distance(key, a[1])?;
+        check.each(key, a, Check::distance)?;
         turns.push((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]));
     }
     let convex = turns.iter().all(|&t| t > 1e-9) || turns.iter().all(|&t| t < -1e-9);
@@ -141,7 +128,7 @@ fn outline(check: Check<'_>, key: &str, outline: &[[f64; 2]]) -> Result<Vec<[f64
     Ok(outline.iter().map(|p| [p[0] * MM, p[1] * MM]).collect())
 }
 
-/// What is left of a box.
+/// The solid that is left of a box.
 fn without_edges(
     check: Check<'_>,
     key: &str,

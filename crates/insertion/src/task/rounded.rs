@@ -69,8 +69,7 @@ mod tests {
     /// and the slot is as wide as before.
     #[test]
     fn the_edges_that_lead_in_are_rounded() {
-        let shipped = input::shipped::TASKS.iter().find(|file| file.name == "ket8").unwrap();
-        let task = Task::parse(shipped.text, shipped.file).unwrap();
+        let task = crate::fixtures::task("ket8");
         let round = task.rounded(0.3 * MM);
         let missing = |before: &Part, after: &Part| volume(&before.solid) - volume(&after.solid);
         // Along the 30 mm about the tip, but for the corners, where two cuts meet.

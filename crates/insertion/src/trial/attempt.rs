@@ -26,7 +26,7 @@ pub mod driven;
 /// Rest after a move that has none of its own, s.
 const REST: f64 = 0.03;
 
-/// Why an attempt ends early.
+/// Cause of an early end of an attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Stop {
     Lost,
@@ -53,7 +53,7 @@ pub(super) struct Attempt<'a> {
     pub world: Box<dyn World>,
     target: Tcp,
     stage: Stage,
-    /// What has been done already of the first phase of the search.
+    /// First phase of the search, as far as it has been made already.
     begun: Option<Begun>,
     /// Turn of the socket, rad.
     pub yaw: f64,
@@ -118,7 +118,7 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// The same, beginning with the start shifted by `offset` metres along y.
+    /// A copy with the start shifted by `offset` metres along y.
     pub fn shifted(&self, offset: f64) -> Attempt<'a> {
         let mut shifted = self.copy();
         // Shifting the start by y is shifting the socket by -y: the part has
@@ -203,7 +203,7 @@ impl<'a> Attempt<'a> {
 
     /// Commands a move and then rests, s.
     fn follow(&mut self, motion: Move, rest: f64) -> Result<(), Stop> {
-        let steps = self.steps(motion.duration() + rest);
+        let steps = self.steps(motion.duration + rest);
         for i in 1..=steps {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
@@ -233,13 +233,13 @@ impl<'a> Attempt<'a> {
     ) -> Result<(), Stop> {
         let (start, end) = (motion.at(0.0), motion.at(f64::INFINITY));
         // A robot that trails its command touches after it has ended.
-        let steps = self.steps(motion.duration() + self.robot.settling());
+        let steps = self.steps(motion.duration + self.robot.settling());
         let mut left = self.steps(sensed.latency);
         let mut felt = false;
         for i in done + 1..=steps {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
-            felt = felt || self.contact_force() > sensed.force;
+            felt = felt || self.socket_force().normal_sum > sensed.force;
             if felt && left == 0 {
                 break;
             }
@@ -267,7 +267,7 @@ impl<'a> Attempt<'a> {
         self.record(dt);
         self.watch_grasp(dt)?;
         if self.stage == Stage::Search {
-            self.watch.entered = self.edge.inside(&self.plug());
+            self.watch.entered = self.edge.inside(&self.pose(self.cell.plug));
         }
         if self.trace.as_ref().is_some_and(|trace| trace.due(self.time, dt)) {
             let sample = self.sample(&contact.net);
@@ -276,7 +276,7 @@ impl<'a> Attempt<'a> {
         if self.robot.stops(&self.watch.force) { Err(Stop::ForceLimit) } else { Ok(()) }
     }
 
-    /// How things stand now, with the net force of the socket on the plug, world axes, N.
+    /// State of the trial, with the net force of the socket on the plug, world axes, N.
     fn sample(&self, force: &Vector3<f64>) -> Sample {
         let placement = self.placement();
         Sample {
@@ -290,7 +290,7 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Where a body presses the plug or its latch, task frame.
+    /// Points at which a body presses the plug or its latch, task frame.
     fn presses(&self, body: BodyId) -> impl Iterator<Item = ContactPoint> {
         let parts = [self.cell.plug].into_iter().chain(self.cell.latch);
         let points = parts.flat_map(move |part| self.world.contact_points(body, part));
@@ -337,10 +337,6 @@ impl<'a> Attempt<'a> {
         self.world.pose(self.cell.flange).translation.vector
     }
 
-    fn contact_force(&self) -> f64 {
-        self.socket_force().normal_sum
-    }
-
     fn watch_grasp(&mut self, dt: f64) -> Result<(), Stop> {
         if self.time < GRASP_S {
             return Ok(());
@@ -356,18 +352,14 @@ impl<'a> Attempt<'a> {
         self.socket * self.world.pose(body)
     }
 
-    fn plug(&self) -> Pose {
-        self.pose(self.cell.plug)
-    }
-
     fn poses(&self) -> Poses {
         let fingers = self.cell.hands.map(|hand| self.pose(hand.finger));
         let latch = self.cell.latch.map(|latch| self.pose(latch));
-        Poses { plug: self.plug(), latch, fingers }
+        Poses { plug: self.pose(self.cell.plug), latch, fingers }
     }
 
     fn placement(&self) -> Placement {
-        Placement::new(&self.plug())
+        Placement::new(&self.pose(self.cell.plug))
     }
 
     fn grasp_points(&self) -> [Vector3<f64>; 2] {
@@ -406,7 +398,7 @@ impl<'a> Attempt<'a> {
         self.phases.push(end);
     }
 
-    /// What came of it, if it ended so.
+    /// Result of an attempt that ended so.
     pub fn result(self, end: Result<(), Stop>) -> Trial {
         let placement = self.placement();
         // Judged at rest after the push, or where a bottomed part stopped the robot:

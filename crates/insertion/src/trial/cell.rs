@@ -36,11 +36,11 @@ const HOLD_GAIN: f64 = 1e7;
 /// A scene and the handles that a trial needs.
 #[derive(Debug, Clone)]
 pub struct WorkCell {
-    /// The scene.
+    /// Bodies, joints and contact pairs.
     pub scene: Scene,
     /// The body that is commanded: the flange itself, or its servo's target.
     pub command: BodyId,
-    /// The flange.
+    /// Robot flange, at the TCP.
     pub flange: BodyId,
     /// The hand at -y and the hand at +y.
     pub hands: [Hand; 2],
@@ -48,18 +48,18 @@ pub struct WorkCell {
     pub plug: BodyId,
     /// The plug's latch, if it has one that springs.
     pub latch: Option<BodyId>,
-    /// The socket.
+    /// Fixed connector half.
     pub socket: BodyId,
-    /// What the plug stands on until it is grasped.
+    /// Stand of the plug until it is grasped.
     pub stand: BodyId,
 }
 
 /// One jaw with its finger.
 #[derive(Debug, Clone, Copy)]
 pub struct Hand {
-    /// The jaw.
+    /// Jaw that the robot's gripper drives.
     pub jaw: BodyId,
-    /// The finger.
+    /// Finger on the jaw.
     pub finger: BodyId,
     /// The jaw's slide; axis 1 (y) is the servo.
     pub slide: JointId,
@@ -75,12 +75,8 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     let plug_pose = tcp * Pose::translation(0.0, 0.0, -task.grip.tcp_z);
     let (command, flange) = flange(&mut scene, &robot.flange, tcp);
     let plug = scene.body(plug_body(task, plug_pose));
-    let socket = scene.body(Body {
-        name: "socket".into(),
-        motion: Motion::Fixed,
-        pose: Pose::identity(),
-        geoms: task.socket.iter().map(Part::geom).collect(),
-    });
+    let geoms = task.socket.iter().map(Part::geom).collect();
+    let socket = scene.body(body("socket", Motion::Fixed, Pose::identity(), geoms));
     let stand = scene.body(stand_body(task, plug_pose));
     let hands = [-1.0, 1.0].map(|side| hand(&mut scene, task, finger, flange, tcp, side));
     let latch = task.plug.latch.as_ref().map(|latch| sprung(&mut scene, task, latch, plug));
@@ -113,26 +109,14 @@ pub fn holding(position: f64) -> Spring {
 
 /// The commanded body, and the flange that follows it (the same if it does so exactly).
 pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) {
-    let command = scene.body(Body {
-        name: "command".into(),
-        motion: Motion::Driven,
-        pose: tcp,
-        geoms: Vec::new(),
-    });
+    let command = scene.body(body("command", Motion::Driven, tcp, Vec::new()));
     let (motion, springs) = match model {
         Flange::Ideal => return (command, command),
         Flange::Servo(servo) => servo_flange(servo),
         Flange::Reduced(arm) => (Motion::Mechanism(arm.mass), Springs::Coupled(arm.servo())),
     };
-    let flange = scene.body(Body { name: "flange".into(), motion, pose: tcp, geoms: Vec::new() });
-    scene.joint(Joint {
-        name: "servo".into(),
-        parent: command,
-        child: flange,
-        in_parent: Pose::identity(),
-        in_child: Pose::identity(),
-        springs,
-    });
+    let flange = scene.body(body("flange", motion, tcp, Vec::new()));
+    scene.joint(joint("servo", [command, flange], [Pose::identity(); 2], springs));
     if let Flange::Reduced(arm) = model {
         brake(scene, arm, flange, tcp);
     }
@@ -143,21 +127,10 @@ pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) 
 /// whose axes are the tilted TCP's.
 fn brake(scene: &mut Scene, arm: &Reduced, flange: BodyId, tcp: Pose) {
     let Some(damper) = arm.brake() else { return };
-    let base = scene.body(Body {
-        name: "base".into(),
-        motion: Motion::Fixed,
-        pose: tcp,
-        geoms: Vec::new(),
-    });
+    let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
-    scene.joint(Joint {
-        name: "brake".into(),
-        parent: base,
-        child: flange,
-        in_parent: Pose::from_parts(Translation3::identity(), tilt),
-        in_child: Pose::identity(),
-        springs: Springs::Coupled(damper),
-    });
+    let frames = [Pose::from_parts(Translation3::identity(), tilt), Pose::identity()];
+    scene.joint(joint("brake", [base, flange], frames, Springs::Coupled(damper)));
 }
 
 fn servo_flange(servo: &Servo) -> (Motion, Springs) {
@@ -192,12 +165,8 @@ fn pad_friction(task: &Task) -> Friction {
 
 fn plug_body(task: &Task, pose: Pose) -> Body {
     let mass = task.plug.mass - latch_mass(task);
-    Body {
-        name: "plug".into(),
-        motion: Motion::Free(geometry::inertia(task.plug.rigid(), mass)),
-        pose,
-        geoms: task.plug.rigid().map(Part::geom).collect(),
-    }
+    let inertia = geometry::inertia(task.plug.rigid(), mass);
+    body("plug", Motion::Free(inertia), pose, task.plug.rigid().map(Part::geom).collect())
 }
 
 /// The latch's share of the plug's mass, kg.
@@ -211,12 +180,8 @@ fn latch_mass(task: &Task) -> f64 {
 fn sprung(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId {
     let inertia = geometry::inertia(task.plug.sprung(), latch_mass(task));
     let pose = scene.bodies[plug.0].pose;
-    let body = scene.body(Body {
-        name: "latch".into(),
-        motion: Motion::Free(inertia),
-        pose,
-        geoms: task.plug.sprung().map(Part::geom).collect(),
-    });
+    let geoms = task.plug.sprung().map(Part::geom).collect();
+    let body = scene.body(body("latch", Motion::Free(inertia), pose, geoms));
     let mut arm = inertia.centre - latch.hinge;
     arm[latch.axis] = 0.0;
     let about_hinge = inertia.moments[latch.axis] + inertia.mass * arm.norm_squared();
@@ -224,14 +189,7 @@ fn sprung(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId
     let mut axes = [JointAxis::Locked; 6];
     axes[3 + latch.axis] = JointAxis::Sprung(Spring::new(latch.stiffness, damping));
     let hinge = Pose::from_parts(Translation3::from(latch.hinge.coords), nalgebra::one());
-    scene.joint(Joint {
-        name: "hinge of the latch".into(),
-        parent: plug,
-        child: body,
-        in_parent: hinge,
-        in_child: hinge,
-        springs: Springs::Axes(axes),
-    });
+    scene.joint(joint("hinge of the latch", [plug, body], [hinge; 2], Springs::Axes(axes)));
     body
 }
 
@@ -246,7 +204,7 @@ fn stand_body(task: &Task, plug: Pose) -> Body {
         pose: Pose::identity(),
         friction: None,
     };
-    Body { name: "stand".into(), motion: Motion::Fixed, pose, geoms: vec![geom] }
+    body("stand", Motion::Fixed, pose, vec![geom])
 }
 
 /// A jaw on its slide and a finger on its six springs; `side` is -1 or +1.
@@ -263,41 +221,35 @@ fn hand(
     // Jaw and finger frames lie on the pad's surface at the height of the TCP.
     let zero_y = face + side * OPENING;
     let in_flange = Pose::translation(0.0, zero_y, 0.0);
-    let jaw = scene.body(Body {
-        name: format!("jaw {label}"),
-        motion: Motion::Carried(Inertia {
-            mass: JAW_MASS,
-            centre: Point3::origin(),
-            moments: Vector3::repeat(1e-4),
-        }),
-        pose: tcp * in_flange,
-        geoms: Vec::new(),
-    });
+    let inertia =
+        Inertia { mass: JAW_MASS, centre: Point3::origin(), moments: Vector3::repeat(1e-4) };
+    let pose = tcp * in_flange;
+    let jaw = scene.body(body(format!("jaw {label}"), Motion::Carried(inertia), pose, Vec::new()));
     let mut axes = [JointAxis::Locked; 6];
     axes[1] =
         JointAxis::Sprung(Spring { limit: task.grip.force, ..Spring::new(JAW_GAIN, JAW_DAMPING) });
-    let slide = scene.joint(Joint {
-        name: format!("slide {label}"),
-        parent: flange,
-        child: jaw,
-        in_parent: in_flange,
-        in_child: Pose::identity(),
-        springs: Springs::Axes(axes),
-    });
-    let body = scene.body(Body {
-        name: format!("finger {label}"),
-        motion: Motion::Free(finger::inertia(finger, side)),
-        pose: tcp * in_flange,
-        geoms: finger.pad.geoms(task.grip.shoulder(), side),
-    });
+    let frames = [in_flange, Pose::identity()];
+    let slide =
+        scene.joint(joint(format!("slide {label}"), [flange, jaw], frames, Springs::Axes(axes)));
+    let motion = Motion::Free(finger::inertia(finger, side));
+    let geoms = finger.pad.geoms(task.grip.shoulder(), side);
+    let body = scene.body(body(format!("finger {label}"), motion, pose, geoms));
     let rcc = Pose::from_parts(Translation3::from(finger.centre(side).coords), nalgebra::one());
-    scene.joint(Joint {
-        name: format!("springs {label}"),
-        parent: jaw,
-        child: body,
-        in_parent: rcc,
-        in_child: rcc,
-        springs: finger.mounted(side),
-    });
+    let springs = finger.mounted(side);
+    scene.joint(joint(format!("springs {label}"), [jaw, body], [rcc; 2], springs));
     Hand { jaw, finger: body, slide, zero_y }
+}
+
+fn body(name: impl Into<String>, motion: Motion, pose: Pose, geoms: Vec<Geom>) -> Body {
+    Body { name: name.into(), motion, pose, geoms }
+}
+
+/// A joint between parent and child by its frames in the two.
+fn joint(
+    name: impl Into<String>,
+    [parent, child]: [BodyId; 2],
+    [in_parent, in_child]: [Pose; 2],
+    springs: Springs,
+) -> Joint {
+    Joint { name: name.into(), parent, child, in_parent, in_child, springs }
 }

@@ -16,10 +16,10 @@ use crate::task::{Stage, Task};
 use contact::scene::Pose;
 use nalgebra::Vector3;
 
-/// Where the part lies against its socket.
+/// Placement of the part against its socket.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placement {
-    /// Its tip, task frame, m.
+    /// Tip of the plug, task frame, m.
     pub tip: Vector3<f64>,
     /// Angle between its axis and z, rad.
     pub tilt: f64,
@@ -40,7 +40,7 @@ impl Placement {
         inside && -self.tip.z >= task.success.depth && self.tilt <= task.success.tilt
     }
 
-    /// How clearly it ended so; see [`super::Trial::margin`].
+    /// Margin of this outcome; see [`super::Trial::margin`].
     pub fn margin(&self, task: &Task, outcome: Outcome) -> f64 {
         let success = task.success;
         let deep = (-self.tip.z - success.depth) / success.depth;
@@ -61,7 +61,7 @@ pub(super) fn within(value: f64, [from, to]: [f64; 2]) -> bool {
     from <= value && value <= to
 }
 
-/// What the rules look at.
+/// Input of the classification rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Facts {
     /// In the opening, deep and upright enough, at the end.

@@ -2,6 +2,7 @@
 
 use super::cell::WorkCell;
 use crate::finger::{Pad, ROOF_GAP};
+use crate::task::geometry::other_axes;
 use crate::task::{PadTorsion, Part, Solid, Task};
 use contact::scene::Pose;
 
@@ -102,15 +103,11 @@ impl Solid {
                 }
             }
             Solid::Prism { axis, outline, span } => {
-                // The outline's two axes, in the order x, y, z.
-                let (along, first, second) = match axis {
-                    0 => (x, y, 0.0),
-                    1 => (y, x, 0.0),
-                    _ => (0.0, x, y),
-                };
-                *span = span.map(|at| at + along);
+                let by = [x, y, 0.0];
+                let (first, second) = other_axes(*axis);
+                *span = span.map(|at| at + by[*axis]);
                 for corner in outline {
-                    *corner = [corner[0] + first, corner[1] + second];
+                    *corner = [corner[0] + by[first], corner[1] + by[second]];
                 }
             }
         }
@@ -120,11 +117,12 @@ impl Solid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::task;
     use input::shipped::TASKS;
     use input::units::MM;
 
-    fn tasks() -> Vec<Task> {
-        TASKS.iter().map(|file| Task::parse(file.text, file.file).unwrap()).collect()
+    fn tasks() -> impl Iterator<Item = Task> {
+        TASKS.iter().map(|file| task(file.name))
     }
 
     #[test]
@@ -179,7 +177,7 @@ mod tests {
     #[test]
     fn friction_scales_the_latch_and_its_guides_too() {
         let slippery = Conditions { friction_socket: 0.5, ..Conditions::NOMINAL };
-        let rj45 = tasks().into_iter().find(|task| task.name == "rj45").unwrap();
+        let rj45 = task("rj45");
         let of = |task: &Task| -> Vec<f64> {
             let parts = task.plug.parts.iter().chain(&task.socket);
             let own = parts.filter_map(|part| part.friction);

@@ -12,7 +12,7 @@ use contact::mujoco::Mujoco;
 use contact::rapier::Rapier;
 use serde::{Deserialize, Serialize};
 
-/// What computes the contacts.
+/// Contact engine by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum EngineKind {
     /// Contact simulation in rapier3d
@@ -29,26 +29,6 @@ pub enum EngineKind {
     Fake,
 }
 
-/// What an [`EngineKind`] stands for.
-pub enum Built {
-    /// An engine that simulates scenes.
-    Engine(Box<dyn Engine>),
-    /// The closed formula.
-    #[cfg(feature = "fake-engine")]
-    ClosedForm,
-}
-
-impl Built {
-    /// The engine, if it is one that simulates scenes.
-    pub fn engine(self) -> Option<Box<dyn Engine>> {
-        match self {
-            Built::Engine(engine) => Some(engine),
-            #[cfg(feature = "fake-engine")]
-            Built::ClosedForm => None,
-        }
-    }
-}
-
 /// An engine as a study records it: whatever changes here may change results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,7 +42,7 @@ pub struct EngineRecord {
 }
 
 impl EngineKind {
-    /// Its name on the command line and in study files.
+    /// Name on the command line and in study files.
     pub fn name(self) -> &'static str {
         match self {
             EngineKind::Rapier => "rapier",
@@ -79,37 +59,43 @@ impl EngineKind {
         <EngineKind as clap::ValueEnum>::from_str(name, false).ok()
     }
 
-    /// The engine with its production step times `factor`.
-    pub fn build(self, factor: f64) -> Built {
-        match self {
-            EngineKind::Rapier => {
-                let mut engine = Rapier::default();
+    /// The engine with its production step times `factor`, and its settings. The closed formula
+    /// has no engine: another stands in, which nobody asks.
+    fn configured(self, factor: f64) -> (Box<dyn Engine>, toml::Table) {
+        macro_rules! scaled {
+            ($engine:ty) => {{
+                let mut engine = <$engine>::default();
                 engine.settings.step_s *= factor;
-                Built::Engine(Box::new(engine))
-            }
-            EngineKind::Direct => {
-                let mut engine = Direct::default();
-                engine.settings.step_s *= factor;
-                Built::Engine(Box::new(engine))
-            }
-            #[cfg(feature = "mujoco")]
-            EngineKind::Mujoco => {
-                let mut engine = Mujoco::default();
-                engine.settings.step_s *= factor;
-                Built::Engine(Box::new(engine))
-            }
-            #[cfg(feature = "fake-engine")]
-            EngineKind::Fake => Built::ClosedForm,
+                // Settings are flat structs of numbers, which TOML can always hold.
+                let settings = toml::Table::try_from(&engine.settings).unwrap_or_default();
+                (Box::new(engine), settings)
+            }};
         }
+        match self {
+            EngineKind::Rapier => scaled!(Rapier),
+            EngineKind::Direct => scaled!(Direct),
+            #[cfg(feature = "mujoco")]
+            EngineKind::Mujoco => scaled!(Mujoco),
+            #[cfg(feature = "fake-engine")]
+            EngineKind::Fake => scaled!(Direct),
+        }
+    }
+
+    /// The engine with its production step times `factor`; of one that [simulates](Self::simulates).
+    pub fn build(self, factor: f64) -> Box<dyn Engine> {
+        self.configured(factor).0
     }
 
     /// Whether it simulates, as opposed to the closed formula.
     pub fn simulates(self) -> bool {
-        self.build(1.0).engine().is_some()
+        self.name() != "fake"
     }
 
     /// Where trials of one task with one robot and such fingers are run, with the engine's step
-    /// times `step_factor`, if they go together.
+    /// times `step_factor`.
+    ///
+    /// # Errors
+    /// If they do not go together.
     pub fn rig(
         self,
         task: &Task,
@@ -117,33 +103,21 @@ impl EngineKind {
         finger: &Finger,
         step_factor: f64,
     ) -> Result<Box<dyn Rig>, RigError> {
-        match self.build(step_factor) {
-            Built::Engine(engine) => {
-                Ok(Box::new(EngineRig::with(task.clone(), robot, finger, engine)?))
-            }
-            #[cfg(feature = "fake-engine")]
-            Built::ClosedForm => Ok(Box::new(super::fake::FakeRig::from_environment())),
+        #[cfg(feature = "fake-engine")]
+        if self == EngineKind::Fake {
+            return Ok(Box::new(super::fake::FakeRig::from_environment()));
         }
+        Ok(Box::new(EngineRig::with(task.clone(), robot, finger, self.build(step_factor))?))
     }
 
-    /// What a study records of it.
+    /// The engine as a study records it.
     pub fn record(self) -> EngineRecord {
-        let settings = match self {
-            EngineKind::Rapier => toml::Table::try_from(Rapier::default().settings),
-            EngineKind::Direct => toml::Table::try_from(Direct::default().settings),
-            #[cfg(feature = "mujoco")]
-            EngineKind::Mujoco => toml::Table::try_from(Mujoco::default().settings),
-            #[cfg(feature = "fake-engine")]
-            EngineKind::Fake => Ok(toml::Table::new()),
-        };
-        let engine = self.build(1.0).engine();
-        let version = engine.map_or_else(|| self.name().to_owned(), |engine| engine.version());
-        // Settings are flat structs of numbers, which TOML can always hold.
-        EngineRecord {
-            name: self.name().to_owned(),
-            version,
-            settings: settings.unwrap_or_default(),
+        let name = self.name().to_owned();
+        if !self.simulates() {
+            return EngineRecord { version: name.clone(), name, settings: toml::Table::new() };
         }
+        let (engine, settings) = self.configured(1.0);
+        EngineRecord { name, version: engine.version(), settings }
     }
 }
 

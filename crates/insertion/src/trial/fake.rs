@@ -6,11 +6,10 @@
 //! Conditions narrow it: friction divides the lower end, yaw takes 1 mm a degree off
 //! both ends, what sits low in the gripper its own height off both; clearance is added.
 
-use super::{Conditions, Grasped, Rig, Trial};
+use super::{Conditions, Grasp, Grasped, Rig, Trial};
 use crate::finger::Finger;
 use crate::outcome::{FailureClass, Outcome};
 use input::units::{DEG, MM, N_PER_MM};
-use std::sync::atomic::AtomicBool;
 
 /// The rig with the closed-form window.
 #[derive(Debug, Clone, Copy, Default)]
@@ -31,13 +30,8 @@ impl FakeRig {
 }
 
 impl Rig for FakeRig {
-    fn grasp_until<'a>(
-        &'a self,
-        finger: &Finger,
-        conditions: &Conditions,
-        _stop: &'a AtomicBool,
-    ) -> Box<dyn Grasped + 'a> {
-        let (low, high) = window_in_mm(finger, conditions);
+    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
+        let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
         Box::new(FakeGrasp { low, high, delay: self.delay })
     }
 }
@@ -47,7 +41,7 @@ pub fn window_mm(finger: &Finger) -> (f64, f64) {
     window_in_mm(finger, &Conditions::NOMINAL)
 }
 
-/// The same under these conditions.
+/// The window's ends under these conditions, mm.
 pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     let compliance = finger.compliance / N_PER_MM;
     let assembly = finger.assembly / N_PER_MM;
@@ -90,5 +84,26 @@ impl Grasped for FakeGrasp {
             simulated_s: 1.0,
             retried: false,
         }
+    }
+}
+
+/// The closed-form rig with every trial changed by a function of grasp, offset (m) and result.
+pub struct Altered<F>(pub F);
+
+struct AlteredGrasp<'a, F> {
+    alter: &'a F,
+    grasp: Grasp<'a>,
+}
+
+impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Rig for Altered<F> {
+    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
+        Box::new(AlteredGrasp { alter: &self.0, grasp })
+    }
+}
+
+impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Grasped for AlteredGrasp<'_, F> {
+    fn trial(&self, offset: f64) -> Trial {
+        let trial = FakeRig::default().hold(self.grasp).trial(offset);
+        (self.alter)(&self.grasp, offset, trial)
     }
 }

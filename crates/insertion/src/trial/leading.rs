@@ -22,7 +22,7 @@ pub(super) struct LeadingEdge {
 }
 
 impl LeadingEdge {
-    /// Of a task's plug.
+    /// Leading edge of a task's plug.
     pub fn new(task: &Task) -> Self {
         // A latch gives way, and leads nothing.
         let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
@@ -54,32 +54,29 @@ impl LeadingEdge {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use input::shipped::TASKS;
+    use crate::fixtures::task;
     use input::units::DEG;
 
     fn inside(name: &str, at_mm: [f64; 3], tilt_deg: f64) -> bool {
-        let shipped = TASKS.iter().find(|shipped| shipped.name == name).unwrap();
-        let task = Task::parse(shipped.text, shipped.file).unwrap();
-        let tilt =
-            nalgebra::UnitQuaternion::from_axis_angle(&nalgebra::Vector3::x_axis(), tilt_deg * DEG);
+        let tilt = Pose::rotation(nalgebra::Vector3::x() * tilt_deg * DEG);
         let [x, y, z] = at_mm.map(|mm| mm * MM);
-        LeadingEdge::new(&task)
-            .inside(&Pose::from_parts(nalgebra::Translation3::new(x, y, z), tilt))
+        LeadingEdge::new(&task(name)).inside(&(Pose::translation(x, y, z) * tilt))
     }
 
     #[test]
     fn an_edge_over_the_housing_is_not_inside_though_its_latch_is_lower() {
-        // Plug and cavity of rj45 are 7 mm wide in x, the plug 0.5 mm off their middle.
-        assert!(inside("rj45", [-0.5, 0.0, 0.0], 10.0));
-        assert!(!inside("rj45", [2.0, 0.0, -0.1], 10.0));
-        // High over the opening.
-        assert!(!inside("rj45", [-0.5, 0.0, 2.0], 10.0));
-    }
-
-    #[test]
-    fn the_trailing_side_may_stand_over_the_housing() {
-        assert!(inside("ket8", [0.0, 1.0, 0.0], 10.0));
-        assert!(!inside("ket8", [0.0, 20.0, 0.0], 10.0));
-        assert!(!inside("ket8", [0.0, -20.0, 0.0], 10.0));
+        for (name, at_mm, expected) in [
+            // Plug and cavity of rj45 are 7 mm wide in x, the plug 0.5 mm off their middle.
+            ("rj45", [-0.5, 0.0, 0.0], true),
+            ("rj45", [2.0, 0.0, -0.1], false),
+            // High over the opening.
+            ("rj45", [-0.5, 0.0, 2.0], false),
+            // The trailing side may stand over the housing.
+            ("ket8", [0.0, 1.0, 0.0], true),
+            ("ket8", [0.0, 20.0, 0.0], false),
+            ("ket8", [0.0, -20.0, 0.0], false),
+        ] {
+            assert_eq!(inside(name, at_mm, 10.0), expected, "{name} {at_mm:?}");
+        }
     }
 }

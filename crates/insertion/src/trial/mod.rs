@@ -42,7 +42,7 @@ pub struct PhaseEnd {
     pub slip_mm: f64,
     /// Largest contact force plug-socket during the phase, N.
     pub peak_force_n: f64,
-    /// Where the bodies are, task frame, m; for pictures.
+    /// Poses of the bodies, task frame, m; for pictures.
     #[serde(skip)]
     pub poses: Poses,
     /// Points at which the socket presses the plug, task frame; for pictures.
@@ -50,21 +50,21 @@ pub struct PhaseEnd {
     pub contacts: Vec<ContactPoint>,
 }
 
-/// Where plug and fingers are, task frame, m.
+/// Poses of plug and fingers, task frame, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Poses {
-    /// The plug.
+    /// Plug without its latch.
     pub plug: Pose,
-    /// Its latch, if that springs.
+    /// Latch of the plug, if it springs.
     pub latch: Option<Pose>,
     /// The finger at -y and the finger at +y.
     pub fingers: [Pose; 2],
 }
 
-/// What one trial measured.
+/// Result of one trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
-    /// How it ended.
+    /// Outcome of the trial.
     pub outcome: Outcome,
     /// How clearly, from -1 to 1: what it has beyond the success criterion that it meets
     /// least, as a share of that criterion; below 0 if it failed, 0 if it diverged.
@@ -79,7 +79,7 @@ pub struct Trial {
     pub slip_mm: f64,
     /// State at the end of each phase that was begun.
     pub phases: Vec<PhaseEnd>,
-    /// Simulated time, s.
+    /// Simulated time of the trial, s.
     pub simulated_s: f64,
     /// Whether it diverged at first and was run again at half the step.
     pub retried: bool,
@@ -88,27 +88,38 @@ pub struct Trial {
 /// The flag of trials that nobody stops.
 pub static NEVER: AtomicBool = AtomicBool::new(false);
 
+/// Fingers and conditions of a grasp.
+#[derive(Debug, Clone, Copy)]
+pub struct Grasp<'a> {
+    /// Model of both fingers.
+    pub finger: Finger,
+    /// Deviations from the task file.
+    pub conditions: Conditions,
+    /// Set when grasp and trials are to end at once, with a worthless result.
+    pub stop: &'a AtomicBool,
+}
+
+impl Grasp<'static> {
+    /// By such fingers in the world as the task file has it; nobody stops it.
+    pub fn of(finger: &Finger) -> Self {
+        Grasp { finger: *finger, conditions: Conditions::NOMINAL, stop: &NEVER }
+    }
+}
+
 /// A place where trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
-    /// Grasps the part with a pair of such fingers under these conditions; what
-    /// follows does not depend on the offset until the approach, so it is done once.
-    /// Grasp and trials end at once, with a worthless result, when `stop` is set; rigs whose
-    /// trials take no time need not ask.
-    fn grasp_until<'a>(
-        &'a self,
-        finger: &Finger,
-        conditions: &Conditions,
-        stop: &'a AtomicBool,
-    ) -> Box<dyn Grasped + 'a>;
+    /// Grasps the part; what follows does not depend on the offset until the approach, so it is
+    /// done once. Rigs whose trials take no time need not look at the stop flag.
+    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a>;
 
-    /// The same for trials that nobody stops.
+    /// Grasps for trials that nobody stops.
     fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
-        self.grasp_until(finger, conditions, &NEVER)
+        self.hold(Grasp { conditions: *conditions, ..Grasp::of(finger) })
     }
 
-    /// The same in the world as the task file says.
+    /// Grasps for trials that nobody stops, in the world as the task file has it.
     fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
-        self.grasp_in(finger, &Conditions::NOMINAL)
+        self.hold(Grasp::of(finger))
     }
 
     /// The trial of such a pair of fingers with the start shifted by `offset` metres along y, filmed

@@ -7,9 +7,9 @@ use nalgebra::{Translation3, UnitQuaternion, Vector3};
 /// A TCP target: position, and tilt about x.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tcp {
-    /// m.
+    /// Position of the TCP, m.
     pub position: Vector3<f64>,
-    /// rad.
+    /// Tilt about x, rad.
     pub tilt: f64,
 }
 
@@ -20,7 +20,7 @@ impl Tcp {
         Pose::from_parts(Translation3::from(self.position), rotation)
     }
 
-    /// The target displaced.
+    /// The target displaced by a vector, m.
     pub fn moved(&self, by: Vector3<f64>) -> Tcp {
         Tcp { position: self.position + by, tilt: self.tilt }
     }
@@ -32,7 +32,8 @@ impl Tcp {
 pub struct Move {
     from: Tcp,
     to: Tcp,
-    duration: f64,
+    /// Time it takes, s.
+    pub duration: f64,
 }
 
 impl Move {
@@ -45,11 +46,6 @@ impl Move {
     /// A move that takes a given time (s).
     pub fn lasting(from: Tcp, to: Tcp, duration: f64) -> Self {
         Move { from, to, duration: duration.max(SHORTEST_MOVE_S) }
-    }
-
-    /// Time it takes, s.
-    pub fn duration(&self) -> f64 {
-        self.duration
     }
 
     /// The command at `time` seconds after the start; stays at the end after it.
@@ -71,7 +67,7 @@ mod tests {
     fn a_move_starts_and_ends_at_rest_and_peaks_at_15_eighths() {
         let at = |x| Tcp { position: Vector3::new(x, 0.0, 0.0), tilt: 0.0 };
         let motion = Move::new(at(0.0), at(0.01), 0.05);
-        assert!((motion.duration() - 0.2).abs() < 1e-12);
+        assert!((motion.duration - 0.2).abs() < 1e-12);
         let speed = |t: f64| (motion.at(t + 1e-6).position.x - motion.at(t).position.x) / 1e-6;
         assert!(speed(0.0) < 1e-6 && speed(0.2 - 1e-6) < 1e-6);
         assert!((speed(0.1) / 0.05 - 15.0 / 8.0).abs() < 1e-3);

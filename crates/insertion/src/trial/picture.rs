@@ -11,7 +11,7 @@ use input::units::MM;
 use nalgebra::Point2;
 use std::fmt::Write;
 
-/// Pixels per millimetre.
+/// Scale of the picture, pixels per millimetre.
 const SCALE: f64 = 3.2;
 /// Room about what is drawn, mm.
 const ROOM: f64 = 3.0;
@@ -27,7 +27,7 @@ const PLUG: &str = "#e8a33d";
 const FINGER: &str = "#5b8c5a";
 const FORCE: &str = "#b42318";
 
-/// What a panel shows: lowest and highest of the horizontal coordinate and of z, mm.
+/// Extent of a panel: lowest and highest of the horizontal coordinate and of z, mm.
 #[derive(Clone, Copy)]
 struct View {
     across: [f64; 2],
@@ -102,7 +102,7 @@ fn bodies(task: &Task, pad: &Pad, phase: &PhaseEnd) -> Vec<(Vec<Geom>, Pose, &'s
     bodies
 }
 
-/// What holds everything that any phase shows along x (axis 1) or y (axis 0).
+/// Extent that holds every phase, seen along x (axis 1) or y (axis 0).
 fn view(task: &Task, pad: &Pad, trial: &Trial, axis: usize) -> View {
     let empty = [f64::INFINITY, f64::NEG_INFINITY];
     let mut view = View { across: empty, up: empty };

@@ -18,11 +18,11 @@ const INTERVAL: f64 = 1e-3;
 pub struct Frame {
     /// Simulated time since the trial began, s.
     pub time_s: f64,
-    /// What the robot is about.
+    /// Stage of the trial.
     pub stage: Stage,
-    /// Where plug and fingers are, m.
+    /// Poses of plug and fingers, m.
     pub poses: Poses,
-    /// Where the jaws are, m: where each finger would be if nothing bent it.
+    /// Poses of the jaws, m: those of the fingers if nothing bent them.
     pub jaws: [Pose; 2],
     /// Force of the socket on the plug, filtered as the wrist's sensor does, N.
     pub force: Vector3<f64>,
@@ -40,7 +40,7 @@ impl Frame {
         -self.poses.plug.translation.z / MM
     }
 
-    /// Where the latch is: with the plug, if it has none that springs.
+    /// Pose of the latch; that of the plug, if it has none that springs.
     pub fn latch(&self) -> Pose {
         self.poses.latch.unwrap_or(self.poses.plug)
     }
@@ -57,7 +57,7 @@ impl Frame {
         (bent.translation.vector / MM).into()
     }
 
-    /// The same seen from another frame.
+    /// Transforms the frame to another frame of reference.
     fn seen(&mut self, from: &Pose) {
         let poses = [&mut self.poses.plug].into_iter().chain(&mut self.poses.latch);
         for pose in poses.chain(&mut self.poses.fingers).chain(&mut self.jaws) {
@@ -73,7 +73,7 @@ impl Frame {
 /// A trial and its frames.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// What it measured.
+    /// Result of the trial.
     pub trial: Trial,
     /// Moments in their order, about a millisecond apart.
     pub frames: Vec<Frame>,
@@ -108,7 +108,7 @@ impl Recorder {
         self.steps.is_multiple_of(every)
     }
 
-    /// What was seen so far, seen from another frame.
+    /// Transforms the frames so far to another frame of reference.
     pub fn seen(&mut self, from: &Pose) {
         self.frames.iter_mut().for_each(|frame| frame.seen(from));
     }

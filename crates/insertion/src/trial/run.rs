@@ -4,7 +4,7 @@ use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
 use super::record::{Frame, Recorder};
 use super::trace::{Sample, Trace};
-use super::{Conditions, Grasped, NEVER, Recording, Rig, Trial, cell};
+use super::{Grasp, Grasped, Recording, Rig, Trial, cell};
 use crate::arm::ArmError;
 use crate::finger::Finger;
 use crate::outcome::Outcome;
@@ -13,18 +13,17 @@ use crate::task::{Phase, Stage, Task};
 use contact::{Engine, Unsupported};
 use input::units::N_PER_MM;
 use nalgebra::Vector3;
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 /// A task, a robot in place for it, and an engine that can simulate both.
 pub struct EngineRig {
-    /// The task.
+    /// Task that the robot is in place for.
     pub task: Task,
     robot: Arc<Mounted>,
     engine: Box<dyn Engine>,
 }
 
-/// Why a task, a robot and an engine do not go together.
+/// Error of task, robot and engine that do not go together.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
     /// The robot cannot do the task.
@@ -34,7 +33,7 @@ pub enum RigError {
         robot: String,
         /// Name of the task.
         task: String,
-        /// What its arm lacks.
+        /// Cause in its arm.
         error: ArmError,
     },
     /// A trial would not end in time.
@@ -61,7 +60,7 @@ impl EngineRig {
         Self::with(task, robot, &any, engine)
     }
 
-    /// The same for such fingers.
+    /// Puts the robot in place for such fingers.
     pub fn with(
         task: Task,
         robot: &Robot,
@@ -87,13 +86,11 @@ impl EngineRig {
     fn prepare<'a>(
         &self,
         engine: &dyn Engine,
-        finger: &Finger,
-        conditions: &Conditions,
+        Grasp { finger, conditions, stop }: Grasp<'a>,
         recorder: Option<Recorder>,
-        stop: &'a AtomicBool,
     ) -> Prepared<'a> {
         let task = Arc::new(conditions.task(&self.task));
-        let mut cell = cell::build(&task, &self.robot, finger);
+        let mut cell = cell::build(&task, &self.robot, &finger);
         conditions.displace(&mut cell);
         let world = engine.world(&cell.scene);
         let mut attempt = Attempt::new(Arc::clone(&self.robot), task, cell, world, stop);
@@ -105,26 +102,14 @@ impl EngineRig {
 }
 
 impl Rig for EngineRig {
-    fn grasp_until<'a>(
-        &'a self,
-        finger: &Finger,
-        conditions: &Conditions,
-        stop: &'a AtomicBool,
-    ) -> Box<dyn Grasped + 'a> {
-        Box::new(Ready {
-            rig: self,
-            finger: *finger,
-            conditions: *conditions,
-            prepared: self.prepare(&*self.engine, finger, conditions, None, stop),
-            halved: OnceLock::new(),
-            stop,
-        })
+    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
+        let prepared = self.prepare(&*self.engine, grasp, None);
+        Box::new(Ready { rig: self, grasp, prepared, halved: OnceLock::new() })
     }
 
     fn record(&self, finger: &Finger, offset: f64) -> Option<Recording> {
         let by = |engine: &dyn Engine| {
-            let filmed = Some(Recorder::default());
-            let prepared = self.prepare(engine, finger, &Conditions::NOMINAL, filmed, &NEVER);
+            let prepared = self.prepare(engine, Grasp::of(finger), Some(Recorder::default()));
             let (trial, _, frames) = prepared.watched(offset, None);
             Recording::new(trial, frames)
         };
@@ -137,7 +122,7 @@ impl Rig for EngineRig {
     }
 
     fn driven(&self, finger: &Finger) -> Option<Driven> {
-        let ready = self.prepare(&*self.engine, finger, &Conditions::NOMINAL, None, &NEVER);
+        let ready = self.prepare(&*self.engine, Grasp::of(finger), None);
         Some(Driven::new(ready.attempt, ready.end))
     }
 }
@@ -145,13 +130,10 @@ impl Rig for EngineRig {
 /// An attempt stopped right before the search, and what it takes to begin it again.
 struct Ready<'a> {
     rig: &'a EngineRig,
-    finger: Finger,
-    conditions: Conditions,
+    grasp: Grasp<'a>,
     prepared: Prepared<'a>,
-    /// The same at half the step, once a trial has diverged.
+    /// Prepared at half the step, once a trial has diverged.
     halved: OnceLock<Prepared<'a>>,
-    /// Set when trials are to end at once.
-    stop: &'a AtomicBool,
 }
 
 impl Grasped for Ready<'_> {
@@ -170,10 +152,7 @@ impl Ready<'_> {
         if trial.outcome != Outcome::Diverged {
             return (trial, samples);
         }
-        let again = || {
-            let engine = self.rig.engine.halved();
-            self.rig.prepare(&*engine, &self.finger, &self.conditions, None, self.stop)
-        };
+        let again = || self.rig.prepare(&*self.rig.engine.halved(), self.grasp, None);
         let (trial, samples) = self.halved.get_or_init(again).run(offset, every_s);
         (Trial { retried: true, ..trial }, samples)
     }
@@ -194,7 +173,7 @@ impl<'a> Prepared<'a> {
         (trial, samples)
     }
 
-    /// What every offset may start from, if nobody looks at the way through the air.
+    /// Common start of all offsets, where nobody looks at the way through the air.
     fn descended(&self) -> Option<&Attempt<'a>> {
         self.end.ok()?;
         self.descended.get_or_init(|| self.attempt.descended()).as_ref()
@@ -220,10 +199,12 @@ impl<'a> Prepared<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::{finger, rig, robot, task, task_file};
     use contact::World;
     use contact::direct::{Direct, DirectSettings};
     use contact::scene::Scene;
-    use input::shipped::{ROBOTS, TASKS};
+    use input::shipped::ROBOTS;
+    use std::sync::atomic::{AtomicBool, Ordering};
 
     /// An engine whose contacts are not numbers until its step has been halved so often.
     #[derive(Clone, Copy)]
@@ -251,24 +232,19 @@ mod tests {
     }
 
     fn trial(engine: Box<dyn Engine>) -> Trial {
-        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
-        EngineRig::new(task, &robot, engine).unwrap().grasp(&finger).trial(0.0)
+        let rig = EngineRig::new(task("ket8"), &robot("servo"), engine).unwrap();
+        rig.grasp(&finger(2.6, 45.0)).trial(0.0)
     }
 
     #[test]
     fn a_trial_ends_at_once_when_it_is_to_stop() {
-        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-        let rig = EngineRig::new(task, &robot, Box::<Direct>::default()).unwrap();
-        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
-        let stop = AtomicBool::new(true);
-        let at_once = rig.grasp_until(&finger, &Conditions::NOMINAL, &stop).trial(0.0);
+        let (rig, stop) = (rig(task("ket8")), AtomicBool::new(true));
+        let grasp = Grasp { stop: &stop, ..Grasp::of(&finger(2.6, 45.0)) };
+        let at_once = rig.hold(grasp).trial(0.0);
         assert_eq!((at_once.outcome, at_once.simulated_s), (Outcome::Diverged, 0.0));
-        stop.store(false, std::sync::atomic::Ordering::SeqCst);
-        let grasped = rig.grasp_until(&finger, &Conditions::NOMINAL, &stop);
-        stop.store(true, std::sync::atomic::Ordering::SeqCst);
+        stop.store(false, Ordering::SeqCst);
+        let grasped = rig.hold(grasp);
+        stop.store(true, Ordering::SeqCst);
         let after_the_grasp = grasped.trial(0.0);
         assert!(after_the_grasp.simulated_s < 1.5, "nothing but grasp and approach");
     }
@@ -278,8 +254,7 @@ mod tests {
         let ur5e = ROBOTS.iter().find(|robot| robot.name == "ur5e").unwrap();
         let slow = ur5e.text.replace("damping_nms_per_rad = ", "damping_nms_per_rad = 1000");
         let robot = Robot::parse(&slow, ur5e.file).unwrap();
-        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-        let error = EngineRig::new(task, &robot, Box::<Direct>::default()).err().unwrap();
+        let error = EngineRig::new(task("ket8"), &robot, Box::<Direct>::default()).err().unwrap();
         assert!(error.to_string().contains("it may take 60 s"), "{error}");
     }
 
@@ -297,17 +272,13 @@ mod tests {
 
     #[test]
     fn samples_change_nothing_and_end_where_the_trial_ends() {
-        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
-        let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
-        let grasped = rig.grasp(&finger);
+        let rig = rig(task("ket8"));
+        let grasped = rig.grasp(&finger(2.6, 45.0));
         let (trial, samples) = grasped.traced(0.0, 1e-3);
         assert_eq!(trial, grasped.trial(0.0));
         let last = samples.last().unwrap();
-        assert!(
-            samples.windows(2).all(|pair| (pair[1].time_s - pair[0].time_s - 1e-3).abs() < 1e-9)
-        );
+        let apart = |pair: &[Sample]| pair[1].time_s - pair[0].time_s;
+        assert!(samples.windows(2).all(|pair| (apart(pair) - 1e-3).abs() < 1e-9));
         assert!((last.tip_mm[2] + trial.depth_mm).abs() < 1e-2, "{last:?}");
         assert!((trial.simulated_s - last.time_s) < 2e-3);
     }
@@ -315,15 +286,12 @@ mod tests {
     #[test]
     fn starts_that_share_the_way_down_are_the_same_trials() {
         let slow = "speed_mm_per_s = 20.0";
-        assert!(TASKS[3].text.contains(slow));
+        let usb = task_file("usb");
+        assert!(usb.text.contains(slow));
         for speed in [slow, "speed_mm_per_s = 2000.0"] {
-            let text = TASKS[3].text.replace(slow, speed);
-            let task = Task::parse(&text, TASKS[3].file).unwrap();
-            let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-            let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
-            let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
-            let engine = Direct::default();
-            let ready = rig.prepare(&engine, &finger, &Conditions::NOMINAL, None, &NEVER);
+            let text = usb.text.replace(slow, speed);
+            let rig = rig(Task::parse(&text, usb.file).unwrap());
+            let ready = rig.prepare(&Direct::default(), Grasp::of(&finger(2.6, 45.0)), None);
             assert!(speed != slow || ready.descended().is_some());
             // A trial with samples goes all the way by itself.
             for offset in [-2.5e-3, 0.0, 4e-3] {
@@ -335,10 +303,7 @@ mod tests {
 
     #[test]
     fn a_recorded_trial_is_the_same_trial() {
-        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
-        let rig = EngineRig::new(task, &robot, Box::new(Direct::default())).unwrap();
+        let (rig, finger) = (rig(task("ket8")), finger(2.6, 45.0));
         let recording = rig.record(&finger, 5e-4).unwrap();
         assert_eq!(recording.trial, rig.grasp(&finger).trial(5e-4));
         let frames = &recording.frames;
@@ -348,11 +313,8 @@ mod tests {
         // The socket is pushed the way the plug goes, and the points carry the whole force.
         let pushed = frames.iter().map(|frame| frame.force.norm()).fold(0.0, f64::max);
         assert!(pushed > 0.9 * recording.trial.peak_force_n, "{pushed}");
-        assert!(
-            frames
-                .iter()
-                .any(|frame| !frame.contacts.is_empty() && frame.contacts[0].force.z > 0.0)
-        );
+        let pushes = |frame: &Frame| frame.contacts.first().is_some_and(|c| c.force.z > 0.0);
+        assert!(frames.iter().any(pushes));
         // The grip bends both fingers outward.
         let held = frames.iter().find(|frame| frame.time_s > 0.29).unwrap();
         let [left, right] = [0, 1].map(|finger| held.deflection_mm(finger)[1]);

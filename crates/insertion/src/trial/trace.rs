@@ -2,14 +2,14 @@
 
 use serde::Serialize;
 
-/// Where part and robot are at one moment of a trial, and what they press; task frame.
+/// Sample of a trial at one time: part, robot and force; task frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sample {
     /// Simulated time since the trial began, s.
     pub time_s: f64,
     /// Place of the phase among [`Trial::phases`](super::Trial::phases).
     pub phase: u32,
-    /// The TCP, mm.
+    /// Position of the TCP, mm.
     pub tcp_mm: [f64; 3],
     /// Tip of the plug, mm.
     pub tip_mm: [f64; 3],
@@ -40,7 +40,7 @@ impl Trace {
         time_s > self.next_s - 0.5 * step_s
     }
 
-    /// Keeps a sample.
+    /// Keeps a sample and sets the time of the next.
     pub fn take(&mut self, sample: Sample) {
         self.samples.push(sample);
         self.next_s = sample.time_s + self.every_s;

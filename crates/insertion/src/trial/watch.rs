@@ -11,14 +11,14 @@ const LOSS_TIME: f64 = 0.02;
 /// A finger that presses with less is off, N.
 const LOSS_FORCE: f64 = 0.01;
 
-/// What has been seen so far.
+/// Force and grasp monitors of an attempt.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Watch {
     /// Filtered net force plug-socket, N.
     pub force: Vector3<f64>,
-    /// Its largest size in the attempt, N.
+    /// Largest filtered force in the attempt, N.
     pub peak_force: f64,
-    /// Its largest size in the phase, N.
+    /// Largest filtered force in the phase, N.
     pub phase_peak: f64,
     /// Whether the leading edge is inside the opening; as it was when the search ended.
     pub entered: bool,

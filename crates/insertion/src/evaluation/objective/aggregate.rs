@@ -13,7 +13,7 @@ pub enum Aggregate {
     /// The worst: the smallest, or the largest of what is to be small.
     #[default]
     Min,
-    /// The mean.
+    /// Arithmetic mean over the tasks.
     Mean,
     /// The mean with a weight for each task, above 0.
     Weighted(Vec<f64>),

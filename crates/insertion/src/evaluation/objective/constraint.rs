@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// On which side of its limit a measure must be.
+/// Side of its limit on which a measure must be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bound {
-    /// `<=`
+    /// `<=`, an upper limit.
     AtMost,
-    /// `>=`
+    /// `>=`, a lower limit.
     AtLeast,
 }
 
@@ -19,9 +19,9 @@ pub enum Bound {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Constraint {
-    /// What is limited.
+    /// Constrained measure.
     pub measure: Measure,
-    /// On which side.
+    /// Side on which it must be.
     pub bound: Bound,
     /// The limit, in the measure's unit.
     pub limit: f64,
@@ -39,7 +39,7 @@ impl Constraint {
         values?.into_iter().reduce(worse)
     }
 
-    /// The same in words: `31.2 N, violates peak-force<=30`.
+    /// The worst value in words: `31.2 N, violates peak-force<=30`.
     pub fn words(&self, tasks: &[&Evaluation]) -> String {
         match self.worst(tasks) {
             None => format!("no value for {self}"),

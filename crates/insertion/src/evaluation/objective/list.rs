@@ -8,7 +8,7 @@ use std::str::FromStr;
 /// Most objectives: a front of more is no help in choosing.
 const MOST: usize = 3;
 
-/// What is optimized, one to three different measures in the order in which they are given.
+/// One to three different measures to be optimized, in the order given.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Objectives {
@@ -17,7 +17,7 @@ pub struct Objectives {
 }
 
 impl Objectives {
-    /// One objective.
+    /// A single objective.
     pub fn of(measure: Measure) -> Self {
         Objectives { first: measure, all: vec![measure] }
     }

@@ -12,9 +12,9 @@ pub enum Measure {
     Range,
     /// Twice the smaller side of the window, mm: for a robot that errs both ways.
     CentredRange,
-    /// Share of the trials under drawn errors that insert, 0 to 1.
+    /// Share of the trials under sampled errors that insert, 0 to 1.
     SuccessRate,
-    /// Statistic of the range under drawn errors, mm.
+    /// Statistic of the range under sampled errors, mm.
     RobustRange,
     /// Largest contact force between plug and socket over the inserted trials, N.
     PeakForce,
@@ -23,7 +23,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// All measures.
+    /// All measures in the order of their names in messages.
     pub const ALL: [Measure; 6] = [
         Measure::Range,
         Measure::CentredRange,
@@ -33,24 +33,14 @@ impl Measure {
         Measure::Slip,
     ];
 
-    /// Its name on the command line and in study files.
+    /// Name on the command line and in study files.
     pub fn name(self) -> &'static str {
-        match self {
-            Measure::Range => "range",
-            Measure::CentredRange => "centred-range",
-            Measure::SuccessRate => "success-rate",
-            Measure::RobustRange => "robust-range",
-            Measure::PeakForce => "peak-force",
-            Measure::Slip => "slip",
-        }
+        let names =
+            ["range", "centred-range", "success-rate", "robust-range", "peak-force", "slip"];
+        names[self as usize]
     }
 
-    /// All names, for messages.
-    pub fn names() -> String {
-        Measure::ALL.map(Measure::name).join(", ")
-    }
-
-    /// Its unit, for text and axes; empty for a share.
+    /// Unit for text and axes; empty for a share.
     pub fn unit(self) -> &'static str {
         match self {
             Measure::SuccessRate => "",
@@ -59,7 +49,7 @@ impl Measure {
         }
     }
 
-    /// Its unit at the end of a key: `mm`, `n` or `share`.
+    /// Unit as the end of a key: `mm`, `n` or `share`.
     pub fn key(self) -> &'static str {
         match self {
             Measure::SuccessRate => "share",
@@ -73,7 +63,7 @@ impl Measure {
         if matches!(self, Measure::PeakForce | Measure::Slip) { -1.0 } else { 1.0 }
     }
 
-    /// Whether it is taken under drawn errors.
+    /// Whether it is measured under sampled errors.
     pub fn is_drawn(self) -> bool {
         matches!(self, Measure::SuccessRate | Measure::RobustRange)
     }
@@ -135,7 +125,8 @@ impl FromStr for Measure {
     type Err = String;
     fn from_str(name: &str) -> Result<Self, String> {
         Measure::ALL.into_iter().find(|measure| measure.name() == name).ok_or_else(|| {
-            format!("nothing measured is called `{name}`; there are {}", Measure::names())
+            let names = Measure::ALL.map(Measure::name).join(", ");
+            format!("nothing measured is called `{name}`; there are {names}")
         })
     }
 }

@@ -38,15 +38,15 @@ kept_as_text!(Aggregate, Constraint, Objectives);
 /// Objectives and constraints of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Goals {
-    /// What is optimized.
+    /// Measures to be optimized.
     pub objectives: Objectives,
-    /// What a design must keep to; on every task, if there are several.
+    /// Limits of a feasible design, on every task.
     pub constraints: Vec<Constraint>,
-    /// How the values of several tasks become one.
+    /// Rule that combines the values of several tasks.
     pub aggregate: Aggregate,
 }
 
-/// What an evaluation says of the goals.
+/// Objective values and constraint violations of a design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Score {
     /// Value of each objective, in its own unit and sense.
@@ -71,7 +71,7 @@ impl Goals {
         self.measures().any(|needed| needed == measure)
     }
 
-    /// Whether trials or windows under drawn errors are needed.
+    /// Whether trials or windows under sampled errors are needed.
     pub fn need_draws(&self) -> bool {
         self.measures().any(Measure::is_drawn)
     }

@@ -45,17 +45,15 @@ fn slope(measure: Measure, evaluation: &Evaluation) -> f64 {
 mod tests {
     use super::*;
     use crate::evaluation::tolerance::{self, Search};
-    use crate::finger::Finger;
+    use crate::fixtures::finger;
     use crate::trial::fake::FakeRig;
-    use input::units::N_PER_MM;
 
     fn told(measure: Measure, evaluation: &Evaluation) -> f64 {
         Goals::of(measure).told(&[evaluation]).unwrap()[0]
     }
 
     fn measured(compliance: f64, assembly: f64) -> Evaluation {
-        let finger = Finger::new(compliance * N_PER_MM, assembly * N_PER_MM);
-        tolerance::evaluate(&FakeRig::default(), &finger, Search::Strides)
+        tolerance::evaluate(&FakeRig::default(), &finger(compliance, assembly), Search::Strides)
     }
 
     /// -3.333 and 1.400 mm in the closed form: 0.033 and nothing beyond the grid.

@@ -9,32 +9,32 @@ use crate::evaluation::{OffsetStep, Window, grid_mm};
 use crate::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 
-/// How often both ends are repeated.
+/// Repeats at each end.
 pub const REPEATS: u32 = 6;
 
 /// The outermost offsets at which all repeats insert, in grid steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FirmWindow {
-    /// At the negative end.
+    /// Outermost step at the negative end.
     pub negative_steps: OffsetStep,
-    /// At the positive end.
+    /// Outermost step at the positive end.
     pub positive_steps: OffsetStep,
 }
 
 impl FirmWindow {
-    /// Its width, mm.
+    /// Width of the firm window, mm.
     pub fn range_mm(&self) -> f64 {
         grid_mm(self.positive_steps - self.negative_steps)
     }
 }
 
-/// What the repeats at both ends of a window found.
+/// Result of the repeats at both ends of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Firm {
     /// The firm window; `None` if there is no offset from an end to the nominal start, or no
     /// window at all, at which all repeats insert.
     pub window: Option<FirmWindow>,
-    /// Trials run.
+    /// Trials of all repeats.
     pub trials: u32,
 }
 
@@ -98,15 +98,14 @@ fn end(repeats: &Repeats, from: OffsetStep, sign: OffsetStep) -> (Option<OffsetS
 mod tests {
     use super::*;
     use crate::evaluation::tolerance::{Search, evaluate, offset};
-    use crate::finger::Finger;
+    use crate::fixtures::finger;
     use crate::trial::fake::FakeRig;
-    use input::units::N_PER_MM;
 
     /// The lower end of the closed form, -3.33 mm, moves with friction to as near as -3.03 mm;
     /// the upper one, 1.40 mm, with the start alone, by 0.02 mm.
     #[test]
     fn the_firm_window_is_the_innermost_of_the_repeats() {
-        let (rig, finger) = (FakeRig::default(), Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM));
+        let (rig, finger) = (FakeRig::default(), finger(3.0, 20.0));
         let window = evaluate(&rig, &finger, Search::Walk).window;
         let repeats = Repeats::new([&rig, &rig], &finger, 0, 100);
         let found = measure(&repeats, &window);
@@ -129,7 +128,7 @@ mod tests {
 
     #[test]
     fn nothing_is_firm_where_nothing_inserts() {
-        let (rig, finger) = (FakeRig::default(), Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM));
+        let (rig, finger) = (FakeRig::default(), finger(3.0, 20.0));
         let mut window = evaluate(&rig, &finger, Search::Walk).window;
         window.nominal = Outcome::Diverged;
         let found = measure(&Repeats::new([&rig, &rig], &finger, 0, 6), &window);

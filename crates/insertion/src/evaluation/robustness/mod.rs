@@ -58,3 +58,20 @@ pub fn evaluate(
     }
     evaluation
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{finger, predicted};
+    use input::shipped::UNCERTAINTIES;
+
+    /// Fingers of 3 N/mm and this assembly stiffness (N/mm) drawn under the shipped errors.
+    pub fn drawn(assembly: f64, count: u32) -> (Uncertainty, Vec<(Finger, Draw)>) {
+        let typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
+        let predicted = predicted([3.0, 1.0], [assembly, 2.0]);
+        let nominal = finger(3.0, assembly);
+        let drawn = draws(&typical.errors, 5, count).into_iter();
+        let drawn = drawn.map(|draw| (draw.finger(&nominal, &predicted), draw)).collect();
+        (typical, drawn)
+    }
+}

@@ -49,12 +49,9 @@ fn value(robust: &RobustRange, statistic: Statistic) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::evaluation::grid_mm;
+    use crate::evaluation::robustness::tests::drawn;
     use crate::evaluation::tolerance::Search;
-    use crate::evaluation::uncertainty::{Uncertainty, draws};
-    use crate::surrogate::{Estimate, Prediction};
     use crate::trial::fake::{FakeRig, window_in_mm};
-    use input::shipped::UNCERTAINTIES;
-    use input::units::N_PER_MM;
 
     fn ranges(ranges_mm: Vec<f64>) -> RobustRange {
         RobustRange { ranges_mm, diverged: 0, value_mm: None, trials: 0 }
@@ -71,18 +68,7 @@ mod tests {
 
     #[test]
     fn each_range_is_that_of_its_own_window() {
-        let typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
-        let estimate = |mean: f64, sd: f64| Estimate { mean: mean * N_PER_MM, sd: sd * N_PER_MM };
-        let predicted = Prediction {
-            compliance: estimate(3.0, 1.0),
-            assembly: estimate(60.0, 2.0),
-            hull_distance: 0.0,
-        };
-        let nominal = Finger::new(3.0 * N_PER_MM, 60.0 * N_PER_MM);
-        let drawn: Vec<(Finger, Draw)> = draws(&typical.errors, 5, 12)
-            .into_iter()
-            .map(|draw| (draw.finger(&nominal, &predicted), draw))
-            .collect();
+        let (typical, drawn) = drawn(60.0, 12);
         let settings = RobustSettings { search: Search::Strides, ..typical.robust };
         let found = measure(&FakeRig::default(), &drawn, &settings);
         let expected: Vec<f64> = drawn

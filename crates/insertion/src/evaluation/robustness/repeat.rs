@@ -12,11 +12,11 @@ use rayon::prelude::*;
 
 /// Share by which both coefficients of friction vary, each by itself.
 pub const FRICTION_SHARE: f64 = 0.1;
-/// How far the start varies, m.
+/// Largest change of the start, m.
 pub const START: f64 = 0.02 * MM;
 /// Names the stream of the changes.
 const PURPOSE: &str = "repeat";
-/// How far from an end its band is followed, in grid steps.
+/// Largest distance from an end at which its band is followed, in grid steps.
 const REACH: OffsetStep = 20;
 /// Distance of the offsets looked at between the bands, in grid steps.
 const INSIDE_STRIDE: OffsetStep = 5;
@@ -44,12 +44,12 @@ impl<'a> Repeats<'a> {
         Repeats { runs: (0..count).into_par_iter().map(run).collect() }
     }
 
-    /// How each ends with the start shifted by `offset` metres beside its own change.
+    /// Outcome of each run with the start shifted by `offset` metres beside its own change.
     pub fn outcomes(&self, offset: f64) -> Vec<Outcome> {
         self.runs.par_iter().map(|(grasped, shift)| grasped.trial(offset + shift).outcome).collect()
     }
 
-    /// How many runs there are.
+    /// Number of runs.
     pub(super) fn count(&self) -> usize {
         self.runs.len()
     }
@@ -62,7 +62,7 @@ impl<'a> Repeats<'a> {
         self.runs.get(run).map(trial) == Some(Outcome::Inserted)
     }
 
-    /// How many of them insert at a grid step.
+    /// Number of runs that insert at a grid step.
     fn inserted(&self, step: OffsetStep) -> usize {
         let outcomes = self.outcomes(tolerance::offset(step));
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()
@@ -84,7 +84,7 @@ impl<'a> Repeats<'a> {
         }
     }
 
-    /// Both bands of a window, and what lies between them.
+    /// Both bands of a window, and the offsets tried between them.
     pub fn bands(&self, window: &Window) -> Bands {
         let [negative, positive] = [-1, 1].map(|sign| self.band(window, sign));
         let inside = negative.surely_inserts.zip(positive.surely_inserts);
@@ -119,12 +119,12 @@ impl Band {
     }
 }
 
-/// Both ends of one window.
+/// Bands at both ends of one window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bands {
-    /// Near the negative end.
+    /// Band at the negative end.
     pub negative: Band,
-    /// Near the positive end.
+    /// Band at the positive end.
     pub positive: Band,
     /// Offsets tried between the two, every 0.5 mm.
     pub looked_at_inside: usize,
@@ -136,21 +136,16 @@ pub struct Bands {
 mod tests {
     use super::*;
     use crate::evaluation::tolerance::Search;
-    use crate::outcome::Outcome;
+    use crate::fixtures::finger;
     use crate::trial::fake::FakeRig;
-    use input::units::N_PER_MM;
-
-    fn finger() -> Finger {
-        Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM)
-    }
 
     /// The lower end of the closed form, -3.33 mm, moves by a tenth with friction, to
     /// -3.03 and -3.70; the upper one, 1.40 mm, with the start alone.
     #[test]
     fn the_bands_are_as_wide_as_the_closed_form_says() {
         let rig = FakeRig::default();
-        let repeats = Repeats::new([&rig, &rig], &finger(), 7, 200);
-        let window = tolerance::evaluate(&rig, &finger(), Search::Walk).window;
+        let repeats = Repeats::new([&rig, &rig], &finger(3.0, 20.0), 7, 200);
+        let window = tolerance::evaluate(&rig, &finger(3.0, 20.0), Search::Walk).window;
         let bands = repeats.bands(&window);
         let below = bands.negative.width_mm().unwrap();
         assert!((0.5..=0.7).contains(&below), "{bands:?}");
@@ -163,7 +158,8 @@ mod tests {
     #[test]
     fn repeats_are_a_function_of_the_seed() {
         let rig = FakeRig::default();
-        let of = |seed| Repeats::new([&rig, &rig], &finger(), seed, 60).outcomes(-3.33 * MM);
+        let of =
+            |seed| Repeats::new([&rig, &rig], &finger(3.0, 20.0), seed, 60).outcomes(-3.33 * MM);
         assert_eq!(of(1), of(1));
         assert_ne!(of(1), of(2));
         let inserted = of(1).iter().filter(|&&outcome| outcome == Outcome::Inserted).count();

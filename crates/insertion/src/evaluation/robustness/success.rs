@@ -32,26 +32,13 @@ pub fn measure(rig: &dyn Rig, drawn: &[(Finger, Draw)], settings: &SuccessSettin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::uncertainty::{Uncertainty, draws};
-    use crate::surrogate::{Estimate, Prediction};
+    use crate::evaluation::robustness::tests::drawn;
     use crate::trial::fake::{FakeRig, window_in_mm};
-    use input::shipped::UNCERTAINTIES;
-    use input::units::{MM, N_PER_MM};
+    use input::units::MM;
 
     #[test]
     fn every_trial_ends_as_its_own_window_says() {
-        let typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
-        let estimate = |mean: f64, sd: f64| Estimate { mean: mean * N_PER_MM, sd: sd * N_PER_MM };
-        let predicted = Prediction {
-            compliance: estimate(3.0, 1.0),
-            assembly: estimate(20.0, 2.0),
-            hull_distance: 0.0,
-        };
-        let nominal = Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM);
-        let drawn: Vec<(Finger, Draw)> = draws(&typical.errors, 5, 300)
-            .into_iter()
-            .map(|draw| (draw.finger(&nominal, &predicted), draw))
-            .collect();
+        let (typical, drawn) = drawn(20.0, 300);
         let found = measure(&FakeRig::default(), &drawn, &typical.success);
         let (mut below, mut above) = (0, 0);
         for (finger, draw) in &drawn {

@@ -3,10 +3,8 @@
 //! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path
 //! to one number:
 //!
-//! - `task.`, then the path in the task file: tables and keys as they stand there; one
-//!   of several tables by its `name` (`task.strategy.phase.side.speed_mm_per_s`); a number of
-//!   a vector by `x`, `y`, `z` (`task.strategy.phase.side.move_mm.y`), of any other list by
-//!   its place, counted from 0;
+//! - `task.`, then the path in the task file as of [`NumberFile`]
+//!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);
 //! - `finger.`, then one of [`finger_keys`] (`finger.rcc_mm`).
 //!
 //! Values are in the unit that the key carries. They are put into the task as read,
@@ -23,29 +21,24 @@ use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::task::Task;
 use crate::trial::run::RigError;
 use finray::FingerError;
-use input::numbers::{self, numbers};
+use input::InputError;
+use input::numbers::{DESIGN, NumberFile};
 use input::units::{GRAM, MM, N_PER_MM};
-use input::{Check, InputError, read};
-
-const TASK: &str = "task";
-/// What values are called in errors that concern no file.
-const DESIGN: &str = "design";
 
 /// A task file, the numbers of which a design may set.
 #[derive(Debug, Clone)]
 pub struct Template {
-    file: String,
-    table: toml::Value,
+    numbers: NumberFile,
     task: Task,
 }
 
-/// Why a design cannot be simulated.
+/// Error of a design that cannot be simulated.
 #[derive(Debug, thiserror::Error)]
 pub enum Impossible {
     /// It sets what does not exist, or to what cannot be.
     #[error(transparent)]
     Value(#[from] InputError),
-    /// Its finger cannot be printed, or cannot be so stiff.
+    /// Its finger cannot be printed, or not with this stiffness.
     #[error(transparent)]
     Finger(#[from] FingerError),
     /// The robot or the engine cannot do the task that it makes.
@@ -79,10 +72,12 @@ pub(super) fn is_infill(key: &str) -> bool {
 
 impl Template {
     /// Reads and checks a task file; `file` is named in errors.
+    ///
+    /// # Errors
+    /// As of [`Task::parse`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let task = Task::parse(text, file)?;
-        let table = toml::Value::Table(read(text, file)?);
-        Ok(Template { file: file.to_owned(), table, task })
+        Ok(Template { numbers: NumberFile::parse("task", text, file)?, task })
     }
 
     /// The task as the file has it.
@@ -90,24 +85,16 @@ impl Template {
         &self.task
     }
 
-    /// The keys that set a number of the task, in alphabetical order.
-    pub fn task_keys(&self) -> Vec<String> {
-        let mut table = self.table.clone();
-        let mut keys: Vec<String> =
-            numbers(TASK, &mut table).into_iter().map(|(key, _)| key).collect();
-        keys.sort();
-        keys
-    }
-
     /// The number that the task file has under a key, in the unit of the key.
     pub fn number(&self, key: &str) -> Option<f64> {
-        let mut table = self.table.clone();
-        let number = numbers(TASK, &mut table).into_iter().find(|(name, _)| name == key)?.1;
-        number.as_float().or_else(|| number.as_integer().map(|whole| whole as f64))
+        self.numbers.number(key)
     }
 
     /// The task, and the finger of this stiffness at its pad, with the values that the design
     /// gives; what it does not name stays as in the task file and as `fingers` makes it.
+    ///
+    /// # Errors
+    /// If the design sets what does not exist, or to what cannot be, or its finger cannot be made.
     pub fn apply(
         &self,
         design: &Design,
@@ -124,16 +111,20 @@ impl Template {
         if let (FingerSource::Paper, Some(key)) = (fingers, shaped) {
             let problem = "is a number of a printed finger, which the paper's model does not know; \
                            --finger-model computed does";
-            return Ok(Check { file: DESIGN }.fail(key, problem)?);
+            return Ok(DESIGN.fail(key, problem)?);
         }
         let task = self.changed(&of_task)?;
         let direction = design.get(DIRECTION_KEY);
         if task.finger.rcc.is_some_and(|rcc| rcc.varies()) && direction.is_none() {
             let problem = "is missing: the task's finger.rcc_mm depends on it";
-            return Ok(Check { file: DESIGN }.fail(DIRECTION_KEY, problem)?);
+            return Ok(DESIGN.fail(DIRECTION_KEY, problem)?);
         }
         for (key, value) in &of_finger {
-            checked(key, *value)?;
+            // The remote centre may lie on either side.
+            match *key == RCC_KEY {
+                true => DESIGN.finite(key, *value)?,
+                false => DESIGN.positive(key, *value)?,
+            };
         }
         let mut made = fingers.make(at_pad, design, &task)?;
         for (key, number, unit) in FINGER {
@@ -149,47 +140,23 @@ impl Template {
         if of_task.is_empty() {
             return Ok(self.task.clone());
         }
-        let mut table = self.table.clone();
-        let mut numbers = numbers(TASK, &mut table);
-        for &(key, value) in of_task {
-            let mut found = numbers.iter_mut().filter(|(name, _)| name == key);
-            match (found.next(), found.next()) {
-                (Some((_, number)), None) => **number = toml::Value::Float(value),
-                (Some(_), Some(_)) => {
-                    let problem = "is two numbers: two tables have the same name; rename one";
-                    return Check { file: &self.file }.fail(key, problem);
-                }
-                (None, _) => return self.unknown(key),
-            }
-        }
-        let toml::Value::Table(table) = table else { return Ok(self.task.clone()) };
-        Task::from_table(table, &self.file)
+        let elsewhere = [&finger_keys()[..], &[DENSITY_KEY, DIRECTION_KEY]].concat();
+        let table = self.numbers.with(of_task.iter().copied(), &elsewhere)?;
+        Task::from_table(table, self.numbers.file())
     }
-
-    fn unknown<T>(&self, key: &str) -> Result<T, InputError> {
-        let keys = self.task_keys();
-        let infill = [DENSITY_KEY, DIRECTION_KEY];
-        let keys = keys.iter().map(String::as_str).chain(finger_keys()).chain(infill);
-        Check { file: DESIGN }.fail(key, numbers::unknown(key, &keys.collect::<Vec<_>>()))
-    }
-}
-
-/// A number of a finger that can be simulated: the remote centre may lie on either side.
-fn checked(key: &str, value: f64) -> Result<f64, InputError> {
-    let check = Check { file: DESIGN };
-    if key == RCC_KEY { check.finite(key, value) } else { check.positive(key, value) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::task_file;
     use crate::task::{Ending, Sensed};
     use input::shipped::TASKS;
     use input::units::DEG;
     use std::collections::BTreeMap;
 
     fn usb() -> Template {
-        let file = TASKS.iter().find(|task| task.name == "usb").unwrap();
+        let file = task_file("usb");
         Template::parse(file.text, file.file).unwrap()
     }
 
@@ -236,15 +203,11 @@ mod tests {
     fn every_key_that_is_listed_can_be_set_to_what_it_is() {
         for file in TASKS {
             let template = Template::parse(file.text, file.file).unwrap();
-            let mut table = template.table.clone();
-            let values: Vec<(String, f64)> = numbers(TASK, &mut table)
-                .into_iter()
-                .map(|(key, value)| (key, value.as_float().unwrap()))
-                .collect();
-            assert!(values.len() > 50, "{}", file.name);
-            let (task, _) = template
-                .apply(&Design(values.into_iter().collect()), &FingerSource::Paper, AT_PAD)
-                .unwrap();
+            let keys = template.numbers.keys().into_iter();
+            let values = keys.map(|key| (key.clone(), template.number(&key).unwrap()));
+            let design = Design(values.collect());
+            assert!(design.0.len() > 50, "{}", file.name);
+            let (task, _) = template.apply(&design, &FingerSource::Paper, AT_PAD).unwrap();
             assert_eq!(&task, template.task());
         }
     }
@@ -274,8 +237,7 @@ mod tests {
 
     #[test]
     fn two_tables_of_one_name_are_told_apart_before_one_is_set() {
-        let file = TASKS.iter().find(|task| task.name == "usb").unwrap();
-        let text = file.text.replace("name = \"front\"", "name = \"back\"");
+        let text = task_file("usb").text.replace("name = \"front\"", "name = \"back\"");
         let template = Template::parse(&text, "my.toml").unwrap();
         let key = "task.strategy.phase.back.settle_s".to_owned();
         let error =

@@ -17,7 +17,7 @@ const PURPOSE: &str = "errors";
 pub struct Draw {
     /// Shift of the start along y, m.
     pub offset: f64,
-    /// What else differs in the world.
+    /// Deviations of the world from the task file.
     pub conditions: Conditions,
     /// Standard normal deviates of the compliance and the assembly stiffness.
     stiffness: [f64; 2],
@@ -85,6 +85,7 @@ fn lognormal(relative: f64, z: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::evaluation::uncertainty::Uncertainty;
+    use crate::fixtures::predicted;
     use input::shipped::UNCERTAINTIES;
     use input::units::{DEG, MM};
 
@@ -123,12 +124,7 @@ mod tests {
 
     #[test]
     fn a_stiffness_has_the_predicted_mean_and_spread_and_is_never_negative() {
-        let estimate = |mean, sd| Estimate { mean, sd };
-        let predicted = Prediction {
-            compliance: estimate(1000.0, 400.0),
-            assembly: estimate(50e3, 1e3),
-            hull_distance: 0.0,
-        };
+        let predicted = predicted([1.0, 0.4], [50.0, 1.0]);
         let nominal = Finger::new(1000.0, 50e3);
         let fingers: Vec<Finger> =
             draws(&errors(), 0, 4000).iter().map(|d| d.finger(&nominal, &predicted)).collect();
@@ -160,8 +156,7 @@ mod tests {
             grasp_across_sd: 0.0,
             grasp_low_max: 0.0,
         };
-        let exact = Estimate { mean: 1e3, sd: 0.0 };
-        let predicted = Prediction { compliance: exact, assembly: exact, hull_distance: 0.0 };
+        let predicted = predicted([1.0, 0.0], [1.0, 0.0]);
         let finger = Finger::new(1e3, 2e4);
         for draw in draws(&none, 0, 20) {
             assert_eq!((draw.offset, draw.conditions), (0.0, Conditions::NOMINAL));

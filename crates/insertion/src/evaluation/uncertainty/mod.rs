@@ -7,7 +7,6 @@ mod raw;
 pub use draw::{Draw, draws};
 
 use crate::evaluation::tolerance::Search;
-use input::InputError;
 
 /// A checked distribution of errors, and how many draws each measure takes; SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,11 +15,11 @@ pub struct Uncertainty {
     pub name: String,
     /// One line for lists.
     pub description: String,
-    /// The errors.
+    /// Spread of each error.
     pub errors: Errors,
-    /// Settings of the success rate.
+    /// Settings of success-rate measurements.
     pub success: SuccessSettings,
-    /// Settings of the robust range.
+    /// Settings of robust-range measurements.
     pub robust: RobustSettings,
 }
 
@@ -43,23 +42,23 @@ pub struct Errors {
     pub grasp_low_max: f64,
 }
 
-/// How a success rate is measured.
+/// Settings of a success-rate measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SuccessSettings {
-    /// Trials per design.
+    /// Trials of each design.
     pub trials: u32,
     /// Probability with which the interval holds the true rate, 0 to 1.
     pub confidence: f64,
 }
 
-/// How a robust range is measured.
+/// Settings of a robust-range measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RobustSettings {
-    /// Windows per design.
+    /// Windows of each design.
     pub samples: u32,
-    /// What is made of them.
+    /// Statistic of their ranges.
     pub statistic: Statistic,
-    /// How each window is looked for.
+    /// Search for the ends of each window.
     pub search: Search,
 }
 
@@ -70,11 +69,4 @@ pub enum Statistic {
     MeanMinusSd(f64),
     /// Mean of the lowest share (0 to 1) of the samples, at least one of them.
     LowerTail(f64),
-}
-
-impl Uncertainty {
-    /// Reads and checks a distribution; `file` is named in errors.
-    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        raw::parse(text, file)
-    }
 }

@@ -56,7 +56,7 @@ struct RawRobust {
     statistic: RawStatistic,
     sd_factor: Option<f64>,
     tail_percent: Option<f64>,
-    search: RawSearch,
+    search: Search,
 }
 
 #[derive(Deserialize, Clone, Copy)]
@@ -64,13 +64,6 @@ struct RawRobust {
 enum RawStatistic {
     MeanMinusSd,
     LowerTail,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum RawSearch {
-    Walk,
-    Strides,
 }
 
 /// Largest error of a length, mm: no part is placed so badly.
@@ -84,33 +77,36 @@ const LARGEST_FACTOR: f64 = 10.0;
 /// Most trials or samples a design may take.
 const MOST: u32 = 100_000;
 
-/// Reads and checks a distribution; `file` is named in errors.
-pub fn parse(text: &str, file: &str) -> Result<Uncertainty, InputError> {
-    let raw: RawUncertainty = read(text, file)?;
-    let check = Check { file };
-    sources(check, &raw)?;
-    Ok(Uncertainty {
-        errors: errors(check, &raw)?,
-        success: SuccessSettings {
-            trials: count(check, "success_rate.trials", raw.success_rate.trials, 1)?,
-            confidence: share(
-                check,
-                "success_rate.confidence_percent",
-                raw.success_rate.confidence_percent,
-            )?,
-        },
-        robust: RobustSettings {
-            // A standard deviation needs two.
-            samples: count(check, "robust_range.samples", raw.robust_range.samples, 2)?,
-            statistic: statistic(check, &raw.robust_range)?,
-            search: match raw.robust_range.search {
-                RawSearch::Walk => Search::Walk,
-                RawSearch::Strides => Search::Strides,
+impl Uncertainty {
+    /// Reads and checks a distribution; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not such a file, or a value cannot be used.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let raw: RawUncertainty = read(text, file)?;
+        let check = Check { file };
+        sources(check, &raw)?;
+        let rate = &raw.success_rate;
+        Ok(Uncertainty {
+            errors: errors(check, &raw)?,
+            success: SuccessSettings {
+                trials: count(check, "success_rate.trials", rate.trials, 1)?,
+                confidence: share(
+                    check,
+                    "success_rate.confidence_percent",
+                    rate.confidence_percent,
+                )?,
             },
-        },
-        name: raw.name,
-        description: raw.description,
-    })
+            robust: RobustSettings {
+                // A standard deviation needs two.
+                samples: count(check, "robust_range.samples", raw.robust_range.samples, 2)?,
+                statistic: statistic(check, &raw.robust_range)?,
+                search: raw.robust_range.search,
+            },
+            name: raw.name,
+            description: raw.description,
+        })
+    }
 }
 
 fn sources(check: Check<'_>, raw: &RawUncertainty) -> Result<(), InputError> {
@@ -135,43 +131,26 @@ fn errors(check: Check<'_>, raw: &RawUncertainty) -> Result<Errors, InputError> 
     if half_width >= 100.0 {
         return check.fail(friction, "must be below 100: friction cannot be negative");
     }
+    // In SI units; `unit` is one of the file's.
+    let error = |key, value, largest, unit| match check.not_negative(key, value)? <= largest {
+        true => Ok(value * unit),
+        false => check.fail(key, format!("is {value}; it may be {largest} at most")),
+    };
+    let (gap, grasp) = (raw.clearance.half_width_mm, &raw.grasp);
     Ok(Errors {
-        offset_sd: error(check, "offset.sd_mm", raw.offset.sd_mm, [LARGEST_MM, MM])?,
-        yaw_sd: error(check, "yaw.sd_deg", raw.yaw.sd_deg, [LARGEST_DEG, DEG])?,
+        offset_sd: error("offset.sd_mm", raw.offset.sd_mm, LARGEST_MM, MM)?,
+        yaw_sd: error("yaw.sd_deg", raw.yaw.sd_deg, LARGEST_DEG, DEG)?,
         friction_half_width: half_width * PERCENT,
         stiffness_sd_factor: error(
-            check,
             "stiffness.sd_factor",
             raw.stiffness.sd_factor,
-            [LARGEST_FACTOR, 1.0],
+            LARGEST_FACTOR,
+            1.0,
         )?,
-        clearance_half_width: error(
-            check,
-            "clearance.half_width_mm",
-            raw.clearance.half_width_mm,
-            [LARGEST_CLEARANCE_MM, MM],
-        )?,
-        grasp_across_sd: error(
-            check,
-            "grasp.across_sd_mm",
-            raw.grasp.across_sd_mm,
-            [LARGEST_MM, MM],
-        )?,
-        grasp_low_max: error(check, "grasp.low_max_mm", raw.grasp.low_max_mm, [LARGEST_MM, MM])?,
+        clearance_half_width: error("clearance.half_width_mm", gap, LARGEST_CLEARANCE_MM, MM)?,
+        grasp_across_sd: error("grasp.across_sd_mm", grasp.across_sd_mm, LARGEST_MM, MM)?,
+        grasp_low_max: error("grasp.low_max_mm", grasp.low_max_mm, LARGEST_MM, MM)?,
     })
-}
-
-/// An error in SI units, at most as `largest` in its own, of which one is `unit`.
-fn error(
-    check: Check<'_>,
-    key: &str,
-    value: f64,
-    [largest, unit]: [f64; 2],
-) -> Result<f64, InputError> {
-    if check.not_negative(key, value)? <= largest {
-        return Ok(value * unit);
-    }
-    check.fail(key, format!("is {value}; it may be {largest} at most"))
 }
 
 fn count(check: Check<'_>, key: &str, count: u32, least: u32) -> Result<u32, InputError> {
@@ -189,22 +168,23 @@ fn share(check: Check<'_>, key: &str, percent: f64) -> Result<f64, InputError> {
 }
 
 fn statistic(check: Check<'_>, raw: &RawRobust) -> Result<Statistic, InputError> {
-    match (raw.statistic, raw.sd_factor, raw.tail_percent) {
+    let problem = match (raw.statistic, raw.sd_factor, raw.tail_percent) {
         (RawStatistic::MeanMinusSd, Some(factor), None) => {
-            Ok(Statistic::MeanMinusSd(check.not_negative("robust_range.sd_factor", factor)?))
+            let factor = check.not_negative("robust_range.sd_factor", factor)?;
+            return Ok(Statistic::MeanMinusSd(factor));
         }
         (RawStatistic::LowerTail, None, Some(percent)) => {
-            Ok(Statistic::LowerTail(share(check, "robust_range.tail_percent", percent)?))
+            let share = share(check, "robust_range.tail_percent", percent)?;
+            return Ok(Statistic::LowerTail(share));
         }
-        (RawStatistic::MeanMinusSd, ..) => check.fail(
-            "robust_range.statistic",
-            "\"mean-minus-sd\" goes with sd_factor, and without tail_percent",
-        ),
-        (RawStatistic::LowerTail, ..) => check.fail(
-            "robust_range.statistic",
-            "\"lower-tail\" goes with tail_percent, and without sd_factor",
-        ),
-    }
+        (RawStatistic::MeanMinusSd, ..) => {
+            "\"mean-minus-sd\" goes with sd_factor, and without tail_percent"
+        }
+        (RawStatistic::LowerTail, ..) => {
+            "\"lower-tail\" goes with tail_percent, and without sd_factor"
+        }
+    };
+    check.fail("robust_range.statistic", problem)
 }
 
 #[cfg(test)]
@@ -215,7 +195,7 @@ mod tests {
     #[test]
     fn the_shipped_file_reads_in_si_units() {
         let file = UNCERTAINTIES[0];
-        let typical = parse(file.text, file.file).unwrap();
+        let typical = Uncertainty::parse(file.text, file.file).unwrap();
         assert_eq!(typical.name, "typical");
         assert!((typical.errors.offset_sd - 2e-3).abs() < 1e-15);
         assert!((typical.errors.friction_half_width - 0.2).abs() < 1e-15);
@@ -242,7 +222,7 @@ mod tests {
         ] {
             let text = good.replacen(from, to, 1);
             assert_ne!(text, good, "{from}");
-            let error = parse(&text, "u.toml").unwrap_err().to_string();
+            let error = Uncertainty::parse(&text, "u.toml").unwrap_err().to_string();
             assert!(
                 error.contains(key) && error.contains(word) && error.contains("u.toml"),
                 "{error}"
@@ -250,6 +230,9 @@ mod tests {
         }
         let tail =
             good.replace("mean-minus-sd\"\nsd_factor = 1.0", "lower-tail\"\ntail_percent = 10.0");
-        assert_eq!(parse(&tail, "u").unwrap().robust.statistic, Statistic::LowerTail(0.1));
+        assert_eq!(
+            Uncertainty::parse(&tail, "u").unwrap().robust.statistic,
+            Statistic::LowerTail(0.1)
+        );
     }
 }

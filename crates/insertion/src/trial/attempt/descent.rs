@@ -16,7 +16,7 @@ const UNTOUCHED: f64 = 0.25 * MM;
 /// A phase that has begun.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Begun {
-    /// Its move.
+    /// Move of the phase.
     pub motion: Move,
     /// Steps made of it.
     pub steps: usize,
@@ -36,7 +36,7 @@ impl<'a> Attempt<'a> {
         copy.stage = phase.stage;
         let motion = copy.motion(phase);
         let mut steps = 0;
-        while steps < copy.steps(motion.duration()) && copy.clearance() > CLEAR {
+        while steps < copy.steps(motion.duration) && copy.clearance() > CLEAR {
             steps += 1;
             copy.target = motion.at(steps as f64 * copy.world.step_s());
             copy.step().ok()?;

@@ -23,7 +23,7 @@ pub struct Driven {
     seated_s: f64,
 }
 
-/// How things stand after a command.
+/// State of the trial after a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
     /// Simulated time since the start of the search, s.
@@ -44,7 +44,7 @@ pub struct State {
     pub slip_mm: f64,
     /// From the tip to where it counts as inserted, mm.
     pub distance_mm: f64,
-    /// How it ended, if it did.
+    /// Outcome, once it has ended.
     pub outcome: Option<Outcome>,
 }
 
@@ -80,7 +80,7 @@ impl Driven {
         self.state()
     }
 
-    /// What a strategy knows by its phases: when the push begins, and when the part is at rest.
+    /// Detects what a strategy knows by its phases: the begin of the push, and the part at rest.
     fn watch(&mut self, dt: f64) {
         let attempt = &mut self.attempt;
         if attempt.watch.entered && attempt.stage == Stage::Search {
@@ -130,22 +130,12 @@ impl Driven {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finger::Finger;
+    use crate::fixtures::{finger, rig, task};
     use crate::outcome::FailureClass;
-    use crate::robot::Robot;
-    use crate::task::Task;
     use crate::trial::Rig;
-    use crate::trial::run::EngineRig;
-    use contact::direct::Direct;
-    use input::shipped::{ROBOTS, TASKS};
-    use input::units::N_PER_MM;
 
     fn driven() -> Driven {
-        let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-        let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-        let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM);
-        let rig = EngineRig::new(task, &robot, Box::<Direct>::default()).unwrap();
-        rig.driven(&finger).unwrap()
+        rig(task("ket8")).driven(&finger(2.6, 45.0)).unwrap()
     }
 
     #[test]

@@ -1,0 +1,42 @@
+//! Shipped inputs, fingers and predictions for tests.
+
+use crate::finger::Finger;
+use crate::robot::Robot;
+use crate::surrogate::{Estimate, Prediction};
+use crate::task::Task;
+use crate::trial::run::EngineRig;
+use contact::direct::Direct;
+use input::shipped::{ROBOTS, Shipped, TASKS};
+use input::units::N_PER_MM;
+
+/// The text of a shipped task and its path.
+pub fn task_file(name: &str) -> &'static Shipped {
+    TASKS.iter().find(|file| file.name == name).unwrap()
+}
+
+pub fn task(name: &str) -> Task {
+    let file = task_file(name);
+    Task::parse(file.text, file.file).unwrap()
+}
+
+pub fn robot(name: &str) -> Robot {
+    let file = ROBOTS.iter().find(|file| file.name == name).unwrap();
+    Robot::parse(file.text, file.file).unwrap()
+}
+
+/// A finger of these stiffnesses, N/mm.
+pub fn finger(compliance: f64, assembly: f64) -> Finger {
+    Finger::new(compliance * N_PER_MM, assembly * N_PER_MM)
+}
+
+/// A task on the robot `servo` in the engine `direct`.
+pub fn rig(task: Task) -> EngineRig {
+    EngineRig::new(task, &robot("servo"), Box::<Direct>::default()).unwrap()
+}
+
+/// Mean and standard deviation of the compliance and of the assembly stiffness, N/mm.
+pub fn predicted(compliance: [f64; 2], assembly: [f64; 2]) -> Prediction {
+    let [compliance, assembly] = [compliance, assembly]
+        .map(|[mean, sd]| Estimate { mean: mean * N_PER_MM, sd: sd * N_PER_MM });
+    Prediction { compliance, assembly, hull_distance: 0.0 }
+}

@@ -5,7 +5,7 @@ mod common;
 
 use common::{Studies, optimize, read};
 use finray::export::prism::Prism;
-use finray::export::{slicer, stl, three_mf};
+use finray::export::slicer;
 use finray::geometry::Geometry;
 use finray::infill::Design;
 use finray::printed::PrintedFinger;
@@ -35,7 +35,7 @@ fn triangles(bytes: &[u8]) -> Vec<[[f32; 3]; 3]> {
 fn a_solid_is_closed_and_has_area_times_depth() {
     for (density, direction) in [(10.0, 0.0), (18.0, 20.0), (30.0, 40.0), (25.0, -30.0)] {
         let geometry = finray9(density, direction);
-        let triangles = triangles(&stl::write(&Prism::finger(&geometry).unwrap(), "test"));
+        let triangles = triangles(&Prism::finger(&geometry).unwrap().stl("test"));
         let mut edges: BTreeMap<[[u32; 3]; 2], u32> = BTreeMap::new();
         let mut volume = 0.0;
         for [a, b, c] in triangles.iter().map(|t| t.map(|p| p.map(f64::from))) {
@@ -59,7 +59,7 @@ fn a_solid_is_closed_and_has_area_times_depth() {
 #[test]
 fn a_3mf_is_a_zip_of_a_model_in_millimetres() {
     let prism = Prism::finger(&finray9(18.0, 20.0)).unwrap();
-    let bytes = three_mf::write(&prism, "a < b").unwrap();
+    let bytes = prism.three_mf("a < b").unwrap();
     let text = String::from_utf8_lossy(&bytes);
     assert!(text.starts_with("PK") && text.contains("[Content_Types].xml"));
     let model = &text[text.find("<model").unwrap()..text.find("</model>").unwrap() + 8];
@@ -175,23 +175,23 @@ fn prusaslicer_prints_the_ribs_of_the_design() {
     // The best designs of rj45, usb and the keys, and the densest.
     for (density, direction) in [(18.0, 20.0), (10.0, 7.0), (10.0, 0.0), (30.0, 40.0)] {
         let geometry = finray9(density, direction);
-        write("finger.stl", &stl::write(&Prism::finger(&geometry).unwrap(), ""));
+        write("finger.stl", &Prism::finger(&geometry).unwrap().stl(""));
         let found = ribs(&middle_layer(folder.path(), "finger.stl", &[]), direction);
-        assert_eq!(found.len(), geometry.ribs(), "{density} %, {direction}°: {found:?}");
+        assert_eq!(found.len(), geometry.ribs, "{density} %, {direction}°: {found:?}");
         for pitch in pitches(&found) {
-            assert!((pitch - geometry.pitch() * 1e3).abs() < 0.02, "{pitch} at {density} %");
+            assert!((pitch - geometry.lines.pitch * 1e3).abs() < 0.02, "{pitch} at {density} %");
         }
     }
     // The outline with the slicer's own ribs: the design's pitch and direction.
     let geometry = finray9(18.0, 20.0);
-    write("outline.stl", &stl::write(&Prism::outline(&geometry).unwrap(), ""));
+    write("outline.stl", &Prism::outline(&geometry).unwrap().stl(""));
     write("settings.ini", slicer::prusaslicer(&geometry).as_bytes());
     let settings = folder.path().join("settings.ini");
     let lines = middle_layer(folder.path(), "outline.stl", &["--load", settings.to_str().unwrap()]);
     let found = ribs(&lines, 20.0);
     // Lines that end in the base are left out, and the first lies where the slicer likes.
-    assert!(found.len() + 4 >= geometry.ribs(), "{found:?}");
+    assert!(found.len() + 4 >= geometry.ribs, "{found:?}");
     for pitch in pitches(&found) {
-        assert!((pitch - geometry.pitch() * 1e3).abs() < 0.02, "{pitch}");
+        assert!((pitch - geometry.lines.pitch * 1e3).abs() < 0.02, "{pitch}");
     }
 }

@@ -1,28 +1,28 @@
-//! A printed finger: outline, skin, ribs and material, from a file.
+//! Finger files: outline, skin, ribs and material of a printed finger.
 
 use input::units::{DEG, MM};
 use input::{Check, InputError, read};
 use nalgebra::Point2;
 use serde::Deserialize;
 
-/// A finger as its file describes it, SI units; a design adds the infill.
+/// Printed finger as its file describes it, SI units; a design adds the infill.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrintedFinger {
     /// Name, as used on the command line.
     pub name: String,
     /// One line for lists.
     pub description: String,
-    /// The file, for messages.
+    /// Name of the file, for messages.
     pub file: String,
     /// Table of measured fingers of this shape and material.
     pub measured: Option<String>,
-    /// Its sides.
+    /// Outline of the profile.
     pub outline: Outline,
     /// Thickness of the skin all round, m.
     pub skin: f64,
-    /// What fills the inside.
+    /// Rule of the ribs.
     pub ribs: Ribs,
-    /// What it is printed of.
+    /// Material of the print.
     pub material: Material,
     /// Angle between the finger's axis and the assembly direction, rad.
     pub tilt: f64,
@@ -32,16 +32,16 @@ pub struct PrintedFinger {
     pub smallest_gap: f64,
 }
 
-/// The sides of a finger, m; X along it from the tip, Y across it from the front.
+/// Outline of a finger, m; X along it from the tip, Y across it from the front.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outline {
-    /// From tip to end.
+    /// Length from tip to end.
     pub length: f64,
-    /// From front to back.
+    /// Width from front to back.
     pub width: f64,
-    /// Of the extruded profile.
+    /// Depth of the extruded profile.
     pub depth: f64,
-    /// How far the tip lies behind the front.
+    /// Distance of the tip behind the front.
     pub tip: f64,
     /// Radius of the arc between back and tip.
     pub back_radius: f64,
@@ -57,23 +57,23 @@ pub struct Outline {
     pub clamped: f64,
 }
 
-/// The rule by which ribs fill a finger.
+/// Rule by which ribs fill a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ribs {
     /// Thickness of a rib, m.
     pub thickness: f64,
     /// Pitch across the ribs times the density (a share), m.
     pub line_spacing: f64,
-    /// From where ribs are counted, m.
+    /// Point from which ribs are counted, m.
     pub origin: Point2<f64>,
     /// Distance of the first centre line from the origin, m.
     pub phase: f64,
 }
 
-/// A linearly elastic material.
+/// Linearly elastic material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// Its name.
+    /// Name, as `PETG`.
     pub name: String,
     /// Young's modulus, N/m2.
     pub modulus: f64,
@@ -81,7 +81,7 @@ pub struct Material {
     pub poisson: f64,
     /// Density, kg/m3.
     pub density: f64,
-    /// Where the values come from.
+    /// Source of the values.
     pub source: String,
 }
 
@@ -174,7 +174,7 @@ impl PrintedFinger {
         PrintedFinger::checked(read(text, file)?, file)
     }
 
-    /// The same of a file that was read as TOML already.
+    /// [`PrintedFinger::parse`] of a file that was read as TOML already.
     ///
     /// # Errors
     /// As of [`PrintedFinger::parse`].
@@ -204,7 +204,7 @@ impl PrintedFinger {
     }
 }
 
-/// Longest length that a finger may have, mm: beyond it the units are wrong.
+/// Longest length, mm: beyond it the units are wrong.
 const LONGEST_MM: f64 = 500.0;
 /// Highest modulus, GPa: steel has 210.
 const STIFFEST_GPA: f64 = 500.0;

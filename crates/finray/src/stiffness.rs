@@ -1,4 +1,4 @@
-//! What a finger's stiffness matrix says: springs, remote centre, coupling.
+//! Springs, remote centre and coupling of a finger from its stiffness matrix.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -28,7 +28,7 @@ impl PlanarStiffness {
         PlanarStiffness::new((roots * self.compliance * roots).try_inverse()?)
     }
 
-    /// The matrix: N/m, N/rad, N m/rad; order y, z, rx.
+    /// Stiffness matrix: N/m, N/rad, N m/rad; order y, z, rx.
     pub fn matrix(&self) -> &Matrix3<f64> {
         &self.stiffness
     }
@@ -53,13 +53,13 @@ impl PlanarStiffness {
         1.0 / self.compliance[(2, 2)]
     }
 
-    /// How far the remote centre, which a moment does not move, lies below the pad's middle
+    /// Distance of the remote centre, which a moment does not move, below the pad's middle
     /// (towards the tip and beyond), m.
     pub fn centre_below_pad(&self) -> f64 {
         -self.compliance[(0, 2)] / self.compliance[(2, 2)]
     }
 
-    /// How far the remote centre lies in front of the pad's face, towards the part, m.
+    /// Distance of the remote centre in front of the pad's face, towards the part, m.
     pub fn centre_in_front(&self) -> f64 {
         -self.compliance[(1, 2)] / self.compliance[(2, 2)]
     }
@@ -75,36 +75,23 @@ impl PlanarStiffness {
 /// Stiffness of a finger across its plane, at the pad's middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrossStiffness {
-    stiffness: Matrix3<f64>,
-    compliance: Matrix3<f64>,
+    /// Stiffness matrix: N/m, N/rad, N m/rad; order x, ry, rz.
+    pub matrix: Matrix3<f64>,
+    /// Stiffness in x, ry and rz free, N/m.
+    pub in_depth: f64,
+    /// Stiffness against turning about y, x and rz free, N m/rad.
+    pub about_y: f64,
+    /// Stiffness against turning about z, x and ry free, N m/rad.
+    pub about_z: f64,
 }
 
 impl CrossStiffness {
     /// From a force and moments (N, N m, N m) per displacement (m, rad, rad) in x, ry and
     /// rz; `None` unless the matrix is positive definite.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
-        let PlanarStiffness { stiffness, compliance } = PlanarStiffness::new(stiffness)?;
-        Some(CrossStiffness { stiffness, compliance })
-    }
-
-    /// The matrix: N/m, N/rad, N m/rad; order x, ry, rz.
-    pub fn matrix(&self) -> &Matrix3<f64> {
-        &self.stiffness
-    }
-
-    /// Stiffness in x, across the finger's plane, ry and rz free, N/m.
-    pub fn in_depth(&self) -> f64 {
-        1.0 / self.compliance[(0, 0)]
-    }
-
-    /// Stiffness against turning about y, N m/rad; x and rz free.
-    pub fn about_y(&self) -> f64 {
-        1.0 / self.compliance[(1, 1)]
-    }
-
-    /// Stiffness against turning about z, N m/rad; x and ry free.
-    pub fn about_z(&self) -> f64 {
-        1.0 / self.compliance[(2, 2)]
+        let PlanarStiffness { stiffness: matrix, compliance } = PlanarStiffness::new(stiffness)?;
+        let [in_depth, about_y, about_z] = [0, 1, 2].map(|i| 1.0 / compliance[(i, i)]);
+        Some(CrossStiffness { matrix, in_depth, about_y, about_z })
     }
 }
 

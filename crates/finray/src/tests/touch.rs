@@ -2,9 +2,9 @@
 //! against the elastic profile and against a rigid pad and roof on the springs of either condensation.
 
 use super::infill;
-use crate::elasticity::PlaneStress;
+use crate::elasticity::{PlaneStress, Slab};
 use crate::mechanics::{SIZE, planar};
-use crate::model::{Follow, Model};
+use crate::meshed::{Follow, MeshedFinger};
 use crate::stiffness::PlanarStiffness;
 use input::units::MM;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -75,13 +75,13 @@ fn uncoupled(plane: &PlanarStiffness) -> Matrix3<f64> {
 /// Mean error of the plug's motion (its turn at half a pad) as a share of the elastic one.
 fn errors(density: f64, direction: f64) -> [f64; 4] {
     let geometry = infill(density, direction);
-    let model = Model::new(&geometry, SIZE).unwrap();
-    let element = PlaneStress::of(&geometry.finger);
-    let condensed = model.condense(&element, false).unwrap();
+    let meshed = MeshedFinger::new(&geometry, SIZE).unwrap();
+    let element = PlaneStress(Slab::of(&geometry.finger));
+    let condensed = meshed.condense(&element, false).unwrap();
     let outline = geometry.finger.outline;
     let (y, z) = (outline.out_of_pad(), outline.along_pad());
-    let places: Vec<[f64; 2]> =
-        condensed.nodes.iter().map(|&node| model.local(&model.mesh.nodes[node as usize])).collect();
+    let local = |&node: &u32| meshed.local(&meshed.mesh.nodes[node as usize]);
+    let places: Vec<[f64; 2]> = condensed.nodes.iter().map(local).collect();
     let count = places.len();
     // From the profile's axes to y and z.
     let mut turn = DMatrix::zeros(2 * count, 2 * count);

@@ -20,8 +20,7 @@ const LEAF: usize = 8;
 pub trait Element {
     /// Degrees of freedom of a node.
     const FREEDOMS: usize;
-    /// Stiffness matrix of a triangle: square, row by row, the lower triangle valid; six nodes
-    /// with `FREEDOMS` rows each.
+    /// Lower half of a triangle's stiffness matrix, square, row by row, by its six nodes' freedoms.
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64>;
 }
 
@@ -113,13 +112,19 @@ impl<E: Element> Condensation<'_, E> {
     /// Triangles at these places of the order, condensed onto the nodes that others touch.
     fn part(&mut self, range: Range<usize>) -> Result<Frontal, MeshError> {
         let cut = if range.len() > LEAF { self.cuts.next() } else { None };
-        let mut frontal = match cut.map(|cut| range.start + cut) {
-            None => self.leaf(&range),
-            Some(cut) => {
-                let parts = [self.part(range.start..cut)?, self.part(cut..range.end)?];
-                self.join(parts, &range)
-            }
+        let parts: Vec<(Vec<u32>, Vec<f64>)> = match cut.map(|cut| range.start + cut) {
+            None => self.order[range.clone()].iter().map(|&t| self.triangle(t as usize)).collect(),
+            Some(cut) => [self.part(range.start..cut)?, self.part(cut..range.end)?]
+                .map(|half| (half.nodes, half.values))
+                .into(),
         };
+        let nodes = parts.iter().flat_map(|(nodes, _)| nodes).copied();
+        let moving = nodes.filter(|&node| self.roles[node as usize] != Role::Fixed).collect();
+        let mut frontal = self.frontal(moving, &range);
+        for (nodes, matrix) in parts {
+            let places: Vec<_> = nodes.into_iter().map(|node| self.place(node)).collect();
+            frontal.add(&places, &matrix);
+        }
         frontal.eliminate()?;
         let rest = frontal.rest();
         if let Some(steps) = &mut self.steps {
@@ -128,30 +133,12 @@ impl<E: Element> Condensation<'_, E> {
         Ok(rest)
     }
 
-    fn leaf(&mut self, range: &Range<usize>) -> Frontal {
-        let of = |t: &u32| self.mesh.triangles[*t as usize];
-        let mut nodes: Vec<u32> = self.order[range.clone()].iter().flat_map(of).collect();
-        nodes.retain(|&node| self.roles[node as usize] != Role::Fixed);
-        let mut frontal = self.frontal(nodes, range);
-        for t in &self.order[range.clone()] {
-            let matrix = self.element.stiffness(self.mesh.corners(*t as usize));
-            frontal.add(&of(t).map(|node| self.place(node)), &matrix);
-        }
-        frontal
+    /// Nodes and stiffness matrix of a triangle.
+    fn triangle(&self, t: usize) -> (Vec<u32>, Vec<f64>) {
+        (self.mesh.triangles[t].to_vec(), self.element.stiffness(self.mesh.corners(t)))
     }
 
-    fn join(&mut self, halves: [Frontal; 2], range: &Range<usize>) -> Frontal {
-        let nodes = halves.iter().flat_map(|half| half.nodes.iter().copied()).collect();
-        let mut frontal = self.frontal(nodes, range);
-        for half in halves {
-            let places: Vec<_> = half.nodes.iter().map(|&node| self.place(node)).collect();
-            frontal.add(&places, &half.values);
-        }
-        frontal
-    }
-
-    /// Zero matrix of these nodes (given once or more): those that nothing outside the range
-    /// touches come first, to be eliminated.
+    /// Zero matrix of these nodes, first those that no triangle outside the range touches.
     fn frontal(&mut self, mut nodes: Vec<u32>, range: &Range<usize>) -> Frontal {
         nodes.sort_unstable();
         nodes.dedup();

@@ -1,5 +1,4 @@
-//! Plane stress in a quadratic triangle (Zienkiewicz and Taylor, The Finite Element
-//! Method, vol. 1).
+//! Plane stress in quadratic triangles (Zienkiewicz and Taylor, The Finite Element Method, vol. 1).
 
 use super::condense::Element;
 use crate::printed::PrintedFinger;

@@ -1,4 +1,4 @@
-//! Whether the parts of a finger fit one another.
+//! Checks that the parts of a finger fit one another.
 
 use super::infill::{Design, NARROWEST_VOID};
 use super::polygon::{self, Ring};

@@ -35,8 +35,7 @@ impl Frontal {
         self.values[row * self.size() + column]
     }
 
-    /// Adds the lower triangle of a square matrix, row by row; `places` of its nodes in this
-    /// matrix, `None` if fixed.
+    /// Adds the lower half of a square matrix of nodes at these places here, `None` if fixed.
     pub fn add(&mut self, places: &[Option<usize>], lower: &[f64]) {
         let (size, f) = (self.size(), self.freedoms);
         let width = places.len() * f;

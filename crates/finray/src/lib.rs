@@ -32,8 +32,7 @@ mod tests;
 /// Reason why a printed finger cannot be.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FingerError {
-    /// A number of the finger file or the design that is out of range, or parts that do not fit
-    /// one another.
+    /// A number of the finger file or the design out of range, or parts that do not fit.
     #[error(transparent)]
     Value(#[from] input::InputError),
     /// A profile that cannot be meshed.

@@ -20,8 +20,7 @@ const SMALLEST_SHARE: f64 = 1e-3;
 pub struct Mesh {
     /// Positions of the nodes, m.
     pub nodes: Vec<Point2<f64>>,
-    /// Nodes of each triangle, counter-clockwise: corners, then the middles of the sides
-    /// 01, 12 and 20.
+    /// Nodes of each, counter-clockwise: corners, then the middles of the sides 01, 12 and 20.
     pub triangles: Vec<[u32; 6]>,
 }
 
@@ -107,8 +106,7 @@ impl Mesh {
         })))
     }
 
-    /// Mesh of triangles whose corners give: number of the corner, number of the side to the next
-    /// corner, position of the corner.
+    /// Mesh of triangles, given as number, number of the side to the next, and position of corners.
     fn quadratic(faces: impl Iterator<Item = [(usize, usize, Point2<f64>); 3]>) -> Mesh {
         let mut mesh = Mesh { nodes: Vec::new(), triangles: Vec::new() };
         let mut known: Vec<Option<u32>> = Vec::new();

@@ -10,17 +10,16 @@ use nalgebra::{DMatrix, DVector, Matrix3, Point2, Vector3};
 
 /// Distance within which a node lies on a line, m.
 const ON: f64 = 1e-6 * MM;
-/// Size of the triangles where the rigid part ends, as a share of the others: the stress is
-/// singular there.
+/// Size of the triangles where the rigid part ends, and stress is singular, as a share.
 const FINEST: f64 = 0.3;
 
-/// Mesh of the part of a finger that its clamp leaves free. The clamped part does not deform,
-/// and is left out.
+/// Mesh of a finger without its clamped part, which does not deform.
 pub struct MeshedFinger {
     /// Triangles and their nodes.
     pub mesh: Mesh,
+    /// Roles of the nodes; those of pad and roof are kept.
+    pub roles: Vec<Role>,
     outline: Outline,
-    roles: Vec<Role>,
 }
 
 /// Face that moves as one rigid body.
@@ -59,18 +58,6 @@ impl MeshedFinger {
         };
         meshed.roles = meshed.mesh.nodes.iter().map(role).collect();
         Ok(meshed)
-    }
-
-    /// Stiffness of pad and roof; `remember` what [`Condensed::expand`] needs.
-    ///
-    /// # Errors
-    /// If a part of the finger is held by nothing.
-    pub fn condense<E: Element>(
-        &self,
-        element: &E,
-        remember: bool,
-    ) -> Result<Condensed, MeshError> {
-        condense(&self.mesh, element, &self.roles, remember)
     }
 
     /// Coordinates y and z of a point, from the pad's middle, m.
@@ -133,7 +120,7 @@ pub fn held<E: Follow, const N: usize>(
     bodies: [Body; N],
 ) -> Result<[Matrix3<f64>; N], MeshError> {
     let meshed = MeshedFinger::new(geometry, size)?;
-    let condensed = meshed.condense(element, false)?;
+    let condensed = condense(&meshed.mesh, element, &meshed.roles, false)?;
     let mut found = [Matrix3::zeros(); N];
     for (matrix, body) in found.iter_mut().zip(bodies) {
         *matrix = meshed.hold(&condensed, element, body)?.stiffness;

@@ -1,6 +1,7 @@
 //! A picture of a finger that bends under a load on its pad.
 
 use super::FingerError;
+use super::condense::condense;
 use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
 use super::mechanics::SIZE;
@@ -71,7 +72,7 @@ impl Bent {
     fn new(geometry: &Geometry, [y, z]: [f64; 2]) -> Result<Self, MeshError> {
         let meshed = MeshedFinger::new(geometry, SIZE)?;
         let element = PlaneStress(Slab::of(&geometry.finger));
-        let condensed = meshed.condense(&element, true)?;
+        let condensed = condense(&meshed.mesh, &element, &meshed.roles, true)?;
         let held = meshed.hold(&condensed, &element, Body::Pad)?;
         let stiffness = PlanarStiffness::new(held.stiffness).ok_or(MeshError::Limp)?;
         let motion = stiffness.displacement(&Vector3::new(y, z, 0.0));

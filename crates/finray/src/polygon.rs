@@ -2,8 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
-/// A closed ring of corners without repetition of the first; counter-clockwise rings
-/// enclose what is to their left.
+/// Closed ring of corners without repetition of the first; its inside is on the left.
 pub type Ring = Vec<Point2<f64>>;
 
 /// Edges of a ring, each as its two ends.

@@ -85,83 +85,43 @@ pub struct Material {
     pub source: String,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawFinger {
-    name: String,
-    description: String,
-    measured: Option<String>,
-    outline: RawOutline,
-    notch: RawNotch,
-    skin: RawSkin,
-    ribs: RawRibs,
-    base: RawBase,
-    mount: RawMount,
-    material: RawMaterial,
-    print: RawPrint,
+/// Declares the tables of a finger file; other keys are errors.
+macro_rules! tables {
+    ($($table:ident { $($key:ident: $kind:ty),* $(,)? })*) => {
+        $(#[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct $table { $($key: $kind),* })*
+    };
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawOutline {
-    length_mm: f64,
-    width_mm: f64,
-    depth_mm: f64,
-    tip_mm: f64,
-    back_radius_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawNotch {
-    pad_mm: f64,
-    pad_deg: f64,
-    roof_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawSkin {
-    thickness_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawRibs {
-    thickness_mm: f64,
-    line_spacing_mm: f64,
-    origin_mm: [f64; 2],
-    phase_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawBase {
-    solid_mm: f64,
-    clamped_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawMount {
-    tilt_deg: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawMaterial {
-    name: String,
-    modulus_gpa: f64,
-    poisson: f64,
-    density_kg_per_m3: f64,
-    source: String,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawPrint {
-    line_width_mm: f64,
-    smallest_gap_mm: f64,
+tables! {
+    RawFinger {
+        name: String,
+        description: String,
+        measured: Option<String>,
+        outline: RawOutline,
+        notch: RawNotch,
+        skin: RawSkin,
+        ribs: RawRibs,
+        base: RawBase,
+        mount: RawMount,
+        material: RawMaterial,
+        print: RawPrint,
+    }
+    RawOutline { length_mm: f64, width_mm: f64, depth_mm: f64, tip_mm: f64, back_radius_mm: f64 }
+    RawNotch { pad_mm: f64, pad_deg: f64, roof_mm: f64 }
+    RawSkin { thickness_mm: f64 }
+    RawRibs { thickness_mm: f64, line_spacing_mm: f64, origin_mm: [f64; 2], phase_mm: f64 }
+    RawBase { solid_mm: f64, clamped_mm: f64 }
+    RawMount { tilt_deg: f64 }
+    RawMaterial {
+        name: String,
+        modulus_gpa: f64,
+        poisson: f64,
+        density_kg_per_m3: f64,
+        source: String,
+    }
+    RawPrint { line_width_mm: f64, smallest_gap_mm: f64 }
 }
 
 impl PrintedFinger {
@@ -206,10 +166,8 @@ impl PrintedFinger {
 
 /// Longest length, mm: beyond it the units are wrong.
 const LONGEST_MM: f64 = 500.0;
-/// Highest modulus, GPa: steel has 210.
-const STIFFEST_GPA: f64 = 500.0;
-/// Softest modulus, GPa: silicone has about 0.001.
-const SOFTEST_GPA: f64 = 1e-4;
+/// Moduli, GPa: silicone has about 0.001, steel 210.
+const MODULI_GPA: std::ops::RangeInclusive<f64> = 1e-4..=500.0;
 /// Largest angle, degrees: beyond it the notch is no notch.
 const STEEPEST_DEG: f64 = 60.0;
 
@@ -258,11 +216,10 @@ fn ribs(check: Check<'_>, raw: &RawRibs) -> Result<Ribs, InputError> {
 
 fn material(check: Check<'_>, raw: RawMaterial) -> Result<Material, InputError> {
     let modulus = check.positive("material.modulus_gpa", raw.modulus_gpa)?;
-    if !(SOFTEST_GPA..=STIFFEST_GPA).contains(&modulus) {
-        let problem = format!(
-            "is {modulus}; it must be from {SOFTEST_GPA} to {STIFFEST_GPA} (gigapascals; \
-                 PETG has 2)"
-        );
+    if !MODULI_GPA.contains(&modulus) {
+        let (least, most) = (MODULI_GPA.start(), MODULI_GPA.end());
+        let problem =
+            format!("is {modulus}; it must be from {least} to {most} (gigapascals; PETG has 2)");
         return check.fail("material.modulus_gpa", problem);
     }
     let poisson = check.not_negative("material.poisson", raw.poisson)?;

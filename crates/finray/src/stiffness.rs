@@ -11,17 +11,16 @@ pub struct PlanarStiffness {
 }
 
 impl PlanarStiffness {
-    /// From forces and moment (N, N, N m) per displacement (m, m, rad); `None` unless the
-    /// matrix is positive definite.
+    /// From N, N, N m per m, m, rad; `None` unless the matrix is positive definite.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
         let stiffness = (stiffness + stiffness.transpose()) / 2.0;
         let compliance = stiffness.cholesky()?.inverse();
         Some(PlanarStiffness { stiffness, compliance })
     }
 
-    /// The same finger with these free stiffnesses in y and z, N/m, and the same stiffness against
-    /// tilting. The correlations of the compliances stay, so what was positive definite is: the
-    /// centre's distances change by the roots of new over old compliance.
+    /// Finger with these free stiffnesses in y and z, N/m, and the same against tilting. The
+    /// correlations of the compliances stay, so it is positive definite, too: the centre's
+    /// distances change by the roots of new over old compliance.
     pub fn corrected(&self, compliance: f64, assembly: f64) -> Option<Self> {
         let free = [self.in_compliance() / compliance, self.in_assembly() / assembly, 1.0];
         let roots = Matrix3::from_diagonal(&Vector3::from(free.map(f64::sqrt)));
@@ -64,8 +63,7 @@ impl PlanarStiffness {
         -self.compliance[(1, 2)] / self.compliance[(2, 2)]
     }
 
-    /// Correlation of the compliances in y and z, -1 .. 1: above 0, a pad that is pushed up
-    /// moves towards the part.
+    /// Correlation of the compliances in y and z, -1 .. 1; above 0 a pad pushed up nears the part.
     pub fn coupling_yz(&self) -> f64 {
         let c = &self.compliance;
         c[(0, 1)] / (c[(0, 0)] * c[(1, 1)]).sqrt()
@@ -86,8 +84,7 @@ pub struct CrossStiffness {
 }
 
 impl CrossStiffness {
-    /// From a force and moments (N, N m, N m) per displacement (m, rad, rad) in x, ry and
-    /// rz; `None` unless the matrix is positive definite.
+    /// From N, N m, N m per m, rad, rad; `None` unless the matrix is positive definite.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
         let PlanarStiffness { stiffness: matrix, compliance } = PlanarStiffness::new(stiffness)?;
         let [in_depth, about_y, about_z] = [0, 1, 2].map(|i| 1.0 / compliance[(i, i)]);

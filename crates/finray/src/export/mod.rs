@@ -21,8 +21,7 @@ pub fn title(geometry: &Geometry) -> String {
     format!("{name}, infill {} %, {}°", design.density_percent, design.direction_deg)
 }
 
-/// Rings of the profile in the frame of the files, mm: first the outer one, counter-clockwise,
-/// then the openings, clockwise.
+/// Outline (counter-clockwise), then openings (clockwise), in the frame of the files, mm.
 fn rings(geometry: &Geometry) -> Vec<Ring> {
     let width = geometry.finger.outline.width / MM;
     let moved = |ring: Vec<[f64; 2]>| ring.into_iter().map(|[x, y]| Point2::new(x, y + width));

@@ -13,8 +13,7 @@ use zip::CompressionMethod;
 use zip::result::ZipResult;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-/// Closed surface. Corners have the precision that files of triangles have, so the checks hold
-/// for the surface that a slicer reads.
+/// Closed surface, its corners rounded as in files, so that the checks hold for those.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prism {
     /// Corners, mm.

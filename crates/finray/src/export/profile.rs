@@ -34,8 +34,7 @@ pub(super) fn path(geometry: &Geometry, to: impl Fn([f64; 2]) -> [f64; 2]) -> St
     out
 }
 
-/// DXF (R12, which every program reads) of the profile as closed polylines, mm: the outline on one
-/// layer, the openings on another.
+/// DXF (R12, for every program) of the outline and the openings as polylines on two layers, mm.
 pub fn dxf(geometry: &Geometry, title: &str) -> String {
     let mut out = pairs(&[
         ("999", &format!("finger-opt: {title}; mm")),

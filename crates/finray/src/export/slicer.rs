@@ -16,9 +16,8 @@ const LAYER: f64 = 0.2;
 /// Version of the settings of Cura 5.0; later versions read them.
 const CURA_SETTING_VERSION: &str = "20";
 
-/// Profile to import in Cura. `infill_line_distance` decides over the density. In
-/// `infill_angles`, as in the design, 0 is along Y, and a positive angle turns the lines' upper
-/// end to +X.
+/// Profile to import in Cura, where `infill_line_distance` decides over the density. As in the
+/// design, an angle of 0 is along Y, and a positive one turns the lines' upper end to +X.
 pub fn cura(geometry: &Geometry) -> String {
     let (count, width) = walls(&geometry.finger);
     let (notes, name) = (notes(geometry), name(geometry));

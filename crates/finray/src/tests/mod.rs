@@ -1,5 +1,4 @@
-//! Mechanics against beams and solids, and their rules; the exact solutions are checked by the
-//! lab's `analytic::finger`.
+//! Mechanics against beams and solids; the lab's `analytic::finger` has the exact solutions.
 
 mod beams;
 mod frame;

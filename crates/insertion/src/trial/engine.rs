@@ -83,12 +83,12 @@ impl EngineKind {
         match self {
             EngineKind::Rapier => {
                 let mut engine = Rapier::default();
-                engine.settings.step_s *= factor;
+                engine.step_s *= factor;
                 Built::Engine(Box::new(engine))
             }
             EngineKind::Direct => {
                 let mut engine = Direct::default();
-                engine.settings.step_s *= factor;
+                engine.step_s *= factor;
                 Built::Engine(Box::new(engine))
             }
             #[cfg(feature = "mujoco")]
@@ -128,8 +128,8 @@ impl EngineKind {
     /// What a study records of it.
     pub fn record(self) -> EngineRecord {
         let settings = match self {
-            EngineKind::Rapier => toml::Table::try_from(Rapier::default().settings),
-            EngineKind::Direct => toml::Table::try_from(Direct::default().settings),
+            EngineKind::Rapier => toml::Table::try_from(Rapier::default()),
+            EngineKind::Direct => toml::Table::try_from(Direct::default()),
             #[cfg(feature = "mujoco")]
             EngineKind::Mujoco => toml::Table::try_from(Mujoco::default().settings),
             #[cfg(feature = "fake-engine")]

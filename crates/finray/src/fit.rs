@@ -55,8 +55,8 @@ impl Fit<'_> {
             );
             return self.fail("outline.back_radius_mm", problem);
         }
-        let to_front = tip / outline.pad_angle.sin();
-        self.below("notch.pad_mm", pad, to_front, "the pad ends behind the front")?;
+        let to_side = tip / outline.pad_angle.sin();
+        self.below("notch.pad_mm", pad, to_side, "the pad ends behind the front")?;
         let to_base = ribbed / outline.pad_angle.cos();
         self.below("notch.pad_mm", pad, to_base, "the notch ends before the solid base")?;
         self.below("notch.roof_mm", roof, outline.roof_length(), "the roof is no longer")

@@ -8,7 +8,7 @@ use super::polygon::{self, HalfPlane, Ring, without_repeats};
 use crate::printed::{Outline, PrintedFinger};
 use input::units::MM;
 
-/// Checked profile of a finger, SI units: X from the tip to the base, Y across it, 0 on the front.
+/// Checked profile of a finger, SI units: X from the tip to the base, Y across, 0 on the front side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
     /// Finger file, with the numbers that the design sets in it.

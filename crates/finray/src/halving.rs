@@ -84,7 +84,7 @@ impl Halving {
         self.sort(second);
     }
 
-    /// Brings the triangles that lie first along a direction to the front.
+    /// Moves the triangles that lie first along a direction to the start.
     fn cut(&self, order: &mut [u32], Cut { direction, first }: Cut) {
         let ranks = &self.ranks[direction];
         order.select_nth_unstable_by_key(first, |&t| ranks[t as usize]);

@@ -35,7 +35,7 @@ impl Outline {
         self.tip_point() + self.along_pad() * (self.pad / 2.0)
     }
 
-    /// Length of the roof, from the corner to the front, m.
+    /// Length of the roof, from the corner to the front side, m.
     pub fn roof_length(&self) -> f64 {
         -self.corner().y / self.out_of_pad().y
     }

@@ -32,16 +32,16 @@ pub struct PrintedFinger {
     pub smallest_gap: f64,
 }
 
-/// Outline of a finger, m; X along it from the tip, Y across it from the front.
+/// Outline of a finger, m; X along it from the tip, Y across it from its front side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outline {
     /// Length from tip to end.
     pub length: f64,
-    /// Width from front to back.
+    /// Width from front side to back.
     pub width: f64,
     /// Depth of the extruded profile.
     pub depth: f64,
-    /// Distance of the tip behind the front.
+    /// Distance of the tip behind the front side.
     pub tip: f64,
     /// Radius of the arc between back and tip.
     pub back_radius: f64,

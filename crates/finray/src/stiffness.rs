@@ -99,17 +99,17 @@ mod tests {
     /// Springs that sit at a centre away from the pad, seen from the pad's middle.
     #[test]
     fn springs_at_a_remote_centre_are_found_again() {
-        let (ky, kz, kt, below, front) = (2e3, 4e4, 5.0, 0.02, 0.004);
-        // Displacement of the centre (y = front, z = -below) by that of the pad.
-        let to_centre = Matrix3::new(1.0, 0.0, below, 0.0, 1.0, front, 0.0, 0.0, 1.0);
+        let (ky, kz, kt, below, ahead) = (2e3, 4e4, 5.0, 0.02, 0.004);
+        // Displacement of the centre (y = ahead, z = -below) by that of the pad.
+        let to_centre = Matrix3::new(1.0, 0.0, below, 0.0, 1.0, ahead, 0.0, 0.0, 1.0);
         let springs = Matrix3::from_diagonal(&Vector3::new(ky, kz, kt));
         let pad = PlanarStiffness::new(to_centre.transpose() * springs * to_centre).unwrap();
         assert!((pad.tilting() - kt).abs() < 1e-9 * kt);
         assert!((pad.centre_below_pad() - below).abs() < 1e-12);
-        assert!((pad.centre_in_front() - front).abs() < 1e-12);
+        assert!((pad.centre_in_front() - ahead).abs() < 1e-12);
         let softer = 1.0 / (1.0 / ky + below * below / kt);
         assert!((pad.in_compliance() - softer).abs() < 1e-9 * softer);
-        let softer = 1.0 / (1.0 / kz + front * front / kt);
+        let softer = 1.0 / (1.0 / kz + ahead * ahead / kt);
         assert!((pad.in_assembly() - softer).abs() < 1e-9 * softer);
         assert!(pad.coupling_yz() > 0.0);
     }

@@ -105,7 +105,7 @@ impl SprungJoint {
         }
     }
 
-    /// Replaces the spring of an axis, if it has one; a servo stays at its limit till the next step.
+    /// Replaces the spring of an axis, if any; a servo stays at its limit till the next step.
     pub fn set(&mut self, axis: usize, spring: Spring) {
         let Law::Drives(drives) = &mut self.law else { return };
         let drive = &mut drives[axis];

@@ -1,4 +1,4 @@
-//! A purpose-built engine: implicit springs, rigid contacts with friction, each step solved directly.
+//! A purpose-built engine: implicit springs, rigid frictional contacts, each step solved directly.
 //!
 //! Velocity-level implicit time stepping (Stewart and Trinkle 1996, Int. J. Numer. Meth. Eng. 39;
 //! Anitescu and Potra 1997, Nonlinear Dynamics 14): joints and contacts are solved together for

@@ -1,7 +1,7 @@
 //! A printed finger for the printer: a closed solid, its profile, a sheet to print it by, and
 //! settings for slicers that fill its outline themselves.
 //!
-//! Files are in millimetres: X from the tip to the base, Y from the back (0) to the front, Z the
+//! Files are in millimetres: X from the tip to the base, Y from back (0) to front side, Z the
 //! depth, in which the profile is printed layer by layer.
 
 mod dimension;

@@ -6,7 +6,7 @@ use input::units::MM;
 use maud::html;
 use std::fmt::Write;
 
-/// SVG of the profile, one unit a millimetre, its front above: for laser cutters and drawings.
+/// SVG of the profile, one unit a millimetre, its front side above: for laser cutters and drawings.
 pub fn svg(geometry: &Geometry, title: &str) -> String {
     let outline = &geometry.finger.outline;
     let (length, width) = (outline.length / MM, outline.width / MM);
@@ -20,7 +20,7 @@ pub fn svg(geometry: &Geometry, title: &str) -> String {
     svg.into_string() + "\n"
 }
 
-/// Path data of the rings, their points (mm; X from the tip, Y from the front) moved by `to`.
+/// Path data of the rings, their points (mm; X from the tip, Y from the front side) moved by `to`.
 pub(super) fn path(geometry: &Geometry, to: impl Fn([f64; 2]) -> [f64; 2]) -> String {
     let mut out = String::new();
     for ring in geometry.rings_mm() {

@@ -8,13 +8,13 @@ use lab::analytic::{self, CheckRow};
 
 fn rapier(factor: f64) -> Box<dyn Engine> {
     let mut engine = Rapier::default();
-    engine.settings.step_s *= factor;
+    engine.step_s *= factor;
     Box::new(engine)
 }
 
 fn direct(factor: f64) -> Box<dyn Engine> {
     let mut engine = Direct::default();
-    engine.settings.step_s *= factor;
+    engine.step_s *= factor;
     Box::new(engine)
 }
 

@@ -99,7 +99,7 @@ impl<'a> Simulation<'a> {
             return Ok(found);
         }
         let rig = engine.rig(&specimen.task, robot, &specimen.finger, 1.0)?;
-        let rig = Stoppable { rig: &*rig, stop: self.stop };
+        let rig = Stoppable { inner: &*rig, stop: self.stop };
         let evaluation = tolerance::evaluate(&rig, &specimen.finger, search);
         if let Some((cache, key)) = keep
             && !self.stop.load(Ordering::SeqCst)

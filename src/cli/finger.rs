@@ -123,9 +123,9 @@ impl FingerRow {
             pad: PlanarRow::from(&computed.pad),
             pad_and_roof: PlanarRow::from(&computed.pad_and_roof),
             across: AcrossRow {
-                depth_n_per_mm: cross.in_depth() / N_PER_MM,
-                about_y_nm_per_rad: cross.about_y(),
-                about_z_nm_per_rad: cross.about_z(),
+                depth_n_per_mm: cross.in_depth / N_PER_MM,
+                about_y_nm_per_rad: cross.about_y,
+                about_z_nm_per_rad: cross.about_z,
             },
         }
     }

@@ -18,7 +18,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     Some(html! {
         p {
             a href=(SURFACE) { (SURFACE) } " is " (title(&geometry)) ", with each of its "
-            (geometry.ribs()) " ribs; both fingers of a gripper are this part. "
+            (geometry.ribs) " ribs; both fingers of a gripper are this part. "
             a href=(SHEET) { (SHEET) } " says how to print it and how to check the print. "
             "For other programs and slicers: " code { "optimize export finger" } "."
         }

@@ -94,7 +94,7 @@ impl Factors {
         let specimen = evaluator.specimen(template, &design, predicted)?;
         let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, stop)?, 1.0)?;
         let finger = Draw::under(conditions, stiffness).finger(&specimen.finger, &predicted);
-        let rig = Stoppable { rig: &*rig, stop };
+        let rig = Stoppable { inner: &*rig, stop };
         Ok(tolerance::evaluate_in(&rig, &finger, &conditions, Search::Strides))
     }
 }

@@ -4,7 +4,7 @@ use super::Failure;
 use crate::report::printer::{SHEET, SURFACE, recommended};
 use crate::study::{StudyRecord, write_own_file};
 use finray::export::prism::Prism;
-use finray::export::{sheet, stl, title};
+use finray::export::{sheet, title};
 use finray::mechanics;
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use std::path::Path;
 pub(super) fn write(dir: &Path, record: &StudyRecord) -> Result<(), Failure> {
     let Some(geometry) = recommended(record) else { return Ok(()) };
     if let Ok(prism) = Prism::finger(&geometry) {
-        write_own_file(&dir.join(SURFACE), &stl::write(&prism, &title(&geometry)))?;
+        write_own_file(&dir.join(SURFACE), &prism.stl(&title(&geometry)))?;
     }
     if let Ok(stiffness) = mechanics::compute(&geometry) {
         write_own_file(&dir.join(SHEET), &sheet::html(&geometry, &stiffness))?;

@@ -71,7 +71,7 @@ impl RepeatRequest {
     ) -> Result<T, Failure> {
         let rig = |factor| setup.evaluator.rig(specimen, taught, factor).map_err(Failure::input);
         let rigs = [rig(1.0)?, rig(0.5)?];
-        let [whole, half] = rigs.each_ref().map(|rig| Stoppable { rig: &**rig, stop });
+        let [whole, half] = rigs.each_ref().map(|rig| Stoppable { inner: &**rig, stop });
         let repeats = Repeats::new([&whole, &half], &specimen.finger, self.seed, self.count);
         let measured = measure(&repeats);
         not_stopped(stop)?;

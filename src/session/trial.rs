@@ -9,7 +9,7 @@ use super::request::SetupRequest;
 use crate::study::write_file;
 use input::units::MM;
 use insertion::evaluation::OffsetStep;
-use insertion::trial::{Conditions, Sample, Trial, picture};
+use insertion::trial::{Grasp, Sample, Trial, picture};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -88,7 +88,7 @@ impl TrialRequest {
         let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
         let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
         let filmed = self.film.record(&*rig, specimen, offset_mm)?;
-        let grasp = || rig.grasp_until(&specimen.finger, &Conditions::NOMINAL, stop);
+        let grasp = || rig.hold(Grasp { stop, ..Grasp::of(&specimen.finger) });
         let (trial, samples) = match (self.every_s, filmed) {
             (Some(every_s), _) => grasp().traced(offset, every_s),
             (None, Some(recording)) => (recording.trial, Vec::new()),

@@ -15,41 +15,41 @@ pub mod mujoco;
 pub mod rapier;
 pub mod scene;
 pub mod shapes;
-mod surface;
 
-pub use surface::{Surface, surface};
-
-/// Builds worlds from scenes.
+/// Contact engine: builds worlds from scenes.
 pub trait Engine: Send + Sync {
     /// Name and version, as recorded in a study.
     fn version(&self) -> String;
 
-    /// Whether it can simulate a scene exactly as it stands.
+    /// Checks that it can simulate a scene exactly as it stands.
+    ///
+    /// # Errors
+    /// If it lacks a feature that the scene needs, or refuses its numbers.
     fn supports(&self, _scene: &Scene) -> Result<(), Unsupported> {
         Ok(())
     }
 
-    /// Whether a face contact resists a turn about its normal by [`crate::scene::Friction::torsion`].
+    /// Whether face contacts have the friction of [`scene::Friction::torsion`].
     fn turns_with_friction(&self) -> bool {
         true
     }
 
-    /// A world at time zero, of a scene that it [supports](Engine::supports).
+    /// World at time zero of a scene that it [supports](Engine::supports).
     fn world(&self, scene: &Scene) -> Box<dyn World>;
 
-    /// The same engine with half the step, for what diverged.
+    /// The same engine with half the step, for trials that diverged.
     fn halved(&self) -> Box<dyn Engine>;
 
-    /// The same engine, finer in one way each, and what that way is: for convergence studies.
+    /// Finer engines for convergence studies, each with its name.
     fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
         vec![("half the step", self.halved())]
     }
 }
 
-/// An engine cannot simulate a scene.
+/// Reason why an engine cannot simulate a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Unsupported {
-    /// It lacks what a scene needs.
+    /// It lacks a feature that the scene needs.
     #[error(
         "the engine {engine} cannot simulate `{part}`: it has no {lacking}; use --engine direct"
     )]
@@ -58,42 +58,36 @@ pub enum Unsupported {
         engine: String,
         /// Body or joint of the scene.
         part: String,
-        /// What is needed.
+        /// Missing feature.
         lacking: &'static str,
     },
-    /// It has all that is needed, but not for these numbers.
+    /// It has all features, but refuses the numbers of the scene.
     #[error("the engine {engine} refuses these bodies: {reason}; use --engine direct")]
     Refused {
         /// Name and version of the engine.
         engine: String,
-        /// In its own words.
+        /// Message of the engine.
         reason: String,
     },
 }
 
-/// What an engine without [`crate::scene::Torsion::Patch`] lacks.
-const PRESSED_PATCH: &str = "torsional friction of a pressed patch";
-
-/// Refuses springs that couple axes, masses that depend on the direction, and pressed patches.
-fn refuse_coupling(engine: &dyn Engine, scene: &Scene) -> Result<(), Unsupported> {
-    let refuse = |part: &str, lacking| {
-        Err(Unsupported::Lacking { engine: engine.version(), part: part.to_owned(), lacking })
-    };
+/// Parts of a scene that only `direct` can simulate, each with the feature that others lack:
+/// springs that couple axes, friction of a patch, mass that depends on the direction.
+fn lacking(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str)> {
     let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled(_));
-    if let Some(joint) = scene.joints.iter().find(coupled) {
-        return refuse(&joint.name, "springs that couple the axes of a joint");
-    }
-    if let Some(pair) = scene.patched() {
-        return refuse(&scene.bodies[pair.first.0].name, PRESSED_PATCH);
-    }
     let mechanism = |body: &&Body| matches!(body.motion, Motion::Mechanism(_));
-    match scene.bodies.iter().find(mechanism) {
-        Some(body) => refuse(&body.name, "mass that depends on the direction"),
-        None => Ok(()),
-    }
+    let joint = scene.joints.iter().find(coupled).map(|joint| joint.name.as_str());
+    let patch = scene.patched().map(|pair| scene.bodies[pair.first.0].name.as_str());
+    let body = scene.bodies.iter().find(mechanism).map(|body| body.name.as_str());
+    let parts = [
+        joint.map(|name| (name, "springs that couple the axes of a joint")),
+        patch.map(|name| (name, "torsional friction of a pressed patch")),
+        body.map(|name| (name, "mass that depends on the direction")),
+    ];
+    parts.into_iter().flatten()
 }
 
-/// The state left the finite numbers; the trial says nothing.
+/// A state that is no longer finite: the trial has no result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the simulation diverged: a body's state is no longer finite")]
 pub struct Diverged;
@@ -107,55 +101,57 @@ pub struct ContactForce {
     pub normal_sum: f64,
 }
 
-/// A point at which two bodies press on one another.
+/// Point at which two bodies press on one another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoint {
-    /// Where, m.
+    /// Position, m.
     pub point: Point3<f64>,
     /// Force on the second body over the last step, with friction, N.
     pub force: Vector3<f64>,
 }
 
 impl ContactPoint {
-    /// The same seen from another frame.
+    /// The point in the frame that contains the old one at `from`.
     pub fn seen(&self, from: &Pose) -> Self {
         ContactPoint { point: from * self.point, force: from * self.force }
     }
 }
 
-/// A scene that is being simulated.
+/// Scene in simulation.
 pub trait World: Send + Sync {
-    /// Advances by one step; every step is checked for divergence.
+    /// Advances by one step.
+    ///
+    /// # Errors
+    /// If the state is no longer finite.
     fn step(&mut self) -> Result<(), Diverged>;
 
     /// Length of one step, s.
     fn step_s(&self) -> f64;
 
-    /// Body frame in the world.
+    /// Frame of a body in the world.
     fn pose(&self, body: BodyId) -> Pose;
 
-    /// Commands where a driven body is at the end of the next step.
+    /// Commands the pose of a driven body at the end of the next step.
     fn drive(&mut self, body: BodyId, pose: Pose);
 
-    /// Puts a fixed body elsewhere; it must touch nothing before and after.
+    /// Moves a fixed body, which must touch nothing before and after.
     fn place(&mut self, body: BodyId, pose: Pose);
 
     /// Replaces the spring of a sprung axis (0..6) of a joint.
     fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring);
 
-    /// Applies a force at a free body's centre of mass, N, and a moment, N m, in
-    /// world axes, in every step from now on; replaces what was applied before.
+    /// Applies a force at a free body's centre of mass, N, and a moment, N m, in world axes, in
+    /// every step from now on, in place of those before.
     fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>);
 
     /// Contact between two bodies over the last step.
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce;
 
-    /// The points at which two bodies press on one another, for pictures; none if the engine does
-    /// not tell.
+    /// Points at which two bodies press on one another, for pictures; not every engine has them.
     fn contact_points(&self, _first: BodyId, _second: BodyId) -> Vec<ContactPoint> {
         Vec::new()
     }
 
-    /// An independent copy that continues bit for bit alike.
+    /// Independent copy that continues with the same bits.
     fn snapshot(&self) -> Box<dyn World>;
 }

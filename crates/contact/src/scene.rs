@@ -1,9 +1,9 @@
-//! The engine-neutral scene: bodies with convex geoms, joints with springs and
-//! servos, and the pairs of bodies that may touch, with their friction. SI units throughout.
+//! Scenes for any engine: bodies with convex geoms, joints with springs and servos, and the pairs
+//! of bodies that may touch, with their friction. SI units.
 
 use nalgebra::{Isometry3, Matrix6, Point3, Vector3};
 
-/// A rigid pose, metres.
+/// Rigid pose, m.
 pub type Pose = Isometry3<f64>;
 
 /// Index of a body in [`Scene::bodies`].
@@ -14,63 +14,62 @@ pub struct BodyId(pub usize);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct JointId(pub usize);
 
-/// A convex shape in its own frame.
+/// Convex shape in its own frame.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
-    /// A box by its half extents, m.
+    /// Box by its half extents.
     Box {
-        /// Half extents along x, y and z.
+        /// Half extents along x, y and z, m.
         half: Vector3<f64>,
     },
-    /// A cylinder about z.
+    /// Cylinder about z.
     Cylinder {
-        /// Half of its height, m.
+        /// Half of the height, m.
         half_height: f64,
         /// Radius, m.
         radius: f64,
     },
-    /// The convex hull of some points, m.
+    /// Convex hull of points.
     Hull {
-        /// The corners.
+        /// Points, m.
         points: Vec<Point3<f64>>,
     },
 }
 
-/// A shape on a body.
+/// Shape on a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geom {
-    /// For pictures, exports and errors.
+    /// Name for pictures, exports and errors.
     pub name: String,
-    /// The shape.
+    /// Shape in its own frame.
     pub shape: Shape,
     /// Shape frame in the body frame.
     pub pose: Pose,
-    /// Its own coefficient of friction, in place of that of the pair of bodies; of two geoms
-    /// that have one, the smaller.
+    /// Coefficient of friction in place of the pair's; of two geoms that have one, the smaller.
     pub friction: Option<f64>,
 }
 
-/// Two bodies that may touch, and the friction of their surfaces on one another.
+/// Pair of bodies that may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPair {
-    /// The first body.
+    /// First body.
     pub first: BodyId,
-    /// The second body.
+    /// Second body.
     pub second: BodyId,
-    /// Of their surfaces, but for geoms that have a friction of their own.
+    /// Friction of their surfaces, but for geoms with their own coefficient.
     pub friction: Friction,
 }
 
-/// Two geoms that may touch; all bodies' geoms are counted in one row.
+/// Pair of geoms that may touch; geoms are numbered through all bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GeomPair {
     /// Index of their bodies' pair in [`Scene::contacts`].
     pub bodies: usize,
-    /// The geom of the pair's first body.
+    /// Geom of the first body.
     pub first: usize,
-    /// The geom of the pair's second body.
+    /// Geom of the second body.
     pub second: usize,
-    /// Of their surfaces.
+    /// Friction of their surfaces.
     pub friction: Friction,
 }
 
@@ -79,25 +78,24 @@ pub struct GeomPair {
 pub struct Friction {
     /// Coefficient of friction.
     pub coefficient: f64,
-    /// How it resists a turn about the contact's normal.
+    /// Friction against a turn about the contact's normal.
     pub torsion: Torsion,
 }
 
-/// What resists a turn of two faces about their normal.
+/// Friction against a turn of two faces about their normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Torsion {
-    /// Each contact point stands for a soft patch of this radius, m: friction resists a turn with
-    /// at most that times the friction force, and force and moment share an ellipsoid (Howe
-    /// and Cutkosky 1996, Int. J. Robot. Res. 15:557), beside the moment that the points have by
-    /// their distances. At 0 a point turns freely. Engines without it ignore it.
+    /// Soft patch of this radius, m, at each contact point: friction resists a turn with at most
+    /// that times the friction force, and force and moment share an ellipsoid (Howe and Cutkosky
+    /// 1996, Int. J. Robot. Res. 15:557), beside the moment that the points have by their
+    /// distances. At 0 a point turns freely. Engines without it ignore it.
     Radius(f64),
-    /// The points of a contact together have the moment of the patch between them, evenly pressed,
-    /// and no other.
+    /// Contact patch between the points of a contact: they have its moment, evenly pressed, alone.
     Patch,
 }
 
 impl Friction {
-    /// Friction of hard surfaces, which resists no turn.
+    /// Friction that resists no turn.
     pub fn hard(coefficient: f64) -> Self {
         Friction { coefficient, torsion: Torsion::Radius(0.0) }
     }
@@ -110,7 +108,7 @@ impl ContactPair {
         Friction { coefficient: own.unwrap_or(self.friction.coefficient), ..self.friction }
     }
 
-    /// 1 if these are its bodies, -1 if they are in the other order.
+    /// 1 for the bodies of the pair, -1 for them in the other order.
     pub fn sign(&self, first: BodyId, second: BodyId) -> Option<f64> {
         match (self.first, self.second) {
             ends if ends == (first, second) => Some(1.0),
@@ -119,7 +117,7 @@ impl ContactPair {
         }
     }
 
-    /// Whether a body is one of the two.
+    /// Whether a body is in the pair.
     pub fn has(&self, body: BodyId) -> bool {
         self.first == body || self.second == body
     }
@@ -128,7 +126,7 @@ impl ContactPair {
 /// Mass properties of a body about its centre of mass, along the body axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inertia {
-    /// kg.
+    /// Mass, kg.
     pub mass: f64,
     /// Centre of mass in the body frame, m.
     pub centre: Point3<f64>,
@@ -136,43 +134,42 @@ pub struct Inertia {
     pub moments: Vector3<f64>,
 }
 
-/// How a body moves.
+/// Motion of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a scene has a handful of bodies")]
 pub enum Motion {
-    /// Stays where it is.
+    /// No motion.
     Fixed,
-    /// Follows a commanded pose.
+    /// Motion along commanded poses.
     Driven,
-    /// Follows forces.
+    /// Motion under forces.
     Free(Inertia),
-    /// Follows forces but for its own weight, which the robot compensates.
+    /// Motion under forces but for the weight, which the robot compensates.
     Carried(Inertia),
-    /// The end of a mechanism that carries its own weight: as `Carried`, but its
-    /// mass depends on the direction. Symmetric, positive definite 6x6, about the
-    /// body frame's origin, along the body axes: kg, kg m, kg m2.
+    /// `Carried` end of a mechanism, whose mass depends on the direction: symmetric, positive
+    /// definite 6x6, about the body frame's origin, along the body axes: kg, kg m, kg m2.
     Mechanism(Matrix6<f64>),
 }
 
-/// A rigid body.
+/// Rigid body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// Unique in the scene.
+    /// Name, unique in the scene.
     pub name: String,
-    /// How it moves.
+    /// Motion of the body.
     pub motion: Motion,
     /// Body frame in the world at the start.
     pub pose: Pose,
-    /// Its shapes.
+    /// Shapes of the body.
     pub geoms: Vec<Geom>,
 }
 
-/// A spring, with a servo's target and limit if it has them.
+/// Spring, with target and limit if it is a servo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spring {
-    /// N/m or N m/rad.
+    /// Stiffness, N/m or N m/rad.
     pub stiffness: f64,
-    /// N s/m or N m s/rad.
+    /// Damping, N s/m or N m s/rad.
     pub damping: f64,
     /// Rest position, m or rad.
     pub target: f64,
@@ -181,7 +178,7 @@ pub struct Spring {
 }
 
 impl Spring {
-    /// A spring at rest in the zero position.
+    /// Spring at rest in the zero position.
     pub fn new(stiffness: f64, damping: f64) -> Self {
         Spring { stiffness, damping, target: 0.0, limit: f64::INFINITY }
     }
@@ -196,80 +193,79 @@ pub enum JointAxis {
     Sprung(Spring),
 }
 
-/// A joint's springs where the axes pull at one another.
+/// Springs of a joint whose axes pull at one another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coupled {
-    /// Symmetric, positive definite: N/m, N/rad (N m/m) and N m/rad.
+    /// Stiffness, symmetric, positive definite: N/m, N/rad (N m/m) and N m/rad.
     pub stiffness: Matrix6<f64>,
-    /// Symmetric, not negative: N s/m, N s/rad and N m s/rad.
+    /// Damping, symmetric, not negative: N s/m, N s/rad and N m s/rad.
     pub damping: Matrix6<f64>,
 }
 
-/// What holds a joint's child to its parent.
+/// Springs that hold a joint's child to its parent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a scene has a handful of joints")]
 pub enum Springs {
-    /// Each axis by itself: translations x, y, z, rotations x, y, z.
+    /// One for each axis: translations x, y, z, rotations x, y, z.
     Axes([JointAxis; 6]),
-    /// All six axes at once; coordinates as above, the rotations as a rotation vector.
+    /// Coupled ones; coordinates as above, the rotations as a rotation vector.
     Coupled(Coupled),
 }
 
-/// A joint between two bodies: translations along, then rotations about, the
-/// x, y and z axes of the frame fixed to the parent.
+/// Joint: translations along, then rotations about, the x, y and z axes of the parent's frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
-    /// Unique in the scene.
+    /// Name, unique in the scene.
     pub name: String,
-    /// The body that carries the axes.
+    /// Body that carries the axes.
     pub parent: BodyId,
-    /// The body that moves along them.
+    /// Body that moves along them.
     pub child: BodyId,
     /// Joint frame in the parent frame.
     pub in_parent: Pose,
     /// Joint frame in the child frame.
     pub in_child: Pose,
-    /// What resists relative motion.
+    /// Springs against relative motion.
     pub springs: Springs,
 }
 
-/// Everything an engine needs to know.
+/// Bodies, joints and contacts to simulate.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scene {
-    /// The bodies.
+    /// Bodies by [`BodyId`].
     pub bodies: Vec<Body>,
-    /// The joints.
+    /// Joints by [`JointId`].
     pub joints: Vec<Joint>,
     /// Pairs of bodies that may touch; all others pass through one another.
     pub contacts: Vec<ContactPair>,
-    /// m/s2.
+    /// Gravity, m/s2.
     pub gravity: Vector3<f64>,
 }
 
 impl Scene {
-    /// Adds a body.
+    /// Adds a body and gives its index.
     pub fn body(&mut self, body: Body) -> BodyId {
         self.bodies.push(body);
         BodyId(self.bodies.len() - 1)
     }
 
-    /// Adds a joint.
+    /// Adds a joint and gives its index.
     pub fn joint(&mut self, joint: Joint) -> JointId {
         self.joints.push(joint);
         JointId(self.joints.len() - 1)
     }
 
-    /// Lets two bodies touch.
+    /// Adds a pair of bodies that may touch.
     pub fn contact(&mut self, first: BodyId, second: BodyId, friction: Friction) {
         self.contacts.push(ContactPair { first, second, friction });
     }
 
-    /// The first pair of bodies whose friction has the moment of a pressed patch.
+    /// First pair of bodies whose friction is that of a contact patch.
     pub fn patched(&self) -> Option<&ContactPair> {
         self.contacts.iter().find(|pair| pair.friction.torsion == Torsion::Patch)
     }
 
-    /// Each two geoms that may touch, in the order of the contacts.
+    /// Pairs of geoms that may touch, in the order of the contacts.
     pub fn geom_pairs(&self) -> Vec<GeomPair> {
         let mut next = 0;
         let count = |body: &Body| {
@@ -283,12 +279,8 @@ impl Scene {
             for (i, first) in self.bodies[a].geoms.iter().enumerate() {
                 for (j, second) in self.bodies[b].geoms.iter().enumerate() {
                     let friction = pair.between(first, second);
-                    found.push(GeomPair {
-                        bodies,
-                        first: from[a] + i,
-                        second: from[b] + j,
-                        friction,
-                    });
+                    let (first, second) = (from[a] + i, from[b] + j);
+                    found.push(GeomPair { bodies, first, second, friction });
                 }
             }
         }
@@ -297,23 +289,22 @@ impl Scene {
 }
 
 impl Shape {
-    /// Corners for boxes and hulls; for a cylinder the corners of a 16-sided
-    /// prism inside it (for pictures and extents).
+    /// Corners, m; of a cylinder those of a 16-sided prism inside it (for pictures and extents).
     pub fn corners(&self) -> Vec<Point3<f64>> {
         match self {
-            Shape::Box { half } => (0..8)
-                .map(|i| {
-                    let sign = |bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
-                    Point3::new(sign(0) * half.x, sign(1) * half.y, sign(2) * half.z)
-                })
-                .collect(),
-            Shape::Cylinder { half_height, radius } => (0..32)
-                .map(|i| {
+            Shape::Box { half } => {
+                let sign = |i: usize, bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+                let corner = |i| Vector3::from_fn(|axis, _| sign(i, axis) * half[axis]).into();
+                (0..8).map(corner).collect()
+            }
+            Shape::Cylinder { half_height, radius } => {
+                let corner = |i: u32| {
                     let angle = f64::from(i / 2) * std::f64::consts::TAU / 16.0;
                     let z = if i % 2 == 0 { -half_height } else { *half_height };
                     Point3::new(radius * angle.cos(), radius * angle.sin(), z)
-                })
-                .collect(),
+                };
+                (0..32).map(corner).collect()
+            }
             Shape::Hull { points } => points.clone(),
         }
     }
@@ -325,31 +316,21 @@ mod tests {
 
     #[test]
     fn a_geoms_own_friction_takes_the_place_of_the_pairs() {
-        let geom = |friction| Geom {
-            name: String::new(),
-            shape: Shape::Box { half: Vector3::repeat(1.0) },
-            pose: Pose::identity(),
-            friction,
-        };
-        let body = |frictions: [Option<f64>; 2]| Body {
-            name: String::new(),
-            motion: Motion::Fixed,
-            pose: Pose::identity(),
-            geoms: frictions.map(geom).to_vec(),
+        let (shape, pose) = (Shape::Box { half: Vector3::repeat(1.0) }, Pose::identity());
+        let geom = |friction| Geom { name: String::new(), shape: shape.clone(), pose, friction };
+        let body = |frictions: [Option<f64>; 2]| {
+            let geoms = frictions.map(geom).to_vec();
+            Body { name: String::new(), motion: Motion::Fixed, pose, geoms }
         };
         let mut scene = Scene::default();
         scene.body(body([None; 2]));
         let first = scene.body(body([None, Some(0.3)]));
         let second = scene.body(body([None, Some(0.02)]));
         scene.contact(first, second, Friction { coefficient: 1.0, torsion: Torsion::Radius(0.03) });
-        let found: Vec<_> = scene
-            .geom_pairs()
-            .iter()
-            .map(|p| (p.first, p.second, p.friction.coefficient))
-            .collect();
-        assert_eq!(found, [(2, 4, 1.0), (2, 5, 0.02), (3, 4, 0.3), (3, 5, 0.02)]);
-        assert!(
-            scene.geom_pairs().iter().all(|pair| pair.friction.torsion == Torsion::Radius(0.03))
-        );
+        let found = scene.geom_pairs();
+        let coefficients = found.iter().map(|p| (p.first, p.second, p.friction.coefficient));
+        let expected = [(2, 4, 1.0), (2, 5, 0.02), (3, 4, 0.3), (3, 5, 0.02)];
+        assert!(coefficients.eq(expected), "{found:?}");
+        assert!(found.iter().all(|pair| pair.friction.torsion == Torsion::Radius(0.03)));
     }
 }

@@ -1,13 +1,26 @@
-//! Shapes, vectors and poses as parry, and so rapier, has them, in a unit of length of
-//! the caller's choice: `scale` is how many of it make a metre.
+//! Shapes, vectors and poses of parry, and so of rapier, in a unit of length of the caller's
+//! choice (`scale` of them make a metre), and triangles of shapes for pictures and exports.
 
 use crate::scene::{Pose, Shape};
-use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 use parry::math as pm;
 use parry::shape::SharedShape;
+use parry::transformation::try_convex_hull;
 use rapier3d_f64::parry;
 
-/// The shape, and the turn from parry's frame of it to ours.
+/// Unit of length for hulls, m: in metres parry's tolerances for them are too wide.
+const MM: f64 = 1e-3;
+
+/// Closed surface of a convex shape in its frame (of a cylinder that of the prism inside it):
+/// corners, m, and triangles, counter-clockwise from outside. Empty for a hull without volume,
+/// which no checked file has.
+pub fn surface(shape: &Shape) -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
+    let points: Vec<_> = shape.corners().iter().map(|p| vector(&(p.coords / MM))).collect();
+    let (points, triangles) = try_convex_hull(&points).unwrap_or_default();
+    (points.into_iter().map(|p| Point3::from(from_vector(p) * MM)).collect(), triangles)
+}
+
+/// Shape of parry, and the turn from its frame to ours.
 pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
     match shape {
         Shape::Box { half } => {
@@ -30,7 +43,7 @@ pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
     }
 }
 
-/// Half extents, in m, of the box about the shape's frame that encloses it, and its centre.
+/// Centre and half extents, m, of the box in the shape's frame that encloses it.
 pub(super) fn bounds(shape: &Shape) -> (Vector3<f64>, Vector3<f64>) {
     match shape {
         Shape::Box { half } => (Vector3::zeros(), *half),
@@ -39,27 +52,54 @@ pub(super) fn bounds(shape: &Shape) -> (Vector3<f64>, Vector3<f64>) {
         }
         Shape::Hull { points } => {
             let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-            let (low, high) = points
-                .iter()
-                .fold(start, |(low, high), p| (low.inf(&p.coords), high.sup(&p.coords)));
+            let span = |(low, high): (Vector3<f64>, _), p: &Point3<f64>| {
+                (low.inf(&p.coords), p.coords.sup(&high))
+            };
+            let (low, high) = points.iter().fold(start, span);
             ((low + high) / 2.0, (high - low) / 2.0)
         }
     }
 }
 
-/// To parry's vector, no change of unit.
+/// Vector of parry, in the same unit.
 pub fn vector(v: &Vector3<f64>) -> pm::Vector {
     pm::Vector::new(v.x, v.y, v.z)
 }
 
-/// From parry's vector, no change of unit.
+/// Vector from parry's, in the same unit.
 pub fn from_vector(v: pm::Vector) -> Vector3<f64> {
     Vector3::new(v.x, v.y, v.z)
 }
 
-/// A pose in metres to parry's.
+/// Pose of parry from one in metres.
 pub fn pose(pose: &Pose, scale: f64) -> pm::Pose {
     let q = pose.rotation.coords;
     let rotation = pm::Rotation::from_xyzw(q.x, q.y, q.z, q.w);
     pm::Pose::from_parts(vector(&(pose.translation.vector * scale)), rotation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Six times the volume is the sum of the triangles' triple products, if all look outward.
+    fn volume((points, triangles): &(Vec<Point3<f64>>, Vec<[u32; 3]>)) -> f64 {
+        let of = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| points[i as usize].coords);
+            a.dot(&b.cross(&c)) / 6.0
+        };
+        triangles.iter().map(of).sum()
+    }
+
+    #[test]
+    fn surfaces_are_closed_and_look_outward() {
+        let brick = Shape::Box { half: Vector3::new(1.0, 2.0, 3.0) * MM };
+        let found = surface(&brick);
+        assert_eq!((found.0.len(), found.1.len()), (8, 12));
+        assert!((volume(&found) / MM.powi(3) - 48.0).abs() < 1e-9);
+        let rod = surface(&Shape::Cylinder { half_height: MM, radius: 2.0 * MM });
+        let prism = 2.0 * 16.0 / 2.0 * 4.0 * (std::f64::consts::TAU / 16.0).sin();
+        assert!((volume(&rod) / MM.powi(3) - prism).abs() < 1e-9);
+        assert_eq!(surface(&Shape::Hull { points: Vec::new() }).1.len(), 0);
+    }
 }

@@ -7,36 +7,35 @@
 //! multifrontal method: Duff and Reid 1983, ACM Trans. Math. Softw. 9:302.)
 //! The order of all sums depends on the mesh alone.
 
-use super::front::{Front, Loose};
+use super::frontal::Frontal;
 use super::halving::{Halved, halve};
-use super::mesh::Mesh;
+use super::mesh::{Mesh, MeshError};
 use nalgebra::{DMatrix, DVector, Point2};
 use std::ops::Range;
 
-/// Elements are added up together in leaves of at most this many.
+/// Most elements that are added up together.
 const LEAF: usize = 8;
 
-/// What fills the triangles of a mesh.
+/// Elasticity of the triangles of a mesh.
 pub trait Element {
     /// Degrees of freedom of a node.
     const FREEDOMS: usize;
-    /// The stiffness matrix of a triangle: square, row by row, the lower triangle valid; six
-    /// nodes with `FREEDOMS` rows each.
+    /// Lower half of a triangle's stiffness matrix, square, row by row, by its six nodes' freedoms.
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64>;
 }
 
-/// What a node is to the condensation.
+/// Part of a node in the condensation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// To be eliminated: it carries no load.
     Free,
-    /// Does not move.
+    /// Clamped.
     Fixed,
     /// To be condensed onto.
     Kept,
 }
 
-/// The stiffness of a mesh as seen from its kept nodes.
+/// Stiffness of a mesh as seen from its kept nodes.
 #[derive(Debug, Clone)]
 pub struct Condensed {
     /// Kept nodes, in the order of the matrix.
@@ -45,11 +44,11 @@ pub struct Condensed {
     pub stiffness: DMatrix<f64>,
     freedoms: usize,
     count: usize,
-    steps: Vec<Front>,
+    steps: Vec<Frontal>,
 }
 
-/// Condenses a mesh onto the nodes of role [`Role::Kept`]. With `remember`, the motion of
-/// the free nodes can be asked for later.
+/// Condenses a mesh onto the nodes of role [`Role::Kept`]. With `remember`,
+/// [`Condensed::expand`] gives the motion of the free nodes, too.
 ///
 /// # Errors
 /// If a part of the mesh is held by nothing.
@@ -58,7 +57,7 @@ pub fn condense<E: Element>(
     element: &E,
     roles: &[Role],
     remember: bool,
-) -> Result<Condensed, Loose> {
+) -> Result<Condensed, MeshError> {
     let Halved { order, cuts } = halve(mesh, LEAF);
     let mut work = Condensation {
         mesh,
@@ -82,15 +81,12 @@ pub fn condense<E: Element>(
 }
 
 impl Condensed {
-    /// The displacement of every node (`FREEDOMS` numbers each) for one of the kept nodes,
-    /// in the order of the matrix. Free nodes stay at 0 unless they were remembered.
+    /// Displacement of every node (`FREEDOMS` numbers each, m or rad) from those of the kept
+    /// nodes, in the order of the matrix. Free nodes stay at 0 unless they were remembered.
     pub fn expand(&self, kept: &DVector<f64>) -> Vec<f64> {
         let mut all = vec![0.0; self.count * self.freedoms];
-        for (i, &node) in self.nodes.iter().enumerate() {
-            let (to, from) = (node as usize * self.freedoms, i * self.freedoms);
-            for d in 0..self.freedoms {
-                all[to + d] = kept[from + d];
-            }
+        for (&node, from) in self.nodes.iter().zip(kept.as_slice().chunks(self.freedoms)) {
+            all[node as usize * self.freedoms..][..self.freedoms].copy_from_slice(from);
         }
         for step in self.steps.iter().rev() {
             step.substitute(&mut all);
@@ -107,57 +103,43 @@ struct Condensation<'a, E> {
     /// First and last place in `order` of the triangles of a node.
     spans: Vec<[u32; 2]>,
     roles: &'a [Role],
-    /// Scratch: a node's place in the front at work.
+    /// Scratch: a node's place in the present frontal matrix.
     places: Vec<u32>,
-    steps: Option<Vec<Front>>,
+    steps: Option<Vec<Frontal>>,
 }
 
 impl<E: Element> Condensation<'_, E> {
-    /// The triangles at these places of the order, condensed onto what others touch.
-    fn part(&mut self, range: Range<usize>) -> Result<Front, Loose> {
+    /// Triangles at these places of the order, condensed onto the nodes that others touch.
+    fn part(&mut self, range: Range<usize>) -> Result<Frontal, MeshError> {
         let cut = if range.len() > LEAF { self.cuts.next() } else { None };
-        let mut front = match cut.map(|cut| range.start + cut) {
-            None => self.leaf(&range),
-            Some(cut) => {
-                let parts = [self.part(range.start..cut)?, self.part(cut..range.end)?];
-                self.join(parts, &range)
-            }
+        let parts: Vec<(Vec<u32>, Vec<f64>)> = match cut.map(|cut| range.start + cut) {
+            None => self.order[range.clone()].iter().map(|&t| self.triangle(t as usize)).collect(),
+            Some(cut) => [self.part(range.start..cut)?, self.part(cut..range.end)?]
+                .map(|half| (half.nodes, half.values))
+                .into(),
         };
-        front.eliminate()?;
-        let rest = front.rest();
+        let nodes = parts.iter().flat_map(|(nodes, _)| nodes).copied();
+        let moving = nodes.filter(|&node| self.roles[node as usize] != Role::Fixed).collect();
+        let mut frontal = self.frontal(moving, &range);
+        for (nodes, matrix) in parts {
+            let places: Vec<_> = nodes.into_iter().map(|node| self.place(node)).collect();
+            frontal.add(&places, &matrix);
+        }
+        frontal.eliminate()?;
+        let rest = frontal.rest();
         if let Some(steps) = &mut self.steps {
-            steps.push(front);
+            steps.push(frontal);
         }
         Ok(rest)
     }
 
-    fn leaf(&mut self, range: &Range<usize>) -> Front {
-        let triangles: Vec<u32> = self.order[range.clone()].to_vec();
-        let of = |t: &u32| self.mesh.triangles[*t as usize];
-        let mut nodes: Vec<u32> = triangles.iter().flat_map(of).collect();
-        nodes.retain(|&node| self.roles[node as usize] != Role::Fixed);
-        let mut front = self.front(nodes, range);
-        for t in triangles {
-            let nodes = of(&t);
-            let matrix = self.element.stiffness(self.mesh.corners(t as usize));
-            front.add(&nodes.map(|node| self.place(node)), &matrix);
-        }
-        front
+    /// Nodes and stiffness matrix of a triangle.
+    fn triangle(&self, t: usize) -> (Vec<u32>, Vec<f64>) {
+        (self.mesh.triangles[t].to_vec(), self.element.stiffness(self.mesh.corners(t)))
     }
 
-    fn join(&mut self, halves: [Front; 2], range: &Range<usize>) -> Front {
-        let nodes = halves.iter().flat_map(|half| half.nodes.iter().copied()).collect();
-        let mut front = self.front(nodes, range);
-        for half in halves {
-            let places: Vec<_> = half.nodes.iter().map(|&node| self.place(node)).collect();
-            front.add_front(&places, &half);
-        }
-        front
-    }
-
-    /// An empty front of these nodes (given once or more): those that nothing outside the
-    /// range touches come first, to be eliminated.
-    fn front(&mut self, mut nodes: Vec<u32>, range: &Range<usize>) -> Front {
+    /// Zero matrix of these nodes, first those that no triangle outside the range touches.
+    fn frontal(&mut self, mut nodes: Vec<u32>, range: &Range<usize>) -> Frontal {
         nodes.sort_unstable();
         nodes.dedup();
         let ends_here = |node: &u32| {
@@ -170,7 +152,7 @@ impl<E: Element> Condensation<'_, E> {
         for (place, &node) in inner.iter().enumerate() {
             self.places[node as usize] = place as u32;
         }
-        Front::new(inner, eliminated, E::FREEDOMS)
+        Frontal::new(inner, eliminated, E::FREEDOMS)
     }
 
     fn place(&self, node: u32) -> Option<usize> {

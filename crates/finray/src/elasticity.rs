@@ -1,26 +1,38 @@
-//! Plane stress in a quadratic triangle (Zienkiewicz and Taylor, The Finite Element
-//! Method, vol. 1).
+//! Plane stress in quadratic triangles (Zienkiewicz and Taylor, The Finite Element Method, vol. 1).
 
 use super::condense::Element;
+use crate::printed::PrintedFinger;
 use nalgebra::Point2;
 
-/// A plate in its own plane.
+/// Profile extruded to a slab of an elastic material.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlaneStress {
+pub struct Slab {
     /// Young's modulus, N/m2.
     pub modulus: f64,
     /// Poisson's ratio.
     pub poisson: f64,
-    /// Thickness of the plate, m.
+    /// Thickness across the profile's plane, m.
     pub thickness: f64,
 }
+
+impl Slab {
+    /// Slab of a printed finger.
+    pub fn of(finger: &PrintedFinger) -> Self {
+        let (material, thickness) = (&finger.material, finger.outline.depth);
+        Slab { modulus: material.modulus, poisson: material.poisson, thickness }
+    }
+}
+
+/// Slab loaded in its own plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaneStress(pub Slab);
 
 /// Shape functions of a six-node triangle at a point, and their gradients, 1/m.
 #[derive(Debug, Clone, Copy)]
 pub struct Shape {
-    /// Value of each node's function.
+    /// Values of the nodes' functions.
     pub values: [f64; 6],
-    /// Gradient of each.
+    /// Gradients of the nodes' functions, 1/m.
     pub gradients: [[f64; 2]; 6],
 }
 
@@ -74,13 +86,14 @@ pub fn integration(corners: [Point2<f64>; 3]) -> [(Shape, f64); 3] {
 }
 
 impl Element for PlaneStress {
-    /// Displacements along the two axes.
+    /// Displacements along X and Y.
     const FREEDOMS: usize = 2;
 
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64> {
-        let plane = self.modulus * self.thickness / (1.0 - self.poisson * self.poisson);
-        let shear = plane * (1.0 - self.poisson) / 2.0;
-        let mixed = plane * self.poisson;
+        let Slab { modulus, poisson, thickness } = self.0;
+        let plane = modulus * thickness / (1.0 - poisson * poisson);
+        let shear = plane * (1.0 - poisson) / 2.0;
+        let mixed = plane * poisson;
         let mut matrix = vec![0.0; 144];
         for (Shape { gradients, .. }, weight) in integration(corners) {
             for (a, [ax, ay]) in gradients.into_iter().enumerate() {

@@ -1,27 +1,25 @@
-//! Whether the parts of a finger fit one another.
+//! Checks that the parts of a finger fit one another.
 
-use super::FingerError;
-use super::infill::{Design, NARROWEST_VOID, pitch};
+use super::infill::{Design, NARROWEST_VOID};
 use super::polygon::{self, Ring};
 use crate::printed::{Outline, PrintedFinger};
 use input::units::{MM, PERCENT};
+use input::{Check, InputError};
 
-/// Checks that the parts of a finger fit one another: a design may have changed what its
-/// file says, so nothing is taken for granted.
+/// Checks that the parts of a finger fit one another.
 pub(super) struct Fit<'a> {
     pub finger: &'a PrintedFinger,
     pub design: &'a Design,
 }
 
-type Checked = Result<(), FingerError>;
+type Checked = Result<(), InputError>;
 
 impl Fit<'_> {
-    fn fail(&self, key: &str, problem: String) -> Checked {
-        let file = self.finger.file.clone();
-        Err(FingerError::Geometry { file, key: key.to_owned(), problem })
+    fn fail(&self, key: &str, problem: impl Into<String>) -> Checked {
+        Check { file: &self.finger.file }.fail(key, problem)
     }
 
-    /// A value of the key, m, that must be less than a limit.
+    /// Refuses a value of the key, m, that is not below a limit.
     fn below(&self, key: &str, value: f64, limit: f64, because: &str) -> Checked {
         if value < limit {
             return Ok(());
@@ -30,34 +28,7 @@ impl Fit<'_> {
         self.fail(key, format!("is {value:.3}; it must be below {limit:.3}: {because}"))
     }
 
-    /// Every length and the modulus are above 0.
-    pub fn values(&self) -> Checked {
-        let PrintedFinger { outline, skin, ribs, material, line_width, .. } = self.finger;
-        let values = [
-            ("outline.length_mm", outline.length),
-            ("outline.width_mm", outline.width),
-            ("outline.depth_mm", outline.depth),
-            ("outline.tip_mm", outline.tip),
-            ("outline.back_radius_mm", outline.back_radius),
-            ("notch.pad_mm", outline.pad),
-            ("notch.roof_mm", outline.roof),
-            ("base.solid_mm", outline.solid),
-            ("base.clamped_mm", outline.clamped),
-            ("skin.thickness_mm", *skin),
-            ("ribs.thickness_mm", ribs.thickness),
-            ("ribs.line_spacing_mm", ribs.line_spacing),
-            ("material.modulus_gpa", material.modulus),
-            ("print.line_width_mm", *line_width),
-        ];
-        for (key, value) in values {
-            if !(value > 0.0 && value.is_finite()) {
-                return self.fail(key, "must be a finite number above 0".into());
-            }
-        }
-        Ok(())
-    }
-
-    /// Tip, arc, notch and base fit into the outline.
+    /// Checks that tip, arc, notch and base fit into the outline.
     pub fn outline(&self) -> Checked {
         let outline = &self.finger.outline;
         let Outline { length, width, tip, back_radius, pad, roof, solid, clamped, .. } = *outline;
@@ -84,15 +55,15 @@ impl Fit<'_> {
             );
             return self.fail("outline.back_radius_mm", problem);
         }
-        let to_front = tip / outline.pad_angle.sin();
-        self.below("notch.pad_mm", pad, to_front, "the pad ends behind the front")?;
+        let to_side = tip / outline.pad_angle.sin();
+        self.below("notch.pad_mm", pad, to_side, "the pad ends behind the front")?;
         let to_base = ribbed / outline.pad_angle.cos();
         self.below("notch.pad_mm", pad, to_base, "the notch ends before the solid base")?;
         self.below("notch.roof_mm", roof, outline.roof_length(), "the roof is no longer")
     }
 
-    /// Ribs can be printed, and leave room between them.
-    pub fn ribs(&self) -> Checked {
+    /// Checks that ribs at this pitch, m, can be printed and leave room between them.
+    pub fn ribs(&self, pitch: f64) -> Checked {
         let PrintedFinger { ribs, line_width, smallest_gap, skin, .. } = self.finger;
         let Design { density_percent, direction_deg, phase_mm } = *self.design;
         if !(density_percent > 0.0 && density_percent < 100.0) {
@@ -104,9 +75,8 @@ impl Fit<'_> {
             return self.fail("infill_direction_deg", problem);
         }
         if !phase_mm.is_none_or(f64::is_finite) {
-            return self.fail("phase_mm", "must be a finite number".into());
+            return self.fail("phase_mm", "must be a finite number");
         }
-        let pitch = pitch(self.finger, self.design);
         let gap = smallest_gap.max(NARROWEST_VOID);
         if pitch - ribs.thickness < gap {
             let most = ribs.line_spacing / (ribs.thickness + gap) / PERCENT;
@@ -120,28 +90,24 @@ impl Fit<'_> {
             );
             return self.fail("ribs.thickness_mm", problem);
         }
-        for (key, thickness) in
-            [("ribs.thickness_mm", ribs.thickness), ("skin.thickness_mm", *skin)]
-        {
-            if thickness < 0.5 * line_width {
-                let problem = format!(
-                    "is {:.3}; a line of print.line_width_mm = {:.3} does not print thinner than \
-                     half of it",
-                    thickness / MM,
-                    line_width / MM
-                );
-                return self.fail(key, problem);
-            }
-        }
-        Ok(())
+        let walls = [("ribs.thickness_mm", ribs.thickness), ("skin.thickness_mm", *skin)];
+        let Some((key, thickness)) = walls.into_iter().find(|(_, t)| *t < 0.5 * line_width) else {
+            return Ok(());
+        };
+        let problem = format!(
+            "is {:.3}; a line of print.line_width_mm = {:.3} does not print thinner than half of it",
+            thickness / MM,
+            line_width / MM
+        );
+        self.fail(key, problem)
     }
 
-    /// Outline and inside are simple rings.
+    /// Checks that outline and inside are simple rings.
     pub fn rings(&self, outer: &Ring, inside: &Ring) -> Checked {
         if polygon::crosses_itself(outer) || polygon::area(outer) <= 0.0 {
             let problem = "its sides cross one another; check outline.length_mm, \
                            outline.width_mm, outline.tip_mm and notch.pad_mm";
-            return self.fail("outline", problem.into());
+            return self.fail("outline", problem);
         }
         // Moved inwards by too much, sides change places and the ring crosses itself.
         let finite = inside.iter().all(|p| p.x.is_finite() && p.y.is_finite());

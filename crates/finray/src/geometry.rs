@@ -2,80 +2,56 @@
 
 use super::FingerError;
 use super::fit::Fit;
-use super::infill::{Design, NARROWEST_VOID, RibLines, pitch};
+use super::infill::{Design, NARROWEST_VOID, RibLines};
 use super::outline::ring;
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
 use crate::printed::{Outline, PrintedFinger};
 use input::units::MM;
 
-/// A finger with its ribs: everything that its mechanics and its print need. SI units.
+/// Checked profile of a finger, SI units: X from the tip to the base, Y across, 0 on the front side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// The file it is made from, with what the design changed in it.
+    /// Finger file, with the numbers that the design sets in it.
     pub finger: PrintedFinger,
-    /// Its infill.
+    /// Infill.
     pub design: Design,
-    /// Counter-clockwise, whole finger, from the tip along the back.
-    outer: Ring,
-    /// Clockwise, one for each opening between ribs.
-    voids: Vec<Ring>,
-    /// Ribs with an opening on either side.
-    ribs: usize,
+    /// Centre lines of the ribs.
+    pub lines: RibLines,
+    /// Outline, counter-clockwise from the tip along the back, m.
+    pub outer: Ring,
+    /// Openings between the ribs, clockwise, m.
+    pub voids: Vec<Ring>,
+    /// Number of ribs with an opening on either side.
+    pub ribs: usize,
 }
 
-/// Corners of an opening closer than this are one, m.
+/// Distance below which two corners of an opening are one, m.
 const NEAREST_CORNERS: f64 = 0.002 * MM;
 
 impl Geometry {
-    /// The finger with this infill.
+    /// Profile of a finger with an infill.
     ///
     /// # Errors
     /// If its parts do not fit one another; the message names file and key.
     pub fn new(finger: &PrintedFinger, design: &Design) -> Result<Self, FingerError> {
+        let lines = RibLines::new(finger, design);
         let check = Fit { finger, design };
-        check.values()?;
         check.outline()?;
-        check.ribs()?;
+        check.ribs(lines.pitch)?;
         let outer = without_repeats(&ring(&finger.outline, 0.0, finger.outline.length), 1e-9);
         let ribbed = finger.outline.length - finger.outline.solid;
         let inside = ring(&finger.outline, finger.skin, ribbed);
         check.rings(&outer, &inside)?;
-        let gaps = gaps(&inside, finger, &RibLines::new(finger, design));
-        let neighbours = gaps.windows(2).filter(|pair| pair[1].0 == pair[0].0 + 1);
-        Ok(Geometry {
-            finger: finger.clone(),
-            design: *design,
-            outer,
-            ribs: neighbours.count(),
-            voids: gaps.into_iter().flat_map(|(_, voids)| voids).collect(),
-        })
+        let gaps = gaps(&inside, finger, &lines);
+        let ribs = gaps.windows(2).filter(|pair| pair[1].0 == pair[0].0 + 1).count();
+        let voids = gaps.into_iter().flat_map(|(_, voids)| voids).collect();
+        Ok(Geometry { finger: finger.clone(), design: *design, lines, outer, voids, ribs })
     }
 
-    /// The outer ring, counter-clockwise from the tip, and the openings, clockwise, m.
-    /// X along the finger from the tip to the base, Y across it, 0 on the front.
-    pub fn rings(&self) -> (&Ring, &[Ring]) {
-        (&self.outer, &self.voids)
-    }
-
-    /// The same in millimetres, for files: the solid is what lies left of every ring.
+    /// Outline and openings, mm: the solid lies left of every ring.
     pub fn rings_mm(&self) -> Vec<Vec<[f64; 2]>> {
         let mm = |ring: &Ring| ring.iter().map(|p| [p.x / MM, p.y / MM]).collect();
         std::iter::once(&self.outer).chain(&self.voids).map(mm).collect()
-    }
-
-    /// How many ribs it has: those with an opening on either side.
-    pub fn ribs(&self) -> usize {
-        self.ribs
-    }
-
-    /// Distance between the centre lines of its ribs, m.
-    pub fn pitch(&self) -> f64 {
-        pitch(&self.finger, &self.design)
-    }
-
-    /// Distance of the first rib from the point that the finger file counts from, m.
-    pub fn phase(&self) -> f64 {
-        self.design.phase_mm.map_or(self.finger.ribs.phase, |mm| mm * MM)
     }
 
     /// Area of the solid profile, m2.
@@ -88,14 +64,14 @@ impl Geometry {
         self.area() * self.finger.outline.depth * self.finger.material.density
     }
 
-    /// The outer ring of what the gripper leaves free: it ends where it is clamped.
+    /// Outline of the part that the gripper leaves free: it ends at the clamp.
     pub(super) fn free_ring(&self) -> Ring {
         let Outline { length, clamped, .. } = self.finger.outline;
         ring(&self.finger.outline, 0.0, length - clamped)
     }
 }
 
-/// The openings that ribs leave of the inside, clockwise, by the rib before them.
+/// Openings that the ribs leave of the inside, clockwise, by the number of the rib before them.
 fn gaps(inside: &Ring, finger: &PrintedFinger, lines: &RibLines) -> Vec<(i64, Vec<Ring>)> {
     let half = finger.ribs.thickness / 2.0;
     let gap = |n: i64| {

@@ -1,14 +1,14 @@
-//! In which order a mesh is taken apart: cuts that few nodes lie on.
+//! Nested dissection of a mesh: an order of its triangles by cuts that few nodes lie on.
 
 use super::mesh::Mesh;
 use nalgebra::Point2;
 
 /// An order of triangles in which the parts of a mesh lie one after the other.
 pub(super) struct Halved {
-    /// Triangles.
+    /// Numbers of the triangles.
     pub order: Vec<u32>,
-    /// Number of triangles before each cut, in the order in which the parts are visited:
-    /// the whole, its first part with all its parts, its second.
+    /// Number of triangles before each cut, in the order in which the parts are visited: the
+    /// whole, its first part with all its parts, its second.
     pub cuts: Vec<usize>,
 }
 
@@ -29,7 +29,7 @@ pub(super) fn halve(mesh: &Mesh, leaf: usize) -> Halved {
     Halved { order, cuts: halving.cuts }
 }
 
-/// The place of each triangle along a direction: none is given twice.
+/// Rank of each triangle along a direction: none is given twice.
 fn ranks(centres: &[Point2<f64>], [x, y]: [f64; 2]) -> Vec<u32> {
     let places: Vec<f64> = centres.iter().map(|centre| x * centre.x + y * centre.y).collect();
     let mut sorted: Vec<u32> = (0..centres.len() as u32).collect();
@@ -48,11 +48,11 @@ struct Halving {
     leaf: usize,
     corners: Vec<[u32; 3]>,
     centres: Vec<Point2<f64>>,
-    /// Of each direction.
+    /// Ranks of the triangles along each direction.
     ranks: [Vec<u32>; 4],
     /// Scratch of [`Halving::shared`].
     stamps: Vec<u8>,
-    /// Number of triangles before each cut, in the order in which the parts are visited.
+    /// As of [`Halved`].
     cuts: Vec<usize>,
 }
 
@@ -60,10 +60,10 @@ struct Halving {
 const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [0.7, 0.7], [0.7, -0.7]];
 /// Shares of the triangles that may lie before a cut.
 const SHARES: [f64; 3] = [0.5, 0.4, 0.6];
-/// A smaller set of triangles is halved along x or y, whichever is longer.
+/// Number of triangles below which a set is halved along x or y, whichever is longer.
 const FEW: usize = 30;
 
-/// The triangles that lie first along one of the directions, and the others.
+/// Division of triangles into those that lie first along a direction, and the others.
 #[derive(Debug, Clone, Copy)]
 struct Cut {
     direction: usize,
@@ -84,7 +84,7 @@ impl Halving {
         self.sort(second);
     }
 
-    /// Brings the triangles that lie first along a direction to the front.
+    /// Moves the triangles that lie first along a direction to the start.
     fn cut(&self, order: &mut [u32], Cut { direction, first }: Cut) {
         let ranks = &self.ranks[direction];
         order.select_nth_unstable_by_key(first, |&t| ranks[t as usize]);
@@ -128,10 +128,7 @@ impl Halving {
         for corner in first.iter().flat_map(of) {
             self.stamps[corner as usize] = 1;
         }
-        let mut count = 0;
-        for corner in second.iter().flat_map(of) {
-            count += usize::from(std::mem::take(&mut self.stamps[corner as usize]));
-        }
-        count
+        let mut take = |corner| usize::from(std::mem::take(&mut self.stamps[corner as usize]));
+        second.iter().flat_map(of).map(&mut take).sum()
     }
 }

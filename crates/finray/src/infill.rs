@@ -4,25 +4,27 @@ use crate::printed::PrintedFinger;
 use input::units::{DEG, MM, PERCENT};
 use nalgebra::{Point2, Vector2};
 
-/// The infill of a finger.
+/// Infill of a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Design {
     /// Infill density, percent.
     pub density_percent: f64,
     /// Infill direction, degrees.
     pub direction_deg: f64,
-    /// Where the first rib lies, mm; the finger file's if not given.
+    /// Phase of the first rib, mm; the finger file's if not given.
     pub phase_mm: Option<f64>,
 }
 
-/// Openings narrower than this, as the area over half the perimeter, close in printing, m.
+/// Narrowest opening that does not close in printing, as its area over half its perimeter, m.
 pub(super) const NARROWEST_VOID: f64 = 0.05 * MM;
 
-/// The centre lines of all ribs: straight lines at `first + n pitch` along `across`.
+/// Centre lines of the ribs: straight lines at `first + n pitch` along `across`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct RibLines {
+pub struct RibLines {
     /// Unit vector across the ribs.
     pub across: Vector2<f64>,
+    /// Distance of the first rib from the point that the finger file counts from, m.
+    pub phase: f64,
     /// Distance of the first centre line from the finger's origin, m.
     pub first: f64,
     /// Distance between centre lines, m.
@@ -30,30 +32,26 @@ pub(super) struct RibLines {
 }
 
 impl RibLines {
-    /// By the rule of the finger file.
+    /// Centre lines by the rule of the finger file.
     pub fn new(finger: &PrintedFinger, design: &Design) -> Self {
         let (sin, cos) = (design.direction_deg * DEG).sin_cos();
         let across = Vector2::new(cos, -sin);
         let phase = design.phase_mm.map_or(finger.ribs.phase, |mm| mm * MM);
         let first = across.dot(&finger.ribs.origin.coords) + phase;
-        RibLines { across, first, pitch: pitch(finger, design) }
+        let pitch = finger.ribs.line_spacing / (design.density_percent * PERCENT);
+        RibLines { across, phase, first, pitch }
     }
 
     /// Distance of a centre line from the origin, m.
-    pub fn offset(&self, n: i64) -> f64 {
+    pub(super) fn offset(&self, n: i64) -> f64 {
         self.first + n as f64 * self.pitch
     }
 
     /// First and last of the lines that bound gaps with anything of a ring in them.
-    pub fn range(&self, ring: &[Point2<f64>]) -> std::ops::RangeInclusive<i64> {
+    pub(super) fn range(&self, ring: &[Point2<f64>]) -> std::ops::RangeInclusive<i64> {
         let places = ring.iter().map(|p| (self.across.dot(&p.coords) - self.first) / self.pitch);
         let span = |(low, high): (f64, f64), n: f64| (low.min(n), high.max(n));
         let (low, high) = places.fold((f64::MAX, f64::MIN), span);
         low.floor() as i64..=high.ceil() as i64
     }
-}
-
-/// Distance between the centre lines of ribs, m.
-pub fn pitch(finger: &PrintedFinger, design: &Design) -> f64 {
-    finger.ribs.line_spacing / (design.density_percent * PERCENT)
 }

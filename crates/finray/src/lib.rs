@@ -1,7 +1,7 @@
 //! The printed finger: its profile, its stiffness from its ribs, its picture.
 //!
 //! ```text
-//! geometry (outline, fit, polygon) -> mesh -> model -> condense (halving, front)
+//! geometry (outline, fit, polygon) -> mesh -> meshed -> condense (halving, frontal)
 //!     elements: elasticity (in the plane), plate (across it) -> stiffness, mechanics, picture
 //! ```
 #![forbid(unsafe_code)]
@@ -13,16 +13,14 @@ pub mod condense;
 pub mod elasticity;
 pub mod export;
 mod fit;
-mod front;
+mod frontal;
 pub mod geometry;
 mod halving;
 pub mod infill;
-pub mod known;
 pub mod mechanics;
 pub mod mesh;
-pub mod model;
+pub mod meshed;
 mod outline;
-pub mod phases;
 pub mod picture;
 pub mod plate;
 pub mod polygon;
@@ -31,29 +29,19 @@ pub mod stiffness;
 #[cfg(test)]
 mod tests;
 
-/// What is wrong with a printed finger.
+/// Reason why a printed finger cannot be.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FingerError {
-    /// A number of the finger file that a design sets to what cannot be.
+    /// A number of the finger file or the design out of range, or parts that do not fit.
     #[error(transparent)]
     Value(#[from] input::InputError),
-    /// Parts that do not fit one another.
-    #[error("{file}: {key}: {problem}")]
-    Geometry {
-        /// The finger file.
-        file: String,
-        /// The key in it, or the design's parameter.
-        key: String,
-        /// What is wrong and what would be right.
-        problem: String,
-    },
-    /// A profile that no mesh fits.
+    /// A profile that cannot be meshed.
     #[error("{file}: the profile cannot be meshed: {problem}")]
     Mesh {
-        /// The finger file.
+        /// Finger file.
         file: String,
-        /// What is wrong.
-        problem: String,
+        /// Reason.
+        problem: mesh::MeshError,
     },
     /// A stiffness that no such finger has.
     #[error(
@@ -62,7 +50,7 @@ pub enum FingerError {
          (PETG has 2)"
     )]
     Units {
-        /// The finger file.
+        /// Finger file.
         file: String,
         /// Computed compliance stiffness, N/mm.
         compliance: f64,
@@ -74,7 +62,7 @@ pub enum FingerError {
          bring finger.rcc_mm nearer to the pad, or use --finger-model paper"
     )]
     Springs {
-        /// The finger file.
+        /// Finger file.
         file: String,
         /// `compliance` or `assembly`.
         axis: &'static str,
@@ -93,13 +81,13 @@ pub enum FingerError {
          computed finger are coupled as its ribs say"
     )]
     Coupled {
-        /// The task.
+        /// Name of the task.
         task: String,
     },
 }
 
 impl FingerError {
-    fn mesh(geometry: &geometry::Geometry, problem: &dyn std::fmt::Display) -> Self {
-        FingerError::Mesh { file: geometry.finger.file.clone(), problem: problem.to_string() }
+    fn mesh(geometry: &geometry::Geometry, problem: mesh::MeshError) -> Self {
+        FingerError::Mesh { file: geometry.finger.file.clone(), problem }
     }
 }

@@ -5,24 +5,30 @@
 //! pad (or the pad and a part of the roof) moves as a rigid body.
 
 use super::FingerError;
-use super::elasticity::PlaneStress;
+use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
-use super::model::{Body, Follow, Model};
+use super::infill::{Design, RibLines};
+use super::mesh::MeshError;
+use super::meshed::{Body, Follow, held};
 use super::plate::MindlinPlate;
 use super::stiffness::{CrossStiffness, PlanarStiffness};
 use crate::printed::{Outline, PrintedFinger};
 use input::units::{MM, N_PER_MM};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::Mutex;
 
 /// Length of a triangle's side, m: halving it changes no entry of a stiffness matrix by
 /// more than 2 % of the springs it couples.
 pub const SIZE: f64 = 0.4 * MM;
-/// The same across the plane, where walls are deep beams and need fewer triangles, m.
+/// Length of a triangle's side across the plane, m: walls are deep beams there, and need fewer.
 pub const CROSS_SIZE: f64 = 1.2 * MM;
-
 /// Compliance stiffness of a finger for a hand-sized gripper, N/mm.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.05..=100.0;
+/// Number of phases looked at, evenly over one pitch from the finger file's.
+const PHASES: usize = 8;
 
-/// What is computed of a finger; free stiffnesses are at the file's modulus.
+/// Computed stiffness of a finger at its file's modulus.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FingerStiffness {
     /// In the plane, the part touching the pad alone.
@@ -37,7 +43,7 @@ pub struct FingerStiffness {
     pub mass: f64,
 }
 
-/// The stiffness of a finger.
+/// Stiffness of a finger.
 ///
 /// # Errors
 /// If the profile cannot be meshed or hangs in the air, or its stiffness is not that of a
@@ -53,58 +59,84 @@ pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
     })
 }
 
-/// In the plane, with triangles of a size, m: pad alone; pad and roof.
+/// Stiffness in the plane, of the part touching the pad alone, then of it touching pad and
+/// roof; `size` is the length of a triangle's side, m.
+///
+/// # Errors
+/// As of [`compute`].
 pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], FingerError> {
-    let fails = |problem: &dyn std::fmt::Display| FingerError::mesh(geometry, problem);
-    let model = Model::new(geometry, size).map_err(|error| fails(&error))?;
-    let element = PlaneStress::of(&geometry.finger);
-    let condensed = model.condense(&element, false).map_err(|error| fails(&error))?;
-    let held = |body| {
-        let held = model.hold(&condensed, &element, body).map_err(|error| fails(&error))?;
-        PlanarStiffness::new(held.stiffness).ok_or_else(|| fails(&"it is not stiff"))
-    };
-    let pad = held(Body::Pad)?;
-    plausible(&geometry.finger, &pad)?;
-    Ok([pad, held(Body::PadAndRoof)?])
-}
-
-/// Across the plane, with triangles of a size, m.
-pub fn cross(geometry: &Geometry, size: f64) -> Result<CrossStiffness, FingerError> {
-    let fails = |problem: &dyn std::fmt::Display| FingerError::mesh(geometry, problem);
-    let model = Model::new(geometry, size).map_err(|error| fails(&error))?;
-    let element = MindlinPlate::of(&geometry.finger);
-    let condensed = model.condense(&element, false).map_err(|error| fails(&error))?;
-    let held = model.hold(&condensed, &element, Body::Pad).map_err(|error| fails(&error))?;
-    CrossStiffness::new(held.stiffness).ok_or_else(|| fails(&"it is not stiff"))
-}
-
-fn plausible(finger: &PrintedFinger, pad: &PlanarStiffness) -> Result<(), FingerError> {
+    let fails = |problem| FingerError::mesh(geometry, problem);
+    let element = PlaneStress(Slab::of(&geometry.finger));
+    let held = held(geometry, &element, size, [Body::Pad, Body::PadAndRoof]).map_err(fails)?;
+    let stiffness = |matrix| PlanarStiffness::new(matrix).ok_or_else(|| fails(MeshError::Limp));
+    let pad = stiffness(held[0])?;
     let compliance = pad.in_compliance() / N_PER_MM;
-    if PLAUSIBLE.contains(&compliance) {
-        return Ok(());
+    if !PLAUSIBLE.contains(&compliance) {
+        return Err(FingerError::Units { file: geometry.finger.file.clone(), compliance });
     }
-    Err(FingerError::Units { file: finger.file.clone(), compliance })
+    Ok([pad, stiffness(held[1])?])
 }
 
-impl PlaneStress {
-    /// What fills a finger.
-    pub fn of(finger: &PrintedFinger) -> Self {
-        PlaneStress {
-            modulus: finger.material.modulus,
-            poisson: finger.material.poisson,
-            thickness: finger.outline.depth,
-        }
-    }
+/// Stiffness across the plane; `size` is the length of a triangle's side, m.
+///
+/// # Errors
+/// If the profile cannot be meshed or hangs in the air.
+pub fn cross(geometry: &Geometry, size: f64) -> Result<CrossStiffness, FingerError> {
+    let fails = |problem| FingerError::mesh(geometry, problem);
+    let element = MindlinPlate(Slab::of(&geometry.finger));
+    let [held] = held(geometry, &element, size, [Body::Pad]).map_err(fails)?;
+    CrossStiffness::new(held).ok_or_else(|| fails(MeshError::Limp))
 }
 
-impl MindlinPlate {
-    /// What fills a finger.
-    pub fn of(finger: &PrintedFinger) -> Self {
-        MindlinPlate {
-            modulus: finger.material.modulus,
-            poisson: finger.material.poisson,
-            thickness: finger.outline.depth,
+/// Stiffness in the plane ([`planar`]) at every choice that a slicer has for the first rib: at
+/// 8 phases, evenly over one pitch.
+///
+/// # Errors
+/// If the finger cannot be made.
+pub fn over_phases(
+    finger: &PrintedFinger,
+    density_percent: f64,
+    direction_deg: f64,
+) -> Result<Vec<[PlanarStiffness; 2]>, FingerError> {
+    let design = Design { density_percent, direction_deg, phase_mm: None };
+    // A density of 0 has no pitch: the first geometry says so.
+    let pitch = RibLines::new(finger, &design).pitch;
+    let at = |share: f64| {
+        let phase = finger.ribs.phase + share * pitch;
+        let phase_mm = (share > 0.0).then_some(phase / MM);
+        planar(&Geometry::new(finger, &Design { phase_mm, ..design })?, SIZE)
+    };
+    // Collected by index, so that of several errors the same one is told.
+    let found: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
+    found.into_iter().collect()
+}
+
+/// Stiffness of fingers that was computed before. Equal fingers are equal to the bit, so
+/// whether a stiffness was remembered changes no result.
+#[derive(Debug, Default)]
+pub struct Known(Mutex<BTreeMap<String, FingerStiffness>>);
+
+impl Known {
+    /// Stiffness of a finger with an infill.
+    ///
+    /// # Errors
+    /// As of [`Geometry::new`] and [`compute`].
+    pub fn stiffness(
+        &self,
+        finger: &PrintedFinger,
+        design: &Design,
+    ) -> Result<FingerStiffness, FingerError> {
+        // Shows every number so that it reads back as the same bits.
+        let key = format!("{finger:?} {design:?}");
+        let found = self.0.lock().ok().and_then(|known| known.get(&key).copied());
+        if let Some(stiffness) = found {
+            return Ok(stiffness);
         }
+        let stiffness = compute(&Geometry::new(finger, design)?)?;
+        if let Ok(mut known) = self.0.lock() {
+            known.insert(key, stiffness);
+        }
+        Ok(stiffness)
     }
 }
 

@@ -6,25 +6,25 @@ use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, Point2 as Site, RefinementParameters,
     Triangulation,
 };
+use std::collections::BTreeSet;
 
-/// Smallest angle asked for, degrees; above 30 the refinement may not end.
+/// Smallest angle of a triangle, degrees; above 30 the refinement may not end.
 const SMALLEST_ANGLE_DEG: f64 = 25.0;
-/// More nodes than this belong to a geometry that cannot be printed.
+/// Most nodes of a profile that can be printed.
 const MOST_VERTICES: usize = 100_000;
-/// A triangle this much smaller than asked for is not divided because of its angles.
+/// Triangles below this share of the wanted area are not divided for their angles.
 const SMALLEST_SHARE: f64 = 1e-3;
 
-/// Straight-sided triangles with nodes at corners and mid-sides.
+/// Straight-sided triangles with nodes at their corners and mid-sides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    /// Places of the nodes, m.
+    /// Positions of the nodes, m.
     pub nodes: Vec<Point2<f64>>,
-    /// Nodes of each triangle, counter-clockwise: corners, then the middles of the sides
-    /// 01, 12 and 20.
+    /// Nodes of each, counter-clockwise: corners, then the middles of the sides 01, 12 and 20.
     pub triangles: Vec<[u32; 6]>,
 }
 
-/// Why there is no mesh.
+/// Reason why a profile has no mesh, or its mesh no stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
     /// Rings that cross or touch.
@@ -33,10 +33,16 @@ pub enum MeshError {
     /// Details far below the size of the triangles.
     #[error("it takes more than {MOST_VERTICES} triangles: a wall or gap is too thin")]
     TooFine,
+    /// Nodes that nothing holds.
+    #[error("a part of the finger is not connected to its base")]
+    Loose,
+    /// A stiffness matrix that is not positive definite.
+    #[error("it is not stiff")]
+    Limp,
 }
 
 impl Mesh {
-    /// Fills an outer ring less holes with triangles of about this length of side.
+    /// Fills an outer ring less its holes with triangles of sides of about `size`, m.
     ///
     /// # Errors
     /// If rings cross, or details are so small that the mesh would be huge.
@@ -50,7 +56,7 @@ impl Mesh {
         Mesh::fill(outer, holes, parameters)
     }
 
-    /// Fills an outer ring less holes with triangles that have no corners but the rings'.
+    /// Fills an outer ring less its holes with triangles that have no corners but the rings'.
     ///
     /// # Errors
     /// If rings cross.
@@ -100,8 +106,7 @@ impl Mesh {
         })))
     }
 
-    /// From triangles whose corners give: a number of the corner, one of the side to the
-    /// next corner, and the corner's place.
+    /// Mesh of triangles, given as number, number of the side to the next, and position of corners.
     fn quadratic(faces: impl Iterator<Item = [(usize, usize, Point2<f64>); 3]>) -> Mesh {
         let mut mesh = Mesh { nodes: Vec::new(), triangles: Vec::new() };
         let mut known: Vec<Option<u32>> = Vec::new();
@@ -126,27 +131,23 @@ impl Mesh {
         mesh
     }
 
-    /// The corners of a triangle.
+    /// Corners of a triangle, m, counter-clockwise.
     pub fn corners(&self, triangle: usize) -> [Point2<f64>; 3] {
         let [a, b, c, ..] = self.triangles[triangle];
         [a, b, c].map(|node| self.nodes[node as usize])
     }
 
-    /// The nodes around the solid and around its openings, in order along each.
+    /// Nodes around the solid and around each opening, in their order along it.
     pub fn boundary(&self) -> Vec<Vec<usize>> {
-        let inside: std::collections::BTreeSet<(u32, u32)> = self
-            .triangles
-            .iter()
-            .flat_map(|t| [(t[1], t[0]), (t[2], t[1]), (t[0], t[2])])
-            .collect();
+        let sides = || {
+            let of = |&[a, b, c, ab, bc, ca]: &[u32; 6]| [(a, ab, b), (b, bc, c), (c, ca, a)];
+            self.triangles.iter().flat_map(of)
+        };
+        let inside: BTreeSet<_> = sides().map(|(from, _, to)| (to, from)).collect();
         // From a corner on the boundary: the side's middle and the next corner.
         let mut next: Vec<Option<(u32, u32)>> = vec![None; self.nodes.len()];
-        for &[a, b, c, ab, bc, ca] in &self.triangles {
-            for (from, middle, to) in [(a, ab, b), (b, bc, c), (c, ca, a)] {
-                if !inside.contains(&(from, to)) {
-                    next[from as usize] = Some((middle, to));
-                }
-            }
+        for (from, middle, to) in sides().filter(|(from, _, to)| !inside.contains(&(*from, *to))) {
+            next[from as usize] = Some((middle, to));
         }
         let mut rings = Vec::new();
         for start in 0..next.len() {
@@ -161,10 +162,5 @@ impl Mesh {
             }
         }
         rings
-    }
-
-    /// Area of all triangles, m2.
-    pub fn area(&self) -> f64 {
-        (0..self.triangles.len()).map(|t| super::polygon::area(&self.corners(t))).sum()
     }
 }

@@ -1,15 +1,15 @@
-//! The sides of a finger: its marked points, and its outline moved inwards.
+//! Marked points and directions of a finger, and its outline moved inwards.
 
 use super::polygon::Ring;
 use crate::printed::Outline;
 use input::units::{DEG, MM};
 use nalgebra::{Point2, Vector2};
 
-/// The arc of the back is drawn in chords that leave it by at most this, m.
+/// Largest distance of the arc of the back from its chords, m.
 const SAGITTA: f64 = 0.001 * MM;
 
 impl Outline {
-    /// The tip.
+    /// Tip of the finger, m.
     pub fn tip_point(&self) -> Point2<f64> {
         Point2::new(0.0, -self.tip)
     }
@@ -25,27 +25,27 @@ impl Outline {
         Vector2::new(-z.y, z.x)
     }
 
-    /// The corner between pad and roof.
+    /// Corner between pad and roof, m.
     pub fn corner(&self) -> Point2<f64> {
         self.tip_point() + self.along_pad() * self.pad
     }
 
-    /// The middle of the pad, where stiffness is stated.
+    /// Middle of the pad, where stiffness is stated, m.
     pub fn pad_middle(&self) -> Point2<f64> {
         self.tip_point() + self.along_pad() * (self.pad / 2.0)
     }
 
-    /// Length of the roof, from the corner to the front.
+    /// Length of the roof, from the corner to the front side, m.
     pub fn roof_length(&self) -> f64 {
         -self.corner().y / self.out_of_pad().y
     }
 
-    /// Where along the finger the arc of the back ends and the straight back begins, m.
+    /// X at which the arc of the back ends and the straight back begins, m.
     pub fn arc_end(&self) -> f64 {
         self.arc_centre().unwrap_or_default().x
     }
 
-    /// Centre of the arc, if the radius reaches from the tip to the back.
+    /// Centre of the arc, m, if the radius reaches from the tip to the back.
     pub(super) fn arc_centre(&self) -> Option<Point2<f64>> {
         let rise = self.width - self.tip;
         let square = rise * (2.0 * self.back_radius - rise);
@@ -54,8 +54,8 @@ impl Outline {
     }
 }
 
-/// The outline moved inwards by `inset` and cut off at X = `end`, counter-clockwise from
-/// the tip. Lines and arc are moved each for itself and meet in mitred corners.
+/// Outline moved inwards by `inset` and cut off at X = `end`, m, counter-clockwise from the tip.
+/// Lines and arc are moved each for itself and meet in mitred corners.
 pub(super) fn ring(outline: &Outline, inset: f64, end: f64) -> Ring {
     let (z, y) = (outline.along_pad(), outline.out_of_pad());
     let centre = outline.arc_centre().unwrap_or_default();
@@ -76,12 +76,10 @@ pub(super) fn ring(outline: &Outline, inset: f64, end: f64) -> Ring {
         .collect();
     let corner = outline.corner() + (z - y) * inset;
     let roof_top = corner + y * ((-inset - corner.y) / y.y);
-    ring.push(Point2::new(end, inset - outline.width));
-    ring.push(Point2::new(end, -inset));
+    ring.extend([Point2::new(end, inset - outline.width), Point2::new(end, -inset), roof_top]);
     if inset == 0.0 {
-        ring.extend([roof_top, outline.corner() + y * outline.roof, corner]);
-    } else {
-        ring.extend([roof_top, corner]);
+        ring.push(outline.corner() + y * outline.roof);
     }
+    ring.push(corner);
     ring
 }

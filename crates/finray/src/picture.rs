@@ -1,10 +1,12 @@
 //! A picture of a finger that bends under a load on its pad.
 
 use super::FingerError;
-use super::elasticity::PlaneStress;
+use super::condense::condense;
+use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
 use super::mechanics::SIZE;
-use super::model::{Body, Model};
+use super::mesh::MeshError;
+use super::meshed::{Body, MeshedFinger};
 use super::stiffness::PlanarStiffness;
 use crate::printed::Outline;
 use input::units::MM;
@@ -13,20 +15,20 @@ use std::fmt::Write;
 
 /// Pixels per millimetre.
 const SCALE: f64 = 12.0;
-/// Room around the finger, mm: left, top, right, bottom.
+/// Margins around the finger, mm: left, top, right, bottom.
 const MARGIN: [f64; 4] = [9.0, 12.0, 4.0, 11.0];
-/// The largest displacement is drawn at most this long, mm.
+/// Longest displacement in the picture, mm.
 const LONGEST: f64 = 5.0;
 /// Length of the scale bar, mm.
 const BAR: f64 = 10.0;
 
-/// Draws the finger at rest (light) and under a force on its pad, y and z in N (dark), as a
-/// stand-alone SVG. The part touches the pad alone and does not hold it from turning.
+/// Stand-alone SVG of the finger at rest (light) and under a force on its pad, y and z in N
+/// (dark). The part touches the pad alone and does not hold it from turning.
 ///
 /// # Errors
 /// If the finger's stiffness cannot be computed.
 pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> {
-    let bent = Bent::new(geometry, force)?;
+    let bent = Bent::new(geometry, force).map_err(|error| FingerError::mesh(geometry, error))?;
     let outline = &geometry.finger.outline;
     let [left, top, right, bottom] = MARGIN;
     let (width, height) = (outline.length / MM + left + right, outline.width / MM + top + bottom);
@@ -38,74 +40,63 @@ pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> 
         height * SCALE,
     );
     words(&mut out, geometry, force, bent.exaggeration, height);
+    let boundary = bent.meshed.mesh.boundary();
     let rings = |at: &dyn Fn(usize) -> Point2<f64>| {
-        bent.rings.iter().map(|ring| path(ring.iter().map(|&node| at(node)))).collect::<String>()
+        boundary.iter().map(|ring| path(ring.iter().map(|&node| at(node)))).collect::<String>()
     };
-    shape(&mut out, &rings(&|node| bent.model.mesh.nodes[node]), "#d9dde3");
+    shape(&mut out, &rings(&|node| bent.meshed.mesh.nodes[node]), "#d9dde3");
     shape(&mut out, &rings(&|node| bent.moved(node)), "#33507a");
     shape(&mut out, &path(base(outline).into_iter()), "#8a8f98");
-    let pad: Vec<String> = [outline.tip_point(), outline.corner()]
-        .iter()
-        .map(|p| pixels(p + bent.rigid(p) * bent.exaggeration))
-        .collect();
+    let [tip, corner] = [outline.tip_point(), outline.corner()]
+        .map(|p| pixels(p + bent.rigid(outline, &p) * bent.exaggeration));
     // Writing to a string cannot fail.
     let _ = writeln!(
         out,
-        "<polyline points=\"{}\" fill=\"none\" stroke=\"#e8a33d\" stroke-width=\"4\"/>\n</svg>",
-        pad.join(" ")
+        "<polyline points=\"{tip} {corner}\" fill=\"none\" stroke=\"#e8a33d\" \
+         stroke-width=\"4\"/>\n</svg>"
     );
     Ok(out)
 }
 
-/// A finger under load.
+/// Finger under load.
 struct Bent {
-    model: Model,
+    meshed: MeshedFinger,
     /// Two numbers for each node, m.
     displacements: Vec<f64>,
     exaggeration: f64,
-    outline: Outline,
+    /// Motion of the pad along y and z and about x, m and rad.
     motion: Vector3<f64>,
-    /// Nodes around the solid and its openings.
-    rings: Vec<Vec<usize>>,
 }
 
 impl Bent {
-    fn new(geometry: &Geometry, [y, z]: [f64; 2]) -> Result<Self, FingerError> {
-        let fails = |problem: &dyn std::fmt::Display| FingerError::mesh(geometry, problem);
-        let model = Model::new(geometry, SIZE).map_err(|error| fails(&error))?;
-        let element = PlaneStress::of(&geometry.finger);
-        let condensed = model.condense(&element, true).map_err(|error| fails(&error))?;
-        let held = model.hold(&condensed, &element, Body::Pad).map_err(|error| fails(&error))?;
-        let stiffness =
-            PlanarStiffness::new(held.stiffness).ok_or_else(|| fails(&"it is not stiff"))?;
+    fn new(geometry: &Geometry, [y, z]: [f64; 2]) -> Result<Self, MeshError> {
+        let meshed = MeshedFinger::new(geometry, SIZE)?;
+        let element = PlaneStress(Slab::of(&geometry.finger));
+        let condensed = condense(&meshed.mesh, &element, &meshed.roles, true)?;
+        let held = meshed.hold(&condensed, &element, Body::Pad)?;
+        let stiffness = PlanarStiffness::new(held.stiffness).ok_or(MeshError::Limp)?;
         let motion = stiffness.displacement(&Vector3::new(y, z, 0.0));
         let displacements = condensed.expand(&held.kept(&motion));
         let largest = displacements.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
-        Ok(Bent {
-            rings: model.mesh.boundary(),
-            model,
-            displacements,
-            exaggeration: round(LONGEST * MM / largest),
-            outline: geometry.finger.outline,
-            motion,
-        })
+        let exaggeration = round(LONGEST * MM / largest);
+        Ok(Bent { meshed, displacements, exaggeration, motion })
     }
 
     fn moved(&self, node: usize) -> Point2<f64> {
         let by = Vector2::new(self.displacements[2 * node], self.displacements[2 * node + 1]);
-        self.model.mesh.nodes[node] + by * self.exaggeration
+        self.meshed.mesh.nodes[node] + by * self.exaggeration
     }
 
     /// Displacement of a point of the pad, m.
-    fn rigid(&self, point: &Point2<f64>) -> Vector2<f64> {
-        let [y, z] = self.model.local(point);
+    fn rigid(&self, outline: &Outline, point: &Point2<f64>) -> Vector2<f64> {
+        let [y, z] = self.meshed.local(point);
         let turn = self.motion.z;
-        self.outline.out_of_pad() * (self.motion.x - turn * z)
-            + self.outline.along_pad() * (self.motion.y + turn * y)
+        outline.out_of_pad() * (self.motion.x - turn * z)
+            + outline.along_pad() * (self.motion.y + turn * y)
     }
 }
 
-/// The largest of 1, 2, 5, 10, ... that is not above a number; 0 for what is no number.
+/// Largest of 1, 2, 5, 10, ... that is not above a number; 0 unless it is finite and above 0.
 fn round(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 0.0;
@@ -115,10 +106,10 @@ fn round(value: f64) -> f64 {
 }
 
 fn words(out: &mut String, geometry: &Geometry, [y, z]: [f64; 2], factor: f64, height: f64) {
-    let design = &geometry.design;
+    let (name, design) = (&geometry.finger.name, &geometry.design);
     let title = format!(
-        "{}: infill {} %, {}°; {:.1} N in y and {:.1} N in z on the pad",
-        geometry.finger.name, design.density_percent, design.direction_deg, y, z
+        "{name}: infill {} %, {}°; {y:.1} N in y and {z:.1} N in z on the pad",
+        design.density_percent, design.direction_deg
     );
     let note = format!(
         "light: at rest; dark: under load, displacements × {factor}; orange: pad, rigid; \
@@ -142,15 +133,11 @@ fn shape(out: &mut String, path: &str, fill: &str) {
     let _ = writeln!(out, "<path d=\"{path}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>");
 }
 
-/// The clamped base.
+/// Corners of the clamped base, m.
 fn base(outline: &Outline) -> [Point2<f64>; 4] {
-    let start = outline.length - outline.clamped;
-    [
-        Point2::new(start, 0.0),
-        Point2::new(outline.length, 0.0),
-        Point2::new(outline.length, -outline.width),
-        Point2::new(start, -outline.width),
-    ]
+    let Outline { length, width, clamped, .. } = *outline;
+    let start = length - clamped;
+    [[start, 0.0], [length, 0.0], [length, -width], [start, -width]].map(Point2::from)
 }
 
 fn path(points: impl Iterator<Item = Point2<f64>>) -> String {

@@ -6,24 +6,17 @@
 //! 18:31, shear factor 5/6 after Reissner 1945, J. Appl. Mech. 12:A69.)
 
 use super::condense::Element;
-use super::elasticity::{Shape, area, shape};
+use super::elasticity::{Shape, Slab, area, shape};
 use nalgebra::Point2;
 
-/// A plate loaded across its plane.
+/// Slab loaded across its plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MindlinPlate {
-    /// Young's modulus, N/m2.
-    pub modulus: f64,
-    /// Poisson's ratio.
-    pub poisson: f64,
-    /// Thickness of the plate, m.
-    pub thickness: f64,
-}
+pub struct MindlinPlate(pub Slab);
 
 /// Share of the cross section that carries shear.
 const SHEAR_FACTOR: f64 = 5.0 / 6.0;
 
-/// Two sets of three points, their first area coordinate and weight: exact to degree 4
+/// First area coordinate and weight of two sets of three points: exact to degree 4
 /// (Dunavant 1985, Int. J. Numer. Meth. Eng. 21:1129).
 const POINTS: [(f64, f64); 2] = [
     (0.108_103_018_168_070, 0.223_381_589_678_011),
@@ -63,11 +56,11 @@ impl MindlinPlate {
         }
     }
 
-    /// Moments and shear forces on a unit of length.
+    /// Moments and shear forces by unit of length.
     fn stress(&self, [xx, yy, xy, x, y]: &Strains) -> Strains {
-        let nu = self.poisson;
-        let bending = self.modulus * self.thickness.powi(3) / 12.0 / (1.0 - nu * nu);
-        let shear = SHEAR_FACTOR * self.modulus / 2.0 / (1.0 + nu) * self.thickness;
+        let Slab { modulus, poisson: nu, thickness } = self.0;
+        let bending = modulus * thickness.powi(3) / 12.0 / (1.0 - nu * nu);
+        let shear = SHEAR_FACTOR * modulus / 2.0 / (1.0 + nu) * thickness;
         [
             bending * (xx + nu * yy),
             bending * (yy + nu * xx),
@@ -78,7 +71,7 @@ impl MindlinPlate {
     }
 }
 
-/// Strains from a unit of one degree of freedom.
+/// Strains under a unit of one degree of freedom.
 fn strains(shape: &Shape, freedom: usize) -> Strains {
     let value = shape.values[freedom / 3];
     let [dx, dy] = shape.gradients[freedom / 3];

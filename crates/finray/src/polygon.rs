@@ -2,31 +2,25 @@
 
 use nalgebra::{Point2, Vector2};
 
-/// A closed ring of corners without repetition of the first; counter-clockwise rings
-/// enclose what is to their left.
+/// Closed ring of corners without repetition of the first; its inside is on the left.
 pub type Ring = Vec<Point2<f64>>;
 
-/// Twice the area that two vectors span, positive if the second lies to the left.
-fn cross(a: Vector2<f64>, b: Vector2<f64>) -> f64 {
-    a.perp(&b)
-}
-
-/// The edges of a ring, each as its two ends.
+/// Edges of a ring, each as its two ends.
 pub fn edges(ring: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> {
     ring.iter().copied().zip(ring.iter().copied().cycle().skip(1))
 }
 
-/// Area, negative for a clockwise ring.
+/// Area of a ring, negative if it is clockwise.
 pub fn area(ring: &[Point2<f64>]) -> f64 {
-    edges(ring).map(|(a, b)| cross(a.coords, b.coords)).sum::<f64>() / 2.0
+    edges(ring).map(|(a, b)| a.coords.perp(&b.coords)).sum::<f64>() / 2.0
 }
 
-/// Length of the ring.
+/// Length around a ring.
 pub fn perimeter(ring: &[Point2<f64>]) -> f64 {
     edges(ring).map(|(a, b)| (b - a).norm()).sum()
 }
 
-/// Whether two edges of the ring that do not follow one another meet.
+/// Whether two edges of a ring that do not follow one another meet.
 pub fn crosses_itself(ring: &[Point2<f64>]) -> bool {
     let edges: Vec<_> = edges(ring).collect();
     let neighbours = |i: usize, j: usize| j == i + 1 || (i == 0 && j == edges.len() - 1);
@@ -37,13 +31,12 @@ pub fn crosses_itself(ring: &[Point2<f64>]) -> bool {
 
 fn segments_meet(a: (Point2<f64>, Point2<f64>), b: (Point2<f64>, Point2<f64>)) -> bool {
     let apart = |(from, to): (Point2<f64>, Point2<f64>), p: Point2<f64>, q: Point2<f64>| {
-        let (p, q) = (cross(to - from, p - from), cross(to - from, q - from));
-        p * q > 0.0
+        (to - from).perp(&(p - from)) * (to - from).perp(&(q - from)) > 0.0
     };
     !apart(a, b.0, b.1) && !apart(b, a.0, a.1)
 }
 
-/// The half of the plane in which `normal . p >= offset`.
+/// Half of the plane in which `normal . p >= offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfPlane {
     /// Unit vector into the half plane.
@@ -53,13 +46,12 @@ pub struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// How far a point lies inside.
+    /// Distance of a point from the edge, positive inside.
     pub fn depth(&self, point: Point2<f64>) -> f64 {
         self.normal.dot(&point.coords) - self.offset
     }
 
-    /// What of a counter-clockwise ring lies in the half plane: any number of rings, since
-    /// a bent one may be cut into several.
+    /// Parts of a counter-clockwise ring in the half plane: a bent one may be cut into several.
     pub fn cut(&self, ring: &[Point2<f64>]) -> Vec<Ring> {
         let inside = |p: &Point2<f64>| self.depth(*p) >= 0.0;
         let Some(start) = ring.iter().position(|p| !inside(p)) else { return vec![ring.to_vec()] };
@@ -84,8 +76,8 @@ impl HalfPlane {
         a + (b - a) * (at_a / (at_a - at_b))
     }
 
-    /// Joins pieces that enter and leave across the edge to closed rings: in their order
-    /// along the edge, crossings bound what is inside in pairs.
+    /// Joins pieces that enter and leave across the edge to closed rings: in their order along
+    /// the edge, crossings bound the inside in pairs.
     fn close(&self, chains: Vec<Ring>) -> Vec<Ring> {
         let along = Vector2::new(-self.normal.y, self.normal.x);
         // (place along the edge, chain, whether it is the chain's end)
@@ -123,7 +115,7 @@ impl HalfPlane {
     }
 }
 
-/// The ring without corners closer to the one before than `distance`.
+/// The ring without corners closer than `distance` to the one before.
 pub fn without_repeats(ring: &[Point2<f64>], distance: f64) -> Ring {
     let mut kept: Ring = Vec::with_capacity(ring.len());
     for &p in ring {

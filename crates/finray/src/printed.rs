@@ -1,28 +1,28 @@
-//! A printed finger: outline, skin, ribs and material, from a file.
+//! Finger files: outline, skin, ribs and material of a printed finger.
 
 use input::units::{DEG, MM};
 use input::{Check, InputError, read};
 use nalgebra::Point2;
 use serde::Deserialize;
 
-/// A finger as its file describes it, SI units; a design adds the infill.
+/// Printed finger as its file describes it, SI units; a design adds the infill.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrintedFinger {
     /// Name, as used on the command line.
     pub name: String,
     /// One line for lists.
     pub description: String,
-    /// The file, for messages.
+    /// Name of the file, for messages.
     pub file: String,
     /// Table of measured fingers of this shape and material.
     pub measured: Option<String>,
-    /// Its sides.
+    /// Outline of the profile.
     pub outline: Outline,
     /// Thickness of the skin all round, m.
     pub skin: f64,
-    /// What fills the inside.
+    /// Rule of the ribs.
     pub ribs: Ribs,
-    /// What it is printed of.
+    /// Material of the print.
     pub material: Material,
     /// Angle between the finger's axis and the assembly direction, rad.
     pub tilt: f64,
@@ -32,16 +32,16 @@ pub struct PrintedFinger {
     pub smallest_gap: f64,
 }
 
-/// The sides of a finger, m; X along it from the tip, Y across it from the front.
+/// Outline of a finger, m; X along it from the tip, Y across it from its front side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outline {
-    /// From tip to end.
+    /// Length from tip to end.
     pub length: f64,
-    /// From front to back.
+    /// Width from front side to back.
     pub width: f64,
-    /// Of the extruded profile.
+    /// Depth of the extruded profile.
     pub depth: f64,
-    /// How far the tip lies behind the front.
+    /// Distance of the tip behind the front side.
     pub tip: f64,
     /// Radius of the arc between back and tip.
     pub back_radius: f64,
@@ -57,23 +57,23 @@ pub struct Outline {
     pub clamped: f64,
 }
 
-/// The rule by which ribs fill a finger.
+/// Rule by which ribs fill a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ribs {
     /// Thickness of a rib, m.
     pub thickness: f64,
     /// Pitch across the ribs times the density (a share), m.
     pub line_spacing: f64,
-    /// From where ribs are counted, m.
+    /// Point from which ribs are counted, m.
     pub origin: Point2<f64>,
     /// Distance of the first centre line from the origin, m.
     pub phase: f64,
 }
 
-/// A linearly elastic material.
+/// Linearly elastic material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// Its name.
+    /// Name, as `PETG`.
     pub name: String,
     /// Young's modulus, N/m2.
     pub modulus: f64,
@@ -81,87 +81,47 @@ pub struct Material {
     pub poisson: f64,
     /// Density, kg/m3.
     pub density: f64,
-    /// Where the values come from.
+    /// Source of the values.
     pub source: String,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawFinger {
-    name: String,
-    description: String,
-    measured: Option<String>,
-    outline: RawOutline,
-    notch: RawNotch,
-    skin: RawSkin,
-    ribs: RawRibs,
-    base: RawBase,
-    mount: RawMount,
-    material: RawMaterial,
-    print: RawPrint,
+/// Declares the tables of a finger file; other keys are errors.
+macro_rules! tables {
+    ($($table:ident { $($key:ident: $kind:ty),* $(,)? })*) => {
+        $(#[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct $table { $($key: $kind),* })*
+    };
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawOutline {
-    length_mm: f64,
-    width_mm: f64,
-    depth_mm: f64,
-    tip_mm: f64,
-    back_radius_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawNotch {
-    pad_mm: f64,
-    pad_deg: f64,
-    roof_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawSkin {
-    thickness_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawRibs {
-    thickness_mm: f64,
-    line_spacing_mm: f64,
-    origin_mm: [f64; 2],
-    phase_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawBase {
-    solid_mm: f64,
-    clamped_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawMount {
-    tilt_deg: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawMaterial {
-    name: String,
-    modulus_gpa: f64,
-    poisson: f64,
-    density_kg_per_m3: f64,
-    source: String,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawPrint {
-    line_width_mm: f64,
-    smallest_gap_mm: f64,
+tables! {
+    RawFinger {
+        name: String,
+        description: String,
+        measured: Option<String>,
+        outline: RawOutline,
+        notch: RawNotch,
+        skin: RawSkin,
+        ribs: RawRibs,
+        base: RawBase,
+        mount: RawMount,
+        material: RawMaterial,
+        print: RawPrint,
+    }
+    RawOutline { length_mm: f64, width_mm: f64, depth_mm: f64, tip_mm: f64, back_radius_mm: f64 }
+    RawNotch { pad_mm: f64, pad_deg: f64, roof_mm: f64 }
+    RawSkin { thickness_mm: f64 }
+    RawRibs { thickness_mm: f64, line_spacing_mm: f64, origin_mm: [f64; 2], phase_mm: f64 }
+    RawBase { solid_mm: f64, clamped_mm: f64 }
+    RawMount { tilt_deg: f64 }
+    RawMaterial {
+        name: String,
+        modulus_gpa: f64,
+        poisson: f64,
+        density_kg_per_m3: f64,
+        source: String,
+    }
+    RawPrint { line_width_mm: f64, smallest_gap_mm: f64 }
 }
 
 impl PrintedFinger {
@@ -174,7 +134,7 @@ impl PrintedFinger {
         PrintedFinger::checked(read(text, file)?, file)
     }
 
-    /// The same of a file that was read as TOML already.
+    /// [`PrintedFinger::parse`] of a file that was read as TOML already.
     ///
     /// # Errors
     /// As of [`PrintedFinger::parse`].
@@ -204,12 +164,10 @@ impl PrintedFinger {
     }
 }
 
-/// Longest length that a finger may have, mm: beyond it the units are wrong.
+/// Longest length, mm: beyond it the units are wrong.
 const LONGEST_MM: f64 = 500.0;
-/// Highest modulus, GPa: steel has 210.
-const STIFFEST_GPA: f64 = 500.0;
-/// Softest modulus, GPa: silicone has about 0.001.
-const SOFTEST_GPA: f64 = 1e-4;
+/// Moduli, GPa: silicone has about 0.001, steel 210.
+const MODULI_GPA: std::ops::RangeInclusive<f64> = 1e-4..=500.0;
 /// Largest angle, degrees: beyond it the notch is no notch.
 const STEEPEST_DEG: f64 = 60.0;
 
@@ -258,11 +216,10 @@ fn ribs(check: Check<'_>, raw: &RawRibs) -> Result<Ribs, InputError> {
 
 fn material(check: Check<'_>, raw: RawMaterial) -> Result<Material, InputError> {
     let modulus = check.positive("material.modulus_gpa", raw.modulus_gpa)?;
-    if !(SOFTEST_GPA..=STIFFEST_GPA).contains(&modulus) {
-        let problem = format!(
-            "is {modulus}; it must be from {SOFTEST_GPA} to {STIFFEST_GPA} (gigapascals; \
-                 PETG has 2)"
-        );
+    if !MODULI_GPA.contains(&modulus) {
+        let (least, most) = (MODULI_GPA.start(), MODULI_GPA.end());
+        let problem =
+            format!("is {modulus}; it must be from {least} to {most} (gigapascals; PETG has 2)");
         return check.fail("material.modulus_gpa", problem);
     }
     let poisson = check.not_negative("material.poisson", raw.poisson)?;

@@ -1,4 +1,4 @@
-//! What a finger's stiffness matrix says: springs, remote centre, coupling.
+//! Springs, remote centre and coupling of a finger from its stiffness matrix.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -11,24 +11,23 @@ pub struct PlanarStiffness {
 }
 
 impl PlanarStiffness {
-    /// From forces and moment (N, N, N m) per displacement (m, m, rad); `None` unless the
-    /// matrix is positive definite.
+    /// From N, N, N m per m, m, rad; `None` unless the matrix is positive definite.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
         let stiffness = (stiffness + stiffness.transpose()) / 2.0;
         let compliance = stiffness.cholesky()?.inverse();
         Some(PlanarStiffness { stiffness, compliance })
     }
 
-    /// The same finger with these free stiffnesses in y and z, N/m, and the same stiffness against
-    /// tilting. The correlations of the compliances stay, so what was positive definite is: the
-    /// centre's distances change by the roots of new over old compliance.
+    /// Finger with these free stiffnesses in y and z, N/m, and the same against tilting. The
+    /// correlations of the compliances stay, so it is positive definite, too: the centre's
+    /// distances change by the roots of new over old compliance.
     pub fn corrected(&self, compliance: f64, assembly: f64) -> Option<Self> {
         let free = [self.in_compliance() / compliance, self.in_assembly() / assembly, 1.0];
         let roots = Matrix3::from_diagonal(&Vector3::from(free.map(f64::sqrt)));
         PlanarStiffness::new((roots * self.compliance * roots).try_inverse()?)
     }
 
-    /// The matrix: N/m, N/rad, N m/rad; order y, z, rx.
+    /// Stiffness matrix: N/m, N/rad, N m/rad; order y, z, rx.
     pub fn matrix(&self) -> &Matrix3<f64> {
         &self.stiffness
     }
@@ -53,19 +52,18 @@ impl PlanarStiffness {
         1.0 / self.compliance[(2, 2)]
     }
 
-    /// How far the remote centre, which a moment does not move, lies below the pad's middle
+    /// Distance of the remote centre, which a moment does not move, below the pad's middle
     /// (towards the tip and beyond), m.
     pub fn centre_below_pad(&self) -> f64 {
         -self.compliance[(0, 2)] / self.compliance[(2, 2)]
     }
 
-    /// How far the remote centre lies in front of the pad's face, towards the part, m.
+    /// Distance of the remote centre in front of the pad's face, towards the part, m.
     pub fn centre_in_front(&self) -> f64 {
         -self.compliance[(1, 2)] / self.compliance[(2, 2)]
     }
 
-    /// Correlation of the compliances in y and z, -1 .. 1: above 0, a pad that is pushed up
-    /// moves towards the part.
+    /// Correlation of the compliances in y and z, -1 .. 1; above 0 a pad pushed up nears the part.
     pub fn coupling_yz(&self) -> f64 {
         let c = &self.compliance;
         c[(0, 1)] / (c[(0, 0)] * c[(1, 1)]).sqrt()
@@ -75,36 +73,22 @@ impl PlanarStiffness {
 /// Stiffness of a finger across its plane, at the pad's middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrossStiffness {
-    stiffness: Matrix3<f64>,
-    compliance: Matrix3<f64>,
+    /// Stiffness matrix: N/m, N/rad, N m/rad; order x, ry, rz.
+    pub matrix: Matrix3<f64>,
+    /// Stiffness in x, ry and rz free, N/m.
+    pub in_depth: f64,
+    /// Stiffness against turning about y, x and rz free, N m/rad.
+    pub about_y: f64,
+    /// Stiffness against turning about z, x and ry free, N m/rad.
+    pub about_z: f64,
 }
 
 impl CrossStiffness {
-    /// From a force and moments (N, N m, N m) per displacement (m, rad, rad) in x, ry and
-    /// rz; `None` unless the matrix is positive definite.
+    /// From N, N m, N m per m, rad, rad; `None` unless the matrix is positive definite.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
-        let PlanarStiffness { stiffness, compliance } = PlanarStiffness::new(stiffness)?;
-        Some(CrossStiffness { stiffness, compliance })
-    }
-
-    /// The matrix: N/m, N/rad, N m/rad; order x, ry, rz.
-    pub fn matrix(&self) -> &Matrix3<f64> {
-        &self.stiffness
-    }
-
-    /// Stiffness in x, across the finger's plane, ry and rz free, N/m.
-    pub fn in_depth(&self) -> f64 {
-        1.0 / self.compliance[(0, 0)]
-    }
-
-    /// Stiffness against turning about y, N m/rad; x and rz free.
-    pub fn about_y(&self) -> f64 {
-        1.0 / self.compliance[(1, 1)]
-    }
-
-    /// Stiffness against turning about z, N m/rad; x and ry free.
-    pub fn about_z(&self) -> f64 {
-        1.0 / self.compliance[(2, 2)]
+        let PlanarStiffness { stiffness: matrix, compliance } = PlanarStiffness::new(stiffness)?;
+        let [in_depth, about_y, about_z] = [0, 1, 2].map(|i| 1.0 / compliance[(i, i)]);
+        Some(CrossStiffness { matrix, in_depth, about_y, about_z })
     }
 }
 
@@ -115,17 +99,17 @@ mod tests {
     /// Springs that sit at a centre away from the pad, seen from the pad's middle.
     #[test]
     fn springs_at_a_remote_centre_are_found_again() {
-        let (ky, kz, kt, below, front) = (2e3, 4e4, 5.0, 0.02, 0.004);
-        // Displacement of the centre (y = front, z = -below) by that of the pad.
-        let to_centre = Matrix3::new(1.0, 0.0, below, 0.0, 1.0, front, 0.0, 0.0, 1.0);
+        let (ky, kz, kt, below, ahead) = (2e3, 4e4, 5.0, 0.02, 0.004);
+        // Displacement of the centre (y = ahead, z = -below) by that of the pad.
+        let to_centre = Matrix3::new(1.0, 0.0, below, 0.0, 1.0, ahead, 0.0, 0.0, 1.0);
         let springs = Matrix3::from_diagonal(&Vector3::new(ky, kz, kt));
         let pad = PlanarStiffness::new(to_centre.transpose() * springs * to_centre).unwrap();
         assert!((pad.tilting() - kt).abs() < 1e-9 * kt);
         assert!((pad.centre_below_pad() - below).abs() < 1e-12);
-        assert!((pad.centre_in_front() - front).abs() < 1e-12);
+        assert!((pad.centre_in_front() - ahead).abs() < 1e-12);
         let softer = 1.0 / (1.0 / ky + below * below / kt);
         assert!((pad.in_compliance() - softer).abs() < 1e-9 * softer);
-        let softer = 1.0 / (1.0 / kz + front * front / kt);
+        let softer = 1.0 / (1.0 / kz + ahead * ahead / kt);
         assert!((pad.in_assembly() - softer).abs() < 1e-9 * softer);
         assert!(pad.coupling_yz() > 0.0);
     }

@@ -1,6 +1,6 @@
 //! What the models say, read back as XML.
 
-use contact::direct::DirectSettings;
+use contact::direct::Direct;
 use contact::mjcf::*;
 use contact::scene::*;
 use input::shipped::{ROBOTS, Shipped, TASKS};
@@ -165,7 +165,7 @@ fn contacts_have_the_stiffness_and_friction_of_the_pair() {
 
 #[test]
 fn the_give_of_contacts_is_that_of_the_engine_direct() {
-    let (ours, direct) = (MjcfSettings::default(), DirectSettings::default());
+    let (ours, direct) = (MjcfSettings::default(), Direct::default());
     assert_eq!(ours.contact_stiffness, direct.contact_stiffness);
     assert_eq!(ours.contact_damping, direct.contact_damping);
     assert_eq!(ours.stick_damping, direct.stick_damping);

@@ -7,7 +7,6 @@ use crate::analytic;
 use crate::compare::{TaskWays, Way, pairs};
 use clap::Args;
 use contact::Engine;
-use contact::rapier::Rapier;
 use finger_opt::session::{self, DEFAULT_ROBOT};
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::tolerance::Search;
@@ -53,9 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let name = engine.name();
         return Err(Failure::usage(format!("--engine {name} simulates no contacts to be checked")));
     }
-    // `build` answers alike whatever the step, so the second engine is never needed.
-    let make =
-        |factor: f64| engine.build(factor).engine().unwrap_or_else(|| Box::<Rapier>::default());
+    let make = |factor: f64| engine.build(factor);
     if arguments.convergence || arguments.searches {
         return arguments.windows(&|| make(1.0));
     }

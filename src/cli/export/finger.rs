@@ -5,7 +5,7 @@ use crate::session::PrintRequest;
 use crate::study::write_file;
 use clap::{Args, ValueEnum};
 use finray::export::prism::Prism;
-use finray::export::{self, drawing, dxf, sheet, slicer, stl, three_mf};
+use finray::export::{self, profile, sheet, slicer};
 use finray::geometry::Geometry;
 use finray::mechanics;
 use std::path::{Path, PathBuf};
@@ -67,14 +67,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let geometry = request.geometry()?;
     let (out, title) = (&arguments.out, export::title(&geometry));
     match arguments.format {
-        Format::Stl => write_file(out, &stl::write(&finger(&geometry)?, &title))?,
+        Format::Stl => write_file(out, &finger(&geometry)?.stl(&title))?,
         Format::ThreeMf => {
-            let bytes = three_mf::write(&finger(&geometry)?, &title)
+            let bytes = finger(&geometry)?
+                .three_mf(&title)
                 .map_err(|error| Failure::running(format!("{}: {error}", out.display())))?;
             write_file(out, &bytes)?;
         }
-        Format::Svg => write_file(out, &drawing::svg(&geometry, &title))?,
-        Format::Dxf => write_file(out, &dxf::write(&geometry, &title))?,
+        Format::Svg => write_file(out, &profile::svg(&geometry, &title))?,
+        Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
         Format::Sheet => write_file(out, &page(&geometry, out)?)?,
         Format::Cura => return settings(out, &geometry, &slicer::cura(&geometry)),
         Format::Prusaslicer => return settings(out, &geometry, &slicer::prusaslicer(&geometry)),
@@ -115,11 +116,8 @@ fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<(), Failure> 
     let [outline, base] = ["outline", "base"].map(beside);
     let [outline_part, base_part] = [Prism::outline(geometry), Prism::base(geometry)];
     write_file(out, text)?;
-    write_file(
-        &outline,
-        &stl::write(&closed(outline_part, geometry)?, &format!("{title}, outline")),
-    )?;
-    write_file(&base, &stl::write(&closed(base_part, geometry)?, &format!("{title}, solid base")))?;
+    write_file(&outline, &closed(outline_part, geometry)?.stl(&format!("{title}, outline")))?;
+    write_file(&base, &closed(base_part, geometry)?.stl(&format!("{title}, solid base")))?;
     print(&format!(
         "wrote settings for {title}: {}\n\
          to be sliced with them: {}\n\

@@ -1,8 +1,9 @@
 //! A film as JSON for the page: mm, s, N.
 
 use super::Film;
+use contact::ContactPoint;
 use contact::scene::{Geom, Pose};
-use contact::{ContactPoint, surface};
+use contact::shapes::surface;
 use input::units::MM;
 use insertion::outcome::Outcome;
 use insertion::trial::record::Frame;
@@ -106,14 +107,13 @@ pub(super) fn thinned(frames: &[Frame], every: f64) -> Vec<&Frame> {
 
 fn shapes((kind, of, geoms): &(&str, &str, Vec<Geom>)) -> Vec<Value> {
     let one = |geom: &Geom| {
-        let found = surface(&geom.shape);
-        let points: Vec<f64> = found
-            .points
+        let (points, triangles) = surface(&geom.shape);
+        let points: Vec<f64> = points
             .iter()
             .flat_map(|p| <[f64; 3]>::from((geom.pose * p).coords / MM))
             .map(|mm| round(mm, 4))
             .collect();
-        let triangles: Vec<u32> = found.triangles.into_iter().flatten().collect();
+        let triangles: Vec<u32> = triangles.into_iter().flatten().collect();
         json!({"kind": kind, "of": of, "points": points, "triangles": triangles})
     };
     geoms.iter().map(one).collect()

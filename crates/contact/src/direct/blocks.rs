@@ -1,8 +1,7 @@
 //! Elimination of bodies from the system matrix, six rows at a time.
 //!
-//! The matrix couples bodies that share a joint. Bodies that touch nothing
-//! (flange, jaws) are eliminated first by a block Cholesky factorisation; what
-//! remains is a small dense system of the bodies that may touch.
+//! The matrix couples bodies that share a joint. Bodies that touch nothing (flange, jaws) are
+//! eliminated first by a block Cholesky factorisation, down to a small dense system of the others.
 
 use super::dense::Six;
 use nalgebra::{Cholesky, Const, Matrix6, SVector};
@@ -12,22 +11,21 @@ pub(super) type Vector6 = SVector<f64, 6>;
 
 const NONE: usize = usize::MAX;
 
-/// A symmetric matrix of 6x6 blocks with a fixed pattern; its lower half is kept.
+/// Symmetric matrix of 6x6 blocks with a fixed pattern, as its lower half.
 #[derive(Clone)]
 pub(super) struct Blocks {
     /// Number of bodies.
     size: usize,
-    /// How many of them are eliminated.
+    /// Number of bodies, the first, that are eliminated.
     eliminated: usize,
-    /// Where a block (row >= column) is kept.
+    /// Place in `blocks` of a block (row >= column).
     index: Vec<usize>,
     blocks: Vec<Matrix6<f64>>,
     factors: Vec<Cholesky<f64, Const<6>>>,
 }
 
 impl Blocks {
-    /// A matrix with the blocks that couple the pairs, and those that the
-    /// elimination of the first `eliminated` bodies fills in.
+    /// Zero matrix with the blocks of the pairs, and those that the elimination fills in.
     pub fn new(size: usize, eliminated: usize, pairs: &[(usize, usize)]) -> Self {
         let mut present = vec![false; size * size];
         for i in 0..size {
@@ -45,22 +43,11 @@ impl Blocks {
                 }
             }
         }
-        let mut count = 0;
-        let place = |&there: &bool| {
-            if !there {
-                return NONE;
-            }
-            count += 1;
-            count - 1
-        };
-        let index: Vec<usize> = present.iter().map(place).collect();
-        Blocks {
-            size,
-            eliminated,
-            index,
-            blocks: vec![Matrix6::zeros(); count],
-            factors: Vec::with_capacity(eliminated),
-        }
+        let mut places = 0..;
+        let mut place = |there: bool| if there { places.next() } else { None };
+        let index: Vec<_> = present.into_iter().map(|there| place(there).unwrap_or(NONE)).collect();
+        let blocks = vec![Matrix6::zeros(); places.start];
+        Blocks { size, eliminated, index, blocks, factors: Vec::with_capacity(eliminated) }
     }
 
     /// Sets every block to zero.
@@ -108,7 +95,7 @@ impl Blocks {
         Some(())
     }
 
-    /// Carries the eliminated bodies' right-hand sides over to the others.
+    /// Carries the right-hand sides of the eliminated bodies over to the others.
     pub fn reduce(&self, rhs: &mut [Vector6]) {
         for (k, factor) in self.factors.iter().enumerate() {
             factor.l_dirty().solve_lower_triangular_mut(&mut rhs[k]);
@@ -121,7 +108,7 @@ impl Blocks {
         }
     }
 
-    /// The eliminated bodies' solution, once that of the others is in place.
+    /// Solves for the eliminated bodies, once the solution of the others is in place.
     pub fn expand(&self, rhs: &mut [Vector6]) {
         for (k, factor) in self.factors.iter().enumerate().rev() {
             for i in k + 1..self.size {
@@ -134,15 +121,14 @@ impl Blocks {
         }
     }
 
-    /// The remaining matrix, dense, row by row, both halves.
+    /// Copies the remaining matrix, dense, row by row, both halves.
     pub fn remainder(&self, dense: &mut [Six]) {
         let sixes = self.size - self.eliminated;
         dense.fill([0.0; 6]);
         for i in 0..sixes {
             for j in 0..=i {
-                let Some(block) = self.get(i + self.eliminated, j + self.eliminated) else {
-                    continue;
-                };
+                let (row, column) = (i + self.eliminated, j + self.eliminated);
+                let Some(block) = self.get(row, column) else { continue };
                 for r in 0..6 {
                     for c in 0..6 {
                         dense[(6 * i + r) * sixes + j][c] = block[(r, c)];

@@ -1,21 +1,21 @@
-//! Bodies: pose, velocity and mass of each, and how they move on.
+//! Bodies in motion: pose, velocity and mass.
 
 use super::blocks::Vector6;
 use crate::scene::{Body, Inertia, Motion, Pose};
 use nalgebra::{Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
-/// How a body's velocity comes about.
+/// Origin of a body's velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
-    /// It has none.
+    /// No velocity.
     Fixed,
-    /// It is what takes the body to this pose within the step.
+    /// Velocity to this pose within the step.
     Driven(Pose),
-    /// It is solved for; the index is the body's place in the system.
+    /// Velocity from the solver; the index is the body's place in the system.
     Dynamic(usize),
 }
 
-/// A body in motion.
+/// Body in motion.
 #[derive(Debug, Clone)]
 pub(super) struct MovingBody {
     pub kind: Kind,
@@ -29,28 +29,24 @@ pub(super) struct MovingBody {
     pub centre: Point3<f64>,
     /// Of the centre of mass (m/s) and angular (rad/s), world axes.
     pub velocity: Vector6,
-    /// Momentum and angular momentum about the centre of mass at the start of the
-    /// step, N s, N m s, world axes. They, not the velocities, are carried from
-    /// step to step: that is the gyroscopic term, to first order in the step
-    /// (negligible in an insertion anyway).
-    momentum: Vector6,
+    /// Momentum and angular momentum about the centre of mass at the start of the step, N s,
+    /// N m s, world axes. They, not the velocities, are carried from step to step: that is the
+    /// gyroscopic term, to first order in the step (negligible in an insertion anyway).
+    pub momentum: Vector6,
     /// Inertia about the centre of mass, world axes, kg m2.
     tensor: Matrix3<f64>,
 }
 
 impl MovingBody {
-    /// At rest; `place` is the place in the system if the body is dynamic.
+    /// Body at rest; `place` is its place in the system if it is dynamic.
     pub fn new(body: &Body, place: usize) -> Self {
-        let (kind, inertia, weightless) = match body.motion {
-            Motion::Fixed => (Kind::Fixed, MASSLESS, true),
-            Motion::Driven => (Kind::Driven(body.pose), MASSLESS, true),
-            Motion::Free(inertia) => (Kind::Dynamic(place), inertia, false),
-            Motion::Carried(inertia) => (Kind::Dynamic(place), inertia, true),
-            Motion::Mechanism(_) => (Kind::Dynamic(place), MASSLESS, true),
-        };
-        let mechanism = match body.motion {
-            Motion::Mechanism(mass) => Some(mass),
-            _ => None,
+        let dynamic = Kind::Dynamic(place);
+        let (kind, inertia, weightless, mechanism) = match body.motion {
+            Motion::Fixed => (Kind::Fixed, MASSLESS, true, None),
+            Motion::Driven => (Kind::Driven(body.pose), MASSLESS, true, None),
+            Motion::Free(inertia) => (dynamic, inertia, false, None),
+            Motion::Carried(inertia) => (dynamic, inertia, true, None),
+            Motion::Mechanism(mass) => (dynamic, MASSLESS, true, Some(mass)),
         };
         let mut made = MovingBody {
             kind,
@@ -81,8 +77,8 @@ impl MovingBody {
         self.refresh();
     }
 
-    /// Mass matrix about the centre of mass, world axes. That of a mechanism turns
-    /// with its end; how it changes with the mechanism's pose is left out.
+    /// Mass matrix about the centre of mass, world axes. That of a mechanism turns with its end;
+    /// its change with the mechanism's pose is left out.
     pub fn mass(&self) -> Matrix6<f64> {
         if let Some(mass) = &self.mechanism {
             return turned(mass, &self.pose.rotation.to_rotation_matrix().into_inner());
@@ -111,7 +107,7 @@ impl MovingBody {
         self.velocity.fixed_rows_mut::<3>(3).copy_from(&(turned / step));
     }
 
-    /// Moves on with the velocity; the turn is the exponential of it.
+    /// Moves the body with its velocity; the turn is the exponential of it.
     pub fn advance(&mut self, step: f64) {
         match self.kind {
             Kind::Fixed => return,
@@ -121,8 +117,8 @@ impl MovingBody {
                 self.momentum = self.mass() * self.velocity;
                 let centre = self.centre + self.velocity.fixed_rows::<3>(0) * step;
                 let turn = UnitQuaternion::from_scaled_axis(angular * step);
-                let rotation =
-                    UnitQuaternion::new_normalize((turn * self.pose.rotation).into_inner());
+                let rotation = (turn * self.pose.rotation).into_inner();
+                let rotation = UnitQuaternion::new_normalize(rotation);
                 let origin = centre - rotation * self.inertia.centre.coords;
                 self.pose = Pose::from_parts(Translation3::from(origin), rotation);
             }
@@ -143,7 +139,7 @@ impl MovingBody {
     }
 }
 
-/// A 6x6 matrix of body axes in world axes.
+/// Turns a 6x6 matrix from body axes to world axes.
 fn turned(matrix: &Matrix6<f64>, axes: &Matrix3<f64>) -> Matrix6<f64> {
     let mut both = Matrix6::zeros();
     both.fixed_view_mut::<3, 3>(0, 0).copy_from(axes);
@@ -153,22 +149,3 @@ fn turned(matrix: &Matrix6<f64>, axes: &Matrix3<f64>) -> Matrix6<f64> {
 
 const MASSLESS: Inertia =
     Inertia { mass: 0.0, centre: Point3::new(0.0, 0.0, 0.0), moments: Vector3::new(0.0, 0.0, 0.0) };
-
-#[cfg(test)]
-impl MovingBody {
-    /// J.
-    pub fn kinetic_energy(&self) -> f64 {
-        0.5 * self.velocity.dot(&(self.mass() * self.velocity))
-    }
-
-    /// Angular momentum about the centre of mass, N m s.
-    pub fn spin(&self) -> Vector3<f64> {
-        self.momentum.fixed_rows::<3>(3).into_owned()
-    }
-
-    /// Sets the velocity.
-    pub fn spin_up(&mut self, velocity: Vector6) {
-        self.velocity = velocity;
-        self.momentum = self.mass() * velocity;
-    }
-}

@@ -1,21 +1,20 @@
-//! The contact law of one point: unilateral contact with Coulomb friction, as a
-//! projection onto the friction cone.
+//! Contact law of a point: unilateral contact with Coulomb friction, as a projection onto the
+//! friction cone.
 //!
-//! With the relative velocity `u` (of the second body against the first), the
-//! bias `b` and the compliances `e_n`, `e_t` the impulse is the point of the
-//! cone `|l_t| <= mu l_n` nearest to `-(u + b)/e` in the metric of `e`: the
-//! gradient of a convex potential of `u` (MuJoCo, Todorov 2014, ICRA,
-//! "Convex and analytically-invertible dynamics with contacts").
+//! With the relative velocity `u` (of the second body against the first), the bias `b` and the
+//! compliances `e_n`, `e_t` the impulse is the point of the cone `|l_t| <= mu l_n` nearest to
+//! `-(u + b)/e` in the metric of `e`: the gradient of a convex potential of `u` (MuJoCo,
+//! Todorov 2014, ICRA, "Convex and analytically-invertible dynamics with contacts").
 //!
-//! `u` and `l` have four components: along the world's axes, and about the normal as
-//! the patch radius `rho` makes it comparable, `u_4 = rho w_n` and `l_4 = m_n/rho`. So
-//! `|l_t| <= mu l_n` is the ellipsoid of a soft finger's friction, `(f/mu N)^2 +
-//! (m/mu N rho)^2 <= 1` (Howe and Cutkosky 1996, Int. J. Robot. Res. 15:557).
+//! `u` and `l` have four components: along the world's axes, and about the normal, scaled by the
+//! patch radius `rho`: `u_4 = rho w_n`, `l_4 = m_n/rho`. So `|l_t| <= mu l_n` is the ellipsoid of
+//! a soft finger's friction, `(f/mu N)^2 + (m/mu N rho)^2 <= 1` (Howe and Cutkosky 1996, Int. J.
+//! Robot. Res. 15:557).
 
 use nalgebra::{Matrix4, Vector4};
 
 /// Compliances of a contact, 1/kg: relative velocity per impulse.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Compliance {
     /// Along the normal.
     pub normal: f64,
@@ -23,7 +22,7 @@ pub(super) struct Compliance {
     pub tangent: f64,
 }
 
-/// What a contact is doing.
+/// Motion of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
     Apart,
@@ -31,19 +30,19 @@ pub(super) enum State {
     Slide,
 }
 
-/// Velocity of a contact, split: what the law wants to know of it.
-#[derive(Debug, Clone, Copy)]
+/// Velocity of a contact, split for the law.
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pull {
     /// `-(u + b)` along the normal, m/s.
     normal: f64,
     /// `-u` but for its part along the normal, m/s.
     tangent: Vector4<f64>,
-    /// Its length.
+    /// Length of `tangent`, m/s.
     speed: f64,
 }
 
 impl Pull {
-    /// From the relative velocity, the unit normal and the normal's bias.
+    /// Splits a relative velocity by the unit normal, with the bias along it.
     #[inline]
     pub fn new(velocity: &Vector4<f64>, normal: &Vector4<f64>, bias: f64) -> Self {
         let along = velocity.dot(normal);
@@ -52,20 +51,22 @@ impl Pull {
     }
 }
 
-/// A cone with its compliances.
-#[derive(Debug, Clone, Copy)]
+/// Friction cone with its compliances.
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Cone {
     pub mu: f64,
     pub compliance: Compliance,
 }
 
 impl Cone {
+    /// Compliance along the edge of the cone, 1/kg.
     #[inline]
-    fn ratio(&self) -> f64 {
-        self.compliance.tangent / self.compliance.normal
+    fn edge(&self) -> f64 {
+        let Compliance { normal, tangent } = self.compliance;
+        normal * (1.0 + self.mu * self.mu * (tangent / normal))
     }
 
-    /// Which part of the cone the impulse lies on.
+    /// Part of the cone on which the impulse lies.
     #[inline]
     pub fn state(&self, pull: &Pull) -> State {
         let Compliance { normal, tangent } = self.compliance;
@@ -81,8 +82,7 @@ impl Cone {
     /// Normal impulse of a sliding contact, N s.
     #[inline]
     fn sliding(&self, pull: &Pull) -> f64 {
-        (pull.normal + self.mu * pull.speed)
-            / (self.compliance.normal * (1.0 + self.mu * self.mu * self.ratio()))
+        (pull.normal + self.mu * pull.speed) / self.edge()
     }
 
     /// Impulse on the second body, N s; the fourth is its moment over the patch radius.
@@ -101,8 +101,7 @@ impl Cone {
         }
     }
 
-    /// Minus the derivative of the impulse by the velocity, kg: symmetric and
-    /// positive semidefinite.
+    /// Minus the derivative of the impulse by the velocity, kg: symmetric, positive semidefinite.
     #[inline]
     pub fn stiffness(&self, pull: &Pull, normal: &Vector4<f64>) -> Matrix4<f64> {
         match self.state(pull) {
@@ -115,8 +114,7 @@ impl Cone {
             State::Slide => {
                 let along = pull.tangent / pull.speed;
                 let edge = normal + along * self.mu;
-                let weight =
-                    1.0 / (self.compliance.normal * (1.0 + self.mu * self.mu * self.ratio()));
+                let weight = 1.0 / self.edge();
                 let turning = self.mu * self.sliding(pull) / pull.speed;
                 let across =
                     Matrix4::identity() - normal * normal.transpose() - along * along.transpose();

@@ -1,6 +1,5 @@
-//! Collision detection: the points at which the bodies of the listed pairs
-//! touch or are about to. Nothing is carried over from step to step but parry's
-//! guess of a separating direction, so a contact's normal is never out of date.
+//! Collision detection: the points at which bodies of the listed pairs touch or are about to. Steps
+//! share only parry's guess of a separating direction, so a contact's normal is always up to date.
 
 use super::body::MovingBody;
 use crate::scene::{Friction, Geom, GeomPair, Pose, Scene};
@@ -10,23 +9,22 @@ use parry::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispa
 use parry::shape::SharedShape;
 use rapier3d_f64::parry;
 
-/// Shapes are in millimetres, so many to a metre: some of parry's tolerances are
-/// absolute and made for metre-sized things (in metres it drops the crossing of two
-/// edges of 1 mm that meet at less than a degree).
+/// Units of length of the shapes in a metre: some of parry's tolerances are absolute and made for
+/// parts of 1 m (in metres it drops the crossing of edges of 1 mm at less than a degree).
 const MILLIMETRES: f64 = 1e3;
-/// At most so many points of a manifold are kept.
+/// Most points of a manifold that are kept.
 const POINTS: usize = 4;
-/// A surface is covered if a neighbour is found this far out from it, m.
+/// Distance from a surface at which a neighbour covers it, m.
 const COVER: f64 = 20e-6;
-/// What a neighbour may be off by, m: more than contacts sink, less than any gap.
+/// Tolerance for a neighbour, m: more than contacts sink, less than any gap.
 const SEAM: f64 = 2e-6;
 
-/// A point of contact between two bodies.
+/// Point of contact between two bodies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Touch {
-    /// Which of the scene's pairs of bodies.
+    /// Number of its pair of bodies in the scene.
     pub pair: usize,
-    /// Which of its pairs of geoms; their points follow one another.
+    /// Number of its pair of geoms; their points follow one another.
     pub geoms: usize,
     /// Midway between the two surfaces, world, m.
     pub point: Point3<f64>,
@@ -34,35 +32,35 @@ pub(super) struct Touch {
     pub normal: Vector3<f64>,
     /// Signed distance, m; negative if they overlap.
     pub gap: f64,
-    /// Of the two surfaces.
+    /// Friction of the two surfaces.
     pub friction: Friction,
 }
 
-/// A geom as parry has it.
+/// Geom with its shape of parry.
 #[derive(Clone)]
 struct Solid {
     body: usize,
     shape: SharedShape,
     /// parry's frame of the shape in the body frame.
     pose: Pose,
-    /// Enclosing box in the body frame: frame and half extents, m.
+    /// Enclosing box: its frame in the body frame, and half extents, m.
     frame: Pose,
     half: Vector3<f64>,
-    /// Enclosing box in the world, m.
+    /// Enclosing box in the world's axes, m.
     low: Vector3<f64>,
     high: Vector3<f64>,
     /// Other shapes of the same body that may cover a part of this one.
     neighbours: Vec<usize>,
 }
 
-/// Two shapes that may touch.
+/// Pair of shapes that may touch.
 #[derive(Clone)]
 struct Candidate {
     pair: GeomPair,
     manifold: ContactManifold<(), ()>,
 }
 
-/// All shapes of a scene and the pairs that may touch.
+/// Shapes of a scene and the pairs of them that may touch.
 #[derive(Clone)]
 pub(super) struct Detector {
     solids: Vec<Solid>,
@@ -71,7 +69,7 @@ pub(super) struct Detector {
 }
 
 impl Detector {
-    /// `prediction` is the gap, m, up to which a contact is foreseen.
+    /// Detector that foresees contacts up to a gap of `prediction`, m.
     pub fn new(scene: &Scene, prediction: f64) -> Self {
         let mut solids: Vec<Solid> = Vec::new();
         for (index, body) in scene.bodies.iter().enumerate() {
@@ -91,7 +89,7 @@ impl Detector {
         Detector { solids, candidates, prediction }
     }
 
-    /// How many pairs of geoms there are.
+    /// Number of pairs of geoms.
     pub fn pairs(&self) -> usize {
         self.candidates.len()
     }
@@ -144,7 +142,7 @@ impl Solid {
         (0..3).any(|i| self.low[i] > other.high[i] + margin || other.low[i] > self.high[i] + margin)
     }
 
-    /// Whether a neighbour covers a place on the surface, both in parry's frame of the shape, m.
+    /// Whether a neighbour covers a place on the surface, in parry's frame of the shape, m.
     fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, solids: &[Solid]) -> bool {
         let outside = self.pose * Point3::from(place + outward * COVER);
         self.neighbours.iter().any(|&j| {
@@ -160,7 +158,7 @@ impl Solid {
 }
 
 impl Candidate {
-    /// Computes the manifold afresh.
+    /// Computes the manifold from scratch.
     fn compute(&mut self, first: &Pose, second: &Pose, solids: (&Solid, &Solid), prediction: f64) {
         // With points left in it parry would only move them along.
         self.manifold.points.clear();
@@ -180,9 +178,8 @@ impl Candidate {
         }
     }
 
-    /// Drops the points on faces that another shape of the same body covers: at
-    /// a seam of two flush parts the hidden end face of the next part would stop
-    /// an edge that slides along, 0.1 um deep, as if it were a step.
+    /// Drops the points on faces that another shape of the same body covers: at a seam of flush
+    /// parts the hidden end face of the next one would stop a sliding edge, 0.1 um deep.
     fn drop_covered(&mut self, solids: &[Solid]) {
         let manifold = &mut self.manifold;
         let outward = [manifold.local_n1, manifold.local_n2].map(shapes::from_vector);
@@ -196,17 +193,17 @@ impl Candidate {
         });
     }
 
-    /// Adds the manifold's extreme points to the list.
+    /// Appends the manifold's extreme points.
     fn report(&mut self, geoms: usize, first: &Pose, prediction: f64, found: &mut Vec<Touch>) {
         let limit = prediction * MILLIMETRES;
         self.manifold.points.retain(|point| point.dist <= limit);
-        let normal = first.rotation * shapes::from_vector(self.manifold.local_n1);
         let axis = shapes::from_vector(self.manifold.local_n1);
+        let normal = first.rotation * axis;
         let middle = |i: usize| {
             let point = &self.manifold.points[i];
             (shapes::from_vector(point.local_p1) + axis * (0.5 * point.dist)) / MILLIMETRES
         };
-        let mut add = |i: usize| {
+        let add = |i: usize| {
             found.push(Touch {
                 pair: self.pair.bodies,
                 geoms,
@@ -225,17 +222,14 @@ impl Candidate {
         let far = best(count, |i| (middle(i) - middle(deepest)).norm_squared());
         let line = middle(far) - middle(deepest);
         let side = |i: usize| line.cross(&(middle(i) - middle(deepest))).dot(&axis);
-        let mut chosen = [deepest, far, best(count, side), best(count, |i| -side(i))];
+        let mut chosen = vec![deepest, far, best(count, side), best(count, |i| -side(i))];
         chosen.sort_unstable();
-        for (k, &i) in chosen.iter().enumerate() {
-            if k == 0 || chosen[k - 1] != i {
-                add(i);
-            }
-        }
+        chosen.dedup();
+        chosen.into_iter().for_each(add);
     }
 }
 
-/// The first index below `count` with the largest value.
+/// First index below `count` with the largest value.
 fn best(count: usize, value: impl Fn(usize) -> f64) -> usize {
     let start = (0, f64::NEG_INFINITY);
     let keep = |best: (usize, f64), i: usize| {

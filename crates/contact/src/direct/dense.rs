@@ -1,11 +1,10 @@
-//! Small dense symmetric systems: rows of six numbers each, row by row. Every inner loop runs
-//! along a row without carrying a sum, so that it needs not wait for the last addition, and
-//! over six at a time, so that it is unrolled.
+//! Small dense symmetric systems, row by row, in sixes. Every inner loop runs along a row without
+//! carrying a sum, so that no addition waits for the last, and over six at a time, unrolled.
 
-/// Six neighbours in a row of a matrix.
+/// Six neighbours in a row of a matrix, or the velocity or impulse of a body.
 pub(super) type Six = [f64; 6];
 
-/// A function of a matrix, compiled for the usual numbers of sixes to a row and for any.
+/// Calls a function of a matrix that is compiled for the usual numbers of sixes to a row.
 macro_rules! unrolled {
     ($sixes:expr, $function:ident($($argument:expr),*)) => {
         match $sixes {
@@ -23,14 +22,6 @@ macro_rules! unrolled {
 fn add(to: &mut Six, factor: f64, from: Six) {
     for c in 0..6 {
         to[c] += factor * from[c];
-    }
-}
-
-/// `to -= factor * from`.
-#[inline(always)]
-fn subtract(to: &mut Six, factor: f64, from: Six) {
-    for c in 0..6 {
-        to[c] -= factor * from[c];
     }
 }
 
@@ -66,7 +57,7 @@ fn factored(matrix: &mut [Six], sixes: usize) -> Option<()> {
         for s in first..sixes {
             let mut sum = row[s];
             for above in above.chunks_exact(sixes) {
-                subtract(&mut sum, above[first][at], above[s]);
+                add(&mut sum, -above[first][at], above[s]);
             }
             row[s] = sum;
         }

@@ -1,13 +1,12 @@
 //! Joints as implicit springs and dampers.
 //!
-//! With the coordinates `q` (translations of the child's joint frame along, and
-//! the rotation vector about, the axes of the parent's) and their exact Jacobian
-//! `J`, the force at the end of the step, `f = -k (q + h J v - target) - c J v`,
-//! adds `J^T (h c + h^2 k) J` to the system and `-h J^T k (q - target)` to its
-//! right-hand side: stable for any stiffness, and exact at rest. `k` and `c` are a
-//! number for each axis or, for coupled springs, a matrix. A locked axis is
-//! a very stiff spring (0.1 um at 100 N). A servo at its limit pushes with the
-//! limit; which servos are is settled by repeating the step's solution.
+//! With the coordinates `q` (translations of the child's joint frame along, and the rotation
+//! vector about, the axes of the parent's) and their exact Jacobian `J`, the force at the end of
+//! the step, `f = -k (q + h J v - target) - c J v`, adds `J^T (h c + h^2 k) J` to the system and
+//! `-h J^T k (q - target)` to its right-hand side: stable for any stiffness, and exact at rest.
+//! `k` and `c` are a number for each axis or, for coupled springs, a matrix. A locked axis is a
+//! very stiff spring (0.1 um at 100 N). A servo at its limit pushes with the limit; the step is
+//! solved again until the servos at their limits are those that were assumed.
 
 use super::blocks::{Blocks, Vector6};
 use super::body::{Kind, MovingBody};
@@ -19,15 +18,15 @@ const LOCKED: f64 = 1e9;
 /// Stiffness of a locked rotation, N m/rad: as stiff at an arm of 30 mm.
 const LOCKED_TURN: f64 = 1e6;
 
-/// One axis of a joint.
+/// Spring of one axis of a joint.
 #[derive(Debug, Clone, Copy)]
 struct Drive {
     spring: Spring,
-    /// The sign of the force if the servo is at its limit, else 0.
+    /// Sign of the force if the servo is at its limit, else 0.
     saturated: f64,
 }
 
-/// What force answers to the coordinates.
+/// Law of the force by the coordinates.
 #[derive(Debug, Clone)]
 #[expect(clippy::large_enum_variant, reason = "a world has a handful of joints")]
 enum Law {
@@ -35,8 +34,7 @@ enum Law {
     Coupled(Coupled),
 }
 
-/// How a joint's force at the end of the step answers to its rate, times the
-/// step: `h c + h^2 k`, of each axis or of all at once.
+/// Impulse of a joint by its rate at the end of the step, `h c + h^2 k`: of each axis or of all.
 #[expect(clippy::large_enum_variant, reason = "lives on the stack of one call")]
 enum Answer {
     Each(Vector6),
@@ -44,7 +42,7 @@ enum Answer {
 }
 
 impl Answer {
-    /// To a rate.
+    /// Impulse of a rate.
     fn to(&self, rate: &Vector6) -> Vector6 {
         match self {
             Answer::Each(stiff) => stiff.component_mul(rate),
@@ -52,7 +50,7 @@ impl Answer {
         }
     }
 
-    /// To the velocities that a Jacobian makes rates of.
+    /// Impulse by the velocities of which a Jacobian makes rates.
     fn through(&self, jacobian: &Matrix6<f64>) -> Matrix6<f64> {
         match self {
             Answer::Each(stiff) => {
@@ -67,7 +65,7 @@ impl Answer {
     }
 }
 
-/// A joint with its coordinates at the start of the step.
+/// Joint with its coordinates at the start of the step.
 #[derive(Debug, Clone)]
 pub(super) struct SprungJoint {
     parent: usize,
@@ -75,9 +73,9 @@ pub(super) struct SprungJoint {
     in_parent: Pose,
     in_child: Pose,
     law: Law,
-    /// m, rad.
+    /// Coordinates, m, rad.
     position: Vector6,
-    /// Of the coordinates by the child's and by the parent's velocity.
+    /// Jacobians of the coordinates by the child's and by the parent's velocity.
     by_child: Matrix6<f64>,
     by_parent: Matrix6<f64>,
 }
@@ -107,8 +105,7 @@ impl SprungJoint {
         }
     }
 
-    /// Replaces the spring of an axis; a servo stays at its limit till the next
-    /// step. Coupled springs have no axis that could be set by itself.
+    /// Replaces the spring of an axis, if any; a servo stays at its limit till the next step.
     pub fn set(&mut self, axis: usize, spring: Spring) {
         let Law::Drives(drives) = &mut self.law else { return };
         let drive = &mut drives[axis];
@@ -118,7 +115,7 @@ impl SprungJoint {
         }
     }
 
-    /// Coordinates and their Jacobian at the bodies' poses.
+    /// Computes the coordinates and their Jacobian at the bodies' poses.
     pub fn locate(&mut self, bodies: &[MovingBody]) {
         let (parent, child) = (&bodies[self.parent], &bodies[self.child]);
         let (p, c) = (parent.pose * self.in_parent, child.pose * self.in_child);
@@ -134,7 +131,7 @@ impl SprungJoint {
         self.by_parent = -jacobian(&axes, &angular, &(place - parent.centre.coords));
     }
 
-    /// The answer to rates, and the impulse without them.
+    /// Impulse by the rates, and at no rate.
     fn answer(&self, step: f64) -> (Answer, Vector6) {
         let drives = match &self.law {
             Law::Drives(drives) => drives,
@@ -173,10 +170,9 @@ impl SprungJoint {
         }
         let (parent, child) = (bodies[self.parent].place(), bodies[self.child].place());
         for (place, jacobian) in [(parent, &self.by_parent), (child, &self.by_child)] {
-            if let Some(place) = place {
-                system.add(place, place, &jacobian.tr_mul(&answer.through(jacobian)));
-                rhs[place] += jacobian.tr_mul(&push);
-            }
+            let Some(place) = place else { continue };
+            system.add(place, place, &jacobian.tr_mul(&answer.through(jacobian)));
+            rhs[place] += jacobian.tr_mul(&push);
         }
         if let (Some(p), Some(c)) = (parent, child) {
             if p > c {
@@ -187,8 +183,7 @@ impl SprungJoint {
         }
     }
 
-    /// Whether every servo is at its limit, or not, as was assumed when the
-    /// bodies' velocities were solved for; sets it right for another try.
+    /// Sets the servos that are at their limits; whether the last solution assumed the same.
     pub fn update_limits(&mut self, bodies: &[MovingBody], step: f64) -> bool {
         let Law::Drives(drives) = &mut self.law else { return true };
         if drives.iter().all(|drive| drive.spring.limit.is_infinite()) {
@@ -219,9 +214,9 @@ fn jacobian(axes: &Matrix3<f64>, angular: &Matrix3<f64>, arm: &Vector3<f64>) -> 
     made
 }
 
-/// Rate of the rotation vector by the angular velocity in the same (parent's)
-/// axes: `1 - [t]/2 + (1/|t|^2 - cot(|t|/2)/(2 |t|)) [t]^2` (Bullo and Murray
-/// 1995, "Proportional derivative control on the Euclidean group").
+/// Rate of the rotation vector by the angular velocity in the same (parent's) axes:
+/// `1 - [t]/2 + (1/|t|^2 - cot(|t|/2)/(2 |t|)) [t]^2` (Bullo and Murray 1995, "Proportional
+/// derivative control on the Euclidean group").
 fn inverse_left_jacobian(turn: &Vector3<f64>) -> Matrix3<f64> {
     let angle = turn.norm();
     let cross = turn.cross_matrix();

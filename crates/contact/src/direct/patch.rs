@@ -1,10 +1,11 @@
-//! Friction of a pressed patch against a turn about its normal, from the points that carry it.
+//! Friction of a contact patch against a turn about its normal, from the points that carry it.
 //!
 //! Contact points are the corners of the patch. Friction at the corners would hold a turn with
 //! their levers, which are longer than those of the patch's inside. So friction acts beside each
-//! point, drawn towards the centre of pressure until the mean lever is that of the patch, evenly
-//! pressed; the normal force stays where it is. A slide without a turn is then held at the centre of
-//! pressure still (Mason 1986, Int. J. Robot. Res. 5:53), and a turn by `mu N` times the mean lever.
+//! point, nearer to the centre of pressure, so that the mean lever is that of the evenly pressed
+//! patch; the normal force stays where it is. A slide without a turn is then still held at the
+//! centre of pressure (Mason 1986, Int. J. Robot. Res. 5:53), and a turn by `mu N` times the mean
+//! lever.
 //!
 //! An even pressure that has its centre beside the middle presses the part of the rectangle about
 //! that centre (Meyerhof 1953, 3rd Int. Conf. Soil Mech.): half of its length is the distance from
@@ -13,7 +14,7 @@
 use crate::scene::Pose;
 use nalgebra::{Point3, Vector3};
 
-/// Where the friction of a contact acts.
+/// Contact patch: where the friction of a contact acts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Patch {
     /// Centre of pressure in the frame that its points were given in, m.
@@ -23,8 +24,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// From the points of a contact, in the frame of the normal, and what each bears; evenly if
-    /// they bear nothing.
+    /// Patch of the points of a contact, in the normal's frame, by their loads; if none, evenly.
     pub fn new(points: &[(Point3<f64>, f64)], normal: &Vector3<f64>) -> Self {
         let total: f64 = points.iter().map(|(_, load)| load).sum();
         let part = |load: f64| if total > 0.0 { load / total } else { 1.0 / points.len() as f64 };
@@ -39,16 +39,15 @@ impl Patch {
         Patch { centre, share }
     }
 
-    /// From a point to where its friction acts, m, both and the normal as seen from outside; `frame` is
-    /// the patch's.
+    /// Vector from a point to where its friction acts, m, outside of the patch's `frame`.
     pub fn aside(&self, frame: &Pose, point: &Point3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
         let inward = (frame * self.centre - point) * (1.0 - self.share);
         inward - normal * inward.dot(normal)
     }
 }
 
-/// Half the sides of the pressed rectangle about the centre of pressure, m. The points are corners of
-/// a rectangle, so that the way from one to the next nearest is along an edge.
+/// Half the sides of the pressed rectangle about the centre of pressure, m. The points are corners
+/// of a rectangle, so that the way from one to the nearest is along an edge.
 fn pressed(points: &[(Point3<f64>, f64)], centre: &Point3<f64>, normal: &Vector3<f64>) -> [f64; 2] {
     let ways = points[1..].iter().map(|(point, _)| point - points[0].0);
     let nearest = ways.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
@@ -59,8 +58,7 @@ fn pressed(points: &[(Point3<f64>, f64)], centre: &Point3<f64>, normal: &Vector3
     })
 }
 
-/// Mean distance from the middle of a rectangle with these half sides, m: the integral of
-/// `sqrt(x^2 + y^2)` over its area.
+/// Mean of `sqrt(x^2 + y^2)` over a rectangle with these half sides about its middle, m.
 pub(super) fn mean_lever(half: f64, other: f64) -> f64 {
     let (short, long) = if half < other { (half, other) } else { (other, half) };
     if short <= 0.0 {

@@ -1,34 +1,32 @@
 //! The velocities at the end of a step: Newton's method on a convex potential.
 //!
-//! With the reduced system `S`, right-hand side `r` and the contacts' potentials
-//! the velocities minimise `v.S v/2 - r.v + sum of potentials`; its gradient is
-//! the out-of-balance impulse `S v - r - sum J^T l`. The potential's cone law has
-//! associated friction, which would lift a sliding contact by `mu |u_t| h`; the
-//! term `s = mu |u_t|` of De Saxce and Feng (1998, Math. Comput. Modelling 28)
-//! takes that back, by a fixed point about the Newton iterations (Acary, Cadoux,
-//! Lemarechal and Malick 2011, ZAMM 91).
+//! With the reduced system `S`, right-hand side `r` and the contacts' potentials the velocities
+//! minimise `v.S v/2 - r.v + sum of potentials`; its gradient is the out-of-balance impulse
+//! `S v - r - sum J^T l`. The potential's cone law has associated friction, which would lift a
+//! sliding contact by `mu |u_t| h`; the term `s = mu |u_t|` of De Saxce and Feng (1998, Math.
+//! Comput. Modelling 28) takes that back, by a fixed point about the Newton iterations (Acary,
+//! Cadoux, Lemarechal and Malick 2011, ZAMM 91).
 
 use super::blocks::Vector6;
 use super::cone::{Cone, Pull, State};
 use super::dense::{self, Six};
 use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
 
-/// Out-of-balance force at which an iteration ends, N (N per 10 mm for moments).
+/// Out-of-balance force at which iterations end, N (N per 10 mm for moments).
 const FORCE_TOLERANCE: f64 = 1e-4;
 /// Arm by which moments are compared with forces, m.
 const ARM: f64 = 0.01;
-/// Newton iterations at most, in a step.
+/// Most Newton iterations in a step.
 const ITERATIONS: usize = 60;
-/// Error of the sliding term that is let go, m/s: 0.1 um in a step of 0.1 ms.
+/// Error of the sliding term that is ignored, m/s: 0.1 um in a step of 0.1 ms.
 const SLIDING_TOLERANCE: f64 = 1e-3;
-/// Trials along a line at most.
+/// Most trials along a line.
 const SEARCHES: usize = 30;
-/// Rounds of the fixed point at most.
+/// Most rounds of the fixed point.
 const ROUNDS: usize = 6;
 
-/// What an angular velocity moves a point by that lies at `arm` from the centre of mass,
-/// m: along the world's axes `w x arm`, and `rho w_n` about the `patch` vector, the
-/// normal times the patch radius.
+/// Velocity of a point at `arm` from the centre of mass, m, by the angular velocity `w`: `w x arm`
+/// along the world's axes, and `rho w_n` about the `patch` vector, the normal times the radius.
 pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> {
     let mut lever = Matrix4x3::zeros();
     lever.fixed_view_mut::<3, 3>(0, 0).copy_from(&-arm.cross_matrix());
@@ -36,7 +34,7 @@ pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> 
     lever
 }
 
-/// The same where friction acts `aside` of the point, m: it feels the turn about the normal there.
+/// The lever where friction acts `aside` of the point, m: it feels the turn about the normal there.
 pub(super) fn moved_aside(
     lever: &Matrix4x3<f64>,
     aside: &Vector3<f64>,
@@ -48,66 +46,39 @@ pub(super) fn moved_aside(
     moved
 }
 
-/// Velocity of a contact point of a body of this velocity, m/s.
+/// Velocity of a contact point of a body, m/s.
 pub(super) fn relative(lever: &Matrix4x3<f64>, v: &Six) -> Vector4<f64> {
     Vector4::new(v[0], v[1], v[2], 0.0) + lever * Vector3::new(v[3], v[4], v[5])
 }
 
-/// A contact as the solver sees it.
-#[derive(Debug, Clone, Copy)]
+/// Contact of the solver. Velocities and impulses have the four components of [`super::cone`].
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Contact {
-    /// First and second body: place in the reduced system, if they move freely.
+    /// Places of the first and second body in the reduced system, if they move freely.
     pub place: [Option<usize>; 2],
-    /// On each side: relative velocity by the body's angular velocity, m; see [`lever`].
+    /// Relative velocity by the angular velocity of each body, m; see [`lever`].
     pub lever: [Matrix4x3<f64>; 2],
     /// Unit normal from the first to the second; its fourth component is 0.
     pub normal: Vector4<f64>,
-    /// Relative velocity by the bodies whose motion is given, m/s; of four components, as
-    /// all velocities and impulses here: see [`super::cone`].
+    /// Relative velocity by the bodies whose motion is given, m/s.
     pub drift: Vector4<f64>,
     /// Least approach velocity that the gap allows, `gap / h`, m/s.
     pub bias: f64,
     /// Law of contact.
     pub cone: Cone,
     /// De Saxce's term, m/s.
-    slide: f64,
+    pub slide: f64,
     /// Relative velocity, m/s.
-    velocity: Vector4<f64>,
-    /// What the law wants to know of it.
-    pull: Pull,
-    /// Its change along the line of search.
-    change: Vector4<f64>,
+    pub velocity: Vector4<f64>,
+    /// Relative velocity, split for the law.
+    pub pull: Pull,
+    /// Change of the velocity along the line of search, m/s.
+    pub change: Vector4<f64>,
     /// Impulse on the second body, N s.
     pub impulse: Vector4<f64>,
 }
 
 impl Contact {
-    /// A contact between bodies at these places with these levers; the rest as in the fields.
-    #[inline(always)]
-    pub fn new(
-        place: [Option<usize>; 2],
-        lever: [Matrix4x3<f64>; 2],
-        normal: Vector3<f64>,
-        drift: Vector4<f64>,
-        bias: f64,
-        cone: Cone,
-    ) -> Self {
-        let zero = Vector4::zeros();
-        Contact {
-            place,
-            lever,
-            normal: normal.push(0.0),
-            drift,
-            bias,
-            cone,
-            slide: 0.0,
-            velocity: zero,
-            pull: Pull::new(&zero, &zero, 0.0),
-            change: zero,
-            impulse: zero,
-        }
-    }
-
     /// Relative velocity by the free bodies' velocities.
     fn relative(&self, velocities: &[Six]) -> Vector4<f64> {
         let mut sum = Vector4::zeros();
@@ -119,7 +90,7 @@ impl Contact {
         sum
     }
 
-    /// What the law wants to know so far along the line of search.
+    /// Velocity so far along the line of search, split for the law.
     fn pull(&self, along: f64) -> Pull {
         Pull::new(&(self.velocity + self.change * along), &self.normal, self.bias + self.slide)
     }
@@ -130,21 +101,21 @@ impl Contact {
         self.impulse = self.cone.impulse(&self.pull, &self.normal);
     }
 
-    /// What the contact would slide at, times its friction.
+    /// Sliding speed times the coefficient of friction, m/s.
     fn sliding(&self) -> f64 {
         let along = self.velocity.dot(&self.normal);
         self.cone.mu * (self.velocity - self.normal * along).norm()
     }
 }
 
-/// The reduced problem and its workspace.
+/// Reduced problem and its workspace.
 #[derive(Clone)]
 pub(super) struct Solver {
     /// Rows of the reduced system, row by row.
     pub system: Vec<Six>,
     /// Right-hand side.
     pub rhs: Vec<Six>,
-    /// The solution; on entry, the first guess.
+    /// Solution; on entry, the first guess.
     pub velocities: Vec<Six>,
     hessian: Vec<Six>,
     gradient: Vec<Six>,
@@ -152,7 +123,7 @@ pub(super) struct Solver {
 }
 
 impl Solver {
-    /// For so many bodies.
+    /// Workspace for a number of bodies.
     pub fn new(bodies: usize) -> Self {
         let zeros = vec![[0.0; 6]; bodies];
         let square = vec![[0.0; 6]; 6 * bodies * bodies];
@@ -192,7 +163,7 @@ impl Solver {
         Some(())
     }
 
-    /// Newton's iterations, of which `iterations` have been made in this step.
+    /// Newton's iterations, `iterations` of which were made in this step already.
     fn newton(
         &mut self,
         contacts: &mut [Contact],
@@ -216,7 +187,7 @@ impl Solver {
         Some(())
     }
 
-    /// Relative velocities at the present velocities.
+    /// Sets the relative velocities of the contacts.
     fn update_velocities(&self, contacts: &mut [Contact]) {
         for contact in contacts {
             contact.velocity = contact.relative(&self.velocities) + contact.drift;
@@ -224,7 +195,7 @@ impl Solver {
         }
     }
 
-    /// The gradient, and its largest component as a force times the step.
+    /// Computes the gradient; its largest component, N s.
     fn slope(&mut self, contacts: &mut [Contact]) -> f64 {
         dense::multiply(&self.system, &self.velocities, &mut self.gradient);
         let rhs = self.rhs.as_flattened();
@@ -257,19 +228,20 @@ impl Solver {
         self.gradient.iter().map(scaled).fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
     }
 
-    /// Newton's direction.
+    /// Computes Newton's direction.
     fn descend(&mut self, contacts: &mut [Contact]) -> Option<()> {
         self.hessian.copy_from_slice(&self.system);
+        let bodies = self.velocities.len();
         for contact in contacts.iter() {
             if contact.cone.state(&contact.pull) != State::Apart {
                 let stiffness = contact.cone.stiffness(&contact.pull, &contact.normal);
-                add_stiffness(&mut self.hessian, self.velocities.len(), contact, &stiffness);
+                add_stiffness(&mut self.hessian, bodies, contact, &stiffness);
             }
         }
         for (d, g) in self.direction.iter_mut().zip(&self.gradient) {
             *d = g.map(|g| -g);
         }
-        dense::factor(&mut self.hessian, self.velocities.len())?;
+        dense::factor(&mut self.hessian, bodies)?;
         dense::solve(&self.hessian, &mut self.direction);
         for contact in contacts.iter_mut() {
             contact.change = contact.relative(&self.direction);
@@ -277,8 +249,7 @@ impl Solver {
         Some(())
     }
 
-    /// How far to go along the direction: all the way if the potential's slope
-    /// does not turn against us, else to where it is a tenth of the first.
+    /// Share of the direction to go: 1, or less if the potential rises again before.
     fn search(&mut self, contacts: &[Contact]) -> f64 {
         let dot = |a: &[Six], b: &[Six]| {
             a.iter().zip(b).map(|(a, b)| Vector6::from(*a).dot(&Vector6::from(*b))).sum::<f64>()
@@ -339,20 +310,17 @@ fn add_stiffness(hessian: &mut [Six], bodies: usize, contact: &Contact, k: &Matr
             }
         }
     };
-    if let Some(i) = first {
-        add([0, 0], [i, i]);
+    for (side, place) in [(0, first), (1, second)] {
+        if let Some(i) = place {
+            add([side, side], [i, i]);
+        }
     }
-    if let Some(j) = second {
-        add([1, 1], [j, j]);
-    }
-    match (first, second) {
-        (Some(i), Some(j)) if i < j => add([0, 1], [i, j]),
-        (Some(i), Some(j)) => add([1, 0], [j, i]),
-        _ => {}
+    if let (Some(i), Some(j)) = (first, second) {
+        if i < j { add([0, 1], [i, j]) } else { add([1, 0], [j, i]) }
     }
 }
 
-/// Product of two columns, summed as a product of any length is.
+/// Scalar product, in the order in which nalgebra adds up products of any length.
 #[inline(always)]
 fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     (a[0] * b[0] + a[2] * b[2]) + (a[1] * b[1] + a[3] * b[3])

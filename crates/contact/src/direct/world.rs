@@ -1,6 +1,6 @@
-//! The world: one step from poses and velocities to the next.
+//! World of `direct`: one step from poses and velocities to the next.
 
-use super::DirectSettings;
+use super::Direct;
 use super::blocks::{Blocks, Vector6};
 use super::body::{Kind, MovingBody};
 use super::cone::{Compliance, Cone};
@@ -12,43 +12,42 @@ use crate::scene::{BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spr
 use crate::{ContactForce, ContactPoint, Diverged, World};
 use nalgebra::{Vector3, Vector4};
 
-/// Tries at finding which servos are at their limits.
+/// Most tries at finding the servos that are at their limits.
 const TRIES: usize = 5;
 
-/// A scene in motion; a clone continues bit for bit alike.
+/// Scene in motion; a clone continues with the same bits.
 #[derive(Clone)]
 pub(super) struct DirectWorld {
-    settings: DirectSettings,
+    settings: Direct,
     gravity: Vector3<f64>,
     pub bodies: Vec<MovingBody>,
     joints: Vec<SprungJoint>,
-    /// The bodies that may touch.
+    /// Pairs of bodies that may touch.
     pairs: Vec<ContactPair>,
-    /// Their forces over the last step.
+    /// Forces of the pairs over the last step.
     forces: Vec<ContactForce>,
     detector: Detector,
     system: Blocks,
-    /// Right-hand side, then solution; by place.
+    /// Right-hand side, then solution, by place.
     values: Vec<Vector6>,
     /// Force at the centre of mass and moment applied to each body, N, N m.
     pushes: Vec<Vector6>,
-    /// Places before this one are eliminated before contacts are solved.
+    /// Number of places, the first, that are eliminated before contacts are solved.
     eliminated: usize,
     solver: Solver,
     touches: Vec<Touch>,
     contacts: Vec<Contact>,
-    /// The pressed patch of each pair of geoms that touch, if friction knows any.
+    /// Contact patch of each pair of geoms that touch; empty if no friction has patches.
     patches: Vec<Option<Patch>>,
 }
 
 impl DirectWorld {
-    pub fn new(scene: &Scene, settings: &DirectSettings) -> Self {
+    pub fn new(scene: &Scene, settings: &Direct) -> Self {
         let (places, eliminated, size) = places(scene);
-        let dynamic = scene.bodies.iter().zip(&places);
-        let bodies: Vec<MovingBody> =
-            dynamic.map(|(body, &place)| MovingBody::new(body, place)).collect();
-        let ends =
-            |joint: &Joint| Some((bodies[joint.parent.0].place()?, bodies[joint.child.0].place()?));
+        let moving = scene.bodies.iter().zip(places).map(|(body, at)| MovingBody::new(body, at));
+        let bodies: Vec<MovingBody> = moving.collect();
+        let place = |body: BodyId| bodies[body.0].place();
+        let ends = |joint: &Joint| Some((place(joint.parent)?, place(joint.child)?));
         let detector = Detector::new(scene, settings.prediction);
         let coupled: Vec<_> = scene.joints.iter().filter_map(ends).collect();
         DirectWorld {
@@ -70,13 +69,12 @@ impl DirectWorld {
         }
     }
 
-    /// Finds the contacts, and puts them as the solver wants them.
+    /// Finds the contacts and sets them up for the solver.
     fn find_contacts(&mut self) {
         let step = self.settings.step_s;
         self.detector.detect(&self.bodies, &mut self.touches);
         self.contacts.clear();
-        // Of a contact's force at the end of the step, k gap + c rate, what the gap
-        // at its start makes, and how the impulse answers to the velocity.
+        // Force at the end of the step: k gap + c rate; `share` is that of the gap at its start.
         let spring = self.settings.contact_stiffness * step;
         let share = spring / (spring + self.settings.contact_damping);
         let compliance = Compliance {
@@ -94,8 +92,8 @@ impl DirectWorld {
                 Torsion::Radius(radius) => arm.map(|arm| lever(&arm, &(touch.normal * radius))),
                 Torsion::Patch => {
                     let aside = self.aside(touch, ends[0]);
-                    arm.map(|arm| lever(&arm, &Vector3::zeros()))
-                        .map(|lever| moved_aside(&lever, &aside, &touch.normal))
+                    let at_point = arm.map(|arm| lever(&arm, &Vector3::zeros()));
+                    at_point.map(|lever| moved_aside(&lever, &aside, &touch.normal))
                 }
             };
             let mut drift = Vector4::zeros();
@@ -107,18 +105,18 @@ impl DirectWorld {
             let closing = touch.gap / step;
             let bias = if touch.gap > 0.0 { closing } else { closing * share };
             let bias = bias.max(-self.settings.push_out);
-            self.contacts.push(Contact::new(place, lever, touch.normal, drift, bias, cone));
+            let (normal, rest) = (touch.normal.push(0.0), Contact::default());
+            self.contacts.push(Contact { place, lever, normal, drift, bias, cone, ..rest });
         }
     }
 
-    /// From a point of a patch to where its friction acts; `first` is its pair's first body.
+    /// Distance from a point of a patch to where its friction acts, m; `first` is the first body.
     fn aside(&self, touch: &Touch, first: &MovingBody) -> Vector3<f64> {
-        let patch = self.patches[touch.geoms].as_ref();
-        patch
-            .map_or(Vector3::zeros(), |patch| patch.aside(&first.pose, &touch.point, &touch.normal))
+        let aside = |patch: &Patch| patch.aside(&first.pose, &touch.point, &touch.normal);
+        self.patches[touch.geoms].as_ref().map_or(Vector3::zeros(), aside)
     }
 
-    /// The patches as these contacts load them; without, those that are new, evenly.
+    /// Sets the patches as these contacts load them; without contacts the new ones, evenly.
     fn press(&mut self, contacts: Option<&[Contact]>) {
         if self.patches.is_empty() {
             return;
@@ -139,7 +137,7 @@ impl DirectWorld {
         }
     }
 
-    /// Velocities at the end of the step, with the servos as they are assumed.
+    /// Solves for the velocities at the end of the step, with the servos as they are assumed.
     fn solve(&mut self) -> Option<()> {
         let step = self.settings.step_s;
         self.system.clear();
@@ -214,9 +212,8 @@ impl DirectWorld {
     }
 }
 
-/// The place of each dynamic body in the system, how many of them are
-/// eliminated before contacts, and how many there are. Those that touch nothing
-/// come first, the ones with the fewest joints first of all: little fill-in.
+/// Place of each dynamic body in the system, the number of those eliminated before contacts, and
+/// their number. Those that touch nothing come first, by number of joints: little fill-in.
 fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
     let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
     let touching = |i: &usize| scene.contacts.iter().any(|pair| pair.has(BodyId(*i)));

@@ -1,4 +1,4 @@
-//! The tree of bodies with their joints and geoms.
+//! Tree of bodies with their joints and geoms.
 
 use super::xml::Element;
 use super::{AXES, HEAVY, axis_name, driven_axis_name, geom_names, mesh_name};
@@ -7,7 +7,7 @@ use crate::scene::{
 };
 use nalgebra::{Point3, Vector3};
 
-/// Colours of the bodies in turn, red, green, blue; fixed ones are see-through.
+/// Colours of the bodies in turn: red, green, blue.
 const COLOURS: [[f64; 3]; 6] = [
     [0.30, 0.45, 0.69],
     [0.87, 0.52, 0.32],
@@ -19,7 +19,7 @@ const COLOURS: [[f64; 3]; 6] = [
 /// Opacity of fixed bodies.
 const SEE_THROUGH: f64 = 0.5;
 
-/// All bodies, those on joints inside the ones that carry them.
+/// Bodies, those on joints inside their parents.
 pub(super) fn world(scene: &Scene) -> Element {
     let names = geom_names(scene);
     let is_root = |body: &usize| !scene.joints.iter().any(|joint| joint.child.0 == *body);
@@ -39,7 +39,7 @@ pub(super) fn world(scene: &Scene) -> Element {
     Element::new("worldbody").holding([light]).holding(list)
 }
 
-/// What a body holds after its joints: inertia, geoms and the bodies it carries.
+/// Children of a body after its joints: inertia, geoms and the bodies it carries.
 fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     let mut list: Vec<Element> = inertial(&scene.bodies[body].motion).into_iter().collect();
     let geoms = scene.bodies[body].geoms.iter().zip(&names[body]);
@@ -52,7 +52,7 @@ fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     list
 }
 
-/// The child's frame in the parent's where all coordinates are zero.
+/// Frame of the child in the parent's where all coordinates are zero.
 pub(super) fn zero(joint: &Joint) -> Pose {
     joint.in_parent * joint.in_child.inverse()
 }
@@ -96,20 +96,18 @@ fn driven_joints(body: &Body) -> Vec<Element> {
 fn joints(tie: &Joint) -> Vec<Element> {
     // Coupled springs are refused before.
     let Springs::Axes(axes) = &tie.springs else { return Vec::new() };
-    let sprung = axes.iter().enumerate().filter_map(|(i, axis)| match axis {
-        JointAxis::Locked => None,
-        JointAxis::Sprung(spring) => Some((i, spring)),
-    });
-    let element = |(i, spring): (usize, &crate::scene::Spring)| {
+    let element = |(i, axis): (usize, &JointAxis)| {
+        let JointAxis::Sprung(spring) = axis else { return None };
         let element = joint(&axis_name(tie, i), &tie.in_child, i);
         // A servo is an actuator.
         if spring.limit.is_finite() {
-            return element;
+            return Some(element);
         }
         let element = element.with("stiffness", spring.stiffness).with("damping", spring.damping);
-        if spring.target == 0.0 { element } else { element.with("springref", spring.target) }
+        let rest = spring.target != 0.0;
+        Some(if rest { element.with("springref", spring.target) } else { element })
     };
-    sprung.map(element).collect()
+    axes.iter().enumerate().filter_map(element).collect()
 }
 
 fn joint(name: &str, frame: &Pose, axis: usize) -> Element {
@@ -137,21 +135,16 @@ fn geom_element(scene: &Scene, body: usize, geom: &Geom, name: &str) -> Element 
     element.numbers("rgba", [r, g, b, if fixed { SEE_THROUGH } else { 1.0 }])
 }
 
-/// The corners of the hulls.
+/// Meshes of the hulls.
 pub(super) fn assets(scene: &Scene) -> Element {
     let names = geom_names(scene);
-    let geoms =
-        scene.bodies.iter().zip(&names).flat_map(|(body, names)| body.geoms.iter().zip(names));
-    let hulls = geoms.filter_map(|(geom, name)| match &geom.shape {
-        Shape::Hull { points } => Some((points, name)),
-        Shape::Box { .. } | Shape::Cylinder { .. } => None,
-    });
-    let mesh = |(points, name): (&Vec<Point3<f64>>, &String)| {
-        let corners =
-            points.iter().flat_map(|point| point.coords.iter().copied().collect::<Vec<_>>());
-        Element::new("mesh").with("name", mesh_name(name)).numbers("vertex", corners)
+    let geoms = scene.bodies.iter().flat_map(|body| &body.geoms).zip(names.iter().flatten());
+    let mesh = |(geom, name): (&Geom, &String)| {
+        let Shape::Hull { points } = &geom.shape else { return None };
+        let corners = points.iter().flat_map(|point| <[f64; 3]>::from(point.coords));
+        Some(Element::new("mesh").with("name", mesh_name(name)).numbers("vertex", corners))
     };
-    Element::new("asset").holding(hulls.map(mesh))
+    Element::new("asset").holding(geoms.filter_map(mesh))
 }
 
 /// Whether a joint's bodies stand where its coordinates are zero.

@@ -1,22 +1,18 @@
-//! Contact pairs: friction, and the give of a contact point in MuJoCo's terms.
+//! Contact pairs: friction, and the compliance of a contact point in MuJoCo's terms.
 //!
-//! MuJoCo solves for the acceleration `a` of a contact point (along its normal,
-//! apart) and the force `f` with `R f = -k x - b v - a`: `x` is the gap, `v` its
-//! rate, `R = A (1 - d)/d` with the impedance `d`, and `A` the inverse mass that
-//! MuJoCo itself gives the pair (Todorov 2014, ICRA; MuJoCo documentation,
-//! "Solver parameters"). So a contact is a spring `k/R` and a damper `b/R`, and
-//! a mass `1/R` that is felt only while the surfaces move against each other.
-//! With one `d` for all pairs, as is the custom, the same `solref` is a hundred
-//! times stiffer on a steel key than on a fingertip. Here every pair gets the
-//! `d` that makes `R` the same, and so the same stiffness and damping, whatever
-//! the masses.
+//! MuJoCo solves for the acceleration `a` of a contact point (along its normal, apart) and the
+//! force `f` with `R f = -k x - b v - a`: `x` is the gap, `v` its rate, `R = A (1 - d)/d` with the
+//! impedance `d`, and `A` the inverse mass that MuJoCo itself gives the pair (Todorov 2014, ICRA;
+//! MuJoCo documentation, "Solver parameters"). So a contact is a spring `k/R`, a damper `b/R`, and
+//! a mass `1/R` while the surfaces move against each other. With the usual one `d` for all pairs
+//! the same `solref` is a hundred times stiffer on a steel key than on a fingertip. Here the `d`
+//! of every pair makes `R`, and so stiffness and damping, the same, whatever the masses.
 //!
-//! The friction rows have `R/impratio` and a `b` of their own, `b_f`: a sticking
-//! point creeps under a force `F` at `F R/(impratio b_f)`. A sliding one floats:
-//! the convex cone lifts it until `k x = mu b_f v` (the surfaces then touch on and
-//! off, with the right force on average), so `b_f` must be small. With MuJoCo's
-//! choice, `b_f = b`, a plug that slides at 100 mm/s with friction 0.2 would
-//! float at 0.055 mm, near a connector's clearance; here at 0.011 mm.
+//! The friction rows have `R/impratio` and a `b` of their own, `b_f`: a sticking point creeps
+//! under a force `F` at `F R/(impratio b_f)`. A sliding one floats: the convex cone lifts it until
+//! `k x = mu b_f v` (the surfaces then touch on and off, with the right force on average), so
+//! `b_f` must be small. With MuJoCo's choice, `b_f = b`, a plug that slides at 100 mm/s with
+//! friction 0.2 would float at 0.055 mm, near a connector's clearance; here at 0.011 mm.
 
 use super::{HEAVY, MjcfSettings, geom_names, xml::Element};
 use crate::scene::{
@@ -25,17 +21,17 @@ use crate::scene::{
 };
 use nalgebra::{DMatrix, Matrix3, Point3, Vector3, Vector6};
 
-/// Depth over which MuJoCo lets an impedance vary, m; ours does not.
+/// Depth over which an impedance may vary, m; ours is constant.
 const WIDTH: f64 = 1e-3;
-/// The impedances that MuJoCo can represent.
+/// Least and largest impedance in MuJoCo.
 const IMPEDANCES: [f64; 2] = [1e-4, 0.9999];
 
-/// How much harder than the normal a sticking point is held; one number for all pairs.
+/// Ratio of the resistance against sticking friction to that along the normal, for all pairs.
 pub(super) fn impratio(settings: &MjcfSettings) -> f64 {
     settings.stick_damping / (settings.friction_rate * settings.contact_mass)
 }
 
-/// All pairs of geoms that may touch.
+/// Pairs of geoms that may touch.
 pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
     let names = geom_names(scene).concat();
     let pair = |pair: GeomPair| {
@@ -48,7 +44,7 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
     Element::new("contact").holding(scene.geom_pairs().into_iter().map(pair))
 }
 
-/// A pair with its friction.
+/// Adds the friction of a pair.
 fn rough(pair: Element, Friction { coefficient, torsion }: Friction) -> Element {
     if coefficient <= 0.0 {
         return pair.with("condim", 1);
@@ -62,7 +58,7 @@ fn rough(pair: Element, Friction { coefficient, torsion }: Friction) -> Element 
     }
 }
 
-/// Stiffness and damping of two geoms of bodies of this inverse mass, 1/kg.
+/// Adds stiffness and damping of two geoms of bodies of this inverse mass, 1/kg.
 fn soft(pair: Element, weight: f64, settings: &MjcfSettings) -> Element {
     let share = settings.contact_mass * weight;
     let impedance = (share / (1.0 + share)).clamp(IMPEDANCES[0], IMPEDANCES[1]);
@@ -76,9 +72,8 @@ fn soft(pair: Element, weight: f64, settings: &MjcfSettings) -> Element {
         .numbers("solimp", [impedance, impedance, WIDTH])
 }
 
-/// The inverse mass that MuJoCo gives a body, 1/kg: the mean over the three
-/// axes of the inverse mass at its centre of mass, which an axis that is locked to
-/// a parent on a joint of its own is taken to have none of.
+/// Inverse mass that MuJoCo gives a body, 1/kg: the mean over the three axes of the inverse mass at
+/// its centre of mass, 0 for an axis that is locked to a parent on a joint of its own.
 pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     let Body { motion, .. } = &scene.bodies[body.0];
     let inertia = match motion {
@@ -86,13 +81,9 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
         Motion::Driven => return 1.0 / HEAVY,
         Motion::Free(inertia) | Motion::Carried(inertia) => inertia,
     };
-    let joint = scene.joints.iter().find(|joint| joint.child == body);
-    let Some((joint, axes)) = joint.and_then(|joint| match &joint.springs {
-        Springs::Axes(axes) => Some((joint, axes)),
-        Springs::Coupled(_) => None,
-    }) else {
-        return 1.0 / inertia.mass;
-    };
+    let alone = 1.0 / inertia.mass;
+    let Some(joint) = scene.joints.iter().find(|joint| joint.child == body) else { return alone };
+    let Springs::Axes(axes) = &joint.springs else { return alone };
     let free = axes[..3].iter().filter(|axis| matches!(axis, JointAxis::Sprung(_))).count();
     let loose = !scene.joints.iter().any(|other| other.child == joint.parent);
     match scene.bodies[joint.parent.0].motion {
@@ -103,9 +94,8 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     }
 }
 
-/// The same of a body on a joint of a free one, a latch on its plug: the mean over the axes of
-/// `J M^-1 J^T` with the mass matrix `M` of both, in the velocity of the parent and the rates of
-/// the joint's free axes.
+/// Inverse mass of a body on a joint of a free one (a latch on its plug): the mean over the axes of
+/// `J M^-1 J^T`, `M` the mass matrix in the velocity of the parent and the rates of the free axes.
 fn on_free_body(
     scene: &Scene,
     joint: &Joint,
@@ -130,8 +120,7 @@ fn on_free_body(
         0..6 => f64::from(u8::from(row == i)),
         _ => columns[i - 6][row],
     });
-    let of_child = rates.transpose() * spatial(&below, child, &at) * &rates;
-    let mut mass = of_child;
+    let mut mass = rates.transpose() * spatial(&below, child, &at) * &rates;
     let own = spatial(&above, parent, &at);
     mass.view_mut((0, 0), (6, 6)).zip_apply(&own, |sum, more| *sum += more);
     let linear = rates.rows(0, 3).transpose();
@@ -140,7 +129,7 @@ fn on_free_body(
     answer.map_or(0.0, |answer| (rates.rows(0, 3) * answer).trace() / 3.0)
 }
 
-/// Inertia of a body against the linear velocity at a point of it and its angular velocity.
+/// Mass matrix of a body for the linear velocity at a point of it and its angular velocity.
 fn spatial(pose: &Pose, inertia: &Inertia, at: &Point3<f64>) -> DMatrix<f64> {
     let arm = (pose * inertia.centre - at).cross_matrix();
     let turn = pose.rotation.to_rotation_matrix().into_inner();

@@ -17,32 +17,30 @@ mod body;
 mod contact;
 mod xml;
 
-use super::PRESSED_PATCH;
+use super::lacking;
 use crate::scene::{Body, Joint, JointAxis, Motion, Scene, Spring, Springs};
 use xml::Element;
 
-/// How finely and how stiffly MuJoCo is to simulate.
+/// Step and stiffness of the simulation in MuJoCo.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct MjcfSettings {
-    /// Length of a step, s: the published one. MuJoCo knows a contact only once
-    /// the surfaces overlap; at twice the step a light plug that is suddenly pressed
-    /// with 70 N has by then sunk too far (check T10).
+    /// Length of a step, s: the published one. In MuJoCo a contact begins once the surfaces
+    /// overlap; at twice the step a light plug under a sudden 70 N has sunk too far (check T10).
     pub step_s: f64,
     /// Stiffness of a contact point, N/m: that of the engine `direct`.
     pub contact_stiffness: f64,
     /// Damping of a contact point, N s/m: that of the engine `direct`.
     pub contact_damping: f64,
-    /// How friction holds a sticking point, N s/m: that of the engine `direct`.
+    /// Damping of a sticking point, N s/m: that of the engine `direct`.
     pub stick_damping: f64,
-    /// What a contact adds to the mass of the bodies that it brakes, kg: so little
-    /// that T10 holds. With less the contact's damper would be too stiff for the
-    /// length of a step, beyond about `damping * step / mass = 1`.
+    /// Mass that a contact adds to the bodies that it brakes, kg: so little that T10 holds. With
+    /// less its damper would be too stiff for a step, beyond about `damping * step / mass = 1`.
     pub contact_mass: f64,
-    /// Rate at which the friction of plug and socket brakes a point that is to stick,
-    /// 1/s. The higher it is, the higher a sliding point floats (see `contact.rs`, check
-    /// T12); the lower, the more of the contact's sinking is taken for sliding (T10).
+    /// Rate at which the friction of plug and socket brakes a point that is to stick, 1/s. The
+    /// higher it is, the higher a sliding point floats (see `contact.rs`, check T12); the lower,
+    /// the more of the contact's sinking is taken for sliding (T10).
     pub friction_rate: f64,
-    /// Where MuJoCo's solver ends.
+    /// Tolerance of MuJoCo's solver.
     pub tolerance: f64,
 }
 
@@ -60,39 +58,32 @@ impl Default for MjcfSettings {
     }
 }
 
-/// Mass of a driven body, kg, and its moments of inertia, kg m2: 100 N against it
-/// for a step of 50 us move it by 0.25 nm.
+/// Mass and moments of inertia of a driven body, kg, kg m2: in 50 us 100 N move it by 0.25 nm.
 pub const HEAVY: f64 = 1000.0;
-/// Natural frequency and damping ratio with which a driven body follows its
-/// actuators in MuJoCo's own viewer, 1/s.
+/// Natural frequency, 1/s, at which a driven body follows its actuators in MuJoCo's viewer.
 const VIEWER_FREQUENCY: f64 = 100.0;
 
-/// What a scene has that MJCF cannot say.
+/// Feature of a scene that MJCF lacks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{part}` cannot be written as MJCF: it has no {lacking}")]
 pub struct NotMjcf {
     /// Body or joint of the scene.
     pub part: String,
-    /// What is needed.
+    /// Missing feature.
     pub lacking: &'static str,
 }
 
-/// Whether a scene can be written.
+/// Checks that a scene can be written.
+///
+/// # Errors
+/// If it has a feature that MJCF lacks.
 pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
     let refuse = |part: &str, lacking| Err(NotMjcf { part: part.to_owned(), lacking });
-    for body in &scene.bodies {
-        if matches!(body.motion, Motion::Mechanism(_)) {
-            return refuse(&body.name, "mass that depends on the direction");
-        }
-    }
-    if let Some(pair) = scene.patched() {
-        return refuse(&scene.bodies[pair.first.0].name, PRESSED_PATCH);
+    if let Some((part, lacking)) = lacking(scene).next_back() {
+        return refuse(part, lacking);
     }
     for (i, joint) in scene.joints.iter().enumerate() {
         let child = &scene.bodies[joint.child.0];
-        if matches!(joint.springs, Springs::Coupled(_)) {
-            return refuse(&joint.name, "springs that couple the axes of a joint");
-        }
         if matches!(child.motion, Motion::Fixed | Motion::Driven) {
             return refuse(&joint.name, "joints that carry a fixed or driven body");
         }
@@ -106,7 +97,10 @@ pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
     Ok(())
 }
 
-/// The scene as the text of a model; `name` is shown by viewers.
+/// Text of a model of the scene; `name` is shown by viewers.
+///
+/// # Errors
+/// As of [`supports`].
 pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<String, NotMjcf> {
     supports(scene)?;
     let g = scene.gravity;
@@ -139,50 +133,39 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
     Ok(text)
 }
 
-/// Commands of the driven bodies, and the servos.
+/// Actuators of the driven bodies and of the servos.
 fn actuators(scene: &Scene) -> Element {
     let driven = scene.bodies.iter().filter(|body| body.motion == Motion::Driven);
     let stiffness = HEAVY * VIEWER_FREQUENCY * VIEWER_FREQUENCY;
     let damping = 2.0 * HEAVY * VIEWER_FREQUENCY;
-    let follows = Spring { limit: f64::INFINITY, ..Spring::new(stiffness, damping) };
-    let commands = driven.flat_map(|body| {
-        (0..6).map(move |axis| {
-            // As far as the sliders of a viewer reach: 0.1 m, 0.5 rad.
-            let reach = if axis < 3 { 0.1 } else { 0.5 };
-            actuator(&driven_axis_name(body, axis), &follows, reach)
-        })
-    });
-    let servos = scene.joints.iter().flat_map(|joint| {
-        (0..6).filter_map(move |axis| {
-            let spring = servo(joint, axis)?;
-            Some(actuator(&axis_name(joint, axis), spring, 0.02))
-        })
+    let follows = Spring::new(stiffness, damping);
+    let command = |(body, axis)| {
+        // As far as the sliders of a viewer reach: 0.1 m, 0.5 rad.
+        actuator(&driven_axis_name(body, axis), &follows, if axis < 3 { 0.1 } else { 0.5 })
+    };
+    let commands = driven.flat_map(|body| (0..6).map(move |axis| (body, axis))).map(command);
+    let axes = scene.joints.iter().flat_map(|joint| (0..6).map(move |axis| (joint, axis)));
+    let servos = axes.filter_map(|(joint, axis)| {
+        Some(actuator(&axis_name(joint, axis), servo(joint, axis)?, 0.02))
     });
     Element::new("actuator").holding(commands).holding(servos)
 }
 
 fn actuator(joint: &str, spring: &Spring, reach: f64) -> Element {
-    let element = Element::new("position")
-        .with("name", joint)
-        .with("joint", joint)
-        .with("kp", spring.stiffness)
-        .with("kv", spring.damping)
-        .numbers("ctrlrange", [-reach, reach]);
+    let element = Element::new("position").with("name", joint).with("joint", joint);
+    let element = element.with("kp", spring.stiffness).with("kv", spring.damping);
+    let element = element.numbers("ctrlrange", [-reach, reach]);
     if spring.limit.is_infinite() {
         return element;
     }
     element.numbers("forcerange", [-spring.limit, spring.limit])
 }
 
-/// The spring of an axis that is a servo: one with a limit.
+/// Spring of an axis that is a servo: one with a limit.
 pub(crate) fn servo(joint: &Joint, axis: usize) -> Option<&Spring> {
-    match &joint.springs {
-        Springs::Axes(axes) => match &axes[axis] {
-            JointAxis::Sprung(spring) if spring.limit.is_finite() => Some(spring),
-            _ => None,
-        },
-        Springs::Coupled(_) => None,
-    }
+    let Springs::Axes(axes) = &joint.springs else { return None };
+    let JointAxis::Sprung(spring) = &axes[axis] else { return None };
+    spring.limit.is_finite().then_some(spring)
 }
 
 const AXES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];

@@ -1,8 +1,8 @@
-//! As much of XML as a model needs: elements with attributes, indented.
+//! XML of a model: elements with attributes, indented.
 
 use std::fmt::{Display, Write};
 
-/// An element and what it holds.
+/// Element with its attributes and children.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Element {
     name: &'static str,
@@ -11,30 +11,30 @@ pub(super) struct Element {
 }
 
 impl Element {
-    /// Without attributes and empty.
+    /// Element without attributes and children.
     pub fn new(name: &'static str) -> Self {
         Element { name, attributes: Vec::new(), children: Vec::new() }
     }
 
-    /// The same with an attribute more.
+    /// Adds an attribute.
     pub fn with(mut self, name: &'static str, value: impl Display) -> Self {
         self.attributes.push((name, value.to_string()));
         self
     }
 
-    /// The same with numbers as an attribute, apart by blanks.
+    /// Adds an attribute of numbers, separated by blanks.
     pub fn numbers(self, name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         let words: Vec<String> = values.into_iter().map(|value| value.to_string()).collect();
         self.with(name, words.join(" "))
     }
 
-    /// The same with elements inside.
+    /// Adds children.
     pub fn holding(mut self, children: impl IntoIterator<Item = Element>) -> Self {
         self.children.extend(children);
         self
     }
 
-    /// The element as text, indented by `depth` levels.
+    /// Appends the element as text, indented by `depth` levels.
     pub fn write(&self, depth: usize, out: &mut String) {
         let indent = "  ".repeat(depth);
         // Writing to a string cannot fail.
@@ -55,17 +55,8 @@ impl Element {
 }
 
 fn escape(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            c => safe.push(c),
-        }
-    }
-    safe
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    text.replace('"', "&quot;")
 }
 
 #[cfg(test)]

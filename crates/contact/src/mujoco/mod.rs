@@ -1,8 +1,7 @@
-//! A second, independent engine: MuJoCo. Only this folder knows it.
+//! A second, independent engine: MuJoCo, confined to this module.
 //!
-//! The scene is written as MJCF ([`crate::mjcf`]) and read by MuJoCo itself. What a
-//! trial does besides goes into the model's numbers: the force that drives a driven
-//! body is set before each step, a servo's gains where its spring is replaced.
+//! MuJoCo reads the scene as MJCF ([`crate::mjcf`]). The rest of a trial goes into the model's
+//! numbers: the force on a driven body before each step, the gains of a servo with its spring.
 
 // `world` cannot fail: a scene that `supports` was not asked about may end here, with MuJoCo's message.
 #![allow(clippy::panic)]
@@ -15,15 +14,15 @@ use crate::scene::Scene;
 use mujoco_rs::prelude::{MjModel, MjtObjBase};
 use world::MujocoWorld;
 
-/// The engine; see [`MjcfSettings`].
+/// The engine `mujoco`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Mujoco {
-    /// How finely and how stiffly it simulates.
+    /// Step and stiffness of the simulation.
     pub settings: MjcfSettings,
 }
 
 impl Mujoco {
-    /// The scene as MuJoCo reads it.
+    /// Model of the scene.
     fn model(&self, scene: &Scene) -> Result<MjModel, Unsupported> {
         let text = mjcf::write(scene, "scene", &self.settings).map_err(|error| {
             let (part, lacking) = (error.part, error.lacking);
@@ -34,10 +33,8 @@ impl Mujoco {
             Unsupported::Refused { engine: self.version(), reason }
         })
     }
-}
 
-impl Mujoco {
-    /// The inverse mass with which MuJoCo weighs a body at its contacts, 1/kg.
+    /// Inverse mass that MuJoCo gives a body at its contacts, 1/kg.
     ///
     /// # Errors
     /// If it cannot simulate the scene.

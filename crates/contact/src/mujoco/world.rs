@@ -1,4 +1,4 @@
-//! A scene in motion in MuJoCo.
+//! World of `mujoco`.
 
 use crate::mjcf::{HEAVY, axis_name, driven_axis_name, geom_names, servo};
 use crate::scene::{
@@ -9,24 +9,24 @@ use mujoco_rs::prelude::{MjData, MjModel, MjtObjBase};
 use nalgebra::{Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::sync::Arc;
 
-/// A speed or coordinate beyond this, SI, has left the finite numbers.
+/// Largest speed or coordinate, SI, of a state that has not diverged.
 const HUGE: f64 = 1e6;
 
-/// A scene in motion.
+/// Scene in motion.
 #[derive(Clone)]
 pub(super) struct MujocoWorld {
-    /// State and model; the model is shared by snapshots until a spring is replaced.
+    /// State, and model, which snapshots share until a spring is replaced.
     data: MjData<Arc<MjModel>>,
     bodies: Vec<BodyPlaces>,
     joints: Vec<[AxisPlace; 6]>,
     /// Body of the scene that a geom belongs to.
     owners: Vec<BodyId>,
     pairs: Vec<ContactPair>,
-    /// Their forces over the last step.
+    /// Forces of the pairs over the last step.
     forces: Vec<ContactForce>,
 }
 
-/// A body's places in MuJoCo's arrays.
+/// Places of a body in MuJoCo's arrays.
 #[derive(Clone)]
 struct BodyPlaces {
     id: usize,
@@ -34,28 +34,28 @@ struct BodyPlaces {
     driven: Option<Driven>,
 }
 
-/// A driven body's coordinates, from its first pose.
+/// Coordinates of a driven body, from its first pose.
 #[derive(Clone)]
 struct Driven {
     start: Pose,
-    /// Of its six joints in MuJoCo's positions and velocities.
+    /// Places of its six joints in MuJoCo's positions and velocities.
     position: [usize; 6],
     velocity: [usize; 6],
     now: [f64; 6],
     next: [f64; 6],
 }
 
-/// One axis of a joint in MuJoCo's arrays.
+/// Axis of a joint in MuJoCo's arrays.
 #[derive(Clone, Copy)]
 enum AxisPlace {
     Locked,
-    /// A spring of the joint itself.
+    /// Spring of the joint itself.
     Passive {
         joint: usize,
         position: usize,
         velocity: usize,
     },
-    /// An actuator, and its gain, which stays as it is.
+    /// Actuator, with its constant gain.
     Servo {
         actuator: usize,
         gain: f64,
@@ -76,11 +76,8 @@ impl MujocoWorld {
             }
         }
         let bodies = scene.bodies.iter().map(|body| body_places(&model, body)).collect();
-        let joints = scene
-            .joints
-            .iter()
-            .map(|joint| std::array::from_fn(|axis| axis_place(&model, joint, axis)))
-            .collect();
+        let places = |joint| std::array::from_fn(|axis| axis_place(&model, joint, axis));
+        let joints = scene.joints.iter().map(places).collect();
         let mut owners = vec![BodyId(usize::MAX); model.geom_bodyid().len()];
         for (body, names) in geom_names(scene).iter().enumerate() {
             for name in names {
@@ -89,19 +86,13 @@ impl MujocoWorld {
         }
         let mut data = MjData::new(Arc::new(model));
         data.kinematics();
-        MujocoWorld {
-            data,
-            bodies,
-            joints,
-            owners,
-            pairs: scene.contacts.clone(),
-            forces: vec![ContactForce::default(); scene.contacts.len()],
-        }
+        let forces = vec![ContactForce::default(); scene.contacts.len()];
+        MujocoWorld { data, bodies, joints, owners, pairs: scene.contacts.clone(), forces }
     }
 
-    /// Sends the driven bodies on their way. MuJoCo's coordinates are relative: a velocity
-    /// that is merely set takes along all that hangs on the body, as if it weighed nothing.
-    /// So a force brings it to its velocity, against a mass beside which the rest is light.
+    /// Pushes the driven bodies to their velocities. MuJoCo's coordinates are relative: a velocity
+    /// that is merely set takes along all that hangs on the body, as if it weighed nothing. So a
+    /// force makes it, against a mass beside which the rest is light.
     fn steer(&mut self) {
         let step = self.step_s();
         for driven in self.bodies.iter().filter_map(|body| body.driven.as_ref()) {
@@ -114,7 +105,7 @@ impl MujocoWorld {
         }
     }
 
-    /// Takes the rounding out of where the driven bodies have come.
+    /// Sets the driven bodies' coordinates without rounding.
     fn arrive(&mut self) {
         for driven in self.bodies.iter_mut().filter_map(|body| body.driven.as_mut()) {
             driven.now = driven.next;

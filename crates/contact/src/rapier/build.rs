@@ -1,14 +1,14 @@
-//! A scene's bodies and joints as rapier's.
+//! Bodies, joints and settings of rapier from those of a scene.
 
-use super::RapierSettings;
+use super::Rapier;
 use crate::scene::{Body, BodyId, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs};
 use crate::shapes;
 use nalgebra::{Translation3, UnitQuaternion};
 use rapier3d_f64::math as rm;
 use rapier3d_f64::prelude as rp;
 
-/// The engine's settings as rapier's.
-pub(super) fn parameters(settings: &RapierSettings) -> rp::IntegrationParameters {
+/// Settings of rapier.
+pub(super) fn parameters(settings: &Rapier) -> rp::IntegrationParameters {
     let softness = rp::SpringCoefficients {
         natural_frequency: settings.contact_hz,
         damping_ratio: settings.contact_damping_ratio,
@@ -32,20 +32,19 @@ pub(super) fn parameters(settings: &RapierSettings) -> rp::IntegrationParameters
     }
 }
 
-/// One collision group per body, filtered to the bodies it may touch.
+/// Collision group of each body, filtered to the bodies it may touch.
 fn groups(scene: &Scene) -> Vec<rp::InteractionGroups> {
     let bit = |i: usize| rp::Group::from_bits_truncate(1 << i);
-    (0..scene.bodies.len())
-        .map(|i| {
-            let own = scene.contacts.iter().filter(|pair| pair.has(BodyId(i)));
-            let both = own.map(|pair| bit(pair.first.0) | bit(pair.second.0));
-            let filter = both.fold(rp::Group::empty(), |all, two| all | two).difference(bit(i));
-            rp::InteractionGroups::new(bit(i), filter, rp::InteractionTestMode::And)
-        })
-        .collect()
+    let group = |i| {
+        let own = scene.contacts.iter().filter(|pair| pair.has(BodyId(i)));
+        let both = own.map(|pair| bit(pair.first.0) | bit(pair.second.0));
+        let filter = both.fold(rp::Group::empty(), |all, two| all | two).difference(bit(i));
+        rp::InteractionGroups::new(bit(i), filter, rp::InteractionTestMode::And)
+    };
+    (0..scene.bodies.len()).map(group).collect()
 }
 
-/// Puts the bodies with their colliders into a world.
+/// Inserts the bodies with their colliders.
 pub(super) fn insert_bodies(
     world: &mut rp::PhysicsWorld,
     scene: &Scene,
@@ -64,19 +63,14 @@ fn insert_body(
         Motion::Fixed | Motion::Mechanism(_) => rp::RigidBodyBuilder::fixed(),
         Motion::Driven => rp::RigidBodyBuilder::kinematic_position_based(),
         Motion::Free(inertia) | Motion::Carried(inertia) => {
-            let centre = shapes::vector(&inertia.centre.coords);
-            let moments = shapes::vector(&inertia.moments);
-            rp::RigidBodyBuilder::dynamic().additional_mass_properties(rp::MassProperties::new(
-                centre,
-                inertia.mass,
-                moments,
-            ))
+            let [centre, moments] = [&inertia.centre.coords, &inertia.moments].map(shapes::vector);
+            let properties = rp::MassProperties::new(centre, inertia.mass, moments);
+            rp::RigidBodyBuilder::dynamic().additional_mass_properties(properties)
         }
     };
     let weight = if matches!(body.motion, Motion::Carried(_)) { 0.0 } else { 1.0 };
-    let builder =
-        builder.gravity_scale(weight).pose(shapes::pose(&body.pose, 1.0)).can_sleep(false);
-    let handle = world.insert_body(builder);
+    let pose = shapes::pose(&body.pose, 1.0);
+    let handle = world.insert_body(builder.gravity_scale(weight).pose(pose).can_sleep(false));
     for geom in &body.geoms {
         let (shape, turn) = shapes::shared(&geom.shape, 1.0);
         let collider = rp::ColliderBuilder::new(shape)
@@ -90,7 +84,7 @@ fn insert_body(
     handle
 }
 
-/// rapier's names of a joint's axes, in our order.
+/// Axes of a joint in our order.
 pub(super) const JOINT_AXES: [rp::JointAxis; 6] = [
     rp::JointAxis::LinX,
     rp::JointAxis::LinY,
@@ -100,7 +94,7 @@ pub(super) const JOINT_AXES: [rp::JointAxis; 6] = [
     rp::JointAxis::AngZ,
 ];
 
-/// A joint with its springs.
+/// Joint with its springs.
 pub(super) fn generic_joint(joint: &Joint) -> rp::GenericJoint {
     let mut made = rp::GenericJoint::new(rp::JointAxesMask::empty());
     made.set_local_frame1(shapes::pose(&joint.in_parent, 1.0));
@@ -126,7 +120,7 @@ pub(super) fn set_motor(joint: &mut rp::GenericJoint, axis: rp::JointAxis, sprin
     joint.set_motor_max_force(axis, if spring.limit.is_finite() { spring.limit } else { f64::MAX });
 }
 
-/// From rapier's pose.
+/// Pose from rapier's.
 pub(super) fn from_rapier(pose: &rm::Pose) -> Pose {
     let (t, q) = (pose.translation, pose.rotation);
     let quaternion = nalgebra::Quaternion::new(q.w, q.x, q.y, q.z);

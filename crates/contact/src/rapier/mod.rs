@@ -1,45 +1,43 @@
-//! rapier3d in double precision: a general engine for games and robots, slower and less
-//! exact here than `direct` (`docs/notes/simulation.md`, "Engines"), to compare it with.
+//! rapier3d in double precision, to compare `direct` with: a general engine for games and robots,
+//! slower and less exact here (`docs/notes/simulation.md`, "Engines").
 
 mod build;
 mod world;
 
-use super::{Engine, Unsupported, World, refuse_coupling};
+use super::{Engine, Unsupported, World, lacking};
 use crate::scene::Scene;
 use world::RapierWorld;
 
-/// Contact and solver settings for millimetre-sized parts. rapier's defaults
-/// are for metre-sized games and are wrong here (a 10 N push sinks 0.7 mm).
+/// The engine `rapier` and its settings, for parts of millimetres. rapier's defaults are for games
+/// with parts of metres, and are wrong here (a 10 N push sinks 0.7 mm).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct RapierSettings {
+pub struct Rapier {
     /// Length of a step, s; collisions are detected once per step.
     pub step_s: f64,
-    /// Solver substeps in a step.
+    /// Number of solver substeps in a step.
     pub substeps: usize,
-    /// Natural frequency of a contact, Hz. rapier scales a contact's stiffness
-    /// with the effective mass: a 5 g connector wedged by 70 N sinks 0.21 mm into
-    /// a wall at 2 kHz, 0.024 mm at 6 kHz, 0.014 mm at 8 kHz (check T10). But a
-    /// contact that is too stiff for the length of a substep, beyond about
-    /// `2 pi f h = 1.7`, chatters when a part is squeezed between two others, and
-    /// so lets it slip: at 4 substeps of 25 us from 12 kHz (check T5).
+    /// Natural frequency of a contact, Hz. rapier scales a contact's stiffness with the effective
+    /// mass: a 5 g connector wedged by 70 N sinks 0.21 mm into a wall at 2 kHz, 0.024 mm at 6 kHz,
+    /// 0.014 mm at 8 kHz (check T10). But a contact that is too stiff for the length of a substep,
+    /// beyond about `2 pi f h = 1.7`, chatters when a part is squeezed between two others, and so
+    /// lets it slip: at 4 substeps of 25 us from 12 kHz (check T5).
     pub contact_hz: f64,
     /// Damping ratio of a contact; 1 is critical.
     pub contact_damping_ratio: f64,
-    /// Distance at which a contact is foreseen, m: farther than anything moves
-    /// in a step, smaller than the gaps between faces that must not interact.
+    /// Distance at which a contact is foreseen, m: farther than anything moves in a step, smaller
+    /// than the gaps between faces that must not interact.
     pub prediction: f64,
-    /// Fastest a penetration is pushed out, m/s. This bounds the force that a
-    /// contact can bear: at 0.5 m/s a 5 g connector wedged by 70 N sinks 2.4 mm
-    /// at 2 kHz, and one wedged by 200 N sinks 1.1 mm at 8 kHz (check T10). So it
-    /// must be out of reach; here it bears some 3 kN on such a part.
+    /// Highest speed at which a penetration is pushed out, m/s. This bounds the force that a
+    /// contact can bear: at 0.5 m/s a 5 g connector wedged by 70 N sinks 2.4 mm at 2 kHz, and one
+    /// wedged by 200 N sinks 1.1 mm at 8 kHz (check T10). Here it bears some 3 kN on such a part.
     pub corrective_velocity: f64,
     /// Penetration that is not corrected, m.
     pub allowed_error: f64,
 }
 
-impl Default for RapierSettings {
+impl Default for Rapier {
     fn default() -> Self {
-        RapierSettings {
+        Rapier {
             step_s: 1e-4,
             substeps: 4,
             contact_hz: 8e3,
@@ -49,13 +47,6 @@ impl Default for RapierSettings {
             allowed_error: 1e-7,
         }
     }
-}
-
-/// The engine; see [`RapierSettings`].
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Rapier {
-    /// How finely and how stiffly it simulates.
-    pub settings: RapierSettings,
 }
 
 impl Engine for Rapier {
@@ -68,7 +59,8 @@ impl Engine for Rapier {
     }
 
     fn supports(&self, scene: &Scene) -> Result<(), Unsupported> {
-        refuse_coupling(self, scene)
+        let Some((part, lacking)) = lacking(scene).next() else { return Ok(()) };
+        Err(Unsupported::Lacking { engine: self.version(), part: part.to_owned(), lacking })
     }
 
     /// # Panics
@@ -78,17 +70,15 @@ impl Engine for Rapier {
         if let Err(unsupported) = self.supports(scene) {
             panic!("{unsupported}");
         }
-        Box::new(RapierWorld::new(scene, &self.settings))
+        Box::new(RapierWorld::new(scene, self))
     }
 
     fn halved(&self) -> Box<dyn Engine> {
-        let step_s = 0.5 * self.settings.step_s;
-        Box::new(Rapier { settings: RapierSettings { step_s, ..self.settings } })
+        Box::new(Rapier { step_s: 0.5 * self.step_s, ..*self })
     }
 
     fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
-        let substeps = 2 * self.settings.substeps;
-        let settings = RapierSettings { substeps, ..self.settings };
-        vec![("half the step", self.halved()), ("2 x substeps", Box::new(Rapier { settings }))]
+        let finer = Rapier { substeps: 2 * self.substeps, ..*self };
+        vec![("half the step", self.halved()), ("2 x substeps", Box::new(finer))]
     }
 }

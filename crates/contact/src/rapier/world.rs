@@ -1,8 +1,8 @@
-//! A scene in motion in rapier.
+//! World of `rapier`.
 
-use super::RapierSettings;
+use super::Rapier;
 use super::build::{self, JOINT_AXES};
-use crate::scene::{BodyId, JointId, Pose, Scene, Spring};
+use crate::scene::{BodyId, Joint, JointId, Pose, Scene, Spring};
 use crate::{ContactForce, Diverged, World, shapes};
 use nalgebra::Vector3;
 use rapier3d_f64::prelude as rp;
@@ -15,8 +15,7 @@ pub(super) struct RapierWorld {
     frictions: Arc<Frictions>,
 }
 
-/// Coefficient of friction of each two colliders, by the numbers in their user data:
-/// rapier itself only knows surfaces by themselves.
+/// Coefficient of friction of each two colliders, by the numbers in their user data.
 struct Frictions {
     colliders: usize,
     coefficients: Vec<f64>,
@@ -46,19 +45,16 @@ impl rp::PhysicsHooks for Frictions {
 }
 
 impl RapierWorld {
-    pub fn new(scene: &Scene, settings: &RapierSettings) -> Self {
+    pub fn new(scene: &Scene, settings: &Rapier) -> Self {
         let mut world = rp::PhysicsWorld::new();
         world.gravity = shapes::vector(&scene.gravity);
         world.integration_parameters = build::parameters(settings);
         let bodies = build::insert_bodies(&mut world, scene);
-        let joints = scene
-            .joints
-            .iter()
-            .map(|joint| {
-                let ends = (bodies[joint.parent.0], bodies[joint.child.0]);
-                world.impulse_joints.insert(ends.0, ends.1, build::generic_joint(joint), true)
-            })
-            .collect();
+        let mut insert = |joint: &Joint| {
+            let (parent, child) = (bodies[joint.parent.0], bodies[joint.child.0]);
+            world.impulse_joints.insert(parent, child, build::generic_joint(joint), true)
+        };
+        let joints = scene.joints.iter().map(&mut insert).collect();
         RapierWorld { world, bodies, joints, frictions: Arc::new(Frictions::new(scene)) }
     }
 }
@@ -79,8 +75,8 @@ impl World for RapierWorld {
     }
 
     fn drive(&mut self, body: BodyId, pose: Pose) {
-        self.world.bodies[self.bodies[body.0]]
-            .set_next_kinematic_position(shapes::pose(&pose, 1.0));
+        let body = &mut self.world.bodies[self.bodies[body.0]];
+        body.set_next_kinematic_position(shapes::pose(&pose, 1.0));
     }
 
     fn place(&mut self, body: BodyId, pose: Pose) {
@@ -115,21 +111,19 @@ impl World for RapierWorld {
 
     fn snapshot(&self) -> Box<dyn World> {
         let from = &self.world;
-        let mut world = rp::PhysicsWorld::new();
-        world.gravity = from.gravity;
-        world.integration_parameters = from.integration_parameters;
-        world.islands = from.islands.clone();
-        world.broad_phase = from.broad_phase.clone();
-        world.narrow_phase = from.narrow_phase.clone();
-        world.bodies = from.bodies.clone();
-        world.colliders = from.colliders.clone();
-        world.impulse_joints = from.impulse_joints.clone();
-        Box::new(RapierWorld {
-            world,
-            bodies: self.bodies.clone(),
-            joints: self.joints.clone(),
-            frictions: Arc::clone(&self.frictions),
-        })
+        let world = rp::PhysicsWorld {
+            gravity: from.gravity,
+            integration_parameters: from.integration_parameters,
+            islands: from.islands.clone(),
+            broad_phase: from.broad_phase.clone(),
+            narrow_phase: from.narrow_phase.clone(),
+            bodies: from.bodies.clone(),
+            colliders: from.colliders.clone(),
+            impulse_joints: from.impulse_joints.clone(),
+            ..rp::PhysicsWorld::new()
+        };
+        let (bodies, joints) = (self.bodies.clone(), self.joints.clone());
+        Box::new(RapierWorld { world, bodies, joints, frictions: self.frictions.clone() })
     }
 }
 
@@ -155,9 +149,8 @@ fn add_pair(
         let pressed = active().map(|point| point.impulse).sum::<f64>() / parameters.dt;
         sum.net += shapes::from_vector(manifold.data.normal) * (sign * pressed);
         sum.normal_sum += pressed;
-        // `Simplified` friction is one force for the whole manifold, which each of its active
-        // points repeats. Of its impulse rapier keeps that of the last substep only, in
-        // the world's axes, on the first body.
+        // `Simplified` friction is one force for the whole manifold, repeated at each active point:
+        // the impulse of the last substep alone, in the world's axes, on the first body.
         let Some(point) = active().next() else { continue };
         let rubbed = shapes::from_vector(point.warmstart_tangent_world);
         let substep = parameters.dt / parameters.num_solver_iterations as f64;

@@ -3,27 +3,27 @@
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
 
-/// How far an extension line goes beyond its dimension line, and half a tick, mm on paper.
+/// Overhang of an extension line over its dimension line, and half a tick, mm on paper.
 const BEYOND: f64 = 1.5;
-/// Gap between the drawn thing and its extension line, mm on paper.
+/// Gap between the drawn part and its extension line, mm on paper.
 const GAP: f64 = 1.0;
 
-/// A drawing on paper: millimetres, Y downwards.
+/// Placement of a part on paper: millimetres, Y downwards.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
-    /// Where X = 0, Y = 0 of the drawn thing lies, mm on paper.
+    /// Position of the part's origin, mm on paper.
     pub origin: Point2<f64>,
-    /// Paper over thing.
+    /// Size on paper by the size of the part.
     pub scale: f64,
 }
 
 impl View {
-    /// The place on paper of a point of the thing, mm with Y upwards.
+    /// Position on paper, mm, of a point of the part, mm with Y upwards.
     pub fn place(&self, point: Point2<f64>) -> Point2<f64> {
         self.origin + self.scale * Vector2::new(point.x, -point.y)
     }
 
-    /// The length from `a` to `b`, written at a distance (mm on paper) to their left.
+    /// Dimension line from `a` to `b` at a distance (mm on paper) to their left.
     pub fn length(&self, a: Point2<f64>, b: Point2<f64>, distance: f64, text: &str) -> Markup {
         let ends = [self.place(a), self.place(b)];
         let along = (ends[1] - ends[0]).normalize();
@@ -43,13 +43,13 @@ impl View {
     }
 }
 
-/// A straight line on paper.
+/// Straight line on paper.
 pub(super) fn line(a: Point2<f64>, b: Point2<f64>) -> Markup {
     let [x1, y1, x2, y2] = [a.x, a.y, b.x, b.y].map(|value| format!("{value:.2}"));
     html! { line x1=(x1) y1=(y1) x2=(x2) y2=(y2) {} }
 }
 
-/// Words on paper at a place: their middle above it, along a direction and never upside down.
+/// Text whose middle stands above a point on paper, along a direction and never upside down.
 fn beside(at: Point2<f64>, along: Vector2<f64>, text: &str) -> Markup {
     let along = if along.x < -1e-9 || (along.x < 1e-9 && along.y > 0.0) { -along } else { along };
     let degrees = along.y.atan2(along.x).to_degrees();

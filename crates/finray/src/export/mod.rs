@@ -1,35 +1,34 @@
 //! A printed finger for the printer: a closed solid, its profile, a sheet to print it by, and
 //! settings for slicers that fill its outline themselves.
 //!
-//! Files are in millimetres: X from the tip to the base, Y from the back (0) to the front, Z the
+//! Files are in millimetres: X from the tip to the base, Y from back (0) to front side, Z the
 //! depth, in which the profile is printed layer by layer.
 
 mod dimension;
-pub mod drawing;
-pub mod dxf;
 pub mod prism;
+pub mod profile;
 pub mod sheet;
 pub mod slicer;
-pub mod stl;
-pub mod three_mf;
 
 use crate::geometry::Geometry;
+use crate::polygon::Ring;
 use input::units::MM;
+use nalgebra::Point2;
 
-/// `finray9, infill 20 %, 10°`: what a file is of.
+/// Title of a file: `finray9, infill 20 %, 10°`.
 pub fn title(geometry: &Geometry) -> String {
-    let design = &geometry.design;
-    format!(
-        "{}, infill {} %, {}°",
-        geometry.finger.name, design.density_percent, design.direction_deg
-    )
+    let (name, design) = (&geometry.finger.name, &geometry.design);
+    format!("{name}, infill {} %, {}°", design.density_percent, design.direction_deg)
 }
 
-/// The rings of the profile in the frame of the files, mm: first the outer one, counter-clockwise,
-/// then the openings, clockwise.
-fn rings(geometry: &Geometry) -> Vec<Vec<[f64; 2]>> {
+/// Outline (counter-clockwise), then openings (clockwise), in the frame of the files, mm.
+fn rings(geometry: &Geometry) -> Vec<Ring> {
     let width = geometry.finger.outline.width / MM;
-    let mut rings = geometry.rings_mm();
-    rings.iter_mut().flatten().for_each(|point| point[1] += width);
-    rings
+    let moved = |ring: Vec<[f64; 2]>| ring.into_iter().map(|[x, y]| Point2::new(x, y + width));
+    geometry.rings_mm().into_iter().map(|ring| moved(ring).collect()).collect()
+}
+
+/// A length in mm, to a micrometre.
+fn mm(length: f64) -> String {
+    format!("{}", (length / MM * 1e3).round() / 1e3)
 }

@@ -1,15 +1,19 @@
-//! A profile extruded along its depth: a closed surface of triangles.
+//! A profile extruded along its depth: a closed surface of triangles, as STL and 3MF files.
 
 use super::rings;
 use crate::geometry::Geometry;
 use crate::mesh::{Mesh, MeshError};
 use crate::polygon::{self, Ring};
 use input::units::MM;
+use maud::html;
 use nalgebra::{Point2, Vector3};
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::{Cursor, Write};
+use zip::CompressionMethod;
+use zip::result::ZipResult;
+use zip::write::{SimpleFileOptions, ZipWriter};
 
-/// A closed surface. Corners have the precision that files of triangles have, so what is
-/// checked is what a slicer reads.
+/// Closed surface, its corners rounded as in files, so that the checks hold for those.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prism {
     /// Corners, mm.
@@ -18,10 +22,10 @@ pub struct Prism {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Why there is no closed surface.
+/// Reason why there is no closed surface.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PrismError {
-    /// The profile cannot be divided.
+    /// A profile that no triangles fill.
     #[error("the profile cannot be divided into triangles: {0}")]
     Profile(#[from] MeshError),
     /// Triangles that do not close the surface.
@@ -30,7 +34,7 @@ pub enum PrismError {
     /// Another volume than that of the profile.
     #[error("the volume is {found:.1} mm3; area times depth is {expected:.1} mm3")]
     Volume {
-        /// Enclosed by the triangles, mm3.
+        /// Volume within the triangles, mm3.
         found: f64,
         /// Area of the profile times depth, mm3.
         expected: f64,
@@ -39,34 +43,39 @@ pub enum PrismError {
 
 /// Share by which a volume may differ from area times depth.
 const VOLUME_TOLERANCE: f64 = 1e-3;
+/// Length of the header of an STL file, bytes.
+const HEADER: usize = 80;
+
+const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>
+"#;
+
+const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="rel-1" Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
+"#;
 
 impl Prism {
-    /// The finger with its ribs, checked.
+    /// Checked surface of the finger with its ribs.
     ///
     /// # Errors
     /// If the surface is not closed, or encloses another volume than area times depth.
     pub fn finger(geometry: &Geometry) -> Result<Self, PrismError> {
-        let mm = |ring: Vec<[f64; 2]>| ring.into_iter().map(Point2::from).collect();
-        let mut rings: Vec<Ring> = rings(geometry).into_iter().map(mm).collect();
+        let mut rings = rings(geometry);
         let voids = rings.split_off(1);
         let outer = rings.pop().unwrap_or_default();
         Prism::new(&outer, &voids, geometry.finger.outline.depth / MM)
     }
 
-    /// The finger without openings: what a slicer fills with its own infill.
+    /// Surface of the finger without openings, for slicers that fill it with their own infill.
     ///
     /// # Errors
     /// As of [`Prism::finger`].
     pub fn outline(geometry: &Geometry) -> Result<Self, PrismError> {
-        let outer: Ring = rings(geometry)
-            .into_iter()
-            .take(1)
-            .flat_map(|ring| ring.into_iter().map(Point2::from))
-            .collect();
+        let outer = rings(geometry).swap_remove(0);
         Prism::new(&outer, &[], geometry.finger.outline.depth / MM)
     }
 
-    /// The solid base: where a slicer's infill has to be full.
+    /// Surface of the solid base, where a slicer's infill has to be full.
     ///
     /// # Errors
     /// As of [`Prism::finger`].
@@ -78,7 +87,7 @@ impl Prism {
         Prism::new(&block.map(Point2::from).to_vec(), &[], outline.depth / MM)
     }
 
-    /// A ring less holes (clockwise) from 0 to `depth`, mm.
+    /// Ring less holes (clockwise) from 0 to `depth`, mm.
     fn new(outer: &Ring, holes: &[Ring], depth: f64) -> Result<Self, PrismError> {
         let mesh = Mesh::coarsest(outer, holes)?;
         let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
@@ -105,9 +114,9 @@ impl Prism {
     }
 
     fn check(&self, expected: f64) -> Result<(), PrismError> {
-        match self.open_edges() {
-            0 => {}
-            count => return Err(PrismError::Open(count)),
+        let open = self.open_edges();
+        if open > 0 {
+            return Err(PrismError::Open(open));
         }
         let found = self.volume();
         if (found - expected).abs() > VOLUME_TOLERANCE * expected {
@@ -116,9 +125,9 @@ impl Prism {
         Ok(())
     }
 
-    /// Edges that are not met exactly twice, once each way; corners are told apart by their
-    /// places alone, as in a file without numbers of corners.
-    pub fn open_edges(&self) -> usize {
+    /// Number of edges that are not met exactly twice, once each way; corners are told apart by
+    /// their places alone, as in a file without numbers of corners.
+    fn open_edges(&self) -> usize {
         let place = |corner: u32| self.corners[corner as usize].map(f32::to_bits);
         let mut met: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
         for [a, b] in self.triangles.iter().flat_map(sides) {
@@ -128,8 +137,8 @@ impl Prism {
         met.keys().filter(|edge| !twice(edge)).count()
     }
 
-    /// The volume that the surface encloses, mm3.
-    pub fn volume(&self) -> f64 {
+    /// Volume that the surface encloses, mm3.
+    fn volume(&self) -> f64 {
         let sixth = |triangle: &[u32; 3]| {
             let [a, b, c] = self.places(triangle);
             a.dot(&b.cross(&c)) / 6.0
@@ -137,9 +146,71 @@ impl Prism {
         self.triangles.iter().map(sixth).sum()
     }
 
-    /// Where the corners of a triangle are, mm.
-    pub(super) fn places(&self, triangle: &[u32; 3]) -> [Vector3<f64>; 3] {
+    /// Positions of the corners of a triangle, mm.
+    fn places(&self, triangle: &[u32; 3]) -> [Vector3<f64>; 3] {
         triangle.map(|corner| self.corners[corner as usize].map(f64::from).into())
+    }
+
+    /// Binary STL file, mm; `title` goes into its header.
+    pub fn stl(&self, title: &str) -> Vec<u8> {
+        let mut out = format!("finger-opt: {title}; mm").into_bytes();
+        out.resize(HEADER, b' ');
+        out.extend((self.triangles.len() as u32).to_le_bytes());
+        for triangle in &self.triangles {
+            let [a, b, c] = self.places(triangle);
+            let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+            let corners = triangle.iter().flat_map(|&corner| self.corners[corner as usize]);
+            for value in normal.iter().map(|&n| n as f32).chain(corners) {
+                out.extend(value.to_le_bytes());
+            }
+            out.extend([0, 0]);
+        }
+        out
+    }
+
+    /// 3MF file, mm: a zip by the 3MF Core Specification 1.3.
+    ///
+    /// # Errors
+    /// If the zip cannot be written.
+    pub fn three_mf(&self, title: &str) -> ZipResult<Vec<u8>> {
+        let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+        let parts = [
+            ("[Content_Types].xml", TYPES),
+            ("_rels/.rels", RELATIONS),
+            ("3D/3dmodel.model", &self.three_mf_model(title)),
+        ];
+        // No clock: the entries carry the format's first date.
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        for (name, text) in parts {
+            zip.start_file(name, options)?;
+            zip.write_all(text.as_bytes())?;
+        }
+        Ok(zip.finish()?.into_inner())
+    }
+
+    fn three_mf_model(&self, title: &str) -> String {
+        let declaration = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+        let model = html! {
+            model unit="millimeter" xml:lang="en-US"
+                xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" {
+                metadata name="Title" { (title) }
+                metadata name="Application" { "finger-opt " (env!("CARGO_PKG_VERSION")) }
+                resources {
+                    object id="1" type="model" name=(title) {
+                        mesh {
+                            vertices {
+                                @for [x, y, z] in &self.corners { vertex x=(x) y=(y) z=(z) {} }
+                            }
+                            triangles {
+                                @for [a, b, c] in &self.triangles { triangle v1=(a) v2=(b) v3=(c) {} }
+                            }
+                        }
+                    }
+                }
+                build { item objectid="1" {} }
+            }
+        };
+        declaration.to_owned() + &model.into_string()
     }
 }
 

@@ -1,8 +1,7 @@
-//! The print sheet: one page that says what to print, how, and how to check it.
+//! Print sheet: one page on how to print a finger and how to check the print.
 
 use super::dimension::{View, line};
-use super::drawing;
-use super::title;
+use super::{mm, profile, title};
 use crate::geometry::Geometry;
 use crate::mechanics::FingerStiffness;
 use crate::printed::{Outline, PrintedFinger};
@@ -10,14 +9,14 @@ use input::units::{DEG, GRAM, MM, N_PER_MM};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use nalgebra::{Point2, Vector2};
 
-/// A4, lying, mm.
+/// Width and height of the paper, A4 landscape, mm.
 const PAPER: [f64; 2] = [297.0, 210.0];
-/// Room for the drawing, mm on paper.
+/// Largest width and height of the drawing, mm on paper.
 const ROOM: [f64; 2] = [215.0, 80.0];
 /// Left and upper edge of the drawing, mm on paper.
 const CORNER: [f64; 2] = [38.0, 58.0];
 
-/// The sheet as a page of HTML that prints on one sheet of paper.
+/// Print sheet as a page of HTML that prints on one sheet of paper.
 pub fn html(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
     let page = html! {
         (DOCTYPE)
@@ -33,7 +32,7 @@ pub fn html(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
     page.into_string()
 }
 
-/// The sheet as an SVG of an A4 page.
+/// Print sheet as an SVG of an A4 page.
 pub fn svg(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
     let [width, height] = PAPER;
     let outline = &geometry.finger.outline;
@@ -50,7 +49,7 @@ pub fn svg(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
                 (geometry.finger.description) ". Both fingers of a gripper are this part: print two."
             }
             text x="282" y="17" text-anchor="end" fill="#444" { "lengths in mm, drawn " (words) }
-            (profile(geometry, view))
+            (drawing(geometry, view))
             (lengths(outline, view))
             (direction(geometry, view))
             (column(15.0, "Finger", &finger(geometry)))
@@ -61,14 +60,14 @@ pub fn svg(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
     svg.into_string() + "\n"
 }
 
-/// The profile, and what the gripper holds of it.
-fn profile(geometry: &Geometry, view: View) -> Markup {
+/// Profile, and the part of it that the gripper holds.
+fn drawing(geometry: &Geometry, view: View) -> Markup {
     let outline = &geometry.finger.outline;
     let place = |[x, y]: [f64; 2]| view.place(Point2::new(x, y)).into();
     let at = view.place(Point2::new((outline.length - outline.clamped) / MM, 0.0));
     let [width, height] = [outline.clamped, outline.width].map(|value| value / MM * view.scale);
     html! {
-        path d=(drawing::path(geometry, place)) fill="#aab7c9" stroke="#223" stroke-width="0.15"
+        path d=(profile::path(geometry, place)) fill="#aab7c9" stroke="#223" stroke-width="0.15"
             fill-rule="evenodd" {}
         rect x=(at.x) y=(at.y) width=(width) height=(height) fill="none" stroke="#a33"
             stroke-width="0.4" stroke-dasharray="2 1" {}
@@ -78,17 +77,12 @@ fn profile(geometry: &Geometry, view: View) -> Markup {
     }
 }
 
-fn mm(length: f64) -> String {
-    // To a micrometre, without zeros that say nothing.
-    format!("{}", (length / MM * 1e3).round() / 1e3)
-}
-
-/// To a hundredth of a degree.
+/// An angle in degrees, to a hundredth.
 fn degrees(angle: f64) -> f64 {
     (angle / DEG * 100.0).round() / 100.0
 }
 
-/// The lengths of the outline.
+/// Dimension lines of the outline.
 fn lengths(outline: &Outline, view: View) -> Markup {
     let at = |x: f64, y: f64| Point2::new(x, y) / MM;
     let Outline { length, width, tip, solid, clamped, .. } = *outline;
@@ -112,12 +106,12 @@ fn lengths(outline: &Outline, view: View) -> Markup {
     }
 }
 
-/// Which way 0 degrees is, and the design's direction.
+/// Infill directions: 0 degrees, and the design's.
 fn direction(geometry: &Geometry, view: View) -> Markup {
     let PrintedFinger { outline, .. } = &geometry.finger;
     let design = geometry.design.direction_deg;
-    let foot =
-        Point2::new((outline.arc_end() + outline.length - outline.solid) / 2.0, -outline.width);
+    let middle = (outline.arc_end() + outline.length - outline.solid) / 2.0;
+    let foot = Point2::new(middle, -outline.width);
     let reach = outline.width / MM + 14.0 / view.scale;
     let up = |angle: f64| Vector2::new((angle * DEG).sin(), (angle * DEG).cos());
     let end = |angle: f64| view.place(foot / MM + up(angle) * reach);
@@ -153,23 +147,13 @@ fn column(x: f64, heading: &str, rows: &[(&str, String)]) -> Markup {
 
 fn finger(geometry: &Geometry) -> Vec<(&'static str, String)> {
     let PrintedFinger { material, outline, skin, ribs, .. } = &geometry.finger;
-    let design = &geometry.design;
+    let (design, lines) = (&geometry.design, &geometry.lines);
+    let [x, y] = [ribs.origin.x, ribs.origin.y].map(mm);
     vec![
         ("material", format!("{}, {} GPa", material.name, material.modulus / 1e9)),
         ("infill", format!("{} %, {}°", design.density_percent, design.direction_deg)),
-        (
-            "ribs",
-            format!(
-                "{} of {}, {} apart",
-                geometry.ribs(),
-                mm(ribs.thickness),
-                mm(geometry.pitch())
-            ),
-        ),
-        (
-            "first rib",
-            format!("{} from ({}, {})", mm(geometry.phase()), mm(ribs.origin.x), mm(ribs.origin.y)),
-        ),
+        ("ribs", format!("{} of {}, {} apart", geometry.ribs, mm(ribs.thickness), mm(lines.pitch))),
+        ("first rib", format!("{} from ({x}, {y})", mm(lines.phase))),
         ("skin", mm(*skin)),
         ("depth", mm(outline.depth)),
         ("mount", format!("{}° to the assembly", degrees(geometry.finger.tilt))),
@@ -177,12 +161,11 @@ fn finger(geometry: &Geometry) -> Vec<(&'static str, String)> {
 }
 
 fn print(geometry: &Geometry) -> Vec<(&'static str, String)> {
-    let line = mm(geometry.finger.line_width);
     vec![
         ("lies", "flat, as drawn; layers along the depth".to_owned()),
         ("0°", "ribs straight across the finger".to_owned()),
         ("above 0°", "front (upper) ends lean to the base".to_owned()),
-        ("line width", line),
+        ("line width", mm(geometry.finger.line_width)),
         ("STL, 3MF", "ribs are in the file: thin walls on,".to_owned()),
         ("", "solid infill, no other".to_owned()),
         ("own infill", "parallel lines, ends not connected, one wall,".to_owned()),

@@ -3,12 +3,11 @@
 use super::frame::{Beam, Frame};
 use super::infill;
 use crate::geometry::Geometry;
-use crate::infill::pitch;
-use crate::mechanics::{FingerStiffness, compute};
+use crate::infill::RibLines;
+use crate::mechanics::compute;
 use crate::outline::ring;
 use crate::stiffness::{CrossStiffness, PlanarStiffness};
-use input::units::DEG;
-use nalgebra::{Matrix3, Matrix6, Point2, Vector2};
+use nalgebra::{Matrix3, Matrix6, Point2};
 
 /// The frame of a finger; joints at X >= the solid base are fixed, those on the pad are held.
 fn frame(geometry: &Geometry) -> Matrix6<f64> {
@@ -16,10 +15,7 @@ fn frame(geometry: &Geometry) -> Matrix6<f64> {
     let outline = &finger.outline;
     let end = outline.length - outline.solid;
     let skin = ring(outline, finger.skin / 2.0, end);
-    let (sin, cos) = (geometry.design.direction_deg * DEG).sin_cos();
-    let across = Vector2::new(cos, -sin);
-    let pitch = pitch(finger, &geometry.design);
-    let first = across.dot(&finger.ribs.origin.coords) + finger.ribs.phase;
+    let RibLines { across, first, pitch, .. } = geometry.lines;
     let mut frame = Frame {
         joints: Vec::new(),
         beams: Vec::new(),
@@ -88,31 +84,22 @@ fn in_pad_axes(geometry: &Geometry, frame: &Matrix6<f64>) -> (PlanarStiffness, C
 
 /// Deflection across the plane is bending and shear of the walls: beams meet it. (Turning
 /// also twists walls that hold one another from warping, which these beams leave out.)
-#[test]
-fn across_the_plane_the_finger_deflects_as_its_frame() {
-    for (density, direction) in [(10.0, 0.0), (20.0, 0.0), (20.0, 20.0), (30.0, 40.0)] {
-        let geometry = infill(density, direction);
-        let (_, beams) = in_pad_axes(&geometry, &frame(&geometry));
-        let ratio = beams.in_depth() / compute(&geometry).unwrap().cross.in_depth();
-        assert!((ratio - 1.0).abs() < 0.1, "{density} %, {direction} degrees: {ratio}");
-    }
-}
-
 /// In the plane, beams between the middles of walls come close, not within the few percent
 /// asked for: walls are a fifth to a half as thick as they are long, and overlap at joints.
 #[test]
-fn in_the_plane_beams_come_near() {
+fn the_finger_is_as_stiff_as_its_frame() {
     for (density, direction) in [(10.0, 0.0), (20.0, 0.0), (20.0, 20.0), (30.0, 40.0)] {
         let geometry = infill(density, direction);
-        let (beams, _) = in_pad_axes(&geometry, &frame(&geometry));
-        let FingerStiffness { pad, .. } = compute(&geometry).unwrap();
-        for (beams, pad) in [
-            (beams.in_compliance(), pad.in_compliance()),
-            (beams.in_assembly(), pad.in_assembly()),
-            (beams.tilting(), pad.tilting()),
+        let (plane, cross) = in_pad_axes(&geometry, &frame(&geometry));
+        let found = compute(&geometry).unwrap();
+        for (beams, found, tolerance) in [
+            (cross.in_depth, found.cross.in_depth, 0.1),
+            (plane.in_compliance(), found.pad.in_compliance(), 0.15),
+            (plane.in_assembly(), found.pad.in_assembly(), 0.15),
+            (plane.tilting(), found.pad.tilting(), 0.15),
         ] {
-            let ratio = beams / pad;
-            assert!((ratio - 1.0).abs() < 0.15, "{density} %, {direction} degrees: {ratio}");
+            let ratio = beams / found;
+            assert!((ratio - 1.0).abs() < tolerance, "{density} %, {direction} degrees: {ratio}");
         }
     }
 }

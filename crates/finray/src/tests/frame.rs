@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, Point2, SMatrix, Vector3};
 
 /// A beam in the plane X, Y, of rectangular section.
 pub struct Beam {
-    /// Its ends, as numbers of joints.
+    /// Numbers of the joints at its ends.
     pub ends: [usize; 2],
     /// Width in the plane, m.
     pub width: f64,
@@ -15,7 +15,7 @@ pub struct Beam {
 pub struct Frame {
     /// Places of the joints, m.
     pub joints: Vec<Point2<f64>>,
-    /// What joins them.
+    /// Beams between the joints.
     pub beams: Vec<Beam>,
     /// Out of the plane, m.
     pub depth: f64,
@@ -26,8 +26,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Stiffness (translations X, Y, Z; turns about X, Y, Z) of a rigid body at a point that
-    /// holds some joints, with others fixed.
+    /// Stiffness (X, Y, Z; turns about them) of a rigid body at a point that holds some joints.
     pub fn condensed(
         &self,
         at: Point2<f64>,

@@ -1,15 +1,19 @@
-//! The mechanics against beams and solids; `verify::analytic::finger` has what is known exactly.
+//! Mechanics against beams and solids; the lab's `analytic::finger` has the exact solutions.
 
 mod beams;
 mod frame;
 mod geometry;
 mod solid;
-mod stiffness;
 mod touch;
 
 use super::geometry::Geometry;
 use super::infill::Design;
+use crate::condense::{Role, condense};
+use crate::elasticity::{PlaneStress, Slab};
+use crate::mechanics::compute;
+use crate::mesh::{Mesh, MeshError};
 use crate::printed::PrintedFinger;
+use nalgebra::Point2;
 
 /// The shipped finger.
 fn finray9() -> PrintedFinger {
@@ -21,4 +25,39 @@ fn finray9() -> PrintedFinger {
 fn infill(density_percent: f64, direction_deg: f64) -> Geometry {
     let design = Design { density_percent, direction_deg, phase_mm: None };
     Geometry::new(&finray9(), &design).unwrap()
+}
+
+#[test]
+fn the_same_design_has_the_same_bits() {
+    assert_eq!(compute(&infill(20.0, 20.0)), compute(&infill(20.0, 20.0)));
+}
+
+#[test]
+fn stiffness_is_proportional_to_the_modulus() {
+    let soft = infill(20.0, 20.0);
+    let mut stiff = soft.clone();
+    stiff.finger.material.modulus *= 2.0;
+    let [soft, stiff] = [&soft, &stiff].map(|geometry| compute(geometry).unwrap());
+    let matrices =
+        [(soft.pad.matrix(), stiff.pad.matrix()), (&soft.cross.matrix, &stiff.cross.matrix)];
+    for (soft, stiff) in matrices {
+        assert!((soft * 2.0 - stiff).norm() < 1e-9 * stiff.norm());
+    }
+}
+
+#[test]
+fn a_modulus_in_other_units_is_asked_about() {
+    let mut geometry = infill(20.0, 20.0);
+    geometry.finger.material.modulus *= 1e-3;
+    let error = compute(&geometry).unwrap_err().to_string();
+    assert!(error.contains("units look wrong") && error.contains("modulus_gpa"), "{error}");
+}
+
+#[test]
+fn what_is_held_by_nothing_is_an_error() {
+    let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point2::new(x, y));
+    let mesh = Mesh::new(&square.to_vec(), &[], 0.3).unwrap();
+    let roles = vec![Role::Free; mesh.nodes.len()];
+    let element = PlaneStress(Slab { modulus: 2e9, poisson: 0.4, thickness: 0.012 });
+    assert_eq!(condense(&mesh, &element, &roles, false).err(), Some(MeshError::Loose));
 }

@@ -6,9 +6,9 @@
 
 use super::infill;
 use crate::condense::Element;
-use crate::elasticity::{Shape, area, shape};
+use crate::elasticity::{Shape, Slab, area, shape};
 use crate::mechanics::{CROSS_SIZE, cross};
-use crate::model::{Body, Follow, Model};
+use crate::meshed::{Body, Follow, held};
 use crate::plate::MindlinPlate;
 use crate::printed::Outline;
 use crate::stiffness::CrossStiffness;
@@ -24,7 +24,7 @@ const GAUSS: [(f64, f64); 3] = [
     (0.932_469_514_203_152, 0.171_324_492_379_170),
 ];
 
-struct Solid(MindlinPlate);
+struct Solid(Slab);
 
 /// A polynomial's value and slope at a distance from the middle plane, by half the depth.
 fn term(axis: usize, term: usize, z: f64, half: f64) -> (f64, f64) {
@@ -48,7 +48,7 @@ impl Solid {
     }
 
     fn elasticity(&self) -> Matrix6<f64> {
-        let MindlinPlate { modulus, poisson, .. } = self.0;
+        let Slab { modulus, poisson, .. } = self.0;
         let shear = modulus / 2.0 / (1.0 + poisson);
         let lame = modulus * poisson / (1.0 + poisson) / (1.0 - 2.0 * poisson);
         Matrix6::from_fn(|i, j| match (i < 3 && j < 3, i == j) {
@@ -91,7 +91,7 @@ impl Follow for Solid {
     /// A turn moves X and Y in proportion to z (term 0, scaled by the half depth).
     fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]> {
         let [deflection, about_x, about_y] =
-            <[_; 3]>::try_from(self.0.follow(outline, place)).unwrap();
+            <[_; 3]>::try_from(MindlinPlate(self.0).follow(outline, place)).unwrap();
         let mut rows = vec![[0.0; 3]; Self::FREEDOMS];
         rows[0] = about_y;
         rows[TERMS] = about_x.map(|turn| -turn);
@@ -100,33 +100,24 @@ impl Follow for Solid {
     }
 }
 
+/// The plate is as stiff as the solid. Pushed across, a finger bends about its base, which lies
+/// above the pad: the pad turns so that its lower end goes farther.
 #[test]
-fn the_plate_is_as_stiff_as_the_solid() {
+fn the_plate_is_as_stiff_as_the_solid_and_turns_like_a_cantilever() {
     for (density, direction) in [(10.0, 0.0), (20.0, 20.0), (25.0, 40.0)] {
         let geometry = infill(density, direction);
-        let solid = Solid(MindlinPlate::of(&geometry.finger));
-        let model = Model::new(&geometry, CROSS_SIZE).unwrap();
-        let condensed = model.condense(&solid, false).unwrap();
-        let held = model.hold(&condensed, &solid, Body::Pad).unwrap();
-        let solid = CrossStiffness::new(held.stiffness).unwrap();
+        let solid = Solid(Slab::of(&geometry.finger));
+        let [solid] = held(&geometry, &solid, CROSS_SIZE, [Body::Pad]).unwrap();
+        let solid = CrossStiffness::new(solid).unwrap();
         let plate = cross(&geometry, CROSS_SIZE).unwrap();
         for (plate, solid) in [
-            (plate.in_depth(), solid.in_depth()),
-            (plate.about_y(), solid.about_y()),
-            (plate.about_z(), solid.about_z()),
+            (plate.in_depth, solid.in_depth),
+            (plate.about_y, solid.about_y),
+            (plate.about_z, solid.about_z),
         ] {
             assert!((plate / solid - 1.0).abs() < 0.1, "{density} %, {direction}: {plate} {solid}");
         }
-    }
-}
-
-/// Pushed across, a finger bends about its base, which lies above the pad: the pad turns so that its lower
-/// end goes farther.
-#[test]
-fn pushed_across_the_lower_end_of_the_pad_goes_farther() {
-    for (density, direction) in [(10.0, 0.0), (20.0, 20.0), (25.0, 40.0)] {
-        let plate = cross(&infill(density, direction), CROSS_SIZE).unwrap();
-        let compliance = plate.matrix().try_inverse().unwrap();
+        let compliance = plate.matrix.try_inverse().unwrap();
         // u_x = x + ry z: at the lower end z is negative.
         let turn = compliance[(1, 0)] / compliance[(0, 0)];
         // A cantilever of length L under an end load turns by 3 / 2L.

@@ -1,10 +1,11 @@
-//! Which rigid notch stands for the elastic one: a plug that may touch or leave pad and roof,
-//! against the elastic profile and against a rigid pad and roof on the springs of either condensation.
+//! Choice of the rigid notch for the elastic one: a plug that may touch or leave pad and roof, on the
+//! elastic profile and on a rigid pad and roof with the springs of either condensation.
 
 use super::infill;
-use crate::elasticity::PlaneStress;
+use crate::condense::condense;
+use crate::elasticity::{PlaneStress, Slab};
 use crate::mechanics::{SIZE, planar};
-use crate::model::{Follow, Model};
+use crate::meshed::{Follow, MeshedFinger};
 use crate::stiffness::PlanarStiffness;
 use input::units::MM;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -12,7 +13,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 /// Of all contact points of a face together, N/m: four points of the simulation.
 const CONTACT: f64 = 4.0 * 0.55e6;
 
-/// Points of pad and roof, and how the plug moves them if they stick to it.
+/// Points of pad and roof, and their motion with a plug that they stick to.
 struct Faces {
     /// Two rows a point: y and z by the plug's y, z and rx.
     follow: DMatrix<f64>,
@@ -22,8 +23,8 @@ struct Faces {
 }
 
 impl Faces {
-    /// How a plug moves under forces and a moment on it, against a finger of given shapes of its
-    /// own motion and their stiffness; points that would pull let go.
+    /// Motion of a plug under forces and a moment, against a finger of these shapes of its own motion
+    /// and their stiffness; points that would pull let go.
     fn motion(
         &self,
         shapes: &DMatrix<f64>,
@@ -75,13 +76,13 @@ fn uncoupled(plane: &PlanarStiffness) -> Matrix3<f64> {
 /// Mean error of the plug's motion (its turn at half a pad) as a share of the elastic one.
 fn errors(density: f64, direction: f64) -> [f64; 4] {
     let geometry = infill(density, direction);
-    let model = Model::new(&geometry, SIZE).unwrap();
-    let element = PlaneStress::of(&geometry.finger);
-    let condensed = model.condense(&element, false).unwrap();
+    let meshed = MeshedFinger::new(&geometry, SIZE).unwrap();
+    let element = PlaneStress(Slab::of(&geometry.finger));
+    let condensed = condense(&meshed.mesh, &element, &meshed.roles, false).unwrap();
     let outline = geometry.finger.outline;
     let (y, z) = (outline.out_of_pad(), outline.along_pad());
-    let places: Vec<[f64; 2]> =
-        condensed.nodes.iter().map(|&node| model.local(&model.mesh.nodes[node as usize])).collect();
+    let local = |&node: &u32| meshed.local(&meshed.mesh.nodes[node as usize]);
+    let places: Vec<[f64; 2]> = condensed.nodes.iter().map(local).collect();
     let count = places.len();
     // From the profile's axes to y and z.
     let mut turn = DMatrix::zeros(2 * count, 2 * count);

@@ -161,7 +161,7 @@ fn assembled([in_y, in_z]: [f64; 2], tilting: f64, across: Matrix3<f64>) -> Matr
 fn across_at_centre(computed: &FingerStiffness, below: f64, ahead: f64) -> Matrix3<f64> {
     // x at the pad = x at the centre + ry below + rz ahead.
     let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-    to_pad.transpose() * computed.cross.matrix() * to_pad
+    to_pad.transpose() * computed.cross.matrix * to_pad
 }
 
 #[cfg(test)]
@@ -218,7 +218,7 @@ mod tests {
         // The pad's middle lies 0.95 mm below the TCP of the keys.
         assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > at_pad.compliance);
         assert_eq!(finger.pad.height, 9.0 * MM);
-        let plate = stiffness(0.0, 0.0, 1.0).cross.matrix().try_inverse().unwrap();
+        let plate = stiffness(0.0, 0.0, 1.0).cross.matrix.try_inverse().unwrap();
         for (i, row) in ACROSS.into_iter().enumerate() {
             for (j, column) in ACROSS.into_iter().enumerate() {
                 let error = compliance[(row, column)] - plate[(i, j)];

@@ -7,8 +7,7 @@ use crate::space::{DIRECTION_KEY, Design};
 use crate::task::Task;
 use crate::task::finger::{Coupling, Rcc};
 use finray::FingerError;
-use finray::known::Known;
-use finray::mechanics::FingerStiffness;
+use finray::mechanics::{FingerStiffness, Known};
 use input::units::MM;
 use serde::{Deserialize, Serialize};
 

@@ -3,8 +3,9 @@
 use super::Estimate;
 use crate::stiffness::{Axis, Infill};
 use finray::FingerError;
-use finray::phases::{Planar, over_phases};
+use finray::mechanics::over_phases;
 use finray::printed::PrintedFinger;
+use finray::stiffness::PlanarStiffness;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -12,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Debug)]
 pub struct Computed {
     finger: PrintedFinger,
-    known: Mutex<BTreeMap<[u64; 2], Vec<Planar>>>,
+    known: Mutex<BTreeMap<[u64; 2], Vec<[PlanarStiffness; 2]>>>,
 }
 
 impl Computed {
@@ -30,7 +31,7 @@ impl Computed {
     ///
     /// # Errors
     /// If it cannot be made.
-    pub fn phases(&self, infill: Infill) -> Result<Vec<Planar>, FingerError> {
+    pub fn phases(&self, infill: Infill) -> Result<Vec<[PlanarStiffness; 2]>, FingerError> {
         let key = infill.map(f64::to_bits);
         let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known().get(&key) {

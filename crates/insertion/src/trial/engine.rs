@@ -62,12 +62,12 @@ impl EngineKind {
     /// The engine with its production step times `factor`, and its settings. The closed formula
     /// has no engine: another stands in, which nobody asks.
     fn configured(self, factor: f64) -> (Box<dyn Engine>, toml::Table) {
+        // Settings are flat structs of numbers, which TOML can always hold.
         macro_rules! scaled {
-            ($engine:ty) => {{
+            ($engine:ty $(, $settings:ident)?) => {{
                 let mut engine = <$engine>::default();
-                engine.settings.step_s *= factor;
-                // Settings are flat structs of numbers, which TOML can always hold.
-                let settings = toml::Table::try_from(&engine.settings).unwrap_or_default();
+                engine$(.$settings)?.step_s *= factor;
+                let settings = toml::Table::try_from(engine$(.$settings)?).unwrap_or_default();
                 (Box::new(engine), settings)
             }};
         }
@@ -75,7 +75,7 @@ impl EngineKind {
             EngineKind::Rapier => scaled!(Rapier),
             EngineKind::Direct => scaled!(Direct),
             #[cfg(feature = "mujoco")]
-            EngineKind::Mujoco => scaled!(Mujoco),
+            EngineKind::Mujoco => scaled!(Mujoco, settings),
             #[cfg(feature = "fake-engine")]
             EngineKind::Fake => scaled!(Direct),
         }

@@ -201,7 +201,7 @@ mod tests {
     use super::*;
     use crate::fixtures::{finger, rig, robot, task, task_file};
     use contact::World;
-    use contact::direct::{Direct, DirectSettings};
+    use contact::direct::Direct;
     use contact::scene::Scene;
     use input::shipped::ROBOTS;
     use std::sync::atomic::{AtomicBool, Ordering};
@@ -219,15 +219,13 @@ mod tests {
         }
 
         fn world(&self, scene: &Scene) -> Box<dyn World> {
-            let settings = DirectSettings { contact_stiffness: f64::NAN, ..self.direct.settings };
-            let broken = Direct { settings };
+            let broken = Direct { contact_stiffness: f64::NAN, ..self.direct };
             if self.halvings == 0 { self.direct.world(scene) } else { broken.world(scene) }
         }
 
         fn halved(&self) -> Box<dyn Engine> {
-            let step_s = 0.5 * self.direct.settings.step_s;
-            let settings = DirectSettings { step_s, ..self.direct.settings };
-            Box::new(Fragile { direct: Direct { settings }, halvings: self.halvings - 1 })
+            let direct = Direct { step_s: 0.5 * self.direct.step_s, ..self.direct };
+            Box::new(Fragile { direct, halvings: self.halvings - 1 })
         }
     }
 

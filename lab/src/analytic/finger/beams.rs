@@ -3,7 +3,7 @@
 
 use super::super::{CheckRow, Tolerance};
 use finray::condense::{Condensed, Element, Role, condense};
-use finray::elasticity::PlaneStress;
+use finray::elasticity::{PlaneStress, Slab};
 use finray::mesh::Mesh;
 use finray::plate::MindlinPlate;
 use finray::polygon::Ring;
@@ -20,8 +20,9 @@ const SHEAR: f64 = 5.0 / 6.0;
 const ON: f64 = 1e-9;
 
 /// What is checked: PETG, as deep as the finger.
-pub(super) const PLANE: PlaneStress = PlaneStress { modulus: E, poisson: NU, thickness: DEPTH };
-const PLATE: MindlinPlate = MindlinPlate { modulus: E, poisson: NU, thickness: DEPTH };
+pub(super) const SLAB: Slab = Slab { modulus: E, poisson: NU, thickness: DEPTH };
+pub(super) const PLANE: PlaneStress = PlaneStress(SLAB);
+const PLATE: MindlinPlate = MindlinPlate(SLAB);
 
 /// A rectangle, counter-clockwise.
 pub(super) fn rectangle(x: [f64; 2], y: [f64; 2]) -> Ring {

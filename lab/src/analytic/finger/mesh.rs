@@ -2,10 +2,10 @@
 
 use super::super::{CheckRow, Tolerance};
 use super::{NoFinger, finray9, infill};
-use finray::elasticity::PlaneStress;
+use finray::elasticity::{PlaneStress, Slab};
 use finray::geometry::Geometry;
 use finray::mechanics::{CROSS_SIZE, SIZE};
-use finray::model::{Body, Follow, Model};
+use finray::meshed::{Body, held};
 use finray::plate::MindlinPlate;
 use nalgebra::Matrix3;
 
@@ -64,27 +64,12 @@ impl Halved {
 
 /// As they come out, before they are made exactly symmetric.
 fn matrices(geometry: &Geometry, factor: f64) -> Result<[Matrix3<f64>; 3], NoFinger> {
-    let plane = PlaneStress::of(&geometry.finger);
-    let plate = MindlinPlate::of(&geometry.finger);
-    let [pad, both] = held(geometry, &plane, SIZE * factor, [Body::Pad, Body::PadAndRoof])?;
-    let [across] = held(geometry, &plate, CROSS_SIZE * factor, [Body::Pad])?;
+    let (slab, fails) = (Slab::of(&geometry.finger), |_| NoFinger::None);
+    let (plane, plate) = (PlaneStress(slab), MindlinPlate(slab));
+    let bodies = [Body::Pad, Body::PadAndRoof];
+    let [pad, both] = held(geometry, &plane, SIZE * factor, bodies).map_err(fails)?;
+    let [across] = held(geometry, &plate, CROSS_SIZE * factor, [Body::Pad]).map_err(fails)?;
     Ok([pad, both, across])
-}
-
-fn held<E: Follow, const N: usize>(
-    geometry: &Geometry,
-    element: &E,
-    size: f64,
-    bodies: [Body; N],
-) -> Result<[Matrix3<f64>; N], NoFinger> {
-    let fails = |_| NoFinger::None;
-    let model = Model::new(geometry, size).map_err(|_| NoFinger::None)?;
-    let condensed = model.condense(element, false).map_err(fails)?;
-    let mut found = [Matrix3::zeros(); N];
-    for (matrix, body) in found.iter_mut().zip(bodies) {
-        *matrix = model.hold(&condensed, element, body).map_err(fails)?.stiffness;
-    }
-    Ok(found)
 }
 
 /// Largest difference of two matrices, by the springs that the entry couples.

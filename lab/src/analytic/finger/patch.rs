@@ -2,7 +2,7 @@
 //! the work done are exact, whatever the mesh.
 
 use super::super::{CheckRow, Tolerance};
-use super::beams::{PLANE, rectangle};
+use super::beams::{PLANE, SLAB, rectangle};
 use finray::condense::{Role, condense};
 use finray::mesh::Mesh;
 use finray::polygon::{Ring, area};
@@ -20,8 +20,8 @@ const STRAIN: [f64; 3] = [0.1, 0.4, 0.3 - 0.2];
 /// All rows of F2.
 pub fn f2() -> Vec<CheckRow> {
     let [xx, yy, xy] = STRAIN;
-    let (nu, width, height) = (PLANE.poisson, 1.3, 1.0);
-    let plane = PLANE.modulus * PLANE.thickness / (1.0 - nu * nu);
+    let (nu, width, height) = (SLAB.poisson, 1.3, 1.0);
+    let plane = SLAB.modulus * SLAB.thickness / (1.0 - nu * nu);
     let density = xx * xx + yy * yy + 2.0 * nu * xx * yy + (1.0 - nu) / 2.0 * xy * xy;
     let hole: Ring = [(0.4, 0.3), (0.5, 0.7), (0.8, 0.4)].map(|(x, y)| Point2::new(x, y)).to_vec();
     let outer = rectangle([0.0, width], [0.0, height]);

@@ -1,7 +1,6 @@
-//! A finger as finite elements: its mesh, what is clamped, and the pad as a rigid body.
+//! A finger as finite elements: its mesh, its clamped nodes, and its pad as a rigid body.
 
 use super::condense::{Condensed, Element, Role, condense};
-use super::front::Loose;
 use super::geometry::Geometry;
 use super::mesh::{Mesh, MeshError};
 use super::polygon::{Ring, edges};
@@ -11,55 +10,54 @@ use nalgebra::{DMatrix, DVector, Matrix3, Point2, Vector3};
 
 /// Distance within which a node lies on a line, m.
 const ON: f64 = 1e-6 * MM;
-/// Where the rigid part ends the stress is singular: triangles there are this share of the others.
+/// Size of the triangles where the rigid part ends, and stress is singular, as a share.
 const FINEST: f64 = 0.3;
 
-/// Mesh of the part of a finger that its clamp leaves free. What the gripper holds does
-/// not deform, and is left out.
-pub struct Model {
-    /// The triangles.
+/// Mesh of a finger without its clamped part, which does not deform.
+pub struct MeshedFinger {
+    /// Triangles and their nodes.
     pub mesh: Mesh,
+    /// Roles of the nodes; those of pad and roof are kept.
+    pub roles: Vec<Role>,
     outline: Outline,
-    roles: Vec<Role>,
 }
 
-/// A face that moves as one body.
+/// Face that moves as one rigid body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Body {
-    /// The pad.
+    /// The pad alone.
     Pad,
     /// The pad and the part of the roof that rests on a part.
     PadAndRoof,
 }
 
-/// How a node's degrees of freedom follow a rigid body: one row each.
+/// Motion of a node with a rigid body.
 pub trait Follow: Element {
-    /// Rows for a node at a distance along y and z from the body's origin.
+    /// Rows, one for each degree of freedom, of a node at a distance along y and z from the
+    /// body's origin, m: its displacement by the body's three motions.
     fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
 }
 
-impl Model {
-    /// A mesh with triangles of about this length of side, m.
+impl MeshedFinger {
+    /// Mesh with triangles of sides of about `size`, m.
+    ///
+    /// # Errors
+    /// If the profile cannot be meshed.
     pub fn new(geometry: &Geometry, size: f64) -> Result<Self, MeshError> {
         let outline = geometry.finger.outline;
         let roof_end = outline.corner() + outline.out_of_pad() * outline.roof;
         let ends = [outline.tip_point(), outline.corner(), roof_end];
         let ring = graded(&geometry.free_ring(), &ends, size);
-        let mesh = Mesh::new(&ring, geometry.rings().1, size)?;
-        let mut model = Model { mesh, outline, roles: Vec::new() };
+        let mesh = Mesh::new(&ring, &geometry.voids, size)?;
+        let mut meshed = MeshedFinger { mesh, outline, roles: Vec::new() };
         let clamp = outline.length - outline.clamped;
         let role = |p: &Point2<f64>| match () {
             () if p.x > clamp - ON => Role::Fixed,
-            () if model.holds(Body::PadAndRoof, p) => Role::Kept,
+            () if meshed.holds(Body::PadAndRoof, p) => Role::Kept,
             () => Role::Free,
         };
-        model.roles = model.mesh.nodes.iter().map(role).collect();
-        Ok(model)
-    }
-
-    /// The stiffness of pad and roof; `remember` what [`Condensed::expand`] needs.
-    pub fn condense<E: Element>(&self, element: &E, remember: bool) -> Result<Condensed, Loose> {
-        condense(&self.mesh, element, &self.roles, remember)
+        meshed.roles = meshed.mesh.nodes.iter().map(role).collect();
+        Ok(meshed)
     }
 
     /// Coordinates y and z of a point, from the pad's middle, m.
@@ -77,12 +75,15 @@ impl Model {
     }
 
     /// Holds a body rigid and leaves the other kept nodes free.
+    ///
+    /// # Errors
+    /// If a part of the finger is held by nothing.
     pub fn hold<E: Follow>(
         &self,
         condensed: &Condensed,
         element: &E,
         body: Body,
-    ) -> Result<Held, Loose> {
+    ) -> Result<Held, MeshError> {
         let places: Vec<_> =
             condensed.nodes.iter().map(|&node| self.mesh.nodes[node as usize]).collect();
         let freedoms = E::FREEDOMS;
@@ -107,7 +108,27 @@ impl Model {
     }
 }
 
-/// A mesh whose pad is a rigid body.
+/// Stiffness matrices (forces and moments by motions) of bodies that are each held rigid, on a
+/// mesh with triangles of sides of about `size`, m.
+///
+/// # Errors
+/// If the profile cannot be meshed, or a part of it is held by nothing.
+pub fn held<E: Follow, const N: usize>(
+    geometry: &Geometry,
+    element: &E,
+    size: f64,
+    bodies: [Body; N],
+) -> Result<[Matrix3<f64>; N], MeshError> {
+    let meshed = MeshedFinger::new(geometry, size)?;
+    let condensed = condense(&meshed.mesh, element, &meshed.roles, false)?;
+    let mut found = [Matrix3::zeros(); N];
+    for (matrix, body) in found.iter_mut().zip(bodies) {
+        *matrix = meshed.hold(&condensed, element, body)?.stiffness;
+    }
+    Ok(found)
+}
+
+/// Mesh whose pad is a rigid body.
 pub struct Held {
     /// Forces and moments on the body by its motions.
     pub stiffness: Matrix3<f64>,
@@ -116,7 +137,7 @@ pub struct Held {
 }
 
 impl Held {
-    fn new(stiffness: DMatrix<f64>, follow: DMatrix<f64>) -> Result<Self, Loose> {
+    fn new(stiffness: DMatrix<f64>, follow: DMatrix<f64>) -> Result<Self, MeshError> {
         let free = stiffness.nrows() - 3;
         let own: Matrix3<f64> = stiffness.fixed_view::<3, 3>(0, 0).into_owned();
         if free == 0 {
@@ -124,7 +145,7 @@ impl Held {
         }
         let mixed = stiffness.view((3, 0), (free, 3)).into_owned();
         let among = stiffness.view((3, 3), (free, free)).into_owned();
-        let answer = -among.cholesky().ok_or(Loose)?.solve(&mixed);
+        let answer = -among.cholesky().ok_or(MeshError::Loose)?.solve(&mixed);
         let condensed = own + mixed.transpose() * &answer;
         let motion =
             follow.columns(0, 3).into_owned() + follow.columns(3, free).into_owned() * answer;
@@ -132,19 +153,19 @@ impl Held {
         Ok(Held { stiffness, follow: motion })
     }
 
-    /// Displacements of the kept nodes for a motion of the body.
+    /// Displacements of the kept nodes under a motion of the body.
     pub fn kept(&self, motion: &Vector3<f64>) -> DVector<f64> {
         &self.follow * motion
     }
 }
 
-/// The ring with its edges divided finely near some of its corners.
+/// Ring with its edges divided finely near some of its corners.
 fn graded(ring: &Ring, corners: &[Point2<f64>], size: f64) -> Ring {
     let near = |p: Point2<f64>| corners.iter().any(|corner| (p - corner).norm() < ON);
-    let steps = |length: f64| {
+    let steps = |length: f64| -> Vec<f64> {
         let reach = size.min(length / 2.0);
-        std::iter::successors(Some(FINEST * size), |step| Some(2.0 * step))
-            .take_while(move |step| *step < reach)
+        let steps = std::iter::successors(Some(FINEST * size), |step| Some(2.0 * step));
+        steps.take_while(|step| *step < reach).collect()
     };
     let mut finer = Ring::new();
     for (from, to) in edges(ring) {
@@ -152,12 +173,10 @@ fn graded(ring: &Ring, corners: &[Point2<f64>], size: f64) -> Ring {
         let along = (to - from) / length;
         finer.push(from);
         if near(from) {
-            finer.extend(steps(length).map(|step| from + along * step));
+            finer.extend(steps(length).iter().map(|step| from + along * *step));
         }
         if near(to) {
-            let mut last: Ring = steps(length).map(|step| to - along * step).collect();
-            last.reverse();
-            finer.append(&mut last);
+            finer.extend(steps(length).iter().rev().map(|step| to - along * *step));
         }
     }
     finer

@@ -1,45 +1,41 @@
-//! A small dense symmetric matrix of some nodes, and the elimination of the first of them.
+//! Frontal matrix: the dense symmetric stiffness of some nodes, the first of which are eliminated.
 
-/// Columns that are eliminated together.
+use super::mesh::MeshError;
+
+/// Number of columns that are eliminated together.
 const PANEL: usize = 4;
-/// A pivot that much smaller than it was before the elimination is rounding: nothing holds it.
+/// A pivot below this share of its value before the elimination is rounding: nothing holds it.
 const LOOSE: f64 = 1e-11;
-
-/// A part of the finger is held by nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("a part of the finger is not connected to its base")]
-pub struct Loose;
 
 /// Stiffness of a part of a mesh on some of its nodes.
 #[derive(Debug, Clone)]
-pub struct Front {
-    /// First those to eliminate.
+pub struct Frontal {
+    /// Nodes of the mesh, first those to eliminate.
     pub nodes: Vec<u32>,
     eliminated: usize,
     freedoms: usize,
     /// Square, row by row; only the lower triangle is used.
-    values: Vec<f64>,
+    pub values: Vec<f64>,
 }
 
-impl Front {
-    /// A zero matrix.
+impl Frontal {
+    /// Zero matrix of these nodes.
     pub fn new(nodes: Vec<u32>, eliminated: usize, freedoms: usize) -> Self {
         let size = nodes.len() * freedoms;
-        Front { nodes, eliminated, freedoms, values: vec![0.0; size * size] }
+        Frontal { nodes, eliminated, freedoms, values: vec![0.0; size * size] }
     }
 
-    /// Rows of the matrix.
+    /// Number of rows.
     pub fn size(&self) -> usize {
         self.nodes.len() * self.freedoms
     }
 
-    /// An entry of the lower triangle.
+    /// Entry of the lower triangle.
     pub fn at(&self, row: usize, column: usize) -> f64 {
         self.values[row * self.size() + column]
     }
 
-    /// Adds the lower triangle of a square matrix, row by row: an element's or another front's.
-    /// `places` of its nodes in this front, `None` if fixed.
+    /// Adds the lower half of a square matrix of nodes at these places here, `None` if fixed.
     pub fn add(&mut self, places: &[Option<usize>], lower: &[f64]) {
         let (size, f) = (self.size(), self.freedoms);
         let width = places.len() * f;
@@ -58,13 +54,11 @@ impl Front {
         }
     }
 
-    /// Adds another front; `places` of its nodes in this one.
-    pub fn add_front(&mut self, places: &[Option<usize>], other: &Front) {
-        self.add(places, &other.values);
-    }
-
-    /// Cholesky factorisation of the first nodes' rows; what remains is condensed onto the others.
-    pub fn eliminate(&mut self) -> Result<(), Loose> {
+    /// Cholesky factorisation of the first nodes' rows; the rest is condensed onto the others.
+    ///
+    /// # Errors
+    /// If nothing holds one of the first nodes.
+    pub fn eliminate(&mut self) -> Result<(), MeshError> {
         let (size, end) = (self.size(), self.eliminated * self.freedoms);
         let held: Vec<f64> = (0..end).map(|i| LOOSE * self.at(i, i)).collect();
         let mut panel = vec![0.0; PANEL * size];
@@ -76,14 +70,14 @@ impl Front {
         Ok(())
     }
 
-    /// Factors columns `start .. start + width`; `panel` gets them, each contiguous.
+    /// Factors columns `start .. start + width` and copies them to `panel`, each contiguous.
     fn factor_panel(
         &mut self,
         start: usize,
         width: usize,
         held: &[f64],
         panel: &mut [f64],
-    ) -> Result<(), Loose> {
+    ) -> Result<(), MeshError> {
         let size = self.size();
         for i in start..size {
             for q in 0..width {
@@ -94,7 +88,7 @@ impl Front {
             let (column, later) = panel[q * size..].split_at_mut(size);
             let pivot = column[start + q];
             if pivot.is_nan() || pivot <= held[start + q] {
-                return Err(Loose);
+                return Err(MeshError::Loose);
             }
             let scale = 1.0 / pivot.sqrt();
             column[start + q..].iter_mut().for_each(|value| *value *= scale);
@@ -114,7 +108,7 @@ impl Front {
         Ok(())
     }
 
-    /// Subtracts the panel's outer product from the lower triangle of rows from `start`.
+    /// Subtracts the panel's outer product from the lower triangle of the rows from `start`.
     fn update_rest(&mut self, start: usize, width: usize, panel: &[f64]) {
         let size = self.size();
         for i in start..size {
@@ -139,9 +133,9 @@ impl Front {
         }
     }
 
-    /// What remains after the elimination.
-    pub fn rest(&self) -> Front {
-        let mut rest = Front::new(self.nodes[self.eliminated..].to_vec(), 0, self.freedoms);
+    /// Condensed matrix of the nodes that were not eliminated.
+    pub fn rest(&self) -> Frontal {
+        let mut rest = Frontal::new(self.nodes[self.eliminated..].to_vec(), 0, self.freedoms);
         let (size, small) = (self.size(), rest.size());
         let skip = size - small;
         for i in 0..small {
@@ -151,7 +145,7 @@ impl Front {
         rest
     }
 
-    /// The displacements of the eliminated nodes from those of the others, in place.
+    /// Computes the displacements of the eliminated nodes from those of the others, in place.
     pub fn substitute(&self, displacements: &mut [f64]) {
         let f = self.freedoms;
         let place = |i: usize| self.nodes[i / f] as usize * f + i % f;

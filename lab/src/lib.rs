@@ -9,6 +9,6 @@
 
 pub mod analytic;
 pub mod cli;
-pub mod compare;
-pub mod prints;
-pub mod problems;
+mod compare;
+mod prints;
+mod problems;

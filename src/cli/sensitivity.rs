@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 impl Arguments {
     fn rank(&self, setup: &Setup, factors: &Factors) -> Result<shown::Found, Failure> {
-        let inputs = factors.all().len();
+        let inputs = factors.0.len();
         let sample = Sample::new(inputs, self.samples as usize, self.seed);
         let values = self.values(setup, factors, &sample.points())?;
         let indices = sample.indices(&counted(&values)).ok_or_else(|| {
@@ -74,7 +74,7 @@ impl Arguments {
         Ok(shown::Found {
             task: setup.only_task()?.task().name.clone(),
             objective: self.objective,
-            factors: factors.all().to_vec(),
+            factors: factors.0.clone(),
             indices,
             evaluations: values.len(),
             diverged: values.iter().filter(|value| value.is_none()).count(),

@@ -2,14 +2,13 @@
 
 mod common;
 
-use common::optimize;
+use common::{Ran, optimize};
 use contact::direct::Direct;
 use finger_opt::connector::check::problems;
 use finger_opt::connector::draft::{Dimensions, Size, draft};
 use finger_opt::connector::mesh::import::{Along, Imported, Mesh, Request, import};
 use finger_opt::connector::mesh::{Surface, read};
 use finger_opt::connector::nominal::explain;
-use finger_opt::connector::write::{self, Notes};
 use input::shipped::{ROBOTS, TASKS};
 use input::units::{MM, N_PER_MM};
 use insertion::finger::Finger;
@@ -25,6 +24,11 @@ const LATCH: &str = include_str!("../tasks/rj45_latch.toml");
 
 fn shipped(name: &str) -> &'static str {
     TASKS.iter().find(|file| file.name == name).unwrap().text
+}
+
+/// The program with words separated by blanks, then more.
+fn said(words: &str, more: &[&str]) -> Ran {
+    optimize(&words.split(' ').chain(more.iter().copied()).collect::<Vec<_>>())
 }
 
 /// A task file with its first passage `from` replaced.
@@ -87,7 +91,6 @@ fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
     }
 }
 
-/// A flexure that begins or ends in the air, and a latch that has the faces which the pads press.
 #[test]
 fn a_latch_that_hangs_on_nothing_or_is_gripped_is_noticed() {
     for (from, to, key) in [
@@ -158,30 +161,26 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
 /// The file in another unit: nothing but that is said.
 #[test]
 fn a_file_in_another_unit_is_asked_about() {
-    let lengths = in_unit(shipped("usb"));
     for (factor, unit) in [(1e-3, "metres"), (1.0 / 25.4, "inches")] {
-        let task = Task::parse(&lengths(factor), "usb").unwrap();
+        let mut file = toml::Value::Table(toml::from_str(shipped("usb")).unwrap());
+        scale(&mut file, factor, false);
+        let task = Task::from_table(file.as_table().unwrap().clone(), "usb").unwrap();
         let found = problems(&task);
         assert!(found.iter().all(|found| found.problem.contains("less than")), "{found:#?}");
         assert!(found.iter().any(|found| found.key == "plug.part" && found.remedy.contains(unit)));
     }
 }
 
-/// Every number of a key in mm times a factor.
-fn in_unit(text: &str) -> impl Fn(f64) -> String {
-    move |factor| {
-        let number = |word: &str| word.parse::<f64>().map(|value| format!("{:?}", value * factor));
-        let scaled = |line: &str| match line.split_once(" = ") {
-            Some((key, value)) if key.ends_with("_mm") => {
-                let parts = value.split_inclusive(['[', ']', ',', ' ']).map(|part| {
-                    let word = part.trim_end_matches(['[', ']', ',', ' ']);
-                    number(word).map_or(part.to_owned(), |new| part.replacen(word, &new, 1))
-                });
-                format!("{key} = {}\n", parts.collect::<String>())
-            }
-            _ => format!("{line}\n"),
-        };
-        text.lines().map(scaled).collect()
+/// Scales every number of the keys in mm.
+fn scale(value: &mut toml::Value, factor: f64, in_mm: bool) {
+    match value {
+        toml::Value::Float(number) if in_mm => *number *= factor,
+        toml::Value::Integer(number) if in_mm => *value = (*number as f64 * factor).into(),
+        toml::Value::Array(items) => items.iter_mut().for_each(|item| scale(item, factor, in_mm)),
+        toml::Value::Table(table) => {
+            table.iter_mut().for_each(|(key, item)| scale(item, factor, key.ends_with("_mm")));
+        }
+        _ => {}
     }
 }
 
@@ -210,9 +209,10 @@ fn a_round_task_is_written_with_the_error_of_its_hole() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("peg.toml");
     let out = path.to_str().unwrap();
-    let new = ["task", "new", "peg", "--clearance", "0.1", "--engine", "fake", "--out", out];
-    let round = ["--round", "8x12", "--body", "12x12x20"];
-    optimize(&[&new[..], &round].concat()).succeeds();
+    let new = |more: &str| {
+        said(&format!("task new peg --clearance 0.1 --engine fake {more} --out"), &[out])
+    };
+    new("--round 8x12 --body 12x12x20").succeeds();
     let text = common::read(&path);
     assert!(
         text.contains("# Made by: optimize task new peg --round 8x12 --clearance 0.1"),
@@ -221,21 +221,10 @@ fn a_round_task_is_written_with_the_error_of_its_hole() {
     assert!(text.contains("64 flats, which keep its diameter within 0.0049 mm"), "{text}");
     let task = Task::parse(&text, out).unwrap();
     assert_eq!((task.plug.parts.len(), task.socket.len()), (2, 65));
-    optimize(&["task", "check", out, "--engine", "fake"]).succeeds();
-    optimize(&[&new[..], &["--round", "8"]].concat()).fails(2, &["DIAMETERxLENGTH"]);
-    let both = ["--round", "8x12", "--plug", "8x8x12"];
-    optimize(&[&new[..], &both].concat()).fails(2, &["cannot be used with"]);
-    optimize(&[&new[..], &["--round", "8x8"]].concat()).fails(2, &["--round", "8 mm long"]);
-}
-
-/// What is in the file is what was drafted.
-#[test]
-fn a_drafted_file_reads_back_without_problems() {
-    let task = drafted("14x4.5x11", 0.2, Some("21x11x30"));
-    let text = write::task(&task, &Notes::default());
-    let read = Task::parse(&text, "mine.toml").unwrap();
-    assert_eq!(problems(&read), []);
-    assert!((read.success.depth - task.success.depth).abs() < 1e-7);
+    said("task check --engine fake", &[out]).succeeds();
+    new("--round 8").fails(2, &["DIAMETERxLENGTH"]);
+    new("--round 8x12 --plug 8x8x12").fails(2, &["cannot be used with"]);
+    new("--round 8x8").fails(2, &["--round", "8 mm long"]);
 }
 
 /// A part that is hardly held tips over, and is told so with what would help.
@@ -256,13 +245,11 @@ fn a_task_is_made_shown_checked_and_used() {
     let path = file.to_str().unwrap();
     let new =
         "task new c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20 --engine fake --out";
-    let new: Vec<&str> = new.split(' ').chain([path]).collect();
-    assert!(optimize(&new).succeeds().contains(path));
-    optimize(&new).fails(2, &["exists", "--out"]);
-    let check = ["task", "check", path, "--engine", "fake"];
+    assert!(said(new, &[path]).succeeds().contains(path));
+    said(new, &[path]).fails(2, &["exists", "--out"]);
+    let check = |more: &[&str]| said("task check --engine fake --json", &[&[path], more].concat());
     let svg = folder.path().join("c.svg");
-    let drawn =
-        optimize(&[&check[..], &["--json", "--svg", svg.to_str().unwrap()]].concat()).json();
+    let drawn = check(&["--svg", svg.to_str().unwrap()]).json();
     assert_eq!(drawn["valid"], true);
     assert_eq!(drawn["problems"], serde_json::json!([]));
     assert_eq!(drawn["nominal"]["outcome"], "inserted");
@@ -272,7 +259,7 @@ fn a_task_is_made_shown_checked_and_used() {
     // What was made has a body that a wider one would not let in.
     let wrong = common::read(&file).replace("y_mm = [-4.125, 4.125]", "y_mm = [-4.6, 4.6]");
     std::fs::write(&file, wrong).unwrap();
-    let ran = optimize(&[&check[..], &["--json"]].concat());
+    let ran = check(&[]);
     ran.fails(2, &["problem"]);
     let found: Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!(found["valid"], false);
@@ -286,20 +273,18 @@ fn a_task_is_copied_like_another_and_shown_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("my-usb.toml");
     let out = path.to_str().unwrap();
-    optimize(&["task", "new", "my-usb", "--like", "usb", "--engine", "fake", "--out", out])
-        .succeeds();
+    said("task new my-usb --like usb --engine fake --out", &[out]).succeeds();
     let copy = Task::parse(&common::read(&path), out).unwrap();
     let usb = Task::parse(shipped("usb"), "usb").unwrap();
     assert_eq!(copy.name, "my-usb");
     assert_eq!((copy.plug, copy.strategy), (usb.plug, usb.strategy));
-    assert_eq!(optimize(&["task", "show", "usb"]).succeeds(), shipped("usb"));
-    optimize(&["task", "show", "usc"]).fails(2, &["did you mean `usb`"]);
-    assert_eq!(optimize(&["task"]).succeeds(), optimize(&["tasks"]).succeeds());
+    assert_eq!(said("task show usb", &[]).succeeds(), shipped("usb"));
+    said("task show usc", &[]).fails(2, &["did you mean `usb`"]);
+    assert_eq!(said("task", &[]).succeeds(), said("tasks", &[]).succeeds());
     optimize(&["task", "new", "a b", "--out", out]).fails(2, &["letters"]);
-    optimize(&["task", "new", "a", "--plug", "8x3", "--clearance", "0.1"])
-        .fails(2, &["8.25x2.4x6.65"]);
-    let short = ["--plug", "8x3x8", "--clearance", "0.1", "--body", "12x8x5"];
-    optimize(&[&["task", "new", "a"][..], &short].concat()).fails(2, &["--body", "9.4 mm"]);
+    said("task new a --plug 8x3 --clearance 0.1", &[]).fails(2, &["8.25x2.4x6.65"]);
+    said("task new a --plug 8x3x8 --clearance 0.1 --body 12x8x5", &[])
+        .fails(2, &["--body", "9.4 mm"]);
 }
 
 /// A file that cannot be read is a problem, too, with its key.
@@ -313,7 +298,7 @@ fn a_check_says_what_a_reader_finds() {
         ("force_n", "force", "force"),
     ] {
         std::fs::write(&file, shipped("usb").replace(from, to)).unwrap();
-        let ran = optimize(&["task", "check", file.to_str().unwrap(), "--json"]);
+        let ran = said("task check --json", &[file.to_str().unwrap()]);
         ran.fails(2, &["1 problem"]);
         let found: Value = serde_json::from_str(&ran.stdout).unwrap();
         assert_eq!(found["problems"][0]["key"], key);

@@ -93,16 +93,15 @@ pub struct Dimensions {
 pub enum DraftError {
     /// Plug or body too short for the pads.
     #[error(
-        "{option}: is {length_mm} mm long; the pads are {pad_mm} mm high and must stay outside of \
-         the socket, so at least {least_mm:.1} mm are needed"
+        "{option}: is {length_mm} mm long; the pads are {} mm high and must stay outside of \
+         the socket, so at least {least_mm:.1} mm are needed",
+        Pad::PAPER.height / MM
     )]
     TooShort {
         /// Option of the length: "--body", "--plug" or "--round".
         option: &'static str,
         /// Length given, mm.
         length_mm: f64,
-        /// Height of a pad, mm.
-        pad_mm: f64,
         /// Least length, mm.
         least_mm: f64,
     },
@@ -173,12 +172,7 @@ fn long_enough(size: &Dimensions) -> Result<(), DraftError> {
     if length >= least {
         return Ok(());
     }
-    Err(DraftError::TooShort {
-        option,
-        length_mm: length / MM,
-        pad_mm: Pad::PAPER.height / MM,
-        least_mm: least / MM,
-    })
+    Err(DraftError::TooShort { option, length_mm: length / MM, least_mm: least / MM })
 }
 
 fn upright(name: &str, size: Size, from: f64) -> Part {

@@ -179,7 +179,7 @@ mod tests {
             ("rj45", 12.0, ["", ""]),
         ] {
             let task = changed(name, "", "");
-            let seat = on_seating(&task, Seating::deepest);
+            let seat = on_seating(&task, |seating| seating.deepest());
             let [plug, socket] = seat.stopped_by.unwrap();
             let names = [&task.plug.parts[plug].name, &task.socket[socket].name];
             assert!((seat.depth / MM - depth_mm).abs() < 0.04, "{name}: {seat:?}");
@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn a_plug_wider_than_its_opening_stays_outside() {
         let key = ["[-6.0, 6.0]", "[-6.2, 6.2]"].map(|y| y.to_owned() + "\nz_mm = [0.0, 50.0]");
-        let seat = on_seating(&changed("ket12", &key[0], &key[1]), Seating::deepest);
+        let seat = on_seating(&changed("ket12", &key[0], &key[1]), |seating| seating.deepest());
         assert!(seat.depth < 0.1 * MM, "{seat:?}");
     }
 }

@@ -1,7 +1,7 @@
 //! First-order and total Sobol indices.
 //!
-//! Estimators of Jansen (Comput. Phys. Commun. 117 (1999) 35, doi:10.1016/S0010-4655(98)00154-4) on the design
-//! of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018): two
+//! Estimators of Jansen (Comput. Phys. Commun. 117 (1999) 35, doi:10.1016/S0010-4655(98)00154-4) on
+//! the design of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018): two
 //! independent samples A and B, and for each input A with that input from B.
 
 use super::{Interval, bootstrap};
@@ -25,7 +25,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// `rows` pairs of points of `dimension` inputs, from a scrambled Sobol sequence of twice as many axes.
+    /// Sample of `rows` pairs of points of `dimension` inputs, from a scrambled Sobol sequence of twice
+    /// as many axes.
     pub fn new(dimension: usize, rows: usize, seed: u64) -> Self {
         let sequence = SobolSequence::new(2 * dimension, seed, 0, "sensitivity sample");
         let halves = |row: Vec<f64>| (row[..dimension].to_vec(), row[dimension..].to_vec());

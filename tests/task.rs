@@ -1,13 +1,14 @@
-//! One's own connector: `optimize task`, and what its check catches.
+//! `optimize task`: drafted, imported and checked tasks of your own connector.
 
 mod common;
 
-use common::optimize;
+use common::{Ran, optimize};
 use contact::direct::Direct;
 use finger_opt::connector::check::problems;
-use finger_opt::connector::draft::{Dimensions, draft};
+use finger_opt::connector::draft::{Dimensions, Size, draft};
+use finger_opt::connector::mesh::import::{Along, Imported, Mesh, Request, import};
+use finger_opt::connector::mesh::{Surface, read};
 use finger_opt::connector::nominal::explain;
-use finger_opt::connector::write::{self, Notes};
 use input::shipped::{ROBOTS, TASKS};
 use input::units::{MM, N_PER_MM};
 use insertion::finger::Finger;
@@ -16,29 +17,42 @@ use insertion::robot::Robot;
 use insertion::task::Task;
 use insertion::trial::run::EngineRig;
 use insertion::trial::{Rig, Trial};
+use nalgebra::Point3;
+use serde_json::Value;
+
+const LATCH: &str = include_str!("../tasks/rj45_latch.toml");
 
 fn shipped(name: &str) -> &'static str {
     TASKS.iter().find(|file| file.name == name).unwrap().text
 }
 
-/// A shipped task with one passage replaced.
-fn changed(name: &str, from: &str, to: &str) -> Task {
-    let text = shipped(name);
-    assert!(text.contains(from), "{name} has no `{from}`");
-    Task::parse(&text.replace(from, to), name).unwrap()
+/// The program with words separated by blanks, then more.
+fn said(words: &str, more: &[&str]) -> Ran {
+    optimize(&words.split(' ').chain(more.iter().copied()).collect::<Vec<_>>())
 }
 
-/// The middle one of the measured fingers.
-fn trial(task: &Task) -> Trial {
+/// A task file with its first passage `from` replaced.
+fn changed(text: &str, from: &str, to: &str) -> Result<Task, String> {
+    assert!(text.contains(from), "no `{from}`");
+    Task::parse(&text.replacen(from, to, 1), "t.toml").map_err(|error| error.to_string())
+}
+
+fn rig(task: &Task) -> EngineRig {
     let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-    let rig = EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap();
-    rig.grasp(&Finger::new(3.0 * N_PER_MM, 30.0 * N_PER_MM)).trial(0.0)
+    EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap()
 }
 
+/// Nominal trial with the middle one of the measured fingers.
+fn trial(task: &Task) -> Trial {
+    rig(task).grasp(&Finger::new(3.0 * N_PER_MM, 30.0 * N_PER_MM)).trial(0.0)
+}
+
+/// Draft of a plug WxHxL, or of a round one DxL.
 fn drafted(plug: &str, clearance_mm: f64, body: Option<&str>) -> Task {
+    let round = plug.matches('x').count() == 1;
     let size = Dimensions {
-        plug: plug.parse().unwrap(),
-        round: false,
+        plug: if round { Size::round(plug).unwrap() } else { plug.parse().unwrap() },
+        round,
         clearance: clearance_mm * MM,
         body: body.map(|body| body.parse().unwrap()),
     };
@@ -53,24 +67,18 @@ fn shipped_tasks_have_no_problems() {
     }
 }
 
-/// Edges and latches that a task may not have, with what the reader says of them.
 #[test]
 fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
-    let text = include_str!("../tasks/rj45_latch.toml");
-    assert!(problems(&Task::parse(text, "rj45_latch.toml").unwrap()).is_empty());
+    assert!(problems(&Task::parse(LATCH, "rj45_latch.toml").unwrap()).is_empty());
     let edge = "{ at = \"-x+z\", chamfer_mm = 0.2 }";
+    let twice = "{ at = \"-x+z\", radius_mm = 0.1 }, { at = \"+z\", chamfer_mm = 0.1 }";
     for (from, to, key, problem) in [
         (edge, "{ at = \"-x-x\", chamfer_mm = 0.2 }", "\"wall at +x\" edges", "names no edge"),
         (edge, "{ at = \"-x+z\" }", "\"wall at +x\" edges", "either chamfer_mm or radius_mm"),
         (edge, "{ at = \"-x+z\", radius_mm = 0.0 }", "edges.radius_mm", "above 0"),
         (edge, "{ at = \"-x+z\", chamfer_mm = 3.0 }", "\"wall at +x\" edges", "smaller"),
         (edge, "{ at = \"+z\", radius_mm = 1.3 }", "\"wall at +x\" edges", "smaller"),
-        (
-            edge,
-            "{ at = \"-x+z\", radius_mm = 0.1 }, { at = \"+z\", chamfer_mm = 0.1 }",
-            "\"wall at +x\" edges",
-            "a second time",
-        ),
+        (edge, twice, "\"wall at +x\" edges", "a second time"),
         ("\"latch blade\", ", "\"latch bland\", ", "plug.latch.parts", "no part of that name"),
         ("\"latch blade\", ", "\"latch arm\", ", "plug.latch.parts", "stands for two"),
         ("\"latch blade\", \"latch shoulder\", \"latch arm\"", "", "plug.latch.parts", "not all"),
@@ -78,122 +86,71 @@ fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
         ("modulus_gpa = 2.35", "modulus_gpa = 0.0", "plug.latch.modulus_gpa", "above 0"),
         ("thickness_mm = 0.67", "thickness_mm = 3.0", "plug.latch.thickness_mm", "no beam"),
     ] {
-        assert!(text.contains(from), "no `{from}`");
-        let error = Task::parse(&text.replacen(from, to, 1), "rj45_latch.toml").unwrap_err();
-        let error = error.to_string();
+        let error = changed(LATCH, from, to).unwrap_err();
         assert!(error.contains(key) && error.contains(problem), "{to}: {error}");
     }
 }
 
-/// A flexure that begins or ends in the air, and a latch that has the faces which the pads press.
 #[test]
 fn a_latch_that_hangs_on_nothing_or_is_gripped_is_noticed() {
-    let text = include_str!("../tasks/rj45_latch.toml");
     for (from, to, key) in [
         ("root_mm = [-4.19, 0.0, 3.5]", "root_mm = [-4.19, 0.0, -3.5]", "plug.latch.root_mm"),
         ("end_mm = [-5.07, 0.0, 8.05]", "end_mm = [-9.07, 0.0, 8.05]", "plug.latch.end_mm"),
         ("\"latch arm\"]", "\"latch arm\", \"grip block\"]", "grip."),
     ] {
-        assert!(text.contains(from), "no `{from}`");
-        let task = Task::parse(&text.replacen(from, to, 1), "rj45_latch.toml").unwrap();
-        let found = problems(&task);
+        let found = problems(&changed(LATCH, from, to).unwrap());
         assert!(found.iter().any(|problem| problem.key.starts_with(key)), "{to}: {found:?}");
     }
 }
 
-/// Each fault in a shipped task: the key that is named, a word of what is wrong and one of the remedy.
+/// Each fault in a shipped task: key, new value, and parts of the key, the problem and the remedy.
 #[test]
 fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
     let shell = "y_mm = [-6.0, 6.0]\nz_mm = [0.0, 12.57]";
+    let wide = "[-7.6, 7.6]\nz_mm = [0.0, 12.57]";
     let push = "move_mm = [0.0, 0.0, -20.0]";
     let touch = "move_mm = [0.0, 0.0, -3.0]";
     let approach = "move_mm = [-2.6, 0.0, -8.8]";
     let start = "start_mm = [0.0, -1.2, 51.0]";
     let faces = "faces_y_mm = [-6.2, 6.2]";
     let grip = "tcp_z_mm = 40.6\nshoulder_z_mm = 43.31";
-    let opening = "opening_y_mm = [-7.49, 7.51]";
+    let y = "opening_y_mm = [-7.49, 7.51]";
     let neck = "z_mm = [36.2, 39.96]";
-    for (from, to, key, problem, remedy) in [
-        (
-            shell,
-            "y_mm = [-7.6, 7.6]\nz_mm = [0.0, 12.57]",
-            "\"metal shell\" y_mm",
-            "15.2 mm wide",
-            "narrower than 15",
-        ),
-        ("depth_mm = 12.0", "depth_mm = 16.0", "success.depth_mm", "stops 12.57 mm", "at most 12"),
-        (
-            approach,
-            "move_mm = [-2.6, 0.0, -4.0]",
-            "\"touch\" move_mm",
-            "above the socket",
-            "longer",
-        ),
-        (
-            push,
-            "move_mm = [0.0, 0.0, -10.0]",
-            "\"assembly\" move_mm",
-            "success asks for 12",
-            "z = -16",
-        ),
-        (push, "move_mm = [0.0, 0.0, 20.0]", "\"assembly\" move_mm", "goes up", "negative"),
-        (touch, "move_mm = [0.0, 0.0, 3.0]", "\"touch\" move_mm", "goes up", "negative"),
-        (start, "start_mm = [0.0, -0.0012, 0.051]", "strategy.start_mm", "less than", "metres"),
-        (grip, "tcp_z_mm = 1.6\nshoulder_z_mm = 1.7", "grip.tcp_z_mm", "less than", "inches"),
-        (faces, "faces_y_mm = [-6.6, 6.6]", "grip.faces_y_mm", "off the plug", "[-6.2, 6.2]"),
-        (
-            faces,
-            "faces_y_mm = [-5.0, 5.0]",
-            "grip.faces_y_mm",
-            "inside `grip block`",
-            "[-6.2, 6.2]",
-        ),
-        (neck, "z_mm = [37.2, 39.96]", "\"neck\" z_mm", "gap of 1 mm to `taper`", "36.2"),
-        (
-            opening,
-            "opening_y_mm = [-9.0, 7.51]",
-            "socket.opening_y_mm",
-            "`wall at -y` begins",
-            "-7.49",
-        ),
-        (
-            grip,
-            "tcp_z_mm = 20\nshoulder_z_mm = 23.31",
-            "grip.shoulder_z_mm",
-            "plug goes on",
-            "43.31",
-        ),
-        (grip, "tcp_z_mm = 60\nshoulder_z_mm = 63.31", "grip.shoulder_z_mm", "no plug", "43.31"),
-        (start, "start_mm = [0.0, -1.2, 35.0]", "strategy.start_mm", "deep in", "z = 46.03"),
-        (
-            approach,
-            "move_mm = [-2.6, 0.0, -12.8]",
-            "\"approach\" move_mm",
-            "runs into",
-            "z = -8.97",
-        ),
-        (start, "start_mm = [0.0, 22.2, 51.0]", "strategy.start_mm", "in y", "y = -1.13"),
-        (start, "start_mm = [22.0, -1.2, 51.0]", "strategy.start_mm", "in x", "x = 0.06"),
+    let slip = "slip_limit_mm = 3.0";
+    for (key, to, at, problem, remedy) in [
+        (shell, wide, "\"metal shell\" y_mm", "15.2 mm wide", "narrower than 15"),
+        ("depth_mm = 12.0", "16.0", "success.depth_mm", "stops 12.57 mm", "at most 12"),
+        (approach, "[-2.6, 0.0, -4.0]", "\"touch\" move_mm", "above the socket", "longer"),
+        (push, "[0.0, 0.0, -10.0]", "\"assembly\" move_mm", "success asks for 12", "z = -16"),
+        (push, "[0.0, 0.0, 20.0]", "\"assembly\" move_mm", "goes up", "negative"),
+        (touch, "[0.0, 0.0, 3.0]", "\"touch\" move_mm", "goes up", "negative"),
+        (start, "[0.0, -0.0012, 0.051]", "strategy.start_mm", "less than", "metres"),
+        (grip, "1.6\nshoulder_z_mm = 1.7", "grip.tcp_z_mm", "less than", "inches"),
+        (faces, "[-6.6, 6.6]", "grip.faces_y_mm", "off the plug", "[-6.2, 6.2]"),
+        (faces, "[-5.0, 5.0]", "grip.faces_y_mm", "inside `grip block`", "[-6.2, 6.2]"),
+        (neck, "[37.2, 39.96]", "\"neck\" z_mm", "gap of 1 mm to `taper`", "36.2"),
+        (y, "[-9.0, 7.51]", "socket.opening_y_mm", "`wall at -y` begins", "-7.49"),
+        (grip, "20\nshoulder_z_mm = 23.31", "grip.shoulder_z_mm", "plug goes on", "43.31"),
+        (grip, "60\nshoulder_z_mm = 63.31", "grip.shoulder_z_mm", "no plug", "43.31"),
+        (start, "[0.0, -1.2, 35.0]", "strategy.start_mm", "deep in", "z = 46.03"),
+        (approach, "[-2.6, 0.0, -12.8]", "\"approach\" move_mm", "runs into", "z = -8.97"),
+        (start, "[0.0, 22.2, 51.0]", "strategy.start_mm", "in y", "y = -1.13"),
+        (start, "[22.0, -1.2, 51.0]", "strategy.start_mm", "in x", "x = 0.06"),
         (
             neck,
-            "z_mm = [33.2, 39.96]",
+            "[33.2, 39.96]",
             "plug.part \"taper\"",
             "3 mm deep in `neck`",
             "end where they meet",
         ),
-        (neck, "z_mm = [36.2, 36.2015]", "\"neck\" z_mm", "no mass", "thickness"),
-        ("mass_g = 5.0", "mass_g = 0.005", "plug.mass_g", "less than foam", "plastic"),
-        (
-            "slip_limit_mm = 3.0",
-            "slip_limit_mm = 5.0",
-            "grip.slip_limit_mm",
-            "3.35 mm",
-            "at most 3.0",
-        ),
+        (neck, "[36.2, 36.2015]", "\"neck\" z_mm", "no mass", "thickness"),
+        ("mass_g = 5.0", "0.005", "plug.mass_g", "less than foam", "plastic"),
+        (slip, "5.0", "grip.slip_limit_mm", "3.35 mm", "at most 3.0"),
     ] {
-        let found = problems(&changed("usb", from, to));
+        let (name, _) = key.split_once(" = ").unwrap();
+        let found = problems(&changed(shipped("usb"), key, &format!("{name} = {to}")).unwrap());
         let caught = found.iter().any(|found| {
-            found.key.contains(key)
+            found.key.contains(at)
                 && found.problem.contains(problem)
                 && found.remedy.contains(remedy)
         });
@@ -204,34 +161,30 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
 /// The file in another unit: nothing but that is said.
 #[test]
 fn a_file_in_another_unit_is_asked_about() {
-    let lengths = in_unit(shipped("usb"));
     for (factor, unit) in [(1e-3, "metres"), (1.0 / 25.4, "inches")] {
-        let task = Task::parse(&lengths(factor), "usb").unwrap();
+        let mut file = toml::Value::Table(toml::from_str(shipped("usb")).unwrap());
+        scale(&mut file, factor, false);
+        let task = Task::from_table(file.as_table().unwrap().clone(), "usb").unwrap();
         let found = problems(&task);
         assert!(found.iter().all(|found| found.problem.contains("less than")), "{found:#?}");
         assert!(found.iter().any(|found| found.key == "plug.part" && found.remedy.contains(unit)));
     }
 }
 
-/// Every number of a key in mm times a factor.
-fn in_unit(text: &str) -> impl Fn(f64) -> String {
-    move |factor| {
-        let number = |word: &str| word.parse::<f64>().map(|value| format!("{:?}", value * factor));
-        let scaled = |line: &str| match line.split_once(" = ") {
-            Some((key, value)) if key.ends_with("_mm") => {
-                let parts = value.split_inclusive(['[', ']', ',', ' ']).map(|part| {
-                    let word = part.trim_end_matches(['[', ']', ',', ' ']);
-                    number(word).map_or(part.to_owned(), |new| part.replacen(word, &new, 1))
-                });
-                format!("{key} = {}\n", parts.collect::<String>())
-            }
-            _ => format!("{line}\n"),
-        };
-        text.lines().map(scaled).collect()
+/// Scales every number of the keys in mm.
+fn scale(value: &mut toml::Value, factor: f64, in_mm: bool) {
+    match value {
+        toml::Value::Float(number) if in_mm => *number *= factor,
+        toml::Value::Integer(number) if in_mm => *value = (*number as f64 * factor).into(),
+        toml::Value::Array(items) => items.iter_mut().for_each(|item| scale(item, factor, in_mm)),
+        toml::Value::Table(table) => {
+            table.iter_mut().for_each(|(key, item)| scale(item, factor, key.ends_with("_mm")));
+        }
+        _ => {}
     }
 }
 
-/// From 3 to 25 mm wide, with and without a body.
+/// Flat plugs of 3 to 25 mm and round ones of 3 to 20 mm, with and without a body.
 #[test]
 fn drafted_tasks_insert_at_their_nominal_start() {
     for (plug, clearance_mm, body) in [
@@ -239,31 +192,12 @@ fn drafted_tasks_insert_at_their_nominal_start() {
         ("3x2x4", 0.1, Some("6x5x15")),
         ("25x15x20", 0.3, Some("30x20x30")),
         ("8x7x50", 0.15, None),
-    ] {
-        let task = drafted(plug, clearance_mm, body);
-        assert_eq!(problems(&task), [], "{plug}");
-        let trial = trial(&task);
-        assert_eq!(trial.outcome, Outcome::Inserted, "{plug}: {}", explain(&task, &trial));
-    }
-}
-
-/// Round plugs of 3 to 20 mm, with and without a body, in holes of flats.
-#[test]
-fn drafted_round_plugs_insert_at_their_nominal_start() {
-    use finger_opt::connector::draft::Size;
-    for (plug, clearance_mm, body) in [
         ("3x6", 0.1, Some("8x6x14")),
         ("8x12", 0.1, Some("12x12x20")),
         ("20x20", 0.2, Some("24x24x25")),
         ("8x50", 0.1, None),
     ] {
-        let size = Dimensions {
-            plug: Size::round(plug).unwrap(),
-            round: true,
-            clearance: clearance_mm * MM,
-            body: body.map(|body| body.parse().unwrap()),
-        };
-        let task = draft("mine", &size, None).unwrap();
+        let task = drafted(plug, clearance_mm, body);
         assert_eq!(problems(&task), [], "{plug}");
         let trial = trial(&task);
         assert_eq!(trial.outcome, Outcome::Inserted, "{plug}: {}", explain(&task, &trial));
@@ -275,9 +209,10 @@ fn a_round_task_is_written_with_the_error_of_its_hole() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("peg.toml");
     let out = path.to_str().unwrap();
-    let new = ["task", "new", "peg", "--clearance", "0.1", "--engine", "fake", "--out", out];
-    let round = ["--round", "8x12", "--body", "12x12x20"];
-    optimize(&[&new[..], &round].concat()).succeeds();
+    let new = |more: &str| {
+        said(&format!("task new peg --clearance 0.1 --engine fake {more} --out"), &[out])
+    };
+    new("--round 8x12 --body 12x12x20").succeeds();
     let text = common::read(&path);
     assert!(
         text.contains("# Made by: optimize task new peg --round 8x12 --clearance 0.1"),
@@ -286,21 +221,10 @@ fn a_round_task_is_written_with_the_error_of_its_hole() {
     assert!(text.contains("64 flats, which keep its diameter within 0.0049 mm"), "{text}");
     let task = Task::parse(&text, out).unwrap();
     assert_eq!((task.plug.parts.len(), task.socket.len()), (2, 65));
-    optimize(&["task", "check", out, "--engine", "fake"]).succeeds();
-    optimize(&[&new[..], &["--round", "8"]].concat()).fails(2, &["DIAMETERxLENGTH"]);
-    let both = ["--round", "8x12", "--plug", "8x8x12"];
-    optimize(&[&new[..], &both].concat()).fails(2, &["cannot be used with"]);
-    optimize(&[&new[..], &["--round", "8x8"]].concat()).fails(2, &["--round", "8 mm long"]);
-}
-
-/// What is in the file is what was drafted.
-#[test]
-fn a_drafted_file_reads_back_without_problems() {
-    let task = drafted("14x4.5x11", 0.2, Some("21x11x30"));
-    let text = write::task(&task, &Notes::default());
-    let read = Task::parse(&text, "mine.toml").unwrap();
-    assert_eq!(problems(&read), []);
-    assert!((read.success.depth - task.success.depth).abs() < 1e-7);
+    said("task check --engine fake", &[out]).succeeds();
+    new("--round 8").fails(2, &["DIAMETERxLENGTH"]);
+    new("--round 8x12 --plug 8x8x12").fails(2, &["cannot be used with"]);
+    new("--round 8x8").fails(2, &["--round", "8 mm long"]);
 }
 
 /// A part that is hardly held tips over, and is told so with what would help.
@@ -319,27 +243,13 @@ fn a_task_is_made_shown_checked_and_used() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("c.toml");
     let path = file.to_str().unwrap();
-    let new = [
-        "task",
-        "new",
-        "c",
-        "--plug",
-        "8.25x2.4x6.65",
-        "--clearance",
-        "0.1",
-        "--body",
-        "12x6.5x20",
-        "--engine",
-        "fake",
-        "--out",
-        path,
-    ];
-    assert!(optimize(&new).succeeds().contains(path));
-    optimize(&new).fails(2, &["exists", "--out"]);
-    let check = ["task", "check", path, "--engine", "fake"];
+    let new =
+        "task new c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20 --engine fake --out";
+    assert!(said(new, &[path]).succeeds().contains(path));
+    said(new, &[path]).fails(2, &["exists", "--out"]);
+    let check = |more: &[&str]| said("task check --engine fake --json", &[&[path], more].concat());
     let svg = folder.path().join("c.svg");
-    let drawn =
-        optimize(&[&check[..], &["--json", "--svg", svg.to_str().unwrap()]].concat()).json();
+    let drawn = check(&["--svg", svg.to_str().unwrap()]).json();
     assert_eq!(drawn["valid"], true);
     assert_eq!(drawn["problems"], serde_json::json!([]));
     assert_eq!(drawn["nominal"]["outcome"], "inserted");
@@ -349,9 +259,9 @@ fn a_task_is_made_shown_checked_and_used() {
     // What was made has a body that a wider one would not let in.
     let wrong = common::read(&file).replace("y_mm = [-4.125, 4.125]", "y_mm = [-4.6, 4.6]");
     std::fs::write(&file, wrong).unwrap();
-    let ran = optimize(&[&check[..], &["--json"]].concat());
+    let ran = check(&[]);
     ran.fails(2, &["problem"]);
-    let found: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    let found: Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!(found["valid"], false);
     assert!(found["problems"][0]["key"].as_str().unwrap().contains("y_mm"), "{found}");
     assert!(found["problems"][0]["remedy"].as_str().unwrap().contains("8.35"), "{found}");
@@ -363,19 +273,17 @@ fn a_task_is_copied_like_another_and_shown_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("my-usb.toml");
     let out = path.to_str().unwrap();
-    optimize(&["task", "new", "my-usb", "--like", "usb", "--engine", "fake", "--out", out])
-        .succeeds();
+    said("task new my-usb --like usb --engine fake --out", &[out]).succeeds();
     let copy = Task::parse(&common::read(&path), out).unwrap();
     let usb = Task::parse(shipped("usb"), "usb").unwrap();
     assert_eq!(copy.name, "my-usb");
     assert_eq!((copy.plug, copy.strategy), (usb.plug, usb.strategy));
-    assert_eq!(optimize(&["task", "show", "usb"]).succeeds(), shipped("usb"));
-    optimize(&["task", "show", "usc"]).fails(2, &["did you mean `usb`"]);
+    assert_eq!(said("task show usb", &[]).succeeds(), shipped("usb"));
+    said("task show usc", &[]).fails(2, &["did you mean `usb`"]);
     optimize(&["task", "new", "a b", "--out", out]).fails(2, &["letters"]);
-    optimize(&["task", "new", "a", "--plug", "8x3", "--clearance", "0.1"])
-        .fails(2, &["8.25x2.4x6.65"]);
-    let short = ["--plug", "8x3x8", "--clearance", "0.1", "--body", "12x8x5"];
-    optimize(&[&["task", "new", "a"][..], &short].concat()).fails(2, &["--body", "9.4 mm"]);
+    said("task new a --plug 8x3 --clearance 0.1", &[]).fails(2, &["8.25x2.4x6.65"]);
+    said("task new a --plug 8x3x8 --clearance 0.1 --body 12x8x5", &[])
+        .fails(2, &["--body", "9.4 mm"]);
 }
 
 /// A file that cannot be read is a problem, too, with its key.
@@ -389,26 +297,27 @@ fn a_check_says_what_a_reader_finds() {
         ("force_n", "force", "force"),
     ] {
         std::fs::write(&file, shipped("usb").replace(from, to)).unwrap();
-        let ran = optimize(&["task", "check", file.to_str().unwrap(), "--json"]);
+        let ran = said("task check --json", &[file.to_str().unwrap()]);
         ran.fails(2, &["1 problem"]);
-        let found: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+        let found: Value = serde_json::from_str(&ran.stdout).unwrap();
         assert_eq!(found["problems"][0]["key"], key);
     }
 }
 
-fn surface(name: &str) -> finger_opt::connector::mesh::import::Mesh {
-    use finger_opt::connector::mesh::import::Mesh;
-    use finger_opt::connector::mesh::{Surface, read};
+/// Triangles of an example mesh, mm.
+fn triangles(name: &str) -> Vec<[Point3<f64>; 3]> {
     let file = format!("{}/examples/meshes/{name}.stl", env!("CARGO_MANIFEST_DIR"));
-    let triangles = read(&std::fs::read(&file).unwrap(), name).unwrap();
-    Mesh { file: name.to_owned(), surface: Surface::new(&triangles, MM, name).unwrap() }
+    read(&std::fs::read(file).unwrap(), name).unwrap()
 }
 
-fn imported(pair: &str, like: Option<&Task>) -> finger_opt::connector::mesh::import::Imported {
-    use finger_opt::connector::mesh::import::{Along, Request, import};
+fn mesh(name: &str) -> Mesh {
+    Mesh { file: name.to_owned(), surface: Surface::new(&triangles(name), MM, name).unwrap() }
+}
+
+fn imported(pair: &str, like: Option<&Task>) -> Imported {
     let request =
         Request { name: "mine", along: Along::MinusZ, resolution: 64, like, say: &|_| () };
-    import(surface(&format!("{pair}-plug")), surface(&format!("{pair}-socket")), &request).unwrap()
+    import(mesh(&format!("{pair}-plug")), mesh(&format!("{pair}-socket")), &request).unwrap()
 }
 
 /// A bevelled outline with a rib and a chamfered pocket: exact, nothing in the clearance.
@@ -441,19 +350,16 @@ fn the_usb_meshes_are_the_usb_task() {
     assert!((0..4).all(|i| differ(i / 2, i % 2).abs() < 1e-3 * MM));
     assert_eq!(problems(&found.task), []);
     // Starts about both ends of the window, -0.8 to +5.8 mm, fail and insert alike.
-    let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
     let outcomes = |task: &Task| {
-        let rig = EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap();
-        let finger = Finger::new(3.84 * N_PER_MM, 35.0 * N_PER_MM);
-        let grasped = rig.grasp(&finger);
+        let rig = rig(task);
+        let grasped = rig.grasp(&Finger::new(3.84 * N_PER_MM, 35.0 * N_PER_MM));
         [-1.1, -0.6, 5.6, 6.1].map(|offset_mm| grasped.trial(offset_mm * MM).outcome)
     };
     assert_eq!(outcomes(&found.task), outcomes(&usb));
 }
 
 /// Closed outlines of radius and height, mm, counter-clockwise, turned about z in so many flats.
-fn turned(outline: &[[f64; 2]], flats: usize) -> finger_opt::connector::mesh::Surface {
-    use nalgebra::Point3;
+fn turned(outline: &[[f64; 2]], flats: usize) -> Surface {
     let at = |[radius, z]: [f64; 2], flat: usize| {
         let turn = (flat % flats) as f64 / flats as f64 * std::f64::consts::TAU;
         Point3::new(radius * turn.cos(), radius * turn.sin(), z)
@@ -468,15 +374,11 @@ fn turned(outline: &[[f64; 2]], flats: usize) -> finger_opt::connector::mesh::Su
         }
     }
     // On the axis triangles shrink to lines, which hold nothing.
-    finger_opt::connector::mesh::Surface::new(&triangles, MM, "turned").unwrap()
+    Surface::new(&triangles, MM, "turned").unwrap()
 }
 
 /// The keyed plug, which need not fit, over a socket.
-fn over(
-    socket: finger_opt::connector::mesh::Surface,
-    resolution: u32,
-) -> Result<finger_opt::connector::mesh::import::Imported, String> {
-    use finger_opt::connector::mesh::import::{Along, Mesh, Request, import};
+fn over(surface: Surface, resolution: u32) -> Result<Imported, String> {
     let request = Request {
         name: "round",
         along: Along::MinusZ,
@@ -484,8 +386,8 @@ fn over(
         like: Some(&Task::parse(shipped("usb"), "usb").unwrap()),
         say: &|what| assert!(what.len() <= 80, "{what}"),
     };
-    let socket = Mesh { file: "socket.stl".to_owned(), surface: socket };
-    import(surface("keyed-plug"), socket, &request).map_err(|error| error.to_string())
+    let socket = Mesh { file: "socket.stl".to_owned(), surface };
+    import(mesh("keyed-plug"), socket, &request).map_err(|error| error.to_string())
 }
 
 /// A bore of 64 flats with a chamfer and a floor.
@@ -523,8 +425,7 @@ fn a_hollow_curved_socket_is_approximated_and_measured() {
     assert!(fine > 0.1 * coarse && coarse > 0.1 * MM, "{coarse} {fine}");
     // What would take minutes is refused, with what is done in less and what else helps.
     let error = over(bowl(), 1000).unwrap_err();
-    for part in
-        ["socket.stl", "--resolution 1000", "or less", "fewer flats", "task new --round", "by hand"]
+    for part in ["socket.stl", "--resolution 1000", "or less", "fewer flats", "--round", "by hand"]
     {
         assert!(error.contains(part), "`{part}` is not in {error}");
     }
@@ -532,10 +433,8 @@ fn a_hollow_curved_socket_is_approximated_and_measured() {
 
 #[test]
 fn a_mesh_that_is_no_solid_is_refused_with_what_is_wrong() {
-    use finger_opt::connector::mesh::{Surface, read};
-    let file = format!("{}/examples/meshes/keyed-plug.stl", env!("CARGO_MANIFEST_DIR"));
-    let whole = read(&std::fs::read(&file).unwrap(), "p.stl").unwrap();
-    let error = |triangles: &[[nalgebra::Point3<f64>; 3]], unit: f64| {
+    let whole = triangles("keyed-plug");
+    let error = |triangles: &[[Point3<f64>; 3]], unit: f64| {
         Surface::new(triangles, unit, "p.stl").unwrap_err().to_string()
     };
     assert!(error(&whole[1..], MM).contains("not watertight: 3 edges"));

@@ -1,5 +1,5 @@
-//! What proves the models, as opposed to what users run: analytic checks, the same fingers measured
-//! in several ways and as published, the choice of prints replayed, and benchmarks.
+//! Verification of the models: analytic checks, windows compared between engines, searches and
+//! publications, post hoc choice of prints, and benchmarks.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // A stream that has gone makes these panic: `cli::terminal` prints.
@@ -9,6 +9,6 @@
 
 pub mod analytic;
 pub mod cli;
-pub mod compare;
-pub mod prints;
-pub mod problems;
+mod compare;
+mod prints;
+mod problems;

@@ -1,4 +1,4 @@
-//! `lab`: what proves the models.
+//! `lab`: verification of the models.
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;

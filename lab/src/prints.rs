@@ -1,4 +1,4 @@
-//! Printing as advised, replayed on fingers whose ranges are known: how soon the best is found.
+//! Post hoc choice of prints among fingers of known range: prints until the best is found.
 
 use ask_tell::stream::stream;
 use finger_opt::calibration::bench::{Bench, Observation, Posterior, Simulator};
@@ -9,25 +9,25 @@ use finger_opt::calibration::statistics::mean;
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 
-/// Prints after which the regret is told.
+/// Number of prints after each of which the regret is reported.
 pub const TOLD: usize = 4;
-/// Orders of equals that simulation alone is averaged over.
+/// Orders of equal fingers over which simulation alone is averaged.
 const ORDERS: u64 = 50;
-/// Range that a process without simulation expects of a finger it knows nothing of, mm: connectors
-/// tolerate some millimetres.
+/// Prior mean of the range for a process without simulation, mm: connectors tolerate some
+/// millimetres.
 const UNKNOWN_MM: f64 = 5.0;
 
-/// How a way of choosing prints did, averaged over what is arbitrary in it.
+/// Result of a way of choosing prints, averaged over its arbitrary choices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replayed {
-    /// Prints until the best finger is among them.
+    /// Number of prints until the best finger is among them.
     pub prints_to_best: f64,
-    /// What the best printed finger lacks to the best of all after 1 to 4 prints, percent of that.
+    /// Shortfall of the best printed finger to the best of all after 1 to 4 prints, percent.
     pub regret_percent_after: [f64; TOLD],
 }
 
 impl Replayed {
-    /// Of one order of printing.
+    /// Result of an order of printing.
     fn of(order: &[usize], ranges: &[f64]) -> Self {
         let best = ranges.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let after = |count: usize| {
@@ -41,7 +41,7 @@ impl Replayed {
         }
     }
 
-    /// The mean of several; `None` of none.
+    /// Mean of results; `None` without any.
     pub fn averaged(all: &[Replayed]) -> Option<Self> {
         let over =
             |value: &dyn Fn(&Replayed) -> f64| mean(&all.iter().map(value).collect::<Vec<_>>());
@@ -53,7 +53,7 @@ impl Replayed {
     }
 }
 
-/// Any order, averaged over all of them: the largest of `k` of `n` ranges is the `j`-th smallest
+/// Mean over all orders: the largest of `k` of `n` ranges is the `j`-th smallest
 /// in `C(j - 1, k - 1)` of `C(n, k)` cases.
 pub fn random(ranges: &[f64]) -> Replayed {
     let mut sorted = ranges.to_vec();
@@ -74,7 +74,7 @@ pub fn random(ranges: &[f64]) -> Replayed {
     }
 }
 
-/// In the order of simulated ranges; equals in any order.
+/// Mean over the orders of falling simulated range.
 pub fn by_simulation(simulated: &[f64], ranges: &[f64]) -> Option<Replayed> {
     let one = |seed: u64| {
         let mut order: Vec<usize> = (0..ranges.len()).collect();
@@ -85,7 +85,8 @@ pub fn by_simulation(simulated: &[f64], ranges: &[f64]) -> Option<Replayed> {
     Replayed::averaged(&(0..ORDERS).map(one).collect::<Vec<_>>())
 }
 
-/// As [`advise`] says; `fingers` are the bench's numbers of the fingers with these ranges.
+/// Mean over seeds of the orders that [`advise`] gives; `fingers` are the bench's numbers of the
+/// fingers with these ranges.
 pub fn advised(
     bench: &Bench<'_>,
     dimension: usize,
@@ -102,7 +103,7 @@ pub fn advised(
     Replayed::averaged(&(0..seeds).into_par_iter().map(one).collect::<Vec<_>>())
 }
 
-/// The same by a process that knows no simulation, over every first print.
+/// Mean over every first print of the orders by a process without simulation.
 pub fn without_simulation(
     bench: &Bench<'_>,
     fingers: &[usize],
@@ -124,7 +125,7 @@ pub fn without_simulation(
     Replayed::averaged(&(0..fingers.len()).into_par_iter().map(one).collect::<Vec<_>>())
 }
 
-/// All fingers alike.
+/// Simulator that predicts the same range for all fingers.
 struct Blind;
 
 impl Simulator for Blind {
@@ -133,7 +134,7 @@ impl Simulator for Blind {
     }
 }
 
-/// The order in which fingers are printed until the best is among them, and four at least.
+/// Order of printing until the best is among the prints, and four at least.
 fn order(
     bench: &Bench<'_>,
     dimension: usize,
@@ -146,23 +147,16 @@ fn order(
     let mut order: Vec<usize> = first.into_iter().collect();
     let found = |order: &[usize]| order.iter().any(|&i| ranges[i] >= best);
     while order.len() < ranges.len() && (order.len() < TOLD || !found(&order)) {
-        let observation = |&i: &usize| Observation {
-            finger: fingers[i],
-            range_mm: ranges[i],
-            at_least: false,
-            repeats: 1,
+        let observation = |&i: &usize| {
+            let (finger, range_mm) = (fingers[i], ranges[i]);
+            Observation { finger, range_mm, at_least: false, repeats: 1 }
         };
-        let bench =
-            Bench { observations: order.iter().map(observation).collect(), ..bench.clone() };
+        let observations = order.iter().map(observation).collect();
+        let bench = [Bench { observations, ..bench.clone() }];
         let mut random = stream(settings.seed, order.len() as u64, "replay");
-        let posterior = Posterior::sampled(
-            std::slice::from_ref(&bench),
-            dimension,
-            settings.effort,
-            &mut random,
-        );
+        let posterior = Posterior::sampled(&bench, dimension, settings.effort, &mut random);
         let question = Question { among: fingers, count: 1, cost_mm: 0.0, draws: 5 };
-        let advice = advise(&bench, &posterior, &question, &mut random);
+        let advice = advise(&bench[0], &posterior, &question, &mut random);
         let chosen =
             advice.next.first().and_then(|print| fingers.iter().position(|f| *f == print.finger));
         // There is one as long as fingers are left.

@@ -1,4 +1,4 @@
-//! The arm against closed forms, finite differences and its own joints.
+//! Arm model against closed forms, finite differences and its own joints.
 
 use contact::Engine;
 use contact::direct::Direct;
@@ -19,7 +19,7 @@ fn robot() -> Robot {
     Robot::parse(file.text, file.file).unwrap()
 }
 
-/// Some angles that are not special.
+/// Angles in general position.
 fn bent() -> Angles {
     arm().home + Angles::new(0.3, -0.2, 0.25, 0.1, -0.3, 0.7)
 }
@@ -89,7 +89,7 @@ fn a_turned_task_feels_the_same_arm_from_another_side() {
     assert!((block(&turned) - expected).norm() < 1e-6 * expected.norm());
 }
 
-/// The servos' torques balance the load where the arm then is: nothing linearised.
+/// Pose at which the servos' torques balance the load, without linearisation.
 fn quasi_static(arm: &Arm, force: &Vector3<f64>) -> Pose {
     let load = Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
     let mut angles = arm.home;
@@ -152,8 +152,7 @@ fn an_arm_without_feed_forward_trails_its_command() {
     }
 }
 
-/// How much the reduction depends on where it is made: the search moves by some
-/// 10 mm about the start.
+/// Dependence of the reduction on its place: the search moves by some 10 mm about the start.
 #[test]
 fn ten_millimetres_change_the_compliance_by_less_than_two_percent() {
     let arm = arm();
@@ -185,10 +184,10 @@ fn an_arm_file_is_checked() {
         ("axis = \"z\"", "axis = \"w\"", "w"),
     ] {
         let bad = text.replacen(from, to, 1);
-        let error = insertion::robot::Robot::parse(&bad, "a.toml").unwrap_err().to_string();
+        let error = Robot::parse(&bad, "a.toml").unwrap_err().to_string();
         assert!(error.contains(part) && error.contains("a.toml"), "{error}");
     }
     let five = text.rsplit_once("[[joint]]").unwrap().0;
-    let error = insertion::robot::Robot::parse(five, "a.toml").unwrap_err().to_string();
+    let error = Robot::parse(five, "a.toml").unwrap_err().to_string();
     assert!(error.contains("there are 5; an arm has six [[joint]]"), "{error}");
 }

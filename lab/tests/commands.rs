@@ -1,4 +1,4 @@
-//! The commands of `lab` that no other file of tests is about.
+//! Commands of `lab` without a test file of their own.
 
 mod common;
 

@@ -1,5 +1,4 @@
-//! `lab validate`: output, files and what is said of bad input on the fake engine; the
-//! windows of the real one.
+//! `lab validate`: output, files and errors on the fake engine; windows of the real one.
 
 mod common;
 
@@ -20,13 +19,8 @@ fn all_tasks_are_compared_and_written() {
     {
         assert!(ran.succeeds().contains(part), "{part} is not in {}", ran.stdout);
     }
-    assert!(
-        ran.stdout
-            .lines()
-            .all(|line| line.starts_with("tables are in") || line.chars().count() <= 100),
-        "{}",
-        ran.stdout
-    );
+    let fits = |line: &str| line.starts_with("tables are in") || line.chars().count() <= 100;
+    assert!(ran.stdout.lines().all(fits), "{}", ran.stdout);
     let csv = read(&dir.join("validation.csv"));
     assert!(csv.starts_with("task,design,infill_density_percent,infill_direction_deg,"));
     assert_eq!(csv.lines().count(), 45);
@@ -77,10 +71,9 @@ const REFERENCE: &str = "../results/reference/validation";
 #[test]
 fn the_windows_are_the_committed_ones() {
     let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("golden");
-    let path = out.to_str().expect("a path in UTF-8");
+    let path = folder.path().to_str().expect("a path in UTF-8");
     lab(&["validate", "--fingers", "three", "--out", path]).succeeds();
-    let found = read(&out.join("validation.csv"));
+    let found = read(&folder.path().join("validation.csv"));
     let golden = read(&std::path::Path::new(REFERENCE).join("validation.csv"));
     let golden: Vec<&str> = golden.lines().collect();
     let changed: Vec<&str> = found.lines().filter(|line| !golden.contains(line)).collect();

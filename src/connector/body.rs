@@ -1,4 +1,4 @@
-//! A plug or a socket as a set of convex parts, and what can be asked of it.
+//! A plug or a socket as a set of convex parts: overlaps, gaps, extents, clipping.
 
 use contact::scene::Pose;
 use contact::shapes;
@@ -8,38 +8,39 @@ use nalgebra::{Point3, Vector3};
 use parry::query;
 use parry::shape::SharedShape;
 use rapier3d_f64::parry;
+use std::borrow::Borrow;
 
 /// parry's tolerances are made for things of size 1, so it gets millimetres.
 const MILLIMETRES: f64 = 1.0 / MM;
 
 /// A body of convex parts in its own frame.
 pub struct ConvexBody<'a> {
-    /// The parts as the task has them.
+    /// Parts of the task, body frame, m.
     pub parts: &'a [Part],
     shapes: Vec<Placed>,
-    /// Those that give way to another body, by index.
+    /// Indices of the parts that give way to another body.
     yielding: &'a [usize],
 }
 
 struct Placed {
     shape: SharedShape,
     pose: Pose,
-    /// Ball about the part, body frame, m.
+    /// Centre of a ball about the part, body frame, m, and its radius.
     centre: Point3<f64>,
     radius: f64,
 }
 
-/// Two parts that lie in one another.
+/// Overlap of two parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
-    /// How deep, m.
+    /// Penetration depth, m.
     pub depth: f64,
-    /// Indices of the two parts, each in its own body.
+    /// Index of each part in its own body.
     pub parts: [usize; 2],
 }
 
 impl<'a> ConvexBody<'a> {
-    /// Of these parts.
+    /// Body of rigid parts.
     pub fn new(parts: &'a [Part]) -> Self {
         let place = |part: &Part| {
             let geom = part.geom();
@@ -54,7 +55,7 @@ impl<'a> ConvexBody<'a> {
         ConvexBody { parts, shapes: parts.iter().map(place).collect(), yielding: &[] }
     }
 
-    /// A plug, whose latch gives way.
+    /// Body of a plug, whose latch gives way.
     pub fn plug(plug: &'a Plug) -> Self {
         let yielding = plug.latch.as_ref().map_or(&[][..], |latch| &latch.parts);
         ConvexBody { yielding, ..ConvexBody::new(&plug.parts) }
@@ -71,17 +72,15 @@ impl<'a> ConvexBody<'a> {
         pairs.filter_map(depth).max_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 
-    /// Overlaps of two of its own parts.
+    /// Overlaps among its own parts.
     pub fn own_overlaps(&self) -> Vec<Overlap> {
-        let here = Pose::identity();
-        let mut found = Vec::new();
-        for (i, first) in self.shapes.iter().enumerate() {
-            for (j, second) in self.shapes.iter().enumerate().skip(i + 1) {
-                let depth = first.overlap(&here, second, &here);
-                found.extend(depth.map(|depth| Overlap { depth, parts: [i, j] }));
-            }
-        }
-        found
+        let (here, count) = (Pose::identity(), self.shapes.len());
+        let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| [i, j]));
+        let overlap = |parts: [usize; 2]| {
+            let [first, second] = parts.map(|i| &self.shapes[i]);
+            Some(Overlap { depth: first.overlap(&here, second, &here)?, parts })
+        };
+        pairs.filter_map(overlap).collect()
     }
 
     /// Gap between two of its parts, m; 0 if they touch.
@@ -92,7 +91,7 @@ impl<'a> ConvexBody<'a> {
         query::distance(&at, &*a.shape, &to, &*b.shape).map_or(0.0, |found| found.distance * MM)
     }
 
-    /// The first part that a point lies in.
+    /// Index of the first part that contains a point.
     pub fn part_at(&self, point: &Point3<f64>) -> Option<usize> {
         let point = shapes::vector(&(point.coords * MILLIMETRES));
         let holds = |part: &Placed| {
@@ -101,7 +100,7 @@ impl<'a> ConvexBody<'a> {
         self.shapes.iter().position(holds)
     }
 
-    /// The parts that a point lies in, or within so much of.
+    /// Indices of the parts within a distance, m, of a point.
     pub fn near(&self, point: &Point3<f64>, within: f64) -> impl Iterator<Item = usize> {
         let point = shapes::vector(&(point.coords * MILLIMETRES));
         let close = move |part: &Placed| {
@@ -111,24 +110,24 @@ impl<'a> ConvexBody<'a> {
         self.shapes.iter().enumerate().filter(move |(_, part)| close(part)).map(|(i, _)| i)
     }
 
-    /// Its parts but for those of a latch, which the fingers do not press, by index.
+    /// Parts outside the latch, which the fingers do not press, with their indices.
     pub fn stiff(&self) -> impl Iterator<Item = (usize, &Part)> {
         self.parts.iter().enumerate().filter(|(i, _)| !self.yielding.contains(i))
     }
 
-    /// All corners of all parts.
+    /// Corners of all parts, body frame, m.
     pub fn corners(&self) -> impl Iterator<Item = Point3<f64>> + '_ {
         self.parts.iter().flat_map(|part| part.solid.corners())
     }
 
-    /// From, to along an axis (0 x, 1 y, 2 z), m.
+    /// Lowest and highest coordinate along an axis (0 x, 1 y, 2 z), m.
     pub fn extent(&self, axis: usize) -> [f64; 2] {
-        span(self.corners().map(|p| p[axis]))
+        extent(self.corners(), axis)
     }
 }
 
 impl Placed {
-    /// How deep this part, its body at `own`, lies in another, if it does, m.
+    /// Penetration depth of this part, its body at `own`, in another, m.
     fn overlap(&self, own: &Pose, other: &Placed, at: &Pose) -> Option<f64> {
         let apart = (own * self.centre - at * other.centre).norm() > self.radius + other.radius;
         if apart {
@@ -141,13 +140,26 @@ impl Placed {
     }
 }
 
-/// From, to of some numbers; the other way round if there are none.
+/// Lowest and highest coordinate of points along an axis (0 x, 1 y, 2 z); see [`span`].
+pub fn extent<P: Borrow<Point3<f64>>>(
+    points: impl IntoIterator<Item = P>,
+    axis: usize,
+) -> [f64; 2] {
+    span(points.into_iter().map(|p| p.borrow()[axis]))
+}
+
+/// Width of an interval.
+pub fn width([low, high]: [f64; 2]) -> f64 {
+    high - low
+}
+
+/// Lowest and highest number; infinity and minus infinity without numbers.
 pub fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// The corners of what is left of a convex part between two planes across an axis: those
-/// within, and where a line between one within and one beyond crosses a plane.
+/// Corners of a convex part clipped between two planes across an axis: those within, and the
+/// points where a line from one within to one beyond crosses a plane.
 pub fn clipped(points: &[Point3<f64>], axis: usize, [from, to]: [f64; 2]) -> Vec<Point3<f64>> {
     let side = |points: &[Point3<f64>], plane: f64, sign: f64| {
         let (beyond, mut kept): (Vec<_>, Vec<_>) =
@@ -163,8 +175,8 @@ pub fn clipped(points: &[Point3<f64>], axis: usize, [from, to]: [f64; 2]) -> Vec
     side(&side(points, to, 1.0), from, -1.0)
 }
 
-/// The corners of the convex hull of points in a plane across an axis (Andrew 1979), so that
-/// clipping again and again does not multiply them.
+/// Convex hull of points in a plane across an axis (Andrew 1979), so that repeated clipping does
+/// not multiply corners.
 fn outline(mut points: Vec<Point3<f64>>, axis: usize) -> Vec<Point3<f64>> {
     let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
     points.sort_by(|a, b| a[u].total_cmp(&b[u]).then(a[v].total_cmp(&b[v])));
@@ -229,12 +241,11 @@ mod tests {
             span: [0.0, 0.01],
         };
         let cut = clipped(&wedge.corners(), 2, [0.0, 0.004]);
-        let [low, high] = span(cut.iter().map(|p| p.x));
+        let [low, high] = extent(&cut, 0);
         assert!(low.abs() < 1e-12 && (high - 0.004).abs() < 1e-12, "{low} {high}");
     }
 
-    /// Four cuts of a body of many corners leave as many as its outline has, and all where it
-    /// ends.
+    /// Four cuts of a body of many corners leave those of its outline.
     #[test]
     fn clipping_again_and_again_does_not_multiply_corners() {
         let ring = (0..64).map(|i| f64::from(i) * std::f64::consts::TAU / 64.0);
@@ -243,11 +254,8 @@ mod tests {
         let mut body: Vec<_> = ends.collect();
         for axis in [2, 0, 1, 0] {
             body = clipped(&body, axis, [-4.0, 3.0]);
-            let [low, high] = span(body.iter().map(|p| p[axis]));
-            assert!(
-                (low + 4.0).abs() < 1e-12 && (high - 3.0).abs() < 1e-12,
-                "{axis}: {low} {high}"
-            );
+            let [low, high] = extent(&body, axis);
+            assert!((low + 4.0).abs().max((high - 3.0).abs()) < 1e-12, "{axis}: {low} {high}");
         }
         // A box of 7 mm, each of whose corners is there at least once.
         assert!((8..64).contains(&body.len()), "{} corners", body.len());

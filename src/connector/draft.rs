@@ -1,4 +1,4 @@
-//! A task from a few dimensions: plug, clearance and the body that the fingers hold.
+//! Task from a few dimensions: plug, clearance and the body that the fingers hold.
 
 use super::plan::{self, PlanError};
 use super::round::{self, Hole};
@@ -14,9 +14,9 @@ use std::str::FromStr;
 
 /// Smallest and largest dimension, mm.
 const LIMITS_MM: [f64; 2] = [0.5, 200.0];
-/// Walls about the opening are at least this thick, m.
+/// Least thickness of the walls about the opening, m.
 const WALL: f64 = 5.0 * MM;
-/// How far the walls reach beyond the body that rests on them, m.
+/// Reach of the walls beyond the body that rests on them, m.
 const BEYOND_BODY: f64 = 2.0 * MM;
 /// Air between a seated plug's tip and the floor, m.
 const BELOW_TIP: f64 = 0.5 * MM;
@@ -24,19 +24,19 @@ const BELOW_TIP: f64 = 0.5 * MM;
 const BELOW_PADS: f64 = 1.0 * MM;
 /// Thickness of the floor, m.
 const FLOOR: f64 = 2.0 * MM;
-/// A plug without a body goes in by this share of its length.
+/// Share of its length by which a plug without a body goes in.
 const SHARE: f64 = 0.6;
-/// Assumed until it was weighed, kg/m3: plastic with some metal in it.
+/// Assumed density of a plug, kg/m3: plastic with some metal in it.
 pub const DENSITY: f64 = 1500.0;
 
-/// Width (y, between the jaws), height (x) and length (z), m.
+/// Size of a block or a cylinder, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Size {
-    /// y.
+    /// Extent in y, between the jaws.
     pub width: f64,
-    /// x.
+    /// Extent in x.
     pub height: f64,
-    /// z.
+    /// Extent in z.
     pub length: f64,
 }
 
@@ -51,17 +51,17 @@ impl FromStr for Size {
 }
 
 impl Size {
-    /// A cylinder from DIAMETERxLENGTH in mm.
+    /// Size of a cylinder from DIAMETERxLENGTH in mm.
     ///
     /// # Errors
-    /// If the text is something else.
+    /// If the text is something else, or a dimension beyond 0.5 to 200 mm.
     pub fn round(text: &str) -> Result<Self, String> {
-        let [diameter, length] = lengths(text, "give DIAMETERxLENGTH in mm, as in 8x12")?;
-        Ok(Size { width: diameter, height: diameter, length })
+        let [width, length] = lengths(text, "give DIAMETERxLENGTH in mm, as in 8x12")?;
+        Ok(Size { width, height: width, length })
     }
 }
 
-/// Dimensions in mm with an x between them, in m.
+/// Dimensions, m, of a text that has them in mm with an x between them.
 fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> {
     let numbers: Result<Vec<f64>, _> =
         text.split(['x', 'X', '×']).map(|number| number.trim().parse()).collect();
@@ -75,55 +75,47 @@ fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> 
     Ok(numbers.map(|mm| mm * MM))
 }
 
-/// What a task is drafted from.
+/// Dimensions of a plug and its socket.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dimensions {
-    /// What goes in.
+    /// Part of the plug that goes in.
     pub plug: Size,
-    /// Whether that is a cylinder: width and height are its diameter.
+    /// Whether that part is a cylinder, with width and height as its diameter.
     pub round: bool,
     /// Opening less plug, in x and in y, m.
     pub clearance: f64,
-    /// What the fingers hold; without it they hold the plug's upper end.
+    /// Body that the fingers hold; without it they hold the plug's upper end.
     pub body: Option<Size>,
 }
 
-/// Why nothing can be drafted.
+/// Error of a draft.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum DraftError {
-    /// Too short to be held.
+    /// Plug or body too short for the pads.
     #[error(
-        "{option}: is {length_mm} mm long; the pads are {pad_mm} mm high and must stay outside of \
-         the socket, so at least {least_mm:.1} mm are needed"
+        "{option}: is {length_mm} mm long; the pads are {} mm high and must stay outside of \
+         the socket, so at least {least_mm:.1} mm are needed",
+        Pad::PAPER.height / MM
     )]
     TooShort {
-        /// "--body", "--plug" or "--round".
+        /// Option of the length: "--body", "--plug" or "--round".
         option: &'static str,
-        /// As given, mm.
+        /// Length given, mm.
         length_mm: f64,
-        /// Height of a pad, mm.
-        pad_mm: f64,
-        /// What would do, mm.
+        /// Least length, mm.
         least_mm: f64,
     },
-    /// No strategy.
+    /// No strategy can be derived.
     #[error(transparent)]
     Plan(#[from] PlanError),
 }
 
-/// What every drafted or imported task has in common, before its shapes are known: friction,
-/// grasp force and fingers as in the shipped tasks, or as in another task.
+/// Task without shapes: friction, grasp force and fingers as in the shipped tasks, or as in `like`.
 pub fn blank(name: &str, like: Option<&Task>) -> Task {
     let finger_torsion = PadTorsion::Points(30.0 * MM);
     let friction = Friction { finger_plug: 1.0, finger_torsion, plug_socket: 0.2 };
-    let grip = Grip {
-        tcp_z: 0.0,
-        shoulder_z: 0.0,
-        faces_y: [0.0; 2],
-        force: 5.0,
-        hold: Hold::Always,
-        slip_limit: Pad::PAPER.height / 2.0,
-    };
+    let (force, hold) = like.map_or((5.0, Hold::Always), |task| (task.grip.force, task.grip.hold));
+    let slip_limit = Pad::PAPER.height / 2.0;
     Task {
         name: name.to_owned(),
         description: String::new(),
@@ -131,33 +123,27 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
         plug: Plug { parts: Vec::new(), mass: 0.0, latch: None },
         socket: Vec::new(),
         opening: [[0.0; 2]; 2],
-        grip: like.map_or(grip, |task| Grip {
-            force: task.grip.force,
-            hold: task.grip.hold,
-            ..grip
-        }),
+        grip: Grip { tcp_z: 0.0, shoulder_z: 0.0, faces_y: [0.0; 2], force, hold, slip_limit },
         friction: like.map_or(friction, |task| task.friction),
         finger: like.map_or(FingerModel::default(), |task| task.finger),
-        strategy: Strategy {
-            tilt: 0.0,
-            start: [0.0; 3],
-            rule: StartRule::Given,
-            phases: Vec::new(),
-        },
+        strategy: Strategy { tilt: 0.0, start: [0.0; 3], rule: StartRule::Given, phases: vec![] },
         success: Success { depth: 0.0, tilt: 0.0 },
     }
 }
 
-/// A task of these dimensions; what they do not decide is taken from `like`.
+/// Task of these dimensions; what they do not decide is taken from `like`.
+///
+/// # Errors
+/// If the plug is too short to be held, or no strategy can be derived.
 pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, DraftError> {
     let (plug, body) = (size.plug, size.body);
     let mut task = blank(name, like);
-    let mm = |length: f64| length / MM;
+    let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
     let shape = match size.round {
-        true => format!("round plug of {} mm", mm(plug.width)),
-        false => format!("plug {} x {} mm", mm(plug.width), mm(plug.height)),
+        true => format!("round plug of {width} mm"),
+        false => format!("plug {width} x {height} mm"),
     };
-    task.description = format!("{shape}, {} mm clearance", mm(size.clearance));
+    task.description = format!("{shape}, {clearance} mm clearance");
     let top = plug.length + body.map_or(0.0, |body| body.length);
     let mut parts = match size.round {
         true => vec![round::peg("plug", plug.width / 2.0, plug.length)],
@@ -169,34 +155,24 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     let held = body.unwrap_or(plug);
     task.grip.shoulder_z = top;
     task.grip.faces_y = [-held.width / 2.0, held.width / 2.0];
-    let floor = match body {
-        Some(_) => plug.length + BELOW_TIP,
-        None => SHARE * plug.length,
-    };
-    long_enough(size, top)?;
+    let floor = body.map_or(SHARE * plug.length, |_| plug.length + BELOW_TIP);
+    long_enough(size)?;
     (task.opening, task.socket) = housing(size, floor);
     Ok(plan::complete(task)?)
 }
 
-/// The pads must stay outside of the socket.
-fn long_enough(size: &Dimensions, top: f64) -> Result<(), DraftError> {
+/// Checks that the pads stay outside of the socket.
+fn long_enough(size: &Dimensions) -> Result<(), DraftError> {
     let pads = Pad::PAPER.height + BELOW_PADS;
     let (option, length, least) = match size.body {
         Some(body) => ("--body", body.length, pads),
-        None => {
-            let option = if size.round { "--round" } else { "--plug" };
-            (option, top, pads / (1.0 - SHARE))
-        }
+        None if size.round => ("--round", size.plug.length, pads / (1.0 - SHARE)),
+        None => ("--plug", size.plug.length, pads / (1.0 - SHARE)),
     };
     if length >= least {
         return Ok(());
     }
-    Err(DraftError::TooShort {
-        option,
-        length_mm: length / MM,
-        pad_mm: Pad::PAPER.height / MM,
-        least_mm: least / MM,
-    })
+    Err(DraftError::TooShort { option, length_mm: length / MM, least_mm: least / MM })
 }
 
 fn upright(name: &str, size: Size, from: f64) -> Part {
@@ -210,17 +186,17 @@ fn block(name: &str, [x, y, z]: [[f64; 2]; 3]) -> Part {
     Part { name: name.to_owned(), solid, friction: None }
 }
 
-/// Walls about the opening and a floor.
+/// Opening, and a socket of walls about it and a floor.
 fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     let hole = size.round.then(|| Hole::new(size.plug.width, size.clearance));
     let opening = [size.plug.height, size.plug.width].map(|plug| {
         let half = hole.map_or((plug + size.clearance) / 2.0, |hole| hole.flat);
         [-half, half]
     });
-    let body = size.body.map(|body| [body.height, body.width]);
     let outer = [0, 1].map(|axis| {
         let half = opening[axis][1];
-        let below_body = body.map_or(0.0, |body| body[axis] / 2.0 - half + BEYOND_BODY);
+        let body = size.body.map(|body| [body.height, body.width][axis]);
+        let below_body = body.map_or(0.0, |body| body / 2.0 - half + BEYOND_BODY);
         let edge = half + WALL.max(below_body);
         [-edge, edge]
     });

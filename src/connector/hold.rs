@@ -1,34 +1,37 @@
-//! What a pair of fingertips finds of a plug between them.
+//! Grasp of a plug between two fingertips: pressed faces, covered height, shoulder under the roofs.
 
-use super::body::{ConvexBody, clipped, span};
+use super::body::{ConvexBody, clipped, extent, span, width};
 use input::units::MM;
 use insertion::finger::{Pad, ROOF_GAP};
 use insertion::task::Part;
 use nalgebra::Point3;
 
-/// A surface that is this near to where it should be is there, m.
+/// Tolerance of a surface's place, m.
 pub const SEAM: f64 = 0.05 * MM;
 
-/// The plug between two pads whose roofs rest at a height, plug frame, m.
+/// Pad in x, m.
+const PAD_X: [f64; 2] = [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0];
+
+/// Grasp of a plug by pads whose roofs rest at a given height; plug frame, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Held {
-    /// From, to of the pads in z.
+    /// Lower and upper edge of the pads.
     pub pad_z: [f64; 2],
-    /// Outermost y of the plug between the pads, at -y and +y, with the part that is there.
+    /// Outermost y of the plug between the pads, at -y and +y, with the index of that part.
     pub faces: Option<[(f64, usize); 2]>,
-    /// Height of each pad that such a face covers.
+    /// Height over which each pad meets its face.
     pub cover: [f64; 2],
-    /// Highest z of the plug under or within each roof; none if nothing is there.
+    /// Highest z of the plug under or within each roof; `None` if nothing is there.
     pub under_roof: [Option<f64>; 2],
 }
 
-/// From, to in z of pads whose roofs rest on a shoulder.
+/// Lower and upper edge of pads whose roofs rest on a shoulder, plug frame, m.
 pub fn pad_z(shoulder: f64) -> [f64; 2] {
     [shoulder + ROOF_GAP - Pad::PAPER.height, shoulder + ROOF_GAP]
 }
 
-/// Looks at a plug as the pads do whose roofs rest at `shoulder`; the faces they press are
-/// where the plug is widest, or where the task says.
+/// Grasp of a plug by pads whose roofs rest at `shoulder`, m; the faces they press are where the
+/// plug is widest, or at `faces_y`, m.
 pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held {
     let pad_z = pad_z(shoulder);
     let mut pieces: Vec<Vec<Point3<f64>>> = vec![Vec::new(); plug.parts.len()];
@@ -43,15 +46,13 @@ pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held
     Held { pad_z, faces, cover, under_roof }
 }
 
-/// What of a part lies between the pads.
+/// Corners of a part clipped to the space between the pads.
 fn before_pad(part: &Part, pad_z: [f64; 2]) -> Vec<Point3<f64>> {
     let within = clipped(&part.solid.corners(), 2, pad_z);
-    let [low, high] = span(within.iter().map(|p| p.z));
     // What only touches the pads' edge from above or below is not between them.
-    if high - low < SEAM {
-        Vec::new()
-    } else {
-        clipped(&within, 0, [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0])
+    match width(extent(&within, 2)) < SEAM {
+        true => Vec::new(),
+        false => clipped(&within, 0, PAD_X),
     }
 }
 
@@ -70,13 +71,10 @@ fn widest(pieces: &[Vec<Point3<f64>>]) -> Option<[(f64, usize); 2]> {
 fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
     let sign = [-1.0, 1.0][side];
     let reaching = pieces.iter().filter_map(|piece| {
-        let near: Vec<_> = piece.iter().filter(|p| sign * (p.y - face) > -SEAM).collect();
-        let [low, high] = span(near.iter().map(|p| p.z));
-        (high > low).then_some([low, high])
+        let near = extent(piece.iter().filter(|p| sign * (p.y - face) > -SEAM), 2);
+        (width(near) > 0.0).then_some(near)
     });
-    let [low, high] = reaching
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [low, high]| [a.min(low), b.max(high)]);
-    (high - low).max(0.0)
+    width(span(reaching.flatten())).max(0.0)
 }
 
 /// The highest point of the plug in the column of a roof, from the pads' middle up.
@@ -88,21 +86,18 @@ fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Optio
     };
     let from = shoulder - Pad::PAPER.height / 2.0;
     let top = |part: &Part| {
-        let piece = clipped(&part.solid.corners(), 1, column);
-        let piece = clipped(&piece, 0, [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0]);
-        let [low, high] = span(piece.iter().map(|p| p.y));
-        let [_, top] = span(piece.iter().map(|p| p.z));
-        (high - low > SEAM && top > from).then_some(top)
+        let piece = clipped(&clipped(&part.solid.corners(), 1, column), 0, PAD_X);
+        let [_, top] = extent(&piece, 2);
+        (width(extent(&piece, 1)) > SEAM && top > from).then_some(top)
     };
     plug.stiff().filter_map(|(_, part)| top(part)).max_by(f64::total_cmp)
 }
 
-/// Where fingers can hold a plug that nobody said how to hold: the highest shoulder that both
-/// roofs rest on, with pads that find at least this much of a face, m. Flat faces first: a cable
-/// can be held, too, but a body better.
+/// Default grasp of a plug, shoulder and faces in m: the highest shoulder that both roofs rest on,
+/// with faces that the pads meet over `least_cover`, m. Flat faces are preferred to a cable.
 pub fn find(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
     let mut tops: Vec<f64> =
-        plug.stiff().map(|(_, part)| span(part.solid.corners().iter().map(|p| p.z))[1]).collect();
+        plug.stiff().map(|(_, part)| extent(part.solid.corners(), 2)[1]).collect();
     tops.sort_by(|a, b| b.total_cmp(a));
     let holds = |flat: bool| {
         tops.iter().find_map(|&shoulder| {
@@ -118,11 +113,10 @@ pub fn find(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
     holds(true).or_else(|| holds(false))
 }
 
-/// Whether a part has a face, not an edge or a line, at this y.
+/// Whether a part has a face at this y, m, not only an edge or a line.
 fn is_flat(part: &Part, y: f64) -> bool {
     let corners = part.solid.corners();
-    let [low, high] = span(corners.iter().filter(|p| (p.y - y).abs() < SEAM).map(|p| p.x));
-    high - low > 1.0 * MM
+    width(extent(corners.iter().filter(|p| (p.y - y).abs() < SEAM), 0)) > 1.0 * MM
 }
 
 #[cfg(test)]
@@ -131,7 +125,6 @@ mod tests {
     use input::shipped::TASKS;
     use insertion::task::Task;
 
-    /// The grasp that the shipped files state is the one that is found in their plugs.
     #[test]
     fn the_shipped_grasps_are_found_in_their_plugs() {
         for file in TASKS {

@@ -1,14 +1,14 @@
-//! One's own connector: a task from dimensions or meshes, and whether it can work.
+//! Task files of your own connector: drafted from dimensions or meshes, and checked before simulation.
 
-pub mod body;
+pub(crate) mod body;
 pub mod check;
 pub mod draft;
-pub mod hold;
+pub(crate) mod hold;
 pub mod mesh;
 pub mod nominal;
-pub mod path;
-pub mod picture;
+pub(crate) mod path;
+pub(crate) mod picture;
 pub mod plan;
-pub mod round;
-pub mod seat;
+pub(crate) mod round;
+pub(crate) mod seat;
 pub mod write;

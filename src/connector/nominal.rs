@@ -1,13 +1,13 @@
-//! The trial at the nominal start, and what to say of it.
+//! Explanation of the trial at the nominal start.
 
 use super::body::ConvexBody;
 use super::path;
 use input::units::{DEG, MM};
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::task::{Stage, Task};
-use insertion::trial::Trial;
+use insertion::trial::{PhaseEnd, Trial};
 
-/// What happened, in plain words, with what to try.
+/// Outcome of a trial in plain words, with advice.
 pub fn explain(task: &Task, trial: &Trial) -> String {
     match trial.outcome {
         Outcome::Inserted => format!(
@@ -62,10 +62,8 @@ fn missed(task: &Task, trial: &Trial) -> String {
 
 fn jammed(task: &Task, trial: &Trial) -> String {
     let (depth, tilt) = (task.success.depth / MM, task.success.tilt / DEG);
-    let deep = trial.depth_mm >= depth;
-    let upright = trial.tilt_deg <= tilt;
     let at = format!("it stops {:.1} mm deep, {:.1} degrees off", trial.depth_mm, trial.tilt_deg);
-    match (deep, upright) {
+    match (trial.depth_mm >= depth, trial.tilt_deg <= tilt) {
         (true, false) => format!(
             "{at}: deep enough, but more than success.tilt_deg = {tilt:.1} degrees; push further \
              (move_mm of the last phase) or allow what the clearance allows"
@@ -99,14 +97,13 @@ fn lost_late(task: &Task, trial: &Trial) -> String {
     )
 }
 
-/// The tip's lowest point at the end of each search phase, mm.
+/// Lowest point of the tip at the end of each search phase, mm, with the phase's name.
 fn searched(task: &Task, trial: &Trial) -> Vec<(String, [f64; 3])> {
     let plug = ConvexBody::plug(&task.plug);
     let commanded = path::waypoints(task, &plug);
-    let in_search = |name: &str| {
-        commanded.iter().any(|point| point.name == name && point.stage == Stage::Search)
-    };
-    let lowest = |phase: &insertion::trial::PhaseEnd| {
+    let in_search =
+        |name: &str| commanded.iter().any(|p| p.name == name && p.stage == Stage::Search);
+    let lowest = |phase: &PhaseEnd| {
         let corners = plug.corners().map(|p| phase.poses.plug * p);
         let edge = corners.min_by(|a, b| a.z.total_cmp(&b.z))?;
         Some((phase.name.clone(), (edge.coords / MM).into()))

@@ -1,33 +1,32 @@
-//! The search path as it is commanded: where the plug would be if nothing gave way.
+//! Commanded search path: places of the plug if nothing gave way.
 
 use super::body::ConvexBody;
 use contact::scene::Pose;
 use insertion::task::{Ending, Stage, Task};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
-/// The end of one commanded move.
+/// End of a commanded move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waypoint {
-    /// The phase that ends here; "start" for the first.
+    /// Name of the phase that ends here; "start" for the first.
     pub name: String,
-    /// Its stage.
+    /// Stage of that phase.
     pub stage: Stage,
-    /// TCP, task frame, m.
+    /// Grasp point (TCP), task frame, m.
     pub tcp: Vector3<f64>,
-    /// The tip's lowest point, task frame, m.
+    /// Lowest point of the tip, task frame, m.
     pub edge: Point3<f64>,
-    /// For a touch: how high above the socket's top the edge is where the stroke ends, if it
-    /// does not reach it, m.
+    /// Height above the socket's top at which a touch's stroke ends without reaching it, m.
     pub short_by: Option<f64>,
 }
 
-/// Pose of the plug with the TCP at `tcp`, tilted as the task says.
+/// Pose of the plug, tilted as the task says, with the TCP at `tcp`, task frame, m.
 pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
     let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), task.strategy.tilt);
     Pose::from_parts(tcp.into(), turn) * Pose::translation(0.0, 0.0, -task.grip.tcp_z)
 }
 
-/// The start and the end of every phase.
+/// Start, and end of every phase.
 pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     let start = Vector3::from(task.strategy.start);
     let pose = plug_pose(task, start);
@@ -65,7 +64,7 @@ pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     found
 }
 
-/// How deep the tip would be at the end, upright, m.
+/// Depth of the upright tip at the end of the path, m.
 pub fn commanded_depth(task: &Task, waypoints: &[Waypoint]) -> f64 {
     waypoints.last().map_or(0.0, |last| task.grip.tcp_z - last.tcp.z)
 }

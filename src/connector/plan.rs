@@ -1,22 +1,23 @@
 //! Grip point, search moves and success of a plug and a socket whose shapes are known.
 //!
 //! The strategy is the paper's: down beside the opening with the tip's lower edge in its middle,
-//! across it until both its sides were met, along -y to the wall, and in. What is derived here is
-//! how far each move goes. The over-strokes and the tilt were chosen by trying plugs of 3 to 35 mm:
+//! across it until both its sides were met, along -y to the wall, and in. Derived here is the length
+//! of each move. The over-strokes and the tilt were chosen by trying plugs of 3 to 35 mm:
 //! see `docs/guide/tasks.md`. A round tip comes down with a point, which must be near the wall before it
 //! is pressed, or the plug tips over: it has its own `Moves`.
 
-use super::body::ConvexBody;
+use super::body::{ConvexBody, extent, width};
+use super::hold::held;
 use super::path;
 use super::round::stands_on_cylinder;
 use super::seat::{Seat, Seating, section};
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
-use insertion::task::{Ending, Phase, Sensed, Stage, Task};
+use insertion::task::{Ending, Phase, Sensed, Stage, Success, Task};
 
-/// The TCP lies this far below the shoulder, m, as in the shipped tasks.
+/// Distance of the TCP below the shoulder, m, as in the shipped tasks.
 const BELOW_SHOULDER: f64 = 3.5 * MM;
-/// How much higher than its lower edge the other side of a tilted tip is to be, m.
+/// Height of a tilted tip's upper edge above its lower one, m.
 const RISE: f64 = 0.35 * MM;
 /// Least and largest tilt, degrees.
 const TILT_DEG: [f64; 2] = [5.0, 10.0];
@@ -24,41 +25,41 @@ const TILT_DEG: [f64; 2] = [5.0, 10.0];
 const AIR: [f64; 2] = [5.0 * MM, 1.0 * MM];
 /// Stroke in which the touch must find the socket, m.
 const TOUCH: f64 = 3.0 * MM;
-/// How far the tip stands on the rim at -x when it is set down, m; of a small tip a quarter.
+/// Overlap of the tip with the rim at -x when it is set down, m; of a small tip a quarter.
 const BESIDE: f64 = 1.0 * MM;
-/// How far the moves along x go on after the tip has met a wall, m: there and back.
+/// Over-stroke of the moves along x after the tip has met a wall, m: there and back.
 const ACROSS: [f64; 2] = [0.8 * MM, 0.45 * MM];
-/// How far a round tip is moved to either side in x, m.
+/// Move of a round tip to either side in x, m.
 const ROUND_ACROSS: f64 = 0.5 * MM;
 /// Share of a round opening's half that the tip's lowest point starts beyond its middle.
 const ROUND_AHEAD: f64 = 0.7;
-/// How far the push is commanded beyond the seat, m.
+/// Command of the push beyond the seat, m.
 const PRESS: f64 = 4.0 * MM;
 /// Tilt that counts as upright beyond what the play allows, degrees.
 const UPRIGHT_DEG: f64 = 2.0;
 /// Least tilt that counts as upright, degrees.
 const LEAST_UPRIGHT_DEG: f64 = 3.0;
-/// What may be missing of the full depth beside what a tilt takes: m, and a share.
+/// Allowance for the success depth beside that of a tilt: m, and a share of the full depth.
 const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 /// Share of the full depth at which the play is measured.
 const WITHIN: f64 = 0.9;
-/// A plug that goes in less than this does not go in, m.
+/// Least depth of a plug that goes in, m.
 const LEAST_DEPTH: f64 = 1.0 * MM;
 
-/// Why no strategy can be derived.
+/// Error of a plan.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum PlanError {
-    /// The plug stays outside.
+    /// The plug does not enter.
     #[error(
         "the plug does not go into the socket: upright it stops {depth_mm:.2} mm below the top, \
          where `{plug}` meets `{socket}`; make the opening wider or the plug smaller"
     )]
     NoEntry {
-        /// How far it goes, mm.
+        /// Depth it reaches, mm.
         depth_mm: f64,
-        /// The plug part that is stopped.
+        /// Plug part that is stopped.
         plug: String,
-        /// The socket part that stops it.
+        /// Socket part that stops it.
         socket: String,
     },
     /// Nothing stops the plug.
@@ -66,8 +67,11 @@ pub enum PlanError {
     NoFloor,
 }
 
-/// Completes a task of which `plug`, `socket`, `opening` and the grip's shoulder and faces are
-/// known: grasp point, strategy and success.
+/// Task with grasp point, strategy and success derived from `plug`, `socket`, `opening` and the
+/// grip's shoulder and faces.
+///
+/// # Errors
+/// If the plug does not enter its socket, or falls through it.
 pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
     let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));
@@ -85,7 +89,7 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     grasp(&mut task, &plug);
     let play = Seating::new(&task, &plug, &socket).play(WITHIN * seat.depth, seat.at, 1);
     success(&mut task, &plug, &seat, play);
-    let rise = (RISE / (tip[1][1] - tip[1][0])).min(1.0);
+    let rise = (RISE / width(tip[1])).min(1.0);
     let [least, most] = TILT_DEG;
     task.strategy.tilt = round(libm::asin(rise) / DEG, 0.1).clamp(least, most) * DEG;
     let search = match stands_on_cylinder(&plug_parts) {
@@ -97,28 +101,28 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     Ok(task)
 }
 
-/// Where the search begins and how far its moves go, m.
+/// Start of the search and lengths of its moves, m.
 struct Moves {
     /// x of the plug's axis at the start.
     x: f64,
     /// y of the tip's lowest point at the start.
     edge_y: f64,
-    /// Beyond first contact.
+    /// Touch beyond first contact.
     preload: f64,
-    /// Along x: back, front, and while the tip moves to the side.
+    /// Moves along x: back, front, and while the tip moves to the side.
     across: [f64; 3],
-    /// How far the move to the front presses further down.
+    /// Move down on the way to the front.
     down: f64,
-    /// Along -y.
+    /// Move along -y.
     side: f64,
 }
 
 impl Moves {
-    /// Of a tip with a lower edge: it is set down on the rim at -x.
+    /// Moves of a tip with a lower edge, set down on the rim at -x.
     fn of_edge(task: &Task, tip: [[f64; 2]; 2]) -> Self {
         let [[left, right], [low, high]] = task.opening;
-        let play = right - left - (tip[0][1] - tip[0][0]);
-        let beside = BESIDE.min((tip[0][1] - tip[0][0]) / 4.0);
+        let play = right - left - width(tip[0]);
+        let beside = BESIDE.min(width(tip[0]) / 4.0);
         let front = play + ACROSS[0] + ACROSS[1];
         Moves {
             x: left - tip[0][0] - beside,
@@ -130,7 +134,7 @@ impl Moves {
         }
     }
 
-    /// Of a round tip: its lowest point is set down near the wall at -y.
+    /// Moves of a round tip, whose lowest point is set down near the wall at -y.
     fn of_point(task: &Task, tip: [[f64; 2]; 2]) -> Self {
         let [x, [low, high]] = task.opening;
         let half = (high - low) / 2.0;
@@ -146,26 +150,24 @@ impl Moves {
 }
 
 fn grasp(task: &mut Task, plug: &ConvexBody) {
-    let held = super::hold::held(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
+    let held = held(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
     let cover = held.cover[0].min(held.cover[1]);
     task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
     task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
 }
 
-/// `play` in y, m.
+/// Depth and tilt of success, from the play in y, m.
 fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
     let tilt = upright.ceil().max(LEAST_UPRIGHT_DEG) * DEG;
     // A tilted plug is stopped where the outer end of what stops it comes down first.
-    let half = seat.stopped_by.map_or(0.0, |[part, _]| {
-        let [low, high] = super::body::span(plug.parts[part].solid.corners().iter().map(|p| p.y));
-        (high - low) / 2.0
-    });
+    let half = seat
+        .stopped_by
+        .map_or(0.0, |[part, _]| width(extent(plug.parts[part].solid.corners(), 1)) / 2.0);
     let (length, share) = MISSING;
     let depth = seat.depth * (1.0 - share) - half * libm::sin(tilt) - length;
     let depth = (depth.max(seat.depth / 2.0) / (0.1 * MM)).floor() * 0.1 * MM;
-    task.success.depth = depth;
-    task.success.tilt = tilt;
+    task.success = Success { depth, tilt };
 }
 
 fn place_start(task: &mut Task, plug: &ConvexBody, search: &Moves) {
@@ -187,30 +189,19 @@ fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
         speed: speed * MM,
         ending,
     };
-    use {Ending::Duration, Stage::Search};
+    use {Ending::*, Stage::*};
+    let touch = Touch { preload, sensed: Sensed::FIRST };
     vec![
-        phase(
-            "approach",
-            Stage::Approach,
-            [0.0, 0.0, AIR[1] - AIR[0]],
-            150.0,
-            Ending::Tolerance(0.1 * MM),
-        ),
-        phase(
-            "touch",
-            Search,
-            [0.0, 0.0, -TOUCH],
-            20.0,
-            Ending::Touch { preload, sensed: Sensed::FIRST },
-        ),
+        phase("approach", Approach, [0.0, 0.0, AIR[1] - AIR[0]], 150.0, Tolerance(0.1 * MM)),
+        phase("touch", Search, [0.0, 0.0, -TOUCH], 20.0, touch),
         phase("back", Search, [back, 0.0, 0.0], 80.0, Duration(0.02)),
         phase("front", Search, [front, 0.0, -down], 80.0, Duration(0.03)),
         phase("side", Search, [aside, -side, 0.0], 100.0, Duration(0.03)),
-        phase("assembly", Stage::Assembly, [0.0, 0.0, -push], 100.0, Duration(0.03)),
+        phase("assembly", Assembly, [0.0, 0.0, -push], 100.0, Duration(0.03)),
     ]
 }
 
-/// To 0.01 mm, as files have it.
+/// Length rounded to 0.01 mm, as in files.
 fn round_mm(length: f64) -> f64 {
     round(length / MM, 0.01) * MM
 }

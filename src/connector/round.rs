@@ -1,26 +1,27 @@
-//! A round peg and its hole: a cylinder, and a ring of flat-sided prisms.
+//! Round peg and hole: a cylinder, and a ring of flat-sided prisms.
 
+use super::body::extent;
 use insertion::task::{Part, Solid};
 use std::f64::consts::PI;
 
-/// Share of the clearance by which the hole's diameter may be off, if so many flats do.
+/// Largest error of the hole's diameter, as a share of the clearance, as far as the flats allow.
 const OFF: f64 = 0.05;
-/// Fewest and most flats. Multiples of four, so that one faces each of -x, +x, -y and +y.
+/// Fewest and most flats, multiples of four, so that one faces each of -x, +x, -y and +y.
 const FLATS: [u32; 2] = [16, 96];
 
-/// A hole of flats that lie as far inside the circle as their corners lie outside.
+/// Hole of flats that lie as far inside the circle as their corners lie outside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hole {
-    /// How many.
+    /// Number of flats.
     pub flats: u32,
-    /// Distance of each from the axis, m.
+    /// Distance of each flat from the axis, m.
     pub flat: f64,
-    /// Farthest that the wall is from the circle, m.
+    /// Largest distance of the wall from the circle, m.
     pub off: f64,
 }
 
 impl Hole {
-    /// About a plug of this diameter with so much clearance, m.
+    /// Hole for a plug of a diameter with a clearance, m.
     pub fn new(diameter: f64, clearance: f64) -> Self {
         let radius = (diameter + clearance) / 2.0;
         // With the flat at r - off and its corners at (r - off) / cos(pi / n) = r + off.
@@ -31,7 +32,7 @@ impl Hole {
         Hole { flats, flat: radius - off(flats), off: off(flats) }
     }
 
-    /// The prisms, out to a rectangle of these half sides in x and y.
+    /// Prisms between the hole and a rectangle of half sides `outer` in x and y, m.
     pub fn walls(&self, outer: [f64; 2], z: [f64; 2]) -> Vec<Part> {
         let corner = |k: u32| {
             let turn = (f64::from(k) - 0.5) * 2.0 * PI / f64::from(self.flats);
@@ -49,15 +50,15 @@ impl Hole {
     }
 }
 
-/// A cylinder that stands on z = 0.
+/// Cylinder that stands on z = 0, m.
 pub fn peg(name: &str, radius: f64, length: f64) -> Part {
     let solid = Solid::Cylinder { centre: [0.0; 2], radius, z: [0.0, length] };
     Part { name: name.to_owned(), solid, friction: None }
 }
 
-/// Whether the lowest of some parts is a cylinder.
+/// Whether the lowest of the parts is a cylinder.
 pub fn stands_on_cylinder(parts: &[Part]) -> bool {
-    let bottom = |part: &Part| part.solid.corners().iter().map(|p| p.z).fold(f64::MAX, f64::min);
+    let bottom = |part: &Part| extent(part.solid.corners(), 2)[0];
     let lowest = parts.iter().min_by(|a, b| bottom(a).total_cmp(&bottom(b)));
     lowest.is_some_and(|part| matches!(part.solid, Solid::Cylinder { .. }))
 }

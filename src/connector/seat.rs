@@ -1,33 +1,33 @@
-//! How deep a plug goes into its socket upright, whatever the search does.
+//! Depth that an upright plug reaches in its socket, whatever the search does.
 
-use super::body::{ConvexBody, clipped, span};
+use super::body::{ConvexBody, clipped, extent};
 use contact::scene::Pose;
 use input::units::MM;
-use insertion::task::Task;
+use insertion::task::{Part, Task};
 
-/// Overlap that does not count, m: what rounding to 0.01 mm leaves.
+/// Overlap that does not count, m: that of rounding to 0.01 mm.
 const TOLERANCE: f64 = 0.02 * MM;
-/// Depths that are tried on the way down, m.
+/// Step of the depth on the way down, m.
 const STEP: f64 = 0.25 * MM;
-/// How finely the deepest is found, m.
+/// Resolution of the deepest place, m.
 const FINE: f64 = 0.005 * MM;
-/// Overlap of what only touches, m.
+/// Overlap of bodies that only touch, m.
 const TOUCHING: f64 = 1e-3 * MM;
-/// Farthest that a plug is moved aside, m.
+/// Largest displacement to the side, m.
 const MOST_PLAY: f64 = 10.0 * MM;
-/// Places tried along x and along y where the way down is looked for.
+/// Intervals of the grid of places along x and along y.
 const GRID: i32 = 8;
-/// How often that grid is drawn in about its best place.
+/// Refinements of that grid about its best place.
 const REFINEMENTS: i32 = 4;
 
-/// The lowest place that an upright plug reaches.
+/// Lowest place of an upright plug.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seat {
     /// Depth of the tip below the socket's top, m; 0 if it does not enter.
     pub depth: f64,
-    /// Where the plug's axis then is, m.
+    /// x and y of the plug's axis there, m.
     pub at: [f64; 2],
-    /// What stops it there: a plug part and a socket part; none if it falls through.
+    /// Indices of the plug part and the socket part that meet; `None` if it falls through.
     pub stopped_by: Option<[usize; 2]>,
 }
 
@@ -39,12 +39,12 @@ pub struct Seating<'a> {
 }
 
 impl<'a> Seating<'a> {
-    /// Of this plug in this socket.
+    /// Seating of a plug in the socket of its task.
     pub fn new(task: &Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
         Seating { plug, socket, opening: task.opening }
     }
 
-    /// Lowers the plug as far as it goes.
+    /// Lowest place of the plug.
     pub fn deepest(&self) -> Seat {
         let [bottom, top] = self.plug.extent(2);
         let mut at = self.opening.map(|[low, high]| (low + high) / 2.0);
@@ -60,10 +60,9 @@ impl<'a> Seating<'a> {
         Seat { depth: free, at, stopped_by: None }
     }
 
-    /// How far the upright plug can be moved along an axis (0 x, 1 y) at this depth, there and
-    /// back, m: what opening and plug really leave, chamfers aside.
+    /// Play of the upright plug at a depth along an axis (0 x, 1 y), both ways together, m.
     pub fn play(&self, depth: f64, at: [f64; 2], axis: usize) -> f64 {
-        // What is found seated may touch walls, so first to the middle between them.
+        // A seated plug may touch walls, so first to the middle between them.
         let mut middle = at;
         for axis in [0, 1, 0, 1] {
             let [back, forth] = self.ways(depth, middle, axis);
@@ -72,7 +71,7 @@ impl<'a> Seating<'a> {
         self.ways(depth, middle, axis).iter().sum()
     }
 
-    /// How far the plug can be moved back and forth along an axis, m.
+    /// Free way back and forth along an axis, m.
     fn ways(&self, depth: f64, at: [f64; 2], axis: usize) -> [f64; 2] {
         let least = self.overlap(depth, at).0.max(TOUCHING);
         [-1.0, 1.0].map(|sign| {
@@ -89,7 +88,7 @@ impl<'a> Seating<'a> {
         })
     }
 
-    /// Bisects between a depth that is free and one that is not.
+    /// Lowest place between a free depth and a blocked one, by bisection.
     fn between(&self, mut free: f64, mut blocked: f64, mut at: [f64; 2]) -> Seat {
         let mut stopped_by = None;
         while blocked - free > FINE {
@@ -102,14 +101,13 @@ impl<'a> Seating<'a> {
         Seat { depth: (free - TOLERANCE).max(0.0), at, stopped_by }
     }
 
-    /// A place at which the plug is free at this depth, near `at` if there is one;
-    /// otherwise the two parts in the way at the best place.
-    fn place(&self, depth: f64, at: [f64; 2]) -> Result<[f64; 2], [usize; 2]> {
+    /// Free place at this depth, near `at` if there is one; otherwise the two parts in the way at
+    /// the best place.
+    fn place(&self, depth: f64, mut at: [f64; 2]) -> Result<[f64; 2], [usize; 2]> {
         let mut best = self.overlap(depth, at);
         if best.0 <= TOLERANCE {
             return Ok(at);
         }
-        let mut at = at;
         let range = self.room(depth);
         let mut middle = range.map(|[low, high]| (low + high) / 2.0);
         let mut half = range.map(|[low, high]| (high - low).abs() / 2.0);
@@ -132,7 +130,7 @@ impl<'a> Seating<'a> {
         Err(best.1)
     }
 
-    /// Where the plug's axis may be so that what is below the top lies in the opening.
+    /// Range of the plug's axis with all below the top inside the opening.
     fn room(&self, depth: f64) -> [[f64; 2]; 2] {
         let section = section(self.plug, depth);
         [0, 1].map(|axis| {
@@ -148,14 +146,11 @@ impl<'a> Seating<'a> {
     }
 }
 
-/// What the plug needs of the opening to be this deep: from, to in x and y, m.
+/// Intervals in x and y that the plug occupies of the opening at a depth, m.
 pub fn section(plug: &ConvexBody, depth: f64) -> [[f64; 2]; 2] {
-    let below: Vec<_> = plug
-        .parts
-        .iter()
-        .flat_map(|part| clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]))
-        .collect();
-    [0, 1].map(|axis| span(below.iter().map(|p| p[axis])))
+    let below = |part: &Part| clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]);
+    let below: Vec<_> = plug.parts.iter().flat_map(below).collect();
+    [0, 1].map(|axis| extent(&below, axis))
 }
 
 #[cfg(test)]
@@ -163,11 +158,15 @@ mod tests {
     use super::*;
     use input::shipped::TASKS;
 
-    fn seat(name: &str, change: impl Fn(String) -> String) -> (Seat, Task) {
+    /// A shipped task with one passage replaced.
+    fn changed(name: &str, from: &str, to: &str) -> Task {
         let file = TASKS.iter().find(|file| file.name == name).unwrap();
-        let task = Task::parse(&change(file.text.to_owned()), file.file).unwrap();
+        Task::parse(&file.text.replace(from, to), file.file).unwrap()
+    }
+
+    fn on_seating<T>(task: &Task, of: impl Fn(&Seating) -> T) -> T {
         let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-        (Seating::new(&task, &plug, &socket).deepest(), task)
+        of(&Seating::new(task, &plug, &socket))
     }
 
     /// usb: the body's shoulder on the housing; ket12: the floor; rj45: the floor beside its step
@@ -179,32 +178,28 @@ mod tests {
             ("ket12", 29.0, ["key", "floor"]),
             ("rj45", 12.0, ["", ""]),
         ] {
-            let (seat, task) = seat(name, |text| text);
+            let task = changed(name, "", "");
+            let seat = on_seating(&task, |seating| seating.deepest());
             let [plug, socket] = seat.stopped_by.unwrap();
-            let by_names = [&task.plug.parts[plug].name, &task.socket[socket].name];
+            let names = [&task.plug.parts[plug].name, &task.socket[socket].name];
             assert!((seat.depth / MM - depth_mm).abs() < 0.04, "{name}: {seat:?}");
-            assert!(by_names[0].starts_with(by[0]), "{name}: {by_names:?}");
-            assert!(by_names[1].starts_with(by[1]), "{name}: {by_names:?}");
+            assert!((0..2).all(|i| names[i].starts_with(by[i])), "{name}: {names:?}");
         }
     }
 
     #[test]
     fn the_play_of_a_key_is_its_clearance() {
-        let file = TASKS.iter().find(|file| file.name == "ket12").unwrap();
-        let task = Task::parse(file.text, file.file).unwrap();
-        let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-        let seating = Seating::new(&task, &plug, &socket);
+        let task = changed("ket12", "", "");
         for (axis, clearance_mm) in [(0, 0.208), (1, 0.195)] {
-            let play = seating.play(20.0 * MM, [0.0, 0.0], axis);
+            let play = on_seating(&task, |seating| seating.play(20.0 * MM, [0.0, 0.0], axis));
             assert!((play / MM - clearance_mm).abs() < 0.005, "{axis}: {play}");
         }
     }
 
     #[test]
     fn a_plug_wider_than_its_opening_stays_outside() {
-        let (seat, _) = seat("ket12", |text| {
-            text.replace("[-6.0, 6.0]\nz_mm = [0.0, 50.0]", "[-6.2, 6.2]\nz_mm = [0.0, 50.0]")
-        });
+        let key = ["[-6.0, 6.0]", "[-6.2, 6.2]"].map(|y| y.to_owned() + "\nz_mm = [0.0, 50.0]");
+        let seat = on_seating(&changed("ket12", &key[0], &key[1]), |seating| seating.deepest());
         assert!(seat.depth < 0.1 * MM, "{seat:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! A task as a commented TOML file.
+//! Commented TOML file of a task.
 
 use super::hold;
 use input::units::{DEG, GRAM, MM};
@@ -8,42 +8,43 @@ use insertion::task::{
 use nalgebra::Point3;
 use std::fmt::Write;
 
-/// What is said beside the keys.
+/// Comments of a task file.
 #[derive(Debug, Clone, Default)]
 pub struct Notes {
-    /// Lines at the top of the file.
+    /// Lines at the top.
     pub head: Vec<String>,
-    /// Where the plug's mass comes from.
+    /// Source of the plug's mass.
     pub mass: String,
 }
 
-/// The file.
+/// Text of the file.
 pub fn task(task: &Task, notes: &Notes) -> String {
     let mut out = String::new();
     for line in &notes.head {
         let _ = writeln!(out, "# {line}");
     }
+    let [name, description] = [&task.name, &task.description].map(|value| text(value));
+    let turn = match task.turn {
+        0.0 => String::new(),
+        turn => format!("turn_in_base_deg = {}\n", round(turn / DEG, 100.0)),
+    };
     let _ = write!(
         out,
         "# Every key, with its unit and how to choose it: docs/guide/tasks.md.\n\
          # Frame: origin in the middle of the opening, on the socket's top; z out of the socket; y the\n\
          # direction in which the jaws close and the start is shifted. Lengths in mm.\n\n\
-         name = {}\ndescription = {}\n{}\n\
-         [plug]\n# {}\nmass_g = {}\n\n",
-        text(&task.name),
-        text(&task.description),
-        turn(task),
+         name = {name}\ndescription = {description}\n{turn}\n\
+         [plug]\n# {}\nmass_g = {}\n\n\
+         # Convex parts, z counted from the tip upwards.\n",
         notes.mass,
         round(task.plug.mass / GRAM, 100.0),
     );
-    out.push_str("# Convex parts, z counted from the tip upwards.\n");
     parts(&mut out, "plug", &task.plug.parts);
+    let [x, y] = task.opening.map(pair);
     let _ = write!(
         out,
         "[socket]\n# From, to of the opening on the top, between the walls below.\n\
-         opening_x_mm = {}\nopening_y_mm = {}\n\n",
-        pair(task.opening[0]),
-        pair(task.opening[1])
+         opening_x_mm = {x}\nopening_y_mm = {y}\n\n"
     );
     parts(&mut out, "socket", &task.socket);
     grip(&mut out, task);
@@ -56,13 +57,6 @@ pub fn task(task: &Task, notes: &Notes) -> String {
         round(task.success.tilt / DEG, 100.0)
     );
     out
-}
-
-fn turn(task: &Task) -> String {
-    match task.turn {
-        0.0 => String::new(),
-        turn => format!("turn_in_base_deg = {}\n", round(turn / DEG, 100.0)),
-    }
 }
 
 fn parts(out: &mut String, body: &str, parts: &[Part]) {
@@ -78,22 +72,22 @@ fn parts(out: &mut String, body: &str, parts: &[Part]) {
 fn solid(solid: &Solid) -> String {
     match solid {
         Solid::Box { min, max } => {
-            let along = |i: usize| pair([min[i], max[i]]);
-            let [x, y, z] = [along(0), along(1), along(2)];
+            let [x, y, z] = [0, 1, 2].map(|i| pair([min[i], max[i]]));
             format!("shape = \"box\"\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\n")
         }
-        Solid::Cylinder { centre, radius, z } => format!(
-            "shape = \"cylinder\"\ncentre_mm = {}\ndiameter_mm = {}\nz_mm = {}\n",
-            pair(*centre),
-            mm(2.0 * radius),
-            pair(*z)
-        ),
-        Solid::Prism { axis, outline, span } => format!(
-            "shape = \"prism\"\naxis = \"{}\"\noutline_mm = {}\nspan_mm = {}\n",
-            ["x", "y", "z"][*axis],
-            list(outline.iter().map(|&corner| pair(corner))),
-            pair(*span)
-        ),
+        Solid::Cylinder { centre, radius, z } => {
+            let (centre, diameter, z) = (pair(*centre), mm(2.0 * radius), pair(*z));
+            format!(
+                "shape = \"cylinder\"\ncentre_mm = {centre}\ndiameter_mm = {diameter}\nz_mm = {z}\n"
+            )
+        }
+        Solid::Prism { axis, outline, span } => {
+            let (axis, span) = (["x", "y", "z"][*axis], pair(*span));
+            let outline = list(outline.iter().map(|&corner| pair(corner)));
+            format!(
+                "shape = \"prism\"\naxis = \"{axis}\"\noutline_mm = {outline}\nspan_mm = {span}\n"
+            )
+        }
         Solid::Hull { points } => {
             let point = |p: &Point3<f64>| list(p.iter().map(|&v| mm(v)));
             format!("shape = \"hull\"\npoints_mm = {}\n", list(points.iter().map(point)))
@@ -103,31 +97,25 @@ fn solid(solid: &Solid) -> String {
 
 fn grip(out: &mut String, task: &Task) {
     let (grip, friction) = (&task.grip, &task.friction);
-    let [low, high] = hold::pad_z(grip.shoulder_z);
+    let [low, high] = hold::pad_z(grip.shoulder_z).map(mm);
+    let [tcp, shoulder, slip] = [grip.tcp_z, grip.shoulder_z, grip.slip_limit].map(mm);
+    let faces = pair(grip.faces_y);
+    let hold = match grip.hold {
+        Hold::Always => "always",
+        Hold::Assembly => "assembly",
+    };
+    let torsion = match friction.finger_torsion {
+        PadTorsion::Points(moment) => mm(moment),
+        PadTorsion::Patch => "\"patch\"".to_owned(),
+    };
     let _ = write!(
         out,
-        "[grip]\n# The roofs of the fingertips rest on shoulder_z; their pads then reach from {} to {} mm\n\
+        "[grip]\n# The roofs of the fingertips rest on shoulder_z; their pads then reach from {low} to {high} mm\n\
          # and press the faces. tcp_z is the height of the grasp point. All counted from the tip.\n\
-         tcp_z_mm = {}\nshoulder_z_mm = {}\nfaces_y_mm = {}\nforce_n = {:?}\nhold = \"{}\"\n\
-         # Beyond this slip the plug counts as lost.\nslip_limit_mm = {}\n\n\
-         [friction]\nfinger_plug = {:?}\nfinger_plug_torsion_mm = {}\nplug_socket = {:?}\n\n",
-        mm(low),
-        mm(high),
-        mm(grip.tcp_z),
-        mm(grip.shoulder_z),
-        pair(grip.faces_y),
-        grip.force,
-        match grip.hold {
-            Hold::Always => "always",
-            Hold::Assembly => "assembly",
-        },
-        mm(grip.slip_limit),
-        friction.finger_plug,
-        match friction.finger_torsion {
-            PadTorsion::Points(moment) => mm(moment),
-            PadTorsion::Patch => "\"patch\"".to_owned(),
-        },
-        friction.plug_socket,
+         tcp_z_mm = {tcp}\nshoulder_z_mm = {shoulder}\nfaces_y_mm = {faces}\nforce_n = {:?}\nhold = \"{hold}\"\n\
+         # Beyond this slip the plug counts as lost.\nslip_limit_mm = {slip}\n\n\
+         [friction]\nfinger_plug = {:?}\nfinger_plug_torsion_mm = {torsion}\nplug_socket = {:?}\n\n",
+        grip.force, friction.finger_plug, friction.plug_socket,
     );
 }
 
@@ -137,17 +125,15 @@ fn strategy(out: &mut String, task: &Task) {
         out,
         "[strategy]\n# Tilted about x: the tip's edge at -y is the lowest.\ntilt_deg = {}\n\
          # The grasp point (TCP): the tip's lower edge over the middle of the opening in y.\n\
-         start_mm = {}\n\n",
+         start_mm = {}\n",
         round(strategy.tilt / DEG, 100.0),
         list(strategy.start.iter().map(|&v| mm(v)))
     );
     if strategy.rule == StartRule::Taught {
-        out.truncate(out.trim_end().len());
-        out.push_str("\nstart = \"taught\"\n\n");
+        out.push_str("start = \"taught\"\n");
     }
-    for item in &strategy.phases {
-        phase(out, item);
-    }
+    out.push('\n');
+    strategy.phases.iter().for_each(|item| phase(out, item));
 }
 
 fn phase(out: &mut String, phase: &Phase) {
@@ -178,16 +164,15 @@ fn phase(out: &mut String, phase: &Phase) {
     out.push('\n');
 }
 
-/// A length in mm, to a tenth of a micrometre.
-pub fn mm(length: f64) -> String {
+/// Length in mm, to a tenth of a micrometre.
+fn mm(length: f64) -> String {
     round(length / MM, 1e4)
 }
 
-/// A number to so many parts of one, as TOML has floats.
+/// TOML float, rounded to `1 / parts`.
 fn round(value: f64, parts: f64) -> String {
-    let rounded = (value * parts).round() / parts;
-    // No "-0.0".
-    format!("{:?}", rounded + 0.0)
+    // Adding zero avoids "-0.0".
+    format!("{:?}", (value * parts).round() / parts + 0.0)
 }
 
 fn pair([from, to]: [f64; 2]) -> String {
@@ -198,7 +183,7 @@ fn list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(", "))
 }
 
-/// A TOML string.
+/// TOML string.
 fn text(value: &str) -> String {
     toml::Value::String(value.to_owned()).to_string()
 }
@@ -208,7 +193,7 @@ mod tests {
     use super::*;
     use input::shipped::TASKS;
 
-    /// What is written reads back as the same task, to a tenth of a micrometre.
+    /// A written task reads back as the same, to a tenth of a micrometre.
     #[test]
     fn a_written_task_reads_back_alike() {
         for file in TASKS {

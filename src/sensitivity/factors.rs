@@ -1,4 +1,4 @@
-//! What may differ between two insertions: the keys of a space, and the errors of a cell.
+//! Varied inputs of an insertion: the keys of a space, and the errors of a cell.
 
 use input::units::{DEG, MM};
 use insertion::evaluation::Evaluation;
@@ -11,22 +11,22 @@ use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use insertion::trial::Conditions;
 use std::sync::atomic::AtomicBool;
 
-/// Half the width over which a normal error is varied, in standard deviations: 95 % of it.
+/// Half width over which a normal error is varied, in standard deviations: 95 % of it.
 const NORMAL_WIDTH_SD: f64 = 2.0;
 
-/// One input, varied evenly from `low` to `high` in the unit that its key carries.
+/// Input that is varied uniformly from `low` to `high`, in the unit of its key.
 #[derive(Debug, Clone)]
 pub struct Factor {
-    /// A key of the space, or of a cell's error (`cell.clearance_mm`).
+    /// Key of the space, or of a cell's error (`cell.clearance_mm`).
     pub key: String,
-    /// Smallest value.
+    /// Lower bound.
     pub low: f64,
-    /// Largest value.
+    /// Upper bound.
     pub high: f64,
     sets: Sets,
 }
 
-/// What a factor sets.
+/// Quantity that a factor sets.
 #[derive(Debug, Clone, Copy)]
 enum Sets {
     Design,
@@ -35,15 +35,15 @@ enum Sets {
     Condition(fn(&mut Conditions, f64)),
 }
 
-/// The inputs that are varied together, in order.
+/// Inputs that are varied together, in the order of the cube's axes.
 #[derive(Debug, Clone)]
-pub struct Factors(Vec<Factor>);
-
-/// An error of a cell is measured from nominal: key, low, high, what it sets.
-type CellError = (&'static str, f64, f64, Sets);
+pub struct Factors(pub Vec<Factor>);
 
 impl Factors {
-    /// Every key of the space with its bounds, then every error that is not 0. The infill must be in the space.
+    /// Every key of the space with its bounds, then every error of the cell that is not 0.
+    ///
+    /// # Errors
+    /// If the space has no infill density or direction.
     pub fn new(space: &Space, errors: Option<&Errors>) -> Result<Self, String> {
         for key in [DENSITY_KEY, DIRECTION_KEY] {
             if !space.parameters().iter().any(|parameter| parameter.key == key) {
@@ -56,22 +56,15 @@ impl Factors {
             high: parameter.high,
             sets: Sets::Design,
         });
-        let of_cell = errors.map(cell).unwrap_or_default().into_iter();
-        let of_cell =
-            of_cell.map(|(key, low, high, sets)| Factor { key: key.to_owned(), low, high, sets });
+        let of_cell = errors.map(cell).unwrap_or_default();
         Ok(Factors(of_space.chain(of_cell).filter(|factor| factor.low < factor.high).collect()))
     }
 
-    /// The inputs, in the order of the cube's axes.
-    pub fn all(&self) -> &[Factor] {
-        &self.0
-    }
-
-    /// The window of the insertion at a point of the unit cube, by the quick search; worthless once
-    /// `stop` is set.
+    /// Evaluation of the insertion at a point of the unit cube, by the coarse-to-fine search; worthless
+    /// once `stop` is set.
     ///
     /// # Errors
-    /// If the point cannot be simulated.
+    /// If the point's design, specimen or rig is impossible.
     pub fn evaluate(
         &self,
         evaluator: &Evaluator,
@@ -99,8 +92,10 @@ impl Factors {
     }
 }
 
-fn cell(errors: &Errors) -> Vec<CellError> {
-    let both = |key, half_width: f64, sets| (key, -half_width, half_width, sets);
+/// Errors of a cell, measured from nominal.
+fn cell(errors: &Errors) -> Vec<Factor> {
+    let factor = |key: &str, low, high, sets| Factor { key: key.to_owned(), low, high, sets };
+    let both = |key, half_width: f64, sets| factor(key, -half_width, half_width, sets);
     let percent = 100.0 * errors.friction_half_width;
     let sd = NORMAL_WIDTH_SD * errors.stiffness_sd_factor;
     vec![
@@ -119,7 +114,7 @@ fn cell(errors: &Errors) -> Vec<CellError> {
         both("cell.grasp_across_mm", NORMAL_WIDTH_SD * errors.grasp_across_sd / MM, {
             Sets::Condition(|conditions, value| conditions.grasp_across = value * MM)
         }),
-        ("cell.grasp_low_mm", 0.0, errors.grasp_low_max / MM, {
+        factor("cell.grasp_low_mm", 0.0, errors.grasp_low_max / MM, {
             Sets::Condition(|conditions, value| conditions.grasp_low = value * MM)
         }),
         both("cell.compliance_error_sd", sd, Sets::Compliance),
@@ -140,11 +135,10 @@ mod tests {
         let mut errors = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap().errors;
         errors.yaw_sd = 0.0;
         let factors = Factors::new(&space, Some(&errors)).unwrap();
-        let keys: Vec<&str> = factors.all().iter().map(|factor| &*factor.key).collect();
+        let keys: Vec<&str> = factors.0.iter().map(|factor| &*factor.key).collect();
         assert_eq!(&keys[..2], [DENSITY_KEY, DIRECTION_KEY]);
         assert!(!keys.contains(&"cell.socket_yaw_deg") && keys.contains(&"cell.clearance_mm"));
-        let clearance =
-            factors.all().iter().find(|factor| factor.key == "cell.clearance_mm").unwrap();
+        let clearance = factors.0.iter().find(|factor| factor.key == "cell.clearance_mm").unwrap();
         assert!((clearance.low + 0.03).abs() < 1e-12 && (clearance.high - 0.03).abs() < 1e-12);
     }
 }

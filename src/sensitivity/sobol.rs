@@ -1,22 +1,22 @@
-//! Shares of a function's variance: of one input alone, and of it with all that it acts with.
+//! First-order and total Sobol indices.
 //!
-//! Estimators of Jansen (Comput. Phys. Commun. 117 (1999) 35, doi:10.1016/S0010-4655(98)00154-4) on the design
-//! of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018): two
+//! Estimators of Jansen (Comput. Phys. Commun. 117 (1999) 35, doi:10.1016/S0010-4655(98)00154-4) on
+//! the design of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018): two
 //! independent samples A and B, and for each input A with that input from B.
 
 use super::{Interval, bootstrap};
 use ask_tell::SobolSequence;
 
-/// Shares of the variance, without unit; estimates may leave 0 .. 1 by their error.
+/// Sobol indices of an input, without unit; estimates may leave 0 .. 1 by their error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Indices {
-    /// What fixing the input alone would take from the variance, S_i.
+    /// First-order index S_i: the share of the variance that fixing the input alone removes.
     pub first: Interval,
-    /// What would be left if all others were fixed, S_Ti.
+    /// Total index S_Ti: the share that is left if all other inputs are fixed.
     pub total: Interval,
 }
 
-/// A sample from which indices can be estimated.
+/// Sample of the unit cube for estimating indices.
 #[derive(Debug, Clone)]
 pub struct Sample {
     a: Vec<Vec<f64>>,
@@ -25,7 +25,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// `rows` pairs of points of `dimension` inputs, from a scrambled Sobol sequence of twice as many axes.
+    /// Sample of `rows` pairs of points of `dimension` inputs, from a scrambled Sobol sequence of twice
+    /// as many axes.
     pub fn new(dimension: usize, rows: usize, seed: u64) -> Self {
         let sequence = SobolSequence::new(2 * dimension, seed, 0, "sensitivity sample");
         let halves = |row: Vec<f64>| (row[..dimension].to_vec(), row[dimension..].to_vec());
@@ -33,14 +34,10 @@ impl Sample {
         Sample { a, b, seed }
     }
 
-    fn dimension(&self) -> usize {
-        self.a.first().map_or(0, Vec::len)
-    }
-
-    /// The points to evaluate: `rows * (dimension + 2)`, coordinates in 0 .. 1.
+    /// Points to evaluate: `rows * (dimension + 2)`, coordinates in 0 .. 1.
     pub fn points(&self) -> Vec<Vec<f64>> {
         let mut points = [self.a.clone(), self.b.clone()].concat();
-        for input in 0..self.dimension() {
+        for input in 0..self.a.first().map_or(0, Vec::len) {
             points.extend(self.a.iter().zip(&self.b).map(|(a, b)| {
                 let mut mixed = a.clone();
                 mixed[input] = b[input];
@@ -50,7 +47,7 @@ impl Sample {
         points
     }
 
-    /// The indices of each input, from the values at [`Sample::points`], in their order;
+    /// Indices of each input, from the values at [`Sample::points`], in their order;
     /// `None` if the values do not vary.
     pub fn indices(&self, values: &[f64]) -> Option<Vec<Indices>> {
         let rows = self.a.len();
@@ -70,15 +67,15 @@ impl Sample {
                 half_mean_square(from, rows) / variance(of_a, of_b, rows).max(f64::MIN_POSITIVE)
             };
             Indices {
-                first: bootstrap(rows, seed, |drawn| 1.0 - share(of_b, drawn)),
-                total: bootstrap(rows, seed, |drawn| share(of_a, drawn)),
+                first: bootstrap(rows, seed, |rows| 1.0 - share(of_b, rows)),
+                total: bootstrap(rows, seed, |rows| share(of_a, rows)),
             }
         };
         Some(mixed.chunks(rows).enumerate().map(of).collect())
     }
 }
 
-/// Variance of both samples together over these rows.
+/// Variance of both samples together over some rows.
 fn variance(of_a: &[f64], of_b: &[f64], rows: &[usize]) -> f64 {
     let both = || rows.iter().flat_map(|&row| [of_a[row], of_b[row]]);
     let count = 2.0 * rows.len() as f64;

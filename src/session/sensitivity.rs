@@ -53,7 +53,7 @@ impl SensitivityRequest {
     }
 
     fn rank(&self, setup: &Setup, factors: &Factors, stop: &AtomicBool) -> Result<Found, Failure> {
-        let inputs = factors.all().len();
+        let inputs = factors.0.len();
         let sample = Sample::new(inputs, self.samples as usize, self.seed);
         let values = self.values(setup, factors, &sample.points(), stop)?;
         not_stopped(stop)?;
@@ -67,7 +67,7 @@ impl SensitivityRequest {
         Ok(Found {
             task: setup.only_task()?.task().name.clone(),
             objective: self.objective,
-            factors: factors.all().to_vec(),
+            factors: factors.0.clone(),
             indices,
             evaluations: values.len(),
             diverged: values.iter().filter(|value| value.is_none()).count(),

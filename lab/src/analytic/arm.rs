@@ -1,16 +1,16 @@
-//! T11: the UR5e, loaded at the TCP: soft in its published servos, and in its gears under position
+//! T11: deflection of the UR5e under a load at the TCP, on its published servos and under position
 //! control.
 //!
 //! At rest a force F displaces the TCP by `J K^-1 J^T F`, with the Jacobian J of
 //! the six joints and their gains K (Salisbury 1980, 19th IEEE Conf. Decision and
-//! Control). Once as the trials have the arm, one body on a coupled 6x6 spring; and
-//! once as what that stands for, a chain of six links with a sprung joint each (of the soft arm alone: the hinges
-//! of a chain give 0.8 um/N across their axes, which is nothing beside servos and 3 % beside gears).
+//! Control). Once as in the trials, one body on a coupled 6x6 spring; and once as the chain that it
+//! stands for, six links with a sprung joint each (of the soft arm alone: the hinges of a chain give
+//! 0.8 um/N across their axes, which is nothing beside servos and 3 % beside gears).
 
-use super::build::{self, Wrench};
+use super::build::{self, Measured, Wrench};
 use super::{CheckRow, Tolerance};
-use contact::scene::{Body, BodyId, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs};
-use contact::{Diverged, Engine};
+use contact::Engine;
+use contact::scene::{Body, BodyId, JointAxis, Motion, Pose, Scene, Spring};
 use input::shipped::ROBOTS;
 use input::units::MM;
 use insertion::arm::{Arm, JOINTS};
@@ -18,22 +18,21 @@ use insertion::robot::{Drive, Mounted, Robot};
 use insertion::trial::cell;
 use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
-/// The arm on its published servos.
+/// Robot file of the arm on its published servos.
 const SOFT: &str = "ur5e";
 /// Force at the TCP, N.
 pub const FORCE: f64 = 5.0;
-/// Until the servos rest, s: twelve times their damping over their gain.
+/// Time in which the servos come to rest, s: twelve times their damping over their gain.
 const REST: f64 = 2.4;
 
-/// Deflections of the TCP along a force, T11 rows; none on an engine that refuses
-/// this robot, since it has no coupled springs.
+/// Deflections of the TCP along a force, T11 rows; none on an engine without coupled springs.
 pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
     // The shipped files are arms within their reach: tests see to it.
     let arms = [("UR5e", SOFT), ("UR5e held", "ur5e_position")];
     arms.into_iter().flat_map(|(words, file)| of_robot(engine, words, file)).collect()
 }
 
-/// The same of one shipped robot.
+/// Rows of a shipped robot.
 fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
     let Some((arm, mounted)) = shipped(file) else { return Vec::new() };
     let reduced = flange(&mounted);
@@ -51,18 +50,18 @@ fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
             let measured = loaded.deflection(engine, axis).map(|by| by / MM);
             let quantity = format!("{words}, {name}, TCP along {along}");
             let close = Tolerance::Relative(0.01);
-            rows.push(CheckRow::new(("T11", quantity), expected, measured, "mm", close));
+            rows.push(CheckRow::new("T11", quantity, expected, measured, "mm", close));
         }
     }
     rows
 }
 
-/// The shipped arm with the published servos, and as a task that is not turned has it, upright.
+/// Shipped arm with the published servos, and its mount for an upright task that is not turned.
 pub fn ur5e() -> Option<(Arm, Mounted)> {
     shipped(SOFT)
 }
 
-/// A shipped arm of that name.
+/// Shipped arm of a name, and its mount.
 fn shipped(name: &str) -> Option<(Arm, Mounted)> {
     let file = ROBOTS.iter().find(|file| file.name == name)?;
     let robot = Robot::parse(file.text, file.file).ok()?;
@@ -73,42 +72,44 @@ fn shipped(name: &str) -> Option<(Arm, Mounted)> {
     }
 }
 
-/// `J K^-1 J^T` at home: m/N, rad/N, rad/(N m), base axes.
+/// Compliance `J K^-1 J^T` at home: m/N, rad/N, rad/(N m), base axes.
 pub fn compliance(arm: &Arm) -> Matrix6<f64> {
     let jacobian = arm.at(&arm.home).tcp_jacobian();
     let soft = nalgebra::SVector::from_fn(|i, _| 1.0 / arm.joints[i].stiffness);
     jacobian * Matrix6::from_diagonal(&soft) * jacobian.transpose()
 }
 
-/// A model of the arm at home, without its tool's load.
+/// Scene of the arm at home, without its tool's load.
 pub struct Loaded {
-    /// The model, base frame.
+    /// Scene in the base frame.
     pub scene: Scene,
-    /// The body that carries the TCP.
+    /// Body that carries the TCP.
     pub end: BodyId,
-    /// The TCP in that body's frame.
+    /// TCP in that body's frame.
     pub tool: Pose,
-    /// The body's centre of mass in its frame.
+    /// Centre of mass in that body's frame, m.
     pub centre: Point3<f64>,
 }
 
 impl Loaded {
-    /// How the TCP moves under a force along an axis, until it rests, m.
-    fn deflection(&self, engine: &dyn Engine, axis: usize) -> Result<f64, Diverged> {
+    /// Deflection of the TCP under a force along an axis, at rest, m.
+    fn deflection(&self, engine: &dyn Engine, axis: usize) -> Measured {
         let moved = self.moved(engine, axis, REST)?;
         Ok(moved.last().map_or(f64::NAN, |moved| moved[axis]))
     }
 
-    /// Where the TCP moves to under a force along an axis after each step, m.
+    /// Deflection of the TCP under a force along an axis after each step, m.
+    ///
+    /// # Errors
+    /// If the simulation diverges.
     pub fn moved(
         &self,
         engine: &dyn Engine,
         axis: usize,
         time: f64,
-    ) -> Result<Vec<Vector3<f64>>, Diverged> {
+    ) -> Measured<Vec<Vector3<f64>>> {
         let mut world = engine.world(&self.scene);
-        let mut wrench = Wrench { force: Vector3::zeros(), moment: Vector3::zeros() };
-        wrench.force[axis] = FORCE;
+        let wrench = Wrench::along(axis, FORCE);
         let from = world.pose(self.end) * self.tool;
         let step = |_| {
             let tcp = world.pose(self.end) * self.tool;
@@ -121,14 +122,14 @@ impl Loaded {
     }
 }
 
-/// The flange as a trial has it.
+/// Flange as in a trial.
 pub fn flange(robot: &Mounted) -> Loaded {
     let mut scene = Scene::default();
     let (_, end) = cell::flange(&mut scene, &robot.flange, Pose::identity());
     Loaded { scene, end, tool: Pose::identity(), centre: Point3::origin() }
 }
 
-/// Six links, each on a sprung hinge.
+/// Chain of six links, each on a sprung hinge.
 pub fn chain(arm: &Arm) -> Loaded {
     let mut scene = Scene::default();
     let posture = arm.at(&arm.home);
@@ -145,14 +146,8 @@ pub fn chain(arm: &Arm) -> Loaded {
             JointAxis::Sprung(Spring::new(joint.stiffness, joint.damping));
         // The hinge's zero is the home angle.
         let turn = UnitQuaternion::from_axis_angle(&joint.axis, arm.home[i]);
-        scene.joint(Joint {
-            name: joint.name.clone(),
-            parent: end,
-            child: link,
-            in_parent: joint.frame * Pose::from_parts(Translation3::identity(), turn),
-            in_child: Pose::identity(),
-            springs: Springs::Axes(axes),
-        });
+        let hinge = joint.frame * Pose::from_parts(Translation3::identity(), turn);
+        build::joint(&mut scene, &joint.name, [end, link], [hinge, Pose::identity()], axes);
         end = link;
     }
     Loaded { scene, end, tool: arm.tool, centre: arm.joints[JOINTS - 1].link.centre }

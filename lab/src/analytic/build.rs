@@ -1,13 +1,18 @@
-//! Parts that the checks' scenes are made of, and how they are simulated.
+//! Scenes of the checks: bodies, joints, loads, simulated time.
 
-use contact::scene::{Body, BodyId, Geom, Inertia, Motion, Pose, Shape};
+use contact::scene::{
+    Body, BodyId, Geom, Inertia, Joint, JointAxis, Motion, Pose, Scene, Shape, Springs,
+};
 use contact::{Diverged, World};
 use nalgebra::{Point3, Vector3};
 
-/// Standard gravity as the trials have it, m/s2.
+/// Result of a simulation that may diverge.
+pub type Measured<T = f64> = Result<T, Diverged>;
+
+/// Standard gravity as in the trials, m/s2.
 pub const GRAVITY: f64 = 9.81;
 
-/// A geom that is a box of the given size, m, centred in a frame.
+/// Box of a size, m, centred in a frame.
 pub fn cuboid(name: &str, size: Vector3<f64>, pose: Pose) -> Geom {
     Geom { name: name.into(), shape: Shape::Box { half: size / 2.0 }, pose, friction: None }
 }
@@ -19,12 +24,36 @@ pub fn box_inertia(mass: f64, size: Vector3<f64>, centre: Point3<f64>) -> Inerti
     Inertia { mass, centre, moments: moments * (mass / 12.0) }
 }
 
-/// A body that stays where it is.
+/// Body that stays where it is.
 pub fn fixed(name: &str, pose: Pose, geoms: Vec<Geom>) -> Body {
     Body { name: name.into(), motion: Motion::Fixed, pose, geoms }
 }
 
-/// A free block with its frame in its centre.
+/// Body that is moved by commands.
+pub fn driven(name: &str, pose: Pose, geoms: Vec<Geom>) -> Body {
+    Body { name: name.into(), motion: Motion::Driven, pose, geoms }
+}
+
+/// Fixed ground whose surface is the plane z = 0 of `pose`, of a size in m.
+pub fn ground(size: [f64; 3], pose: Pose) -> Body {
+    let below = Pose::translation(0.0, 0.0, -size[2] / 2.0);
+    fixed("ground", pose, vec![cuboid("ground", size.into(), below)])
+}
+
+/// Joint of a parent and a child, with the frame of the joint in each.
+pub fn joint(
+    scene: &mut Scene,
+    name: &str,
+    bodies: [BodyId; 2],
+    frames: [Pose; 2],
+    axes: [JointAxis; 6],
+) {
+    let ([parent, child], [in_parent, in_child]) = (bodies, frames);
+    let springs = Springs::Axes(axes);
+    scene.joint(Joint { name: name.into(), parent, child, in_parent, in_child, springs });
+}
+
+/// Free block with its frame in its centre.
 pub fn block(name: &str, mass: f64, size: Vector3<f64>, pose: Pose) -> Body {
     Body {
         name: name.into(),
@@ -34,21 +63,40 @@ pub fn block(name: &str, mass: f64, size: Vector3<f64>, pose: Pose) -> Body {
     }
 }
 
-/// Steps in a time, s.
+/// Number of steps in a time, s.
 pub fn steps(world: &dyn World, time: f64) -> usize {
     (time / world.step_s()).round() as usize
 }
 
 /// Simulates for a time, s.
-pub fn advance(world: &mut dyn World, time: f64) -> Result<(), Diverged> {
+///
+/// # Errors
+/// If the simulation diverges.
+pub fn advance(world: &mut dyn World, time: f64) -> Measured<()> {
     for _ in 0..steps(world, time) {
         world.step()?;
     }
     Ok(())
 }
 
-/// A force in newtons that acts along a line through a point of the world, in
-/// metres, with a moment besides, N m.
+/// Threshold between the bracket's ends by bisection; `low` tells whether a value lies below it.
+///
+/// # Errors
+/// If `low` fails.
+pub fn bisected(
+    [mut from, mut to]: [f64; 2],
+    bisections: usize,
+    low: impl Fn(f64) -> Measured<bool>,
+) -> Measured {
+    for _ in 0..bisections {
+        let middle = (from + to) / 2.0;
+        let end = if low(middle)? { &mut from } else { &mut to };
+        *end = middle;
+    }
+    Ok((from + to) / 2.0)
+}
+
+/// Force, N, along a line through a point of the world, and a moment besides, N m.
 #[derive(Debug, Clone, Copy)]
 pub struct Wrench {
     pub force: Vector3<f64>,
@@ -56,6 +104,11 @@ pub struct Wrench {
 }
 
 impl Wrench {
+    /// Force along an axis (0 x, 1 y, 2 z).
+    pub fn along(axis: usize, force: f64) -> Self {
+        Wrench { force: Vector3::ith(axis, force), moment: Vector3::zeros() }
+    }
+
     /// Pushes a body whose centre of mass lies at `centre` in its frame.
     pub fn push(&self, world: &mut dyn World, body: BodyId, centre: Point3<f64>, at: Point3<f64>) {
         let arm = at - world.pose(body) * centre;

@@ -1,16 +1,15 @@
 //! T6: the force of crossing a chamfer.
 //!
-//! A plug on a lateral spring K slides down a chamfer that makes the angle a
-//! with the direction of insertion. With the normal force N the balance of the
-//! plug is K x = N (cos a - mu sin a) across and F = N (sin a + mu cos a) along
-//! the insertion, hence F = K x tan(a + atan mu), x being the way that the
-//! chamfer has pushed the plug aside (Whitney 1982, J. Dyn. Sys. Meas. Control
-//! 104:65, chamfer crossing, for a support that does not turn). The chamfer is a turned block; at
-//! 45 degrees also what a task's `edges` make of a block's edge.
+//! A plug on a lateral spring K slides down a chamfer that makes the angle a with the direction of
+//! insertion. With the normal force N the balance of the plug is K x = N (cos a - mu sin a) across
+//! and F = N (sin a + mu cos a) along the insertion, hence F = K x tan(a + atan mu), x being the
+//! way that the chamfer has pushed the plug aside (Whitney 1982, J. Dyn. Sys. Meas. Control 104:65,
+//! chamfer crossing, for a support that does not turn). The chamfer is a turned block; at 45
+//! degrees also what a task's `edges` make of a block's edge.
 
 use super::build;
 use super::{CheckRow, Tolerance};
-use contact::scene::{Body, Friction, Joint, JointAxis, Motion, Pose, Scene, Springs};
+use contact::scene::{Body, Friction, JointAxis, Motion, Pose, Scene};
 use contact::{Diverged, Engine};
 use input::units::{DEG, GRAM, MM, N_PER_MM};
 use insertion::finger::Finger;
@@ -40,7 +39,7 @@ pub fn t6(engine: &dyn Engine) -> Vec<CheckRow> {
         let quantity = format!("Fz/(K x) on a {name} of {angle} deg, mu {FRICTION}");
         let expected = (angle * DEG + FRICTION.atan()).tan();
         let measured = socket.map_or(Err(Diverged), |socket| force_ratio(engine, socket));
-        CheckRow::new(("T6", quantity), expected, measured, "-", Tolerance::Relative(0.02))
+        CheckRow::new("T6", quantity, expected, measured, "-", Tolerance::Relative(0.02))
     });
     rows.collect()
 }
@@ -49,12 +48,7 @@ fn force_ratio(engine: &dyn Engine, socket: Body) -> Result<f64, Diverged> {
     let support = Finger { rotation: [UPRIGHT; 3], ..Finger::new(5.0 * N_PER_MM, 40.0 * N_PER_MM) };
     let size = Vector3::from(SIZE);
     let mut scene = Scene::default();
-    let flange = scene.body(Body {
-        name: "flange".into(),
-        motion: Motion::Driven,
-        pose: Pose::identity(),
-        geoms: Vec::new(),
-    });
+    let flange = scene.body(build::driven("flange", Pose::identity(), Vec::new()));
     // The plug's frame is the middle of its tip; its corner at -y starts on the chamfer.
     let centre = Point3::new(0.0, 0.0, size.z / 2.0);
     let middle = Pose::from_parts(Translation3::from(centre.coords), UnitQuaternion::identity());
@@ -64,14 +58,8 @@ fn force_ratio(engine: &dyn Engine, socket: Body) -> Result<f64, Diverged> {
         pose: Pose::identity(),
         geoms: vec![build::cuboid("plug", size, middle)],
     });
-    scene.joint(Joint {
-        name: "springs".into(),
-        parent: flange,
-        child: plug,
-        in_parent: middle,
-        in_child: middle,
-        springs: Springs::Axes(support.springs().map(JointAxis::Sprung)),
-    });
+    let springs = support.springs().map(JointAxis::Sprung);
+    build::joint(&mut scene, "springs", [flange, plug], [middle; 2], springs);
     let socket = scene.body(socket);
     scene.contact(socket, plug, Friction::hard(FRICTION));
 

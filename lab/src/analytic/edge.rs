@@ -1,14 +1,13 @@
 //! T8, first part: a block that is pushed over an edge.
 //!
-//! Statics: it tips when its centre of mass is above the edge. An engine that
-//! keeps a contact beyond the edge, or loses one before it, tips it elsewhere.
-//! The pusher touches the block at its foot and without friction, so the couple
-//! of push and ground friction shifts the place by less than friction times the
-//! pusher's height, 0.1 mm.
+//! Statics: it tips when its centre of mass is above the edge. An engine that keeps a contact
+//! beyond the edge, or loses one before it, tips it elsewhere. The pusher touches the block at its
+//! foot and without friction, so the couple of push and ground friction shifts the place by less
+//! than friction times the pusher's height, 0.1 mm.
 
 use super::build::{self, GRAVITY};
 use super::{CheckRow, Tolerance};
-use contact::scene::{Body, BodyId, Friction, Motion, Pose, Scene};
+use contact::scene::{BodyId, Friction, Pose, Scene};
 use contact::{Diverged, Engine, World};
 use input::units::{GRAM, MM};
 use nalgebra::Vector3;
@@ -29,14 +28,14 @@ const TIPPING: f64 = 2e-3;
 /// Largest error of the place, m.
 pub(super) const ALLOWED: f64 = 0.5 * MM;
 
-/// Where a block tips, T8 rows.
+/// Place at which a block tips, T8 rows.
 pub fn t8(engine: &dyn Engine) -> Vec<CheckRow> {
     let place = tipping_place(engine).map(|place| place / MM);
-    let quantity = "block pushed over an edge tips at".to_owned();
-    vec![CheckRow::new(("T8", quantity), 0.0, place, "mm", Tolerance::Absolute(ALLOWED / MM))]
+    let quantity = "block pushed over an edge tips at";
+    vec![CheckRow::new("T8", quantity, 0.0, place, "mm", Tolerance::Absolute(ALLOWED / MM))]
 }
 
-/// A block on a ledge that ends at x = 0, and its pusher.
+/// Block on a ledge that ends at x = 0, and its pusher.
 pub(super) struct Push {
     pub world: Box<dyn World>,
     pub block: BodyId,
@@ -58,18 +57,14 @@ impl Push {
         let half_pusher = PUSHER / 2.0;
         let start = Pose::translation(FROM - size.x / 2.0 - half_pusher, 0.0, half_pusher);
         let pusher_size = Vector3::new(PUSHER, size.y, PUSHER);
-        let pusher = scene.body(Body {
-            name: "pusher".into(),
-            motion: Motion::Driven,
-            pose: start,
-            geoms: vec![build::cuboid("pusher", pusher_size, Pose::identity())],
-        });
+        let pusher = build::cuboid("pusher", pusher_size, Pose::identity());
+        let pusher = scene.body(build::driven("pusher", start, vec![pusher]));
         scene.contact(ledge, block, Friction::hard(FRICTION));
         scene.contact(pusher, block, Friction::hard(0.0));
         Push { world: engine.world(&scene), block, pusher, start, time: 0.0 }
     }
 
-    /// The same push, going on independently.
+    /// Copy that continues independently, from a snapshot.
     pub fn copy(&self) -> Self {
         Push { world: self.world.snapshot(), ..*self }
     }
@@ -82,7 +77,7 @@ impl Push {
     }
 }
 
-/// Where the centre of mass is, m beyond the edge, when the block tips.
+/// Place of the centre of mass when the block tips, m beyond the edge.
 pub(super) fn tipping_place(engine: &dyn Engine) -> Result<f64, Diverged> {
     let mut push = Push::new(engine);
     for _ in 0..build::steps(push.world.as_ref(), (TO - FROM) / SPEED) {

@@ -14,7 +14,7 @@ use insertion::robot::{Flange, Servo};
 use insertion::trial::cell;
 use nalgebra::Vector3;
 
-/// A flange like that of the shipped robot `servo`; what is expected is computed from it.
+/// Flange like that of the shipped robot `servo`, from which the expected values are computed.
 const SERVO: Servo = Servo {
     stiffness: [10.0 * N_PER_MM, 10.0 * N_PER_MM, 20.0 * N_PER_MM],
     rotational_stiffness: [400.0; 3],
@@ -25,27 +25,25 @@ const SERVO: Servo = Servo {
 /// Speed of the side move, m/s.
 const SPEED: f64 = 100.0 * MM;
 
-/// How far the flange trails along y and z, T13 rows.
+/// Lag of the flange along y and z, T13 rows.
 pub fn t13(engine: &dyn Engine) -> Vec<CheckRow> {
-    [(1, "y"), (2, "z")]
-        .into_iter()
-        .flat_map(|(axis, name)| {
-            let frequency = (SERVO.stiffness[axis] / SERVO.mass).sqrt();
-            let most = SPEED / (frequency * std::f64::consts::E) / MM;
-            let row = |text, time, expected, tolerance| {
-                let measured = trails(engine, axis, time).map(|by| by / MM);
-                let quantity = format!("flange trails its command along {name}, {text}");
-                CheckRow::new(("T13", quantity), expected, measured, "mm", tolerance)
-            };
-            [
-                row("most", 1.0 / frequency, most, Tolerance::Relative(0.05)),
-                row("later", 20.0 / frequency, 0.0, Tolerance::Absolute(0.001)),
-            ]
-        })
-        .collect()
+    let rows = [(1, "y"), (2, "z")].map(|(axis, name)| {
+        let frequency = (SERVO.stiffness[axis] / SERVO.mass).sqrt();
+        let most = SPEED / (frequency * std::f64::consts::E) / MM;
+        let row = |text, time, expected, tolerance| {
+            let measured = trails(engine, axis, time).map(|by| by / MM);
+            let quantity = format!("flange trails its command along {name}, {text}");
+            CheckRow::new("T13", quantity, expected, measured, "mm", tolerance)
+        };
+        [
+            row("most", 1.0 / frequency, most, Tolerance::Relative(0.05)),
+            row("later", 20.0 / frequency, 0.0, Tolerance::Absolute(0.001)),
+        ]
+    });
+    rows.concat()
 }
 
-/// How far it is behind after a time, m.
+/// Lag along an axis after a time, m.
 fn trails(engine: &dyn Engine, axis: usize, time: f64) -> Result<f64, Diverged> {
     let mut scene = Scene::default();
     let (command, flange) = cell::flange(&mut scene, &Flange::Servo(SERVO), Pose::identity());

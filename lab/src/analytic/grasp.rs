@@ -8,16 +8,14 @@
 //! `(F/mu N)^2 + (M/mu N rho)^2 = 1` (Howe and Cutkosky 1996, Int. J. Robot. Res. 15:557).
 //! A face of points at the radius `r` from its middle then turns at `mu N sqrt(rho^2 + r^2)`.
 //!
-//! T15: the friction of a pressed patch ([`Torsion::Patch`]). It turns at `mu N` times the mean
+//! T15: the friction of a contact patch ([`Torsion::Patch`]). It turns at `mu N` times the mean
 //! distance of its area from the centre of pressure, 4.0 mm for 12 x 9 mm, whatever points carry it;
 //! loaded `e` beside its middle only the part about that centre is pressed, shorter by `2 e`.
 
-use super::build;
+use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
-use contact::scene::{
-    Body, BodyId, Friction, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs, Torsion,
-};
-use contact::{Diverged, Engine};
+use contact::Engine;
+use contact::scene::{BodyId, Friction, JointAxis, Pose, Scene, Spring, Torsion};
 use input::units::{GRAM, MM};
 use nalgebra::{Rotation2, Translation3, UnitQuaternion, Vector2, Vector3};
 
@@ -43,35 +41,33 @@ const DRAWING: f64 = 4.0;
 /// Moments of a pad's friction, T12 rows; on an engine without torsional friction only
 /// those that do not depend on it.
 pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
-    let mut rows: Vec<CheckRow> = BESIDE
-        .into_iter()
-        .map(|beside| {
-            let quantity = format!("moment of a face loaded {} mm beside", beside / MM);
-            let case = Case { beside, speed: DRAWN, ..TURNING };
-            let moment = case.hold(engine).map(|held| held.moment / MM);
-            let expected = FRICTION * LOAD * beside / MM;
-            CheckRow::new(("T12", quantity), expected, moment, "N mm", Tolerance::Relative(0.02))
-        })
-        .collect();
+    let drawn = |beside: f64| {
+        let quantity = format!("moment of a face loaded {} mm beside", beside / MM);
+        let case = Case { beside, speed: DRAWN, ..TURNING };
+        let moment = case.hold(engine).map(|held| held.moment / MM);
+        let expected = FRICTION * LOAD * beside / MM;
+        CheckRow::new("T12", quantity, expected, moment, "N mm", Tolerance::Relative(0.02))
+    };
+    let mut rows = BESIDE.map(drawn).to_vec();
     if engine.turns_with_friction() {
         rows.extend([0.0, DRAWN].into_iter().flat_map(|speed| turning(engine, speed)));
     }
     rows
 }
 
-/// The wrench of a face that turns, while drawn along at a speed, m/s.
+/// Moment, and force if it moves, of a face that turns while it is drawn at a speed, m/s.
 fn turning(engine: &dyn Engine, speed: f64) -> Vec<CheckRow> {
     let held = Case { speed, spin: TURNED, ..TURNING }.hold(engine);
     let angle = held.as_ref().map_or(0.0, |held| held.angle);
     let (force, moment) = friction(speed, TURNED, angle);
     let how = if speed > 0.0 { "drawn and turned" } else { "turned" };
-    let two_percent = Tolerance::Relative(0.02);
-    let measured = held.map(|held| held.moment / MM);
-    let name = ("T12", format!("moment of a face, {how}"));
-    let mut rows = vec![CheckRow::new(name, moment / MM, measured, "N mm", two_percent)];
+    let row = |part: &str, expected, measured, unit| {
+        let quantity = format!("{part} of a face, {how}");
+        CheckRow::new("T12", quantity, expected, measured, unit, Tolerance::Relative(0.02))
+    };
+    let mut rows = vec![row("moment", moment / MM, held.map(|held| held.moment / MM), "N mm")];
     if speed > 0.0 {
-        let name = ("T12", format!("force of a face, {how}"));
-        rows.push(CheckRow::new(name, force, held.map(|held| held.force), "N", two_percent));
+        rows.push(row("force", force, held.map(|held| held.force), "N"));
     }
     rows
 }
@@ -89,7 +85,7 @@ fn friction(speed: f64, spin: f64, angle: f64) -> (f64, f64) {
     })
 }
 
-/// The moment of a pressed patch, T15 rows; none on an engine that has no such friction.
+/// Moments of a contact patch, T15 rows; none on an engine without such friction.
 pub fn t15(engine: &dyn Engine) -> Vec<CheckRow> {
     let patch = Case { torsion: Torsion::Patch, ..TURNING };
     if engine.supports(&patch.scene().0).is_err() {
@@ -98,7 +94,7 @@ pub fn t15(engine: &dyn Engine) -> Vec<CheckRow> {
     let two_percent = Tolerance::Relative(0.02);
     let row = |quantity: String, expected: f64, case: Case| {
         let moment = case.hold(engine).map(|held| held.moment / MM);
-        CheckRow::new(("T15", quantity), expected / MM, moment, "N mm", two_percent)
+        CheckRow::new("T15", quantity, expected / MM, moment, "N mm", two_percent)
     };
     let turned = [0.0, BESIDE[0]].map(|beside| {
         let quantity = format!("moment of a patch turned, load {} mm beside", beside / MM);
@@ -111,7 +107,7 @@ pub fn t15(engine: &dyn Engine) -> Vec<CheckRow> {
         let quantity = format!("moment of a patch drawn, load {} mm beside", beside / MM);
         row(quantity, FRICTION * LOAD * beside, Case { beside, speed: DRAWN, ..patch })
     });
-    turned.into_iter().chain(drawn).collect()
+    [turned, drawn].concat()
 }
 
 /// Mean distance of a rectangle's area from its middle by the midpoint rule, m.
@@ -123,34 +119,34 @@ fn mean_lever(sides: [f64; 2]) -> f64 {
     sum / (CELLS * CELLS) as f64
 }
 
-/// What a hand feels of a block that it draws and turns over a floor.
+/// Resistance of a block that a hand draws and turns over a floor.
 #[derive(Debug, Clone, Copy)]
 struct Held {
-    /// Against the draw, N.
+    /// Force against the draw, N.
     force: f64,
-    /// Against the turn, N m.
+    /// Moment against the turn, N m.
     moment: f64,
-    /// How far the block has turned, rad.
+    /// Turn of the block, rad.
     angle: f64,
 }
 
-/// How a block is held.
+/// Motion of the hand and its springs.
 #[derive(Debug, Clone, Copy)]
 struct Case {
     torsion: Torsion,
-    /// How far beside its middle it is loaded, m.
+    /// Distance of the load from the middle along y, m.
     beside: f64,
-    /// How fast the hand draws it, m/s.
+    /// Speed of the hand, m/s.
     speed: f64,
-    /// How fast the hand turns it, rad/s.
+    /// Turning speed of the hand, rad/s.
     spin: f64,
     /// Springs along x and y, N/m.
     guide: f64,
-    /// For how long, s.
+    /// Duration, s.
     time: f64,
 }
 
-/// Loaded in its middle, at rest.
+/// Block loaded in its middle, at rest.
 const TURNING: Case = Case {
     torsion: Torsion::Radius(PATCH),
     beside: 0.0,
@@ -161,8 +157,8 @@ const TURNING: Case = Case {
 };
 
 impl Case {
-    /// Draws and turns the block.
-    fn hold(&self, engine: &dyn Engine) -> Result<Held, Diverged> {
+    /// Resistance at the end of the motion.
+    fn hold(&self, engine: &dyn Engine) -> Measured<Held> {
         let Case { beside, speed, spin, guide, .. } = *self;
         let (scene, hand, block) = self.scene();
         let mut world = engine.world(&scene);
@@ -187,33 +183,20 @@ impl Case {
     /// A block on a floor through the origin, on springs in the plane to a driven hand.
     fn scene(&self) -> (Scene, BodyId, BodyId) {
         let mut scene = Scene::default();
-        let below = Pose::translation(0.0, 0.0, -10.0 * MM);
-        let ground = build::cuboid("floor", Vector3::new(0.2, 0.2, 0.02), below);
-        let floor = scene.body(build::fixed("floor", Pose::identity(), vec![ground]));
+        let floor = scene.body(build::ground([0.2, 0.2, 0.02], Pose::identity()));
         let block = scene.body(build::block("block", MASS, Vector3::from(SIZE), foot().inverse()));
         scene.contact(floor, block, Friction { coefficient: FRICTION, torsion: self.torsion });
-        let hand = scene.body(Body {
-            name: "hand".into(),
-            motion: Motion::Driven,
-            pose: Pose::identity(),
-            geoms: Vec::new(),
-        });
+        let hand = scene.body(build::driven("hand", Pose::identity(), Vec::new()));
         let springs = [self.guide, self.guide, 0.0, 0.0, 0.0, TURN];
         // Damped within a few milliseconds.
         let sprung = |stiffness: f64| JointAxis::Sprung(Spring::new(stiffness, stiffness * 2e-3));
-        scene.joint(Joint {
-            name: "springs".into(),
-            parent: hand,
-            child: block,
-            in_parent: Pose::identity(),
-            in_child: foot(),
-            springs: Springs::Axes(springs.map(sprung)),
-        });
+        let frames = [Pose::identity(), foot()];
+        build::joint(&mut scene, "springs", [hand, block], frames, springs.map(sprung));
         (scene, hand, block)
     }
 }
 
-/// The middle of the block's face in its frame.
+/// Middle of the block's face in its frame.
 fn foot() -> Pose {
     Pose::translation(0.0, 0.0, -SIZE[2] / 2.0)
 }

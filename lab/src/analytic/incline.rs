@@ -1,15 +1,14 @@
 //! T2: a block on an incline.
 //!
-//! Coulomb: on a slope `s` a block slides with the acceleration
-//! g (sin s - mu cos s), and rests if tan s < mu. The block lies on the four
-//! corners of a face, turned about the slope's normal by a heading: a friction
-//! cone that is a pyramid, or that is shared out wrongly among the corners,
+//! Coulomb: on a slope `s` a block slides with the acceleration g (sin s - mu cos s), and rests if
+//! tan s < mu. The block lies on the four corners of a face, turned about the slope's normal by a
+//! heading: a friction cone that is a pyramid, or that is shared out wrongly among the corners,
 //! shows at one of the headings.
 
-use super::build::{self, GRAVITY};
+use super::build::{self, GRAVITY, Measured};
 use super::{CheckRow, Tolerance};
+use contact::Engine;
 use contact::scene::{Friction, Pose, Scene};
-use contact::{Diverged, Engine};
 use input::units::{DEG, GRAM, MM};
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
@@ -20,7 +19,7 @@ const SLIDING: f64 = 1.2;
 const RESTING: f64 = 0.99;
 /// Headings of the block, degrees.
 const HEADINGS: [f64; 2] = [0.0, 37.0];
-/// The block: flat, so that it does not tip at a friction of 1.
+/// Block, kg and m: flat, so that it does not tip at a friction of 1.
 const MASS: f64 = 50.0 * GRAM;
 const SIZE: [f64; 3] = [20.0 * MM, 12.0 * MM, 8.0 * MM];
 /// Time for the contacts to settle before anything is measured, s.
@@ -36,18 +35,18 @@ pub fn t2(engine: &dyn Engine) -> Vec<CheckRow> {
             let case = format!("mu {friction}, heading {heading} deg");
             let measured = sliding_friction(engine, friction, heading * DEG);
             let half_percent = Tolerance::Relative(0.005);
-            let name = ("T2", format!("friction, {case}"));
-            rows.push(CheckRow::new(name, friction, measured, "-", half_percent));
+            let name = format!("friction, {case}");
+            rows.push(CheckRow::new("T2", name, friction, measured, "-", half_percent));
             let creep = creep(engine, friction, heading * DEG, RESTING).map(|speed| speed / MM);
-            let name = ("T2", format!("creep, {case}"));
-            rows.push(CheckRow::new(name, 0.0, creep, "mm/s", Tolerance::Absolute(0.01)));
+            let (name, slow) = (format!("creep, {case}"), Tolerance::Absolute(0.01));
+            rows.push(CheckRow::new("T2", name, 0.0, creep, "mm/s", slow));
         }
     }
     rows
 }
 
 /// The friction that explains the acceleration of a sliding block.
-fn sliding_friction(engine: &dyn Engine, friction: f64, heading: f64) -> Result<f64, Diverged> {
+fn sliding_friction(engine: &dyn Engine, friction: f64, heading: f64) -> Measured {
     let slope = (SLIDING * friction).atan();
     let [first, second] = ways(engine, friction, slope, heading)?;
     let acceleration = (second - first) / (WATCHING * WATCHING);
@@ -55,33 +54,19 @@ fn sliding_friction(engine: &dyn Engine, friction: f64, heading: f64) -> Result<
 }
 
 /// Speed of a block on a slope whose tangent is a share of the friction, m/s.
-pub(super) fn creep(
-    engine: &dyn Engine,
-    friction: f64,
-    heading: f64,
-    share: f64,
-) -> Result<f64, Diverged> {
+pub(super) fn creep(engine: &dyn Engine, friction: f64, heading: f64, share: f64) -> Measured {
     let [first, second] = ways(engine, friction, (share * friction).atan(), heading)?;
     Ok((first + second) / (2.0 * WATCHING))
 }
 
-/// Ways down the slope in two equal times after settling, m.
-fn ways(
-    engine: &dyn Engine,
-    friction: f64,
-    slope: f64,
-    heading: f64,
-) -> Result<[f64; 2], Diverged> {
+/// Distances down the slope in two equal times after settling, m.
+fn ways(engine: &dyn Engine, friction: f64, slope: f64, heading: f64) -> Measured<[f64; 2]> {
     let size = Vector3::from(SIZE);
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), slope);
     let downhill = tilt * Vector3::x();
     let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -GRAVITY), ..Scene::default() };
-    // The slope's surface goes through the origin.
-    let ground_size = Vector3::new(0.4, 0.1, 0.02);
-    let below = Pose::translation(0.0, 0.0, -ground_size.z / 2.0);
-    let ground = build::cuboid("slope", ground_size, below);
     let turned = Pose::from_parts(Translation3::identity(), tilt);
-    let ground = scene.body(build::fixed("slope", turned, vec![ground]));
+    let ground = scene.body(build::ground([0.4, 0.1, 0.02], turned));
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading);
     let pose = turned * Pose::from_parts(Translation3::new(0.0, 0.0, size.z / 2.0), turn);
     let block = scene.body(build::block("block", MASS, size, pose));
@@ -89,11 +74,12 @@ fn ways(
 
     let mut world = engine.world(&scene);
     build::advance(world.as_mut(), SETTLING)?;
-    let mut at = [0.0; 3];
-    at[0] = world.pose(block).translation.vector.dot(&downhill);
-    for place in &mut at[1..] {
+    let mut at = world.pose(block).translation.vector.dot(&downhill);
+    let mut found = [0.0; 2];
+    for distance in &mut found {
         build::advance(world.as_mut(), WATCHING)?;
-        *place = world.pose(block).translation.vector.dot(&downhill);
+        let from = std::mem::replace(&mut at, world.pose(block).translation.vector.dot(&downhill));
+        *distance = at - from;
     }
-    Ok([at[1] - at[0], at[2] - at[1]])
+    Ok(found)
 }

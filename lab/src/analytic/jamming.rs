@@ -1,18 +1,16 @@
 //! T4: jamming of a peg in two-point contact.
 //!
-//! Whitney 1982 (J. Dyn. Sys. Meas. Control 104:65): a peg of half width r that
-//! is pushed into its hole by a force F_z, with a side force F_x and a moment M
-//! at its tip, slides with friction mu at both contacts where
-//! M/(r F_z) = +-lambda - mu (1 + lambda) F_x/F_z, lambda = l/(2 r mu). Between
-//! the two lines it goes in, beyond them it jams. Here F_x acts along +y and
-//! the peg leans so that the line of +lambda counts; the other is its mirror image.
+//! Whitney 1982 (J. Dyn. Sys. Meas. Control 104:65): a peg of half width r that is pushed into its
+//! hole by a force F_z, with a side force F_x and a moment M at its tip, slides with friction mu at
+//! both contacts where M/(r F_z) = +-lambda - mu (1 + lambda) F_x/F_z, lambda = l/(2 r mu). Between
+//! the two lines it goes in, beyond them it jams. Here F_x acts along +y and the peg leans so that
+//! the line of +lambda counts; the other is its mirror image.
 //!
-//! The formula is the limit of a small tilt. At a connector's clearance the
-//! tilt lowers the threshold by up to 3 %, so the engine is compared twice: with
-//! the formula in a tight hole, and with the statics of the tilted peg in a
-//! hole of the reference clearance.
+//! The formula is the limit of a small tilt. At a connector's clearance the tilt lowers the
+//! threshold by up to 3 %, so the engine is compared twice: with the formula in a tight hole, and
+//! with the statics of the tilted peg in a hole of the reference clearance.
 
-use super::build::Wrench;
+use super::build::{self, Wrench};
 use super::peg::{Peg, REFERENCE};
 use super::{CheckRow, Tolerance};
 use contact::{Diverged, Engine};
@@ -36,7 +34,7 @@ const BRACKET: [f64; 2] = [0.5, 3.5];
 /// ... by so many bisections, which leave 0.15 %.
 const BISECTIONS: usize = 11;
 
-/// A peg with so little play that the formula holds.
+/// Peg with so little play that the formula holds.
 fn tight() -> Peg {
     Peg { hole: REFERENCE.width + CLEARANCE, ..REFERENCE }
 }
@@ -47,7 +45,7 @@ fn threshold(peg: &Peg, side: f64) -> f64 {
     lambda - peg.friction * (1.0 + lambda) * side
 }
 
-/// The same for the true tilt t. Across and along the hole, from the tip: the
+/// M/(r F_z) at which the peg jams at its true tilt t. Across and along the hole, from the tip: the
 /// tip's corner lies at c = r (cos t, sin t), its wall presses with N2 (-1, mu);
 /// the rim's point lies at p = -r (cos t, sin t) + l (-sin t, cos t), where the
 /// flank is pressed with N1 ((cos t, sin t) + mu (-sin t, cos t)). The balance of
@@ -70,27 +68,15 @@ fn threshold_tilted(peg: &Peg, side: f64) -> f64 {
 /// Jamming thresholds, T4 rows.
 pub fn t4(engine: &dyn Engine) -> Vec<CheckRow> {
     let row = |peg: Peg, side: f64, expected: f64, case: &str| {
-        let measured = find(engine, &peg, side, expected);
+        let bracket = BRACKET.map(|share| share * expected);
+        let slides = |moment| Ok(!jams(engine, &peg, side, moment)?);
+        let measured = build::bisected(bracket, BISECTIONS, slides);
         let quantity = format!("M/(r Fz) that jams, Fx/Fz {side}, {case}");
-        CheckRow::new(("T4", quantity), expected, measured, "-", Tolerance::Relative(0.02))
+        CheckRow::new("T4", quantity, expected, measured, "-", Tolerance::Relative(0.02))
     };
     let small = SIDE.map(|side| row(tight(), side, threshold(&tight(), side), "tight"));
-    let large = SIDE.map(|side| {
-        let expected = threshold_tilted(&REFERENCE, side);
-        row(REFERENCE, side, expected, "loose")
-    });
-    small.into_iter().chain(large).collect()
-}
-
-/// Bisects for the moment that jams; an end of the bracket if it lies outside.
-fn find(engine: &dyn Engine, peg: &Peg, side: f64, expected: f64) -> Result<f64, Diverged> {
-    let [mut slides_at, mut jams_at] = BRACKET.map(|share| share * expected);
-    for _ in 0..BISECTIONS {
-        let middle = (slides_at + jams_at) / 2.0;
-        let end = if jams(engine, peg, side, middle)? { &mut jams_at } else { &mut slides_at };
-        *end = middle;
-    }
-    Ok((slides_at + jams_at) / 2.0)
+    let large = SIDE.map(|side| row(REFERENCE, side, threshold_tilted(&REFERENCE, side), "loose"));
+    [small, large].concat()
 }
 
 /// Whether the peg stays where it is under a moment of `ratio` r F_z.

@@ -1,5 +1,4 @@
-//! Analytic checks of a contact engine: cases whose answer is known in closed
-//! form, simulated with the settings that the trials use.
+//! Analytic checks: cases with a closed-form answer, simulated with the settings of the trials.
 //!
 //! | check | what must be right |
 //! | --- | --- |
@@ -16,58 +15,56 @@
 //! | T12 | friction of a face that slides and turns, as in the grasp |
 //! | T13 | a soft flange whose command sets off |
 //! | T14 | net force of a contact that sticks and that slides |
-//! | T15 | moment of a pressed patch of friction against a turn |
-//! | F1 .. F4 | the computed stiffness of a printed finger ([`finger`]) |
+//! | T15 | moment of a contact patch of friction against a turn |
+//! | F1 .. F4 | the computed stiffness of a printed finger |
 //!
-//! (T9 compares two engines on trials.) Every expected value is computed from
-//! its formula, which the check's file gives with its source. What no formula
-//! answers, whether the windows depend on the step, [`compare`](super::compare) asks.
+//! T9, in `compare::engines`, compares two engines on trials. The file of each check gives the
+//! formula of the expected value, with its source.
 
 use contact::Engine;
 
 pub mod arm;
 mod build;
-pub mod chamfer;
-pub mod edge;
-pub mod finger;
-pub mod flange;
-pub mod grasp;
-pub mod incline;
-pub mod jamming;
-pub mod peg;
-pub mod push;
-pub mod spring;
-pub mod step;
+mod chamfer;
+mod edge;
+mod finger;
+mod flange;
+mod grasp;
+mod incline;
+mod jamming;
+mod peg;
+mod push;
+mod spring;
+mod step;
 mod table;
-pub mod wedging;
+mod wedging;
 
 pub use table::{json, table};
 
-/// Makes the engine to check; the argument scales its production step, so
-/// `make(1.0)` is the engine as trials use it and `make(0.5)` has half its step.
+/// Constructor of the engine under check; its argument scales the production step.
 pub type Make<'a> = &'a dyn Fn(f64) -> Box<dyn Engine>;
 
 /// Largest error with which a row passes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tolerance {
-    /// A share of the expected value.
+    /// As a share of the expected value.
     Relative(f64),
     /// In the unit of the row.
     Absolute(f64),
 }
 
-/// One quantity, as expected and as measured.
+/// Result of one check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckRow {
-    /// Name of the check, `"T1"` and so on.
+    /// Identifier of the check, such as `"T1"`.
     pub check: &'static str,
-    /// What was measured, and in which case.
+    /// Measured quantity and its case.
     pub quantity: String,
-    /// From the formula.
+    /// Value of the formula.
     pub expected: f64,
-    /// From the engine or the finite elements; not a number where they failed.
+    /// Value of the engine or the finite elements; not a number where they failed.
     pub measured: f64,
-    /// Unit of the two.
+    /// Unit of expected and measured value.
     pub unit: &'static str,
     /// Largest error that passes.
     pub tolerance: Tolerance,
@@ -76,10 +73,10 @@ pub struct CheckRow {
 }
 
 impl CheckRow {
-    /// Compares a measured value with the expected one; without one, as from a simulation that
-    /// diverged, the row fails.
+    /// Row of a measured value; an error, as of a simulation that diverged, fails.
     fn new<E>(
-        (check, quantity): (&'static str, String),
+        check: &'static str,
+        quantity: impl Into<String>,
         expected: f64,
         measured: Result<f64, E>,
         unit: &'static str,
@@ -91,10 +88,11 @@ impl CheckRow {
             Tolerance::Absolute(error) => error,
         };
         let passed = (measured - expected).abs() <= allowed;
+        let quantity = quantity.into();
         CheckRow { check, quantity, expected, measured, unit, tolerance, passed }
     }
 
-    /// The error in the terms of the tolerance.
+    /// Error in the terms of the tolerance.
     pub fn error(&self) -> f64 {
         let error = self.measured - self.expected;
         match self.tolerance {
@@ -104,25 +102,20 @@ impl CheckRow {
     }
 }
 
-/// Runs every check, in order.
+/// Results of every check, in order.
 pub fn run(make: Make<'_>) -> Vec<CheckRow> {
-    let engine = make(1.0);
-    let engine = engine.as_ref();
-    let mut rows = spring::t1(engine);
-    rows.extend(incline::t2(engine));
-    rows.extend(peg::t3(engine));
-    rows.extend(jamming::t4(engine));
-    rows.extend(wedging::t5(engine));
-    rows.extend(chamfer::t6(engine));
-    rows.extend(spring::t7(engine));
-    rows.extend(edge::t8(engine));
-    rows.extend(step::t8(make));
-    rows.extend(peg::t10(engine));
-    rows.extend(arm::t11(engine));
-    rows.extend(grasp::t12(engine));
-    rows.extend(flange::t13(engine));
-    rows.extend(push::t14(engine));
-    rows.extend(grasp::t15(engine));
+    let mut rows = contact(make);
     rows.extend(finger::run());
     rows
+}
+
+/// Results of the checks of a contact engine, T1 to T15.
+pub fn contact(make: Make<'_>) -> Vec<CheckRow> {
+    let engine = make(1.0);
+    let all = |checks: &[fn(&dyn Engine) -> Vec<CheckRow>]| -> Vec<CheckRow> {
+        checks.iter().flat_map(|check| check(&*engine)).collect()
+    };
+    let first = [spring::t1, incline::t2, peg::t3, jamming::t4, wedging::t5, chamfer::t6];
+    let last = [peg::t10, arm::t11, grasp::t12, flange::t13, push::t14, grasp::t15];
+    [all(&first), all(&[spring::t7, edge::t8]), step::t8(make), all(&last)].concat()
 }

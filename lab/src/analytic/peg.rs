@@ -1,17 +1,16 @@
-//! T3 and T10: a peg in two-point contact with a hole.
+//! T3 and T10: peg in two-point contact with a hole.
 //!
-//! The peg is tilted by t about x: a corner of its tip touches the wall at +y,
-//! its flank rests on the rim at -y. With the width d of the peg, D of the hole
-//! and l the length of the peg below the rim (Whitney 1982, J. Dyn. Sys. Meas.
-//! Control 104:65, from the geometry): D = d cos t + l sin t.
+//! The peg is tilted by t about x: a corner of its tip touches the wall at +y, its flank rests on
+//! the rim at -y. With the width d of the peg, D of the hole and l the length of the peg below the
+//! rim (Whitney 1982, J. Dyn. Sys. Meas. Control 104:65, from the geometry): D = d cos t + l sin t.
 //!
 //! The frame of the peg lies in the middle of its tip, its z axis along the
 //! peg; the hole's rim lies in the plane z = 0.
 
-use super::build::{self, Wrench};
+use super::build::{self, Measured, Wrench};
 use super::{CheckRow, Tolerance};
 use contact::scene::{Body, BodyId, Friction, Motion, Pose, Scene};
-use contact::{Diverged, Engine, World};
+use contact::{Engine, World};
 use input::units::{GRAM, MM};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -22,7 +21,7 @@ const DEPTH: f64 = 8.0 * MM;
 /// Thickness of the walls, m.
 const WALL: f64 = 10.0 * MM;
 
-/// A peg in a hole that is open along x.
+/// Peg in a hole that is open along x.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Peg {
     /// Width d of the peg, m.
@@ -31,13 +30,13 @@ pub(super) struct Peg {
     pub hole: f64,
     /// Length l of the peg below the rim, m.
     pub inside: f64,
-    /// Between peg and walls.
+    /// Friction of peg and walls.
     pub friction: f64,
-    /// kg.
+    /// Mass of the peg, kg.
     pub mass: f64,
 }
 
-/// The peg of the facts' cases T3 and T4.
+/// Peg of T3 and T4.
 pub(super) const REFERENCE: Peg =
     Peg { width: 12.0 * MM, hole: 12.1 * MM, inside: 8.0 * MM, friction: 0.3, mass: 20.0 * GRAM };
 
@@ -68,7 +67,7 @@ impl Peg {
         Point3::new(0.0, 0.0, LENGTH / 2.0)
     }
 
-    /// The peg, weightless.
+    /// Weightless body of the peg.
     pub fn body(&self, pose: Pose) -> Body {
         let size = Vector3::new(DEPTH, self.width, LENGTH);
         let middle = Pose::translation(0.0, 0.0, LENGTH / 2.0);
@@ -80,7 +79,7 @@ impl Peg {
         }
     }
 
-    /// The wall at -y or +y, twice as deep as the peg is inside.
+    /// Wall at -y or +y, twice as deep as the peg is inside.
     pub fn wall(&self, side: f64) -> Body {
         let size = Vector3::new(2.0 * DEPTH, WALL, 2.0 * self.inside);
         let pose = Pose::translation(0.0, side * (self.hole + WALL) / 2.0, -self.inside);
@@ -100,14 +99,14 @@ impl Peg {
         (scene, peg)
     }
 
-    /// Loads the middle of the tip for a time.
+    /// Loads the middle of the tip for a time, s.
     pub fn load(
         &self,
         world: &mut dyn World,
         peg: BodyId,
         wrench: Wrench,
         time: f64,
-    ) -> Result<(), Diverged> {
+    ) -> Measured<()> {
         for _ in 0..build::steps(world, time) {
             let tip = world.pose(peg) * Point3::origin();
             wrench.push(world, peg, self.centre(), tip);
@@ -118,7 +117,7 @@ impl Peg {
 }
 
 impl Wrench {
-    /// A moment about x, which turns the peg into two-point contact, N m.
+    /// Moment about x, N m, which turns the peg into two-point contact.
     pub(super) fn turning(moment: f64) -> Self {
         Wrench { force: Vector3::zeros(), moment: Vector3::new(moment, 0.0, 0.0) }
     }
@@ -132,24 +131,17 @@ pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
     // judged at the length inside at which it came to rest.
     let inside = measured.map_or(peg.inside, |(_, inside)| inside);
     let expected = Peg { inside, ..peg }.tilt();
+    let row = |text: &str, expected, measured, unit, tolerance| {
+        CheckRow::new("T3", text, expected, measured, unit, tolerance)
+    };
     let tilt = measured.map(|(tilt, _)| tilt / 1e-3);
-    let name = |text: &str| ("T3", text.to_owned());
+    let inside = measured.map(|(_, inside)| inside / MM);
+    // By no more than the tip's corners rise and sink.
+    let little = Tolerance::Absolute(peg.width * peg.tilt() / MM);
+    let hardly = "length inside, which tilting hardly changes";
     vec![
-        CheckRow::new(
-            name("tilt in two-point contact"),
-            expected / 1e-3,
-            tilt,
-            "mrad",
-            Tolerance::Relative(0.02),
-        ),
-        CheckRow::new(
-            name("length inside, which tilting hardly changes"),
-            peg.inside / MM,
-            measured.map(|(_, inside)| inside / MM),
-            "mm",
-            // By no more than the tip's corners rise and sink.
-            Tolerance::Absolute(peg.width * peg.tilt() / MM),
-        ),
+        row("tilt in two-point contact", expected / 1e-3, tilt, "mrad", Tolerance::Relative(0.02)),
+        row(hardly, peg.inside / MM, inside, "mm", little),
     ]
 }
 
@@ -160,7 +152,7 @@ const TURNING: f64 = 0.002;
 const RESTING: f64 = 0.05;
 
 /// Tilt and length inside at rest.
-fn settled(engine: &dyn Engine, peg: &Peg) -> Result<(f64, f64), Diverged> {
+fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
     let (scene, body) = peg.scene(peg.upright());
     let mut world = engine.world(&scene);
     peg.load(world.as_mut(), body, Wrench::turning(TURNING), RESTING)?;
@@ -174,33 +166,31 @@ const LIGHT: f64 = 5.0 * GRAM;
 /// Forces on each of its contacts, N; the second is what an arm at its force
 /// limit of 100 N can wedge a plug with, and shows a contact whose force is bounded.
 const WEDGING: [f64; 2] = [70.0, 200.0];
-/// What a contact may yield under the first force, m: less than the clearance
-/// of a connector, lest plugs pass through rims.
+/// Largest penetration of a contact under the first force, m: less than the clearance of a
+/// connector, lest plugs pass through rims.
 const YIELD: f64 = 0.1 * MM;
 
-/// How far a light plug sinks into the walls that it is wedged between, T10
-/// rows: little, and in proportion to the force.
+/// Penetration of a light plug into the walls that it is wedged between, T10 rows: little, and in
+/// proportion to the force.
 pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
     let peg = Peg { mass: LIGHT, ..REFERENCE };
     let sunk = WEDGING.map(|force| sinking(engine, &peg, force));
-    let mut rows = Vec::new();
-    let mut row = |quantity, expected, measured, unit, allowed| {
-        rows.push(CheckRow::new(("T10", quantity), expected, measured, unit, allowed));
-    };
     let [low, high] = WEDGING;
-    for (i, place) in ["tip's corner", "rim"].into_iter().enumerate() {
-        let few = sunk[0].map(|depths| depths[i] / MM);
-        let many = sunk[1].map(|depths| depths[i] / MM);
+    let rows = ["tip's corner", "rim"].into_iter().enumerate().flat_map(|(i, place)| {
+        let [few, many] = sunk.map(|sunk| sunk.map(|depths| depths[i] / MM));
         let linear = few.map_or(f64::NAN, |few| few * high / low);
-        let quantity = |force| format!("5 g plug sinks under {force} N at {place}");
-        row(quantity(low), 0.0, few, "mm", Tolerance::Absolute(YIELD / MM));
-        row(quantity(high), linear, many, "mm", Tolerance::Relative(0.1));
-    }
-    rows
+        let row = |force, expected, measured, allowed| {
+            let quantity = format!("5 g plug sinks under {force} N at {place}");
+            CheckRow::new("T10", quantity, expected, measured, "mm", allowed)
+        };
+        let first = row(low, 0.0, few, Tolerance::Absolute(YIELD / MM));
+        [first, row(high, linear, many, Tolerance::Relative(0.1))]
+    });
+    rows.collect()
 }
 
 /// Depth of the tip's corner in the wall, and of the rim in the flank.
-fn sinking(engine: &dyn Engine, peg: &Peg, force: f64) -> Result<[f64; 2], Diverged> {
+fn sinking(engine: &dyn Engine, peg: &Peg, force: f64) -> Measured<[f64; 2]> {
     let (scene, body) = peg.scene(peg.tilted());
     let mut world = engine.world(&scene);
     let wrench = Wrench::turning(force * peg.inside);

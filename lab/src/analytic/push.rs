@@ -1,11 +1,10 @@
 //! T14: the net force of a contact, by which a trial's force stop and peak force go.
 //!
-//! A weightless block is pushed askew against a wall, by a force F at the angle a to the
-//! wall's normal. Statics: while it sticks, tan a < mu, the wall holds against all of it,
-//! F cos a along the normal and F sin a along the wall. Coulomb: once it slides, the wall
-//! presses with the same F cos a and rubs with mu F cos a. Nothing acts across the push.
-//! The wall stands askew in the world and the block on it, so that axes which are taken
-//! for others show.
+//! A weightless block is pushed askew against a wall, by a force F at the angle a to the wall's
+//! normal. Statics: while it sticks, tan a < mu, the wall holds against all of it, F cos a along
+//! the normal and F sin a along the wall. Coulomb: once it slides, the wall presses with the same F
+//! cos a and rubs with mu F cos a. Nothing acts across the push. The wall stands askew in the world
+//! and the block on it, so that axes which are taken for others show.
 
 use super::build;
 use super::{CheckRow, Tolerance};
@@ -23,7 +22,7 @@ const CASES: [(&str, f64); 2] = [("sticks", 0.8), ("slides", 1.2)];
 /// The wall's turn about the world's axes, and direction of the push in the wall, degrees.
 const WALL: [f64; 3] = [40.0, -25.0, 70.0];
 const HEADING: f64 = 37.0;
-/// The block: flat, so that it does not tip.
+/// Block, kg and m: flat, so that it does not tip.
 const MASS: f64 = 50.0 * GRAM;
 const SIZE: [f64; 3] = [20.0 * MM, 12.0 * MM, 8.0 * MM];
 /// Time for the contacts to come to rest, s, and time over which the force is averaged.
@@ -47,13 +46,13 @@ fn rows(engine: &dyn Engine, case: &str, share: f64) -> Vec<CheckRow> {
     let row = |(axis, (part, expected)): (usize, (&str, f64))| {
         let quantity = format!("wall on a block that {case}, {part}");
         let allowed = Tolerance::Absolute(ALLOWED * FRICTION * normal);
-        CheckRow::new(("T14", quantity), expected, found.map(|force| force[axis]), "N", allowed)
+        CheckRow::new("T14", quantity, expected, found.map(|force| force[axis]), "N", allowed)
     };
     parts.into_iter().enumerate().map(row).collect()
 }
 
-/// The wall's mean force on the block, N: along its normal, against the push along the
-/// wall, and across the two.
+/// Mean force of the wall on the block, N: along its normal, against the push along the wall, and
+/// across the two.
 fn net_force(engine: &dyn Engine, angle: f64) -> Result<Vector3<f64>, Diverged> {
     let size = Vector3::from(SIZE);
     let [x, y, z] = WALL.map(|turn| turn * DEG);
@@ -63,11 +62,7 @@ fn net_force(engine: &dyn Engine, angle: f64) -> Result<Vector3<f64>, Diverged> 
     let push = push * Vector3::x();
     let mut scene = Scene::default();
     let turned = Pose::from_parts(Translation3::identity(), turn);
-    // The wall's surface goes through the origin.
-    let wall_size = Vector3::new(0.4, 0.4, 0.02);
-    let behind = Pose::translation(0.0, 0.0, -wall_size.z / 2.0);
-    let wall = build::cuboid("wall", wall_size, behind);
-    let wall = scene.body(build::fixed("wall", turned, vec![wall]));
+    let wall = scene.body(build::ground([0.4, 0.4, 0.02], turned));
     let pose = turned * Pose::translation(0.0, 0.0, size.z / 2.0);
     let block = scene.body(build::block("block", MASS, size, pose));
     scene.contact(wall, block, Friction::hard(FRICTION));

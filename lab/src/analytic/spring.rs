@@ -5,13 +5,13 @@
 //! Control 104:65): a force through the centre displaces a held part without
 //! turning it; along a line at a distance L from it, it also turns it by F L/k.
 
-use super::build::{self, Wrench};
+use super::build::{self, Measured, Wrench};
 use super::{CheckRow, Tolerance};
-use contact::scene::{Body, BodyId, Joint, JointAxis, Motion, Pose, Scene, Springs};
-use contact::{Diverged, Engine};
+use contact::Engine;
+use contact::scene::{Body, BodyId, JointAxis, Motion, Pose, Scene};
 use input::units::{GRAM, MM, N_PER_MM};
 use insertion::finger::{self, Finger};
-use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Point3, Vector3};
 
 /// Force of T1, N: as in a grasp.
 const FORCE: f64 = 5.0;
@@ -21,18 +21,18 @@ const MOMENT: f64 = 0.02;
 const SIDE_FORCE: f64 = 0.5;
 /// Distance of the force of T7 from the remote centre, m.
 const OFFSET: f64 = 10.0 * MM;
-/// The part in the finger of T7.
+/// Part in the finger of T7, kg and m.
 const PART_MASS: f64 = 5.0 * GRAM;
 const PART_SIZE: f64 = 12.0 * MM;
 
-/// Twelve time constants of the slowest axis and then some, s: a rotation,
-/// damping over stiffness = 20 ms.
+/// Time to come to rest, s: twenty time constants of the slowest axis, a rotation (damping over
+/// stiffness = 20 ms).
 fn rest_time(finger: &Finger) -> f64 {
     let slowest = finger.springs().map(|s| s.damping / s.stiffness).into_iter().fold(0.0, f64::max);
     20.0 * slowest
 }
 
-/// A finger of the middle of the measured range.
+/// Finger of the middle of the measured range.
 fn finger() -> Finger {
     Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM)
 }
@@ -51,32 +51,23 @@ pub fn t1(engine: &dyn Engine) -> Vec<CheckRow> {
         let measured = deflection(engine, &finger, axis, load).map(|by| by / scale);
         let expected = load / spring.stiffness / scale;
         let quantity = format!("{kind} {name} of a finger");
-        CheckRow::new(("T1", quantity), expected, measured, unit, Tolerance::Relative(1e-6))
+        CheckRow::new("T1", quantity, expected, measured, unit, Tolerance::Relative(1e-6))
     };
     (0..6).map(row).collect()
 }
 
-fn deflection(
-    engine: &dyn Engine,
-    finger: &Finger,
-    axis: usize,
-    load: f64,
-) -> Result<f64, Diverged> {
+fn deflection(engine: &dyn Engine, finger: &Finger, axis: usize, load: f64) -> Measured {
     let (scene, body) = mounted(finger);
     let mut world = engine.world(&scene);
-    let mut load6 = [Vector3::zeros(); 2];
-    load6[axis / 3][axis % 3] = load;
-    world.push(body, load6[0], load6[1]);
+    let mut wrench = [Vector3::zeros(); 2];
+    wrench[axis / 3][axis % 3] = load;
+    world.push(body, wrench[0], wrench[1]);
     build::advance(world.as_mut(), rest_time(finger))?;
     let moved = centre_moved(&world.pose(body), finger);
-    Ok(if axis < 3 {
-        moved.translation.vector[axis]
-    } else {
-        moved.rotation.scaled_axis()[axis - 3]
-    })
+    Ok([moved.translation.vector, moved.rotation.scaled_axis()][axis / 3][axis % 3])
 }
 
-/// A finger on a fixed jaw, its pad in the origin, weightless.
+/// Weightless finger on a fixed jaw, its pad in the origin.
 fn mounted(finger: &Finger) -> (Scene, BodyId) {
     let mut scene = Scene::default();
     let jaw = scene.body(build::fixed("jaw", Pose::identity(), Vec::new()));
@@ -87,23 +78,17 @@ fn mounted(finger: &Finger) -> (Scene, BodyId) {
         geoms: Vec::new(),
     });
     let centre = remote_centre(finger);
-    scene.joint(Joint {
-        name: "springs".into(),
-        parent: jaw,
-        child: body,
-        in_parent: centre,
-        in_child: centre,
-        springs: Springs::Axes(finger.springs().map(JointAxis::Sprung)),
-    });
+    let springs = finger.springs().map(JointAxis::Sprung);
+    build::joint(&mut scene, "springs", [jaw, body], [centre; 2], springs);
     (scene, body)
 }
 
 fn remote_centre(finger: &Finger) -> Pose {
-    Pose::from_parts(Translation3::new(0.0, 0.0, -finger.rcc), UnitQuaternion::identity())
+    Pose::translation(0.0, 0.0, -finger.rcc)
 }
 
-/// How the frame in the remote centre has moved.
-fn centre_moved(pose: &Pose, finger: &Finger) -> Isometry3<f64> {
+/// Motion of the frame in the remote centre.
+fn centre_moved(pose: &Pose, finger: &Finger) -> Pose {
     let centre = remote_centre(finger);
     centre.inverse() * pose * centre
 }
@@ -113,63 +98,39 @@ pub fn t7(engine: &dyn Engine) -> Vec<CheckRow> {
     let finger = finger();
     let spring = |axis: usize| finger.springs()[axis].stiffness;
     // A force along y turns about x, one along x about y.
-    [(1, 0, "y"), (0, 1, "x")]
-        .into_iter()
-        .flat_map(|(along, about, name)| {
-            let turn = SIDE_FORCE * OFFSET / spring(3 + about);
-            let way = SIDE_FORCE / spring(along) / MM;
-            let through = held_part(engine, &finger, along, 0.0);
-            let beside = held_part(engine, &finger, along, OFFSET);
-            let moved = |at: &Result<Isometry3<f64>, Diverged>| {
-                at.map(|moved| moved.translation.vector[along] / MM)
-            };
-            let turned = |at: &Result<Isometry3<f64>, Diverged>| {
-                at.map(|moved| moved.rotation.scaled_axis()[about].abs())
-            };
-            let row = |text: &str, expected, measured, unit, tolerance| {
-                CheckRow::new(
-                    ("T7", format!("{text}, along {name}")),
-                    expected,
-                    measured,
-                    unit,
-                    tolerance,
-                )
-            };
-            // A rotation of zero is judged by the rotation of the offset force.
-            let none = Tolerance::Absolute(0.01 * turn);
-            let close = Tolerance::Relative(0.01);
-            [
-                row("deflection, force through centre", way, moved(&through), "mm", close),
-                row("rotation, force through centre", 0.0, turned(&through), "rad", none),
-                row("rotation, force 10 mm beside", turn, turned(&beside), "rad", close),
-                row("deflection, force 10 mm beside", way, moved(&beside), "mm", close),
-            ]
-        })
-        .collect()
+    let rows = [(1, 0, "y"), (0, 1, "x")].map(|(along, about, name)| {
+        let turn = SIDE_FORCE * OFFSET / spring(3 + about);
+        let way = SIDE_FORCE / spring(along) / MM;
+        let [through, beside] = [0.0, OFFSET].map(|above| held_part(engine, &finger, along, above));
+        let moved = |at: Measured<Pose>| at.map(|moved| moved.translation.vector[along] / MM);
+        let turned = |at: Measured<Pose>| at.map(|moved| moved.rotation.scaled_axis()[about].abs());
+        let row = |text: &str, expected, measured, unit, tolerance| {
+            let quantity = format!("{text}, along {name}");
+            CheckRow::new("T7", quantity, expected, measured, unit, tolerance)
+        };
+        // A rotation of zero is judged by the rotation of the offset force.
+        let none = Tolerance::Absolute(0.01 * turn);
+        let close = Tolerance::Relative(0.01);
+        [
+            row("deflection, force through centre", way, moved(through), "mm", close),
+            row("rotation, force through centre", 0.0, turned(through), "rad", none),
+            row("rotation, force 10 mm beside", turn, turned(beside), "rad", close),
+            row("deflection, force 10 mm beside", way, moved(beside), "mm", close),
+        ]
+    });
+    rows.concat()
 }
 
-/// How the remote centre moves when a part that is fixed to the finger at its
-/// pad is pushed along an axis at a height above the remote centre, m.
-fn held_part(
-    engine: &dyn Engine,
-    finger: &Finger,
-    along: usize,
-    above: f64,
-) -> Result<Isometry3<f64>, Diverged> {
+/// Motion of the remote centre when a part that is fixed to the finger at its pad is pushed along
+/// an axis at a height above the remote centre, m.
+fn held_part(engine: &dyn Engine, finger: &Finger, along: usize, above: f64) -> Measured<Pose> {
     let (mut scene, holder) = mounted(finger);
     let size = Vector3::repeat(PART_SIZE);
     let part = scene.body(build::block("part", PART_MASS, size, Pose::identity()));
-    scene.joint(Joint {
-        name: "grasp".into(),
-        parent: holder,
-        child: part,
-        in_parent: Pose::identity(),
-        in_child: Pose::identity(),
-        springs: Springs::Axes([JointAxis::Locked; 6]),
-    });
+    let rigid = [JointAxis::Locked; 6];
+    build::joint(&mut scene, "grasp", [holder, part], [Pose::identity(); 2], rigid);
     let mut world = engine.world(&scene);
-    let mut wrench = Wrench { force: Vector3::zeros(), moment: Vector3::zeros() };
-    wrench.force[along] = SIDE_FORCE;
+    let wrench = Wrench::along(along, SIDE_FORCE);
     let line = Point3::new(0.0, 0.0, above - finger.rcc);
     for _ in 0..build::steps(world.as_ref(), rest_time(finger)) {
         wrench.push(world.as_mut(), part, Point3::origin(), line);

@@ -1,4 +1,4 @@
-//! T8, second part: what must not depend on how the time is cut.
+//! T8, second part: independence of the time step.
 //!
 //! Halving the step changes no outcome of the cases that can end in two ways,
 //! each taken at both sides of its threshold; and a restored snapshot continues
@@ -25,8 +25,7 @@ const AFTER: f64 = 0.3;
 /// Outcomes that change with the step, and bits that change with a snapshot, T8 rows.
 pub fn t8(make: Make<'_>) -> Vec<CheckRow> {
     let none = Tolerance::Absolute(0.0);
-    let row =
-        |text: &str, measured| CheckRow::new(("T8", text.to_owned()), 0.0, measured, "-", none);
+    let row = |text: &str, measured| CheckRow::new("T8", text, 0.0, measured, "-", none);
     let engine = make(1.0);
     vec![
         row("outcomes changed by half the step", changed_outcomes(make)),

@@ -1,13 +1,13 @@
-//! The rows of the checks as text and as JSON.
+//! Results of the checks as text and as JSON.
 
 use super::{CheckRow, Tolerance};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Columns of a quantity; what is longer goes on in the next line.
+/// Width of the quantities; the rest of a longer one goes to the next line.
 const QUANTITY: usize = 29;
 
-/// The rows as an aligned table, at most 80 columns wide, and whether all pass.
+/// Aligned table at most 80 columns wide, and the verdict.
 pub fn table(rows: &[CheckRow]) -> String {
     let mut text = format!(
         "{:<4}{:<QUANTITY$}{:>9}{:>9} {:<6}{:>9} {:<7}\n",
@@ -34,37 +34,35 @@ pub fn table(rows: &[CheckRow]) -> String {
         }
     }
     let failed = rows.iter().filter(|row| !row.passed).count();
-    let _ = match failed {
-        0 => writeln!(text, "pass: all {} checks", rows.len()),
-        failed => writeln!(text, "fail: {failed} of {} checks", rows.len()),
-    };
-    text
+    text + &match failed {
+        0 => format!("pass: all {} checks\n", rows.len()),
+        failed => format!("fail: {failed} of {} checks\n", rows.len()),
+    }
 }
 
-/// The rows as a JSON array of objects.
+/// JSON array with an object for each row.
 pub fn json(rows: &[CheckRow]) -> Value {
-    rows.iter()
-        .map(|row| {
-            let (kind, tolerance) = match row.tolerance {
-                Tolerance::Relative(share) => ("relative", share),
-                Tolerance::Absolute(error) => ("absolute", error),
-            };
-            json!({
-                "check": row.check,
-                "quantity": row.quantity,
-                "expected": row.expected,
-                "measured": row.measured,
-                "error": row.error(),
-                "unit": row.unit,
-                "tolerance": tolerance,
-                "tolerance_kind": kind,
-                "passed": row.passed,
-            })
+    let row = |row: &CheckRow| {
+        let (kind, tolerance) = match row.tolerance {
+            Tolerance::Relative(share) => ("relative", share),
+            Tolerance::Absolute(error) => ("absolute", error),
+        };
+        json!({
+            "check": row.check,
+            "quantity": row.quantity,
+            "expected": row.expected,
+            "measured": row.measured,
+            "error": row.error(),
+            "unit": row.unit,
+            "tolerance": tolerance,
+            "tolerance_kind": kind,
+            "passed": row.passed,
         })
-        .collect()
+    };
+    rows.iter().map(row).collect()
 }
 
-/// A quantity as far as its column goes, to the end of a word, and the rest.
+/// Quantity split at the end of a word where its column ends.
 fn broken(quantity: &str) -> (&str, &str) {
     match quantity.char_indices().nth(QUANTITY) {
         None => (quantity, ""),
@@ -99,43 +97,30 @@ mod tests {
     use contact::Diverged;
 
     fn rows() -> Vec<CheckRow> {
-        let name = |text: &str| ("T1", text.to_owned());
-        let tolerance = Tolerance::Relative(0.01);
+        let long = "bad, and named by more words than its column has room for";
+        let row = |name: &str, expected, measured: Result<f64, Diverged>, unit| {
+            CheckRow::new("T1", name, expected, measured, unit, Tolerance::Relative(0.01))
+        };
         vec![
-            CheckRow::new(name("good"), 2.0, Ok::<_, Diverged>(2.01), "mm", tolerance),
-            CheckRow::new(
-                name("bad, and named by more words than its column has room for"),
-                7_175_000.0,
-                Ok::<_, Diverged>(-8e6),
-                "rad/Nm",
-                tolerance,
-            ),
-            CheckRow::new(name("diverged"), 2.0, Err(Diverged), "mm", tolerance),
+            row("good", 2.0, Ok(2.01), "mm"),
+            row(long, 7_175_000.0, Ok(-8e6), "rad/Nm"),
+            row("diverged", 2.0, Err(Diverged), "mm"),
         ]
     }
 
     #[test]
-    fn rows_pass_within_their_tolerance_only() {
-        assert_eq!(rows().iter().map(|row| row.passed).collect::<Vec<_>>(), [true, false, false]);
-    }
-
-    #[test]
     fn table_fits_a_terminal_and_names_the_failures() {
+        assert_eq!(rows().iter().map(|row| row.passed).collect::<Vec<_>>(), [true, false, false]);
         let text = table(&rows());
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
         assert!(text.contains("quantity") && text.contains("unit"), "{text}");
         assert_eq!(text.matches("FAIL").count(), 2, "{text}");
         assert!(text.ends_with("\nfail: 2 of 3 checks\n"), "{text}");
         // The long name is whole, in two lines.
-        assert!(
-            text.contains("bad, and named by more words ") && text.contains("\n      than its")
-        );
-    }
-
-    #[test]
-    fn json_has_null_for_what_diverged() {
+        assert!(text.contains("by more words ") && text.contains("\n      than its"), "{text}");
         let value = json(&rows());
         assert_eq!(value[0]["tolerance_kind"], "relative");
+        // Null stands for a divergence.
         assert!(value[2]["measured"].is_null());
     }
 }

@@ -1,17 +1,16 @@
 //! T5: wedging of a peg in two-point contact.
 //!
-//! Whitney 1982 (J. Dyn. Sys. Meas. Control 104:65): two contacts can hold a
-//! peg by a force between them alone if the line through them lies within both
-//! friction cones. That line spans the peg's width d and the length l inside,
-//! so a peg wedges only where l/d < mu. Here the force comes from the wall at
-//! +y, which slides and is pressed against the tip's corner; nothing else acts
-//! on the peg. Beyond the threshold the couple of the two normal forces turns
-//! the peg upright and the wall follows.
+//! Whitney 1982 (J. Dyn. Sys. Meas. Control 104:65): two contacts can hold a peg by a force between
+//! them alone if the line through them lies within both friction cones. That line spans the peg's
+//! width d and the length l inside, so a peg wedges only where l/d < mu. Here the force comes from
+//! the wall at +y, which slides and is pressed against the tip's corner; nothing else acts on the
+//! peg. Beyond the threshold the couple of the two normal forces turns the peg upright and the wall
+//! follows.
 
 use super::build;
 use super::peg::{Peg, REFERENCE};
 use super::{CheckRow, Tolerance};
-use contact::scene::{Body, Friction, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs};
+use contact::scene::{Body, Friction, JointAxis, Motion, Pose, Scene, Spring};
 use contact::{Diverged, Engine};
 use input::units::{GRAM, MM};
 use nalgebra::{Point3, Vector3};
@@ -40,24 +39,14 @@ const BISECTIONS: usize = 10;
 
 /// Largest l/d at which a peg stays wedged, T5 rows.
 pub fn t5(engine: &dyn Engine) -> Vec<CheckRow> {
-    FRICTIONS
-        .into_iter()
-        .map(|friction| {
-            let quantity = format!("l/d up to which a peg wedges, mu {friction}");
-            let measured = find(engine, friction);
-            CheckRow::new(("T5", quantity), friction, measured, "-", Tolerance::Relative(0.02))
-        })
-        .collect()
-}
-
-fn find(engine: &dyn Engine, friction: f64) -> Result<f64, Diverged> {
-    let [mut wedged, mut free] = BRACKET.map(|share| share * friction);
-    for _ in 0..BISECTIONS {
-        let middle = (wedged + free) / 2.0;
-        let end = if wedges(engine, friction, middle)? { &mut wedged } else { &mut free };
-        *end = middle;
-    }
-    Ok((wedged + free) / 2.0)
+    let row = |friction: f64| {
+        let quantity = format!("l/d up to which a peg wedges, mu {friction}");
+        let bracket = BRACKET.map(|share| share * friction);
+        let measured =
+            build::bisected(bracket, BISECTIONS, |depth| wedges(engine, friction, depth));
+        CheckRow::new("T5", quantity, friction, measured, "-", Tolerance::Relative(0.02))
+    };
+    FRICTIONS.map(row).to_vec()
 }
 
 /// Whether a peg that is `depth` times its width inside stays wedged.
@@ -75,14 +64,7 @@ pub(super) fn wedges(engine: &dyn Engine, friction: f64, depth: f64) -> Result<b
     let mut axes = [JointAxis::Locked; 6];
     axes[1] = JointAxis::Sprung(Spring::new(0.0, WALL_DAMPING));
     let ground = scene.body(build::fixed("ground", Pose::identity(), Vec::new()));
-    scene.joint(Joint {
-        name: "slide".into(),
-        parent: ground,
-        child: wall,
-        in_parent: slide,
-        in_child: Pose::identity(),
-        springs: Springs::Axes(axes),
-    });
+    build::joint(&mut scene, "slide", [ground, wall], [slide, Pose::identity()], axes);
     for side in [fixed, wall] {
         scene.contact(side, body, Friction::hard(friction));
     }

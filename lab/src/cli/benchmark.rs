@@ -1,4 +1,4 @@
-//! `lab benchmark`: how fast this machine simulates.
+//! `lab benchmark`: speed of the simulation on this machine.
 
 use super::{Failure, print, print_json};
 use clap::Args;
@@ -10,15 +10,15 @@ use insertion::finger::Finger;
 use insertion::robot::Robot;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
+use serde::Serialize;
 use serde_json::json;
 use std::time::Instant;
 
 /// Evaluations of the study whose time is estimated.
 const BUDGET: f64 = 200.0;
-/// Stiffness of the finger that is measured, N/mm: design 5 of the measured ones,
-/// in the middle of the space.
+/// Compliance and assembly stiffness of the finger, N/mm: measured design 5, in the middle of the
+/// space.
 const COMPLIANCE: f64 = 2.6;
-/// See [`COMPLIANCE`].
 const ASSEMBLY: f64 = 45.0;
 
 /// Measure how fast this machine simulates.
@@ -41,18 +41,14 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What one task took.
+/// Speed on a task.
+#[derive(Serialize)]
 struct TaskSpeed {
     task: String,
     trials_per_s: f64,
     evaluations_per_min: f64,
-}
-
-impl TaskSpeed {
     /// Time of a study of [`BUDGET`] evaluations, s.
-    fn study_s(&self) -> f64 {
-        60.0 * BUDGET / self.evaluations_per_min
-    }
+    study_s: f64,
 }
 
 /// Runs the command.
@@ -83,10 +79,12 @@ fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<TaskSpee
         }
     });
     let wall_s = clock.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
+    let evaluations_per_min = 60.0 * f64::from(arguments.repeats) / wall_s;
     Ok(TaskSpeed {
         task: task.name.clone(),
         trials_per_s: f64::from(trials.into_inner()) / wall_s,
-        evaluations_per_min: 60.0 * f64::from(arguments.repeats) / wall_s,
+        evaluations_per_min,
+        study_s: 60.0 * BUDGET / evaluations_per_min,
     })
 }
 
@@ -96,32 +94,20 @@ fn table(rows: &[TaskSpeed]) -> String {
          task     trials/s  evaluations/min  budget of {BUDGET} takes about\n",
         rayon::current_num_threads()
     );
-    for row in rows {
-        text.push_str(&format!(
-            "{:<8} {:>8.1}  {:>15.1}  {:>14.0} s\n",
-            row.task,
-            row.trials_per_s,
-            row.evaluations_per_min,
-            row.study_s()
-        ));
+    for TaskSpeed { task, trials_per_s, evaluations_per_min, study_s } in rows {
+        text += &format!(
+            "{task:<8} {trials_per_s:>8.1}  {evaluations_per_min:>15.1}  {study_s:>14.0} s\n"
+        );
     }
     text
 }
 
 fn json(arguments: &Arguments, rows: &[TaskSpeed]) -> serde_json::Value {
-    let row = |row: &TaskSpeed| {
-        json!({
-            "task": row.task,
-            "trials_per_s": row.trials_per_s,
-            "evaluations_per_min": row.evaluations_per_min,
-            "study_s": row.study_s(),
-        })
-    };
     json!({
         "robot": arguments.robot,
         "engine": arguments.engine.name(),
         "threads": rayon::current_num_threads(),
         "budget": BUDGET,
-        "tasks": rows.iter().map(row).collect::<Vec<_>>(),
+        "tasks": rows,
     })
 }

@@ -1,5 +1,5 @@
-//! `lab check`: does the contact engine, as it is set, reproduce known results, and do
-//! the windows depend on how finely it cuts time, or on how they are looked for?
+//! `lab check`: analytic checks of a contact engine, and whether the windows depend on its step or on
+//! the search.
 
 use super::validate::{Fingers, search_name, tasks};
 use super::{Failure, print, print_json};
@@ -16,7 +16,7 @@ use insertion::trial::engine::EngineKind;
 use insertion::trial::run::EngineRig;
 use std::sync::Arc;
 
-/// Farthest that half the step may move an end, in grid steps: 0.1 mm.
+/// Largest move of an end by half the step, in grid steps: 0.1 mm.
 const ALLOWED_STEPS: OffsetStep = 1;
 
 /// Compare the contact engine with analytic results.
@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Compare tolerance windows with finer ones instead
     #[arg(long, group = "windows")]
     convergence: bool,
-    /// Compare the windows of the step-by-step walk with those of the quick search instead
+    /// Compare the windows of the exhaustive search with those of the coarse-to-fine search instead
     #[arg(long, group = "windows")]
     searches: bool,
     /// Tasks of the windows: ket8, ket12, rj45, usb or all
@@ -84,7 +84,7 @@ impl Arguments {
     }
 }
 
-/// The engine as it is, and finer in each way that it can be.
+/// Ways of the engine as it is, and finer in each way that it can be.
 fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
     let finer = engine.finer();
     let ways = std::iter::once(("production", engine)).chain(finer).map(|(name, engine)| {
@@ -95,7 +95,7 @@ fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays,
     Ok(TaskWays { task, ways })
 }
 
-/// Both searches on the same rig.
+/// Ways of both searches on the same rig.
 fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
     let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
     let rig = Arc::new(rig);

@@ -1,4 +1,4 @@
-//! `lab cross-check`: do two engines agree on what goes in?
+//! `lab cross-check`: agreement of two engines on the outcomes of trials.
 
 use super::validate::{Fingers, tasks};
 use super::{Failure, print, print_json};
@@ -13,10 +13,9 @@ use insertion::trial::engine::EngineKind;
 
 /// Compare the outcomes of the same trials in two contact engines (check T9)
 ///
-/// The softest and the stiffest measured finger on every task, started about both
-/// ends of the first engine's window. Exits with 1 if the engines agree on less
-/// than 90 % of the trials, or if the windows' ends differ by more than 0.5 mm on
-/// average.
+/// The softest and the stiffest measured finger on every task, started about both ends of the first
+/// engine's window. Exits with 1 if the engines agree on less than 90 % of the trials, or if the
+/// windows' ends differ by more than 0.5 mm on average.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Contact engine that is compared
@@ -63,21 +62,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     designs.remove(1);
     if arguments.time {
         let rows = engines::time(&tasks, &designs);
-        return if arguments.json {
-            print_json(&engines::time_json(&rows, names))
-        } else {
-            print(&engines::time_text(&rows, names))
+        return match arguments.json {
+            true => print_json(&engines::time_json(&rows, names)),
+            false => print(&engines::time_text(&rows, names)),
         };
     }
     let set = if arguments.reduced { TrialSet::Reduced } else { TrialSet::Full };
     let check = engines::run(&tasks, &designs, set);
-    if arguments.json {
-        print_json(&engines::json(&check, names))?;
-    } else {
-        print(&engines::text(&check, names))?;
+    match arguments.json {
+        true => print_json(&engines::json(&check, names))?,
+        false => print(&engines::text(&check, names))?,
     }
-    if check.passed() {
-        return Ok(());
+    match check.passed() {
+        true => Ok(()),
+        false => Err(Failure::running(format!("{} do not agree well enough", names.join(" and ")))),
     }
-    Err(Failure::running(format!("{} and {} do not agree well enough", names[0], names[1])))
 }

@@ -1,4 +1,4 @@
-//! The command line of `lab`: one file per command.
+//! Command line of `lab`, a file for each command.
 
 mod benchmark;
 mod check;

@@ -1,4 +1,4 @@
-//! `lab optimizers`: evaluations that the optimizers need.
+//! `lab optimizers`: evaluations that the optimizers need on problems with known optima.
 
 use super::{Failure, print};
 use crate::problems::{
@@ -6,7 +6,7 @@ use crate::problems::{
     time_markdown,
 };
 use ask_tell::OptimizerKind;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use finger_opt::study::write_file;
 use input::shipped;
 use std::path::{Path, PathBuf};
@@ -21,9 +21,8 @@ pub struct Arguments {
     /// Runs of each optimizer on each problem, with seeds from 0
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     seeds: u64,
-    /// Functions, separated by commas; all of them if no landscape is given:
-    /// sphere, rosenbrock, ellipsoid, rastrigin, branin, hartmann6
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = function)]
+    /// Functions, separated by commas; all of them if no landscape is given
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_enum)]
     functions: Option<Vec<Function>>,
     /// Recorded landscape, as results/reference/landscapes/usb.csv; may be repeated
     #[arg(long, value_name = "FILE.csv")]
@@ -39,25 +38,16 @@ pub struct Arguments {
     time: bool,
 }
 
-fn function(name: &str) -> Result<Function, String> {
-    let found = Function::ALL.into_iter().find(|function| function.name() == name);
-    found.ok_or_else(|| format!("valid names are {}", Function::ALL.map(Function::name).join(", ")))
-}
-
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let landscapes =
         arguments.landscape.iter().map(|file| problem(file)).collect::<Result<Vec<_>, _>>()?;
-    let all: &[Function] = if landscapes.is_empty() { &Function::ALL } else { &[] };
+    let all = if landscapes.is_empty() { Function::value_variants() } else { &[] };
     let functions = arguments.functions.as_deref().unwrap_or(all);
     let (methods, seeds) = (&arguments.optimizers, arguments.seeds);
-    let mut runs = Vec::new();
-    for &function in functions {
-        runs.extend(on_function(function, methods, seeds));
-    }
-    for landscape in &landscapes {
-        runs.extend(on_grid(landscape, methods, seeds));
-    }
+    let runs = functions.iter().flat_map(|function| on_function(*function, methods, seeds));
+    let more = landscapes.iter().flat_map(|landscape| on_grid(landscape, methods, seeds));
+    let runs: Vec<_> = runs.chain(more).collect();
     if let Some(file) = &arguments.csv {
         write_file(file, &csv(&runs))?;
     }
@@ -68,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A landscape under the name of its file.
+/// Problem of a landscape, named after its file.
 fn problem(file: &Path) -> Result<GridProblem, Failure> {
     let path = file.display().to_string();
     let source = shipped::resolve("landscape", &[], &path).map_err(Failure::input)?;

@@ -1,4 +1,4 @@
-//! `lab prints`: printing as advised, replayed on the published experiments.
+//! `lab prints`: post hoc choice of prints on the published experiments.
 
 use super::{Failure, print, print_json};
 use crate::prints::{self, Replayed, TOLD};
@@ -11,7 +11,7 @@ use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
 use serde_json::json;
 
-/// Sampling at each print: there are many.
+/// Sampling effort at each of the many prints.
 const EFFORT: Effort = Effort { warm_up: 200, samples: 150, thin: 3 };
 
 /// Ways of choosing prints, in the order of the table.
@@ -42,7 +42,7 @@ pub struct Arguments {
     json: bool,
 }
 
-/// One task under each method.
+/// Results of each method on a task.
 struct TaskReplay {
     task: String,
     fingers: usize,
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
-    /// Each task by itself: a parameter that they share must not carry one's answer to another.
+    /// Results on one task alone: a shared parameter must not carry the answer to another task.
     fn replay(&self, prepared: &Prepared, task: usize) -> Result<TaskReplay, Failure> {
         let subject = &prepared.subjects[task];
         let nothing = || Failure::usage(format!("{}: nothing is published of it", subject.task));
@@ -95,48 +95,35 @@ impl Arguments {
 }
 
 fn to_json(tasks: &[TaskReplay], means: &[Option<Replayed>]) -> serde_json::Value {
-    let method = |(name, replayed): (&str, &Replayed)| {
+    let method = |(name, replayed): (&&str, &Replayed)| {
+        let Replayed { prints_to_best, regret_percent_after } = replayed;
         json!({
             "method": name,
-            "prints_to_best": replayed.prints_to_best,
-            "regret_percent_after": replayed.regret_percent_after,
+            "prints_to_best": prints_to_best,
+            "regret_percent_after": regret_percent_after,
         })
     };
-    let task = |replay: &TaskReplay| {
-        json!({
-            "task": replay.task,
-            "designs": replay.fingers,
-            "methods": METHODS.into_iter().zip(&replay.methods).map(method).collect::<Vec<_>>(),
-        })
+    let task = |TaskReplay { task, fingers, methods }: &TaskReplay| {
+        let methods: Vec<_> = METHODS.iter().zip(methods).map(method).collect();
+        json!({ "task": task, "designs": fingers, "methods": methods })
     };
-    let means = METHODS.into_iter().zip(means.iter().flatten());
-    json!({
-        "tasks": tasks.iter().map(task).collect::<Vec<_>>(),
-        "mean": means.map(method).collect::<Vec<_>>(),
-    })
+    let means: Vec<_> = METHODS.iter().zip(means.iter().flatten()).map(method).collect();
+    json!({ "tasks": tasks.iter().map(task).collect::<Vec<_>>(), "mean": means })
 }
 
 fn text(tasks: &[TaskReplay], means: &[Option<Replayed>]) -> String {
-    let mut lines = vec![
-        format!(
-            "what the best printed finger lacks to the best measured one, percent, after 1 to {TOLD} prints"
-        ),
-        "task     chosen by    prints to the best       1       2       3       4".to_owned(),
-    ];
-    let mut line = |task: &str, method: &str, replayed: &Replayed| {
-        let regrets = replayed.regret_percent_after.map(|regret| format!("{regret:>8.1}"));
-        lines.push(format!(
-            "{task:<8} {method:<12} {:>18.1}{}",
-            replayed.prints_to_best,
-            regrets.concat()
-        ));
-    };
-    for replay in tasks {
-        METHODS
-            .iter()
-            .zip(&replay.methods)
-            .for_each(|(method, one)| line(&replay.task, method, one));
+    let mut text = format!(
+        "what the best printed finger lacks to the best measured one, percent, after 1 to {TOLD} prints\n\
+         task     chosen by    prints to the best       1       2       3       4\n"
+    );
+    let of_tasks = tasks.iter().flat_map(|of| {
+        METHODS.iter().zip(&of.methods).map(|(method, replayed)| (&*of.task, method, replayed))
+    });
+    let means = METHODS.iter().zip(means.iter().flatten());
+    let means = means.map(|(method, replayed)| ("mean", method, replayed));
+    for (task, method, Replayed { prints_to_best, regret_percent_after }) in of_tasks.chain(means) {
+        let regrets = regret_percent_after.map(|regret| format!("{regret:>8.1}")).concat();
+        text += &format!("{task:<8} {method:<12} {prints_to_best:>18.1}{regrets}\n");
     }
-    METHODS.iter().zip(means.iter().flatten()).for_each(|(method, one)| line("mean", method, one));
-    lines.join("\n") + "\n"
+    text
 }

@@ -1,8 +1,8 @@
-//! `lab validate`: our windows beside the published ones.
+//! `lab validate`: our tolerance windows beside the published ones.
 
 use super::{Failure, print, print_json};
 use crate::compare::fingers::Windows;
-use crate::compare::published::{self as beside, TaskTable};
+use crate::compare::published as beside;
 use clap::{Args, ValueEnum};
 use finger_opt::calibration::published::{self, Origin};
 use finger_opt::cli::arguments::FingerModelArguments;
@@ -10,14 +10,13 @@ use finger_opt::session::{self, DEFAULT_ROBOT, SetupRequest, TaskFile};
 use finger_opt::study::write_file;
 use input::shipped::TASKS;
 use insertion::evaluation::tolerance::Search;
-use insertion::robot::Robot;
 use insertion::stiffness::Measurement;
 use insertion::task::{StartRule, Task};
 use insertion::trial::engine::EngineKind;
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Which of the measured fingers are compared.
+/// Selection of the measured fingers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Fingers {
     /// All 11
@@ -27,7 +26,7 @@ pub enum Fingers {
 }
 
 impl Fingers {
-    /// Their infill and stiffness.
+    /// Infill and stiffness of the selected fingers.
     pub fn designs(self) -> Vec<Measurement> {
         match self {
             Fingers::All => published::designs(),
@@ -38,8 +37,8 @@ impl Fingers {
 
 /// Compare our tolerance windows with the published ones.
 ///
-/// Measures the windows of all published designs, with their measured stiffness, step by
-/// step as the paper does, and writes validation.csv, validation_summary.csv and accuracy.md.
+/// Measures the windows of all published designs, with their measured stiffness, by exhaustive
+/// search as in the paper, and writes validation.csv, validation_summary.csv and accuracy.md.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Task: ket8, ket12, rj45, usb, all, or the path of a task file of such a name
@@ -54,7 +53,7 @@ pub struct Arguments {
     /// Contact engine
     #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
-    /// Look every 0.5 mm and bisect: a third of the trials, but blind to gaps narrower than that
+    /// Coarse-to-fine search, every 0.5 mm and bisection: a third of the trials, blind to narrower gaps
     #[arg(long)]
     strides: bool,
     #[command(flatten)]
@@ -78,8 +77,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let robot = session::robot(&arguments.robot)?;
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
-    let tables = arguments.measure(&tasks, &robot, search)?;
-    write(&arguments.out, &tables)?;
+    let fingers = arguments.finger_model.of(SetupRequest::default()).fingers()?;
+    let windows = Windows { fingers: &fingers, robot: &robot, engine: arguments.engine, search };
+    let tables = windows.measure(&tasks, &arguments.fingers.designs()).map_err(Failure::input)?;
+    for (name, text) in [
+        ("validation.csv", beside::csv(&tables)),
+        ("validation_summary.csv", beside::summary_csv(&tables)),
+        ("accuracy.md", beside::accuracy(&tables)),
+    ] {
+        write_file(&arguments.out.join(name), &text)?;
+    }
     let engine = arguments.engine.name();
     if arguments.json {
         return print_json(&json!({
@@ -106,7 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     ))
 }
 
-/// What tables call a search.
+/// Name of a search in tables.
 pub fn search_name(search: Search) -> &'static str {
     match search {
         Search::Walk => "walk",
@@ -114,7 +121,10 @@ pub fn search_name(search: Search) -> &'static str {
     }
 }
 
-/// The task of that name, or `all` of them; only such of which something is published.
+/// Task of a name, or `all`; only tasks with published windows.
+///
+/// # Errors
+/// If the task is not found, not valid or not published.
 pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
     let names = match name {
         "all" => TASKS.iter().map(|shipped| shipped.name).collect(),
@@ -123,38 +133,15 @@ pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
     names.into_iter().map(task).collect()
 }
 
-impl Arguments {
-    fn measure(
-        &self,
-        tasks: &[Task],
-        robot: &Robot,
-        search: Search,
-    ) -> Result<Vec<TaskTable>, Failure> {
-        let fingers = self.finger_model.of(SetupRequest::default()).fingers()?;
-        let engine = self.engine;
-        let windows = Windows { fingers: &fingers, robot, engine, search };
-        windows.measure(tasks, &self.fingers.designs()).map_err(Failure::input)
-    }
-}
-
-/// A task of which something is published.
+/// Task with published windows.
 fn task(name: &str) -> Result<Task, Failure> {
     let TaskFile { source, task } = session::read_task(name)?;
     if published::of_task(&task.name, Origin::Simulation).is_empty() {
-        let names: Vec<&str> = TASKS.iter().map(|shipped| shipped.name).collect();
+        let names = TASKS.iter().map(|shipped| shipped.name).collect::<Vec<_>>().join(", ");
+        let (file, task) = (source.file, task.name);
         return Err(Failure::usage(format!(
-            "{}: nothing is published of the task `{}`; there are {}",
-            source.file,
-            task.name,
-            names.join(", ")
+            "{file}: nothing is published of the task `{task}`; there are {names}"
         )));
     }
     Ok(task)
-}
-
-fn write(out: &Path, tables: &[TaskTable]) -> Result<(), Failure> {
-    write_file(&out.join("validation.csv"), &beside::csv(tables))?;
-    write_file(&out.join("validation_summary.csv"), &beside::summary_csv(tables))?;
-    write_file(&out.join("accuracy.md"), &beside::accuracy(tables))?;
-    Ok(())
 }

@@ -1,4 +1,4 @@
-//! The windows of the measured fingers as one finger model has them.
+//! Windows of the measured fingers under a finger model.
 
 use super::published::TaskTable;
 use insertion::evaluation::Window;
@@ -15,43 +15,36 @@ use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
 use rayon::prelude::*;
 
-/// How the windows of measured fingers are found.
+/// Setup for the windows of measured fingers.
 pub struct Windows<'a> {
-    /// Makes the fingers.
     pub fingers: &'a FingerSource,
-    /// The robot.
     pub robot: &'a Robot,
-    /// What computes the contacts.
     pub engine: EngineKind,
-    /// How the windows' ends are looked for.
     pub search: Search,
 }
 
 impl Windows<'_> {
-    /// The windows of all designs on all tasks, with their measured stiffness; in parallel,
-    /// collected by task and design.
+    /// Windows of all designs on all tasks, with their measured stiffness; in parallel, collected by
+    /// task and design.
     ///
     /// # Errors
-    /// If a finger cannot be, or the robot or the engine cannot do a task.
+    /// If a finger is impossible, or the robot or the engine cannot do a task.
     pub fn measure(
         &self,
         tasks: &[Task],
         designs: &[Measurement],
     ) -> Result<Vec<TaskTable>, Impossible> {
-        let pairs: Vec<(&Task, &Measurement)> = tasks
-            .iter()
-            .flat_map(|task| designs.iter().map(move |design| (task, design)))
-            .collect();
-        let windows: Result<Vec<Window>, Impossible> =
-            pairs.into_par_iter().map(|(task, design)| self.window(task, design)).collect();
-        let windows = windows?;
+        let pairs = tasks.iter().flat_map(|task| designs.iter().map(move |design| (task, design)));
+        let pairs = pairs.collect::<Vec<_>>().into_par_iter();
+        let windows = pairs.map(|(task, design)| self.window(task, design));
+        let windows = windows.collect::<Result<Vec<Window>, Impossible>>()?;
         let table = |(task, found): (&Task, &[Window])| {
             TaskTable::new(&task.name, designs.iter().copied().zip(found.iter().cloned()))
         };
         Ok(tasks.iter().zip(windows.chunks(designs.len().max(1))).map(table).collect())
     }
 
-    /// The window of a finger about the start that its task asks for.
+    /// Window of a finger about the start that its task asks for.
     fn window(&self, task: &Task, design: &Measurement) -> Result<Window, Impossible> {
         let Measurement { compliance, assembly, density_percent, direction_deg, .. } = *design;
         let infill = Design::infill(density_percent, direction_deg);

@@ -1,5 +1,5 @@
-//! The same fingers measured in several ways: by another search, at half the step, in another
-//! engine, and as published.
+//! Windows of the same fingers measured in several ways: by another search, at half the step, in
+//! another engine, and as published.
 
 pub mod engines;
 pub mod fingers;
@@ -8,8 +8,6 @@ pub mod published;
 
 #[cfg(test)]
 mod tests;
-
-pub use pairs::WindowPair;
 
 use finger_opt::cli::terminal::merge;
 use input::units::N_PER_MM;
@@ -25,59 +23,52 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// One way in which windows are measured.
+/// Way of measuring windows.
 #[derive(Clone)]
 pub struct Way {
-    /// What tables call it.
+    /// Name in tables.
     pub name: String,
-    /// Where its trials are run.
     pub rig: Arc<dyn Rig>,
-    /// How it looks for the windows' ends.
     pub search: Search,
 }
 
 impl Way {
-    /// The window of a finger, and what all trials on the way reported.
+    /// Evaluation of a finger: its window and its trials.
     pub fn evaluate(&self, finger: &Finger) -> Evaluation {
         tolerance::evaluate(&*self.rig, finger, self.search)
     }
 }
 
-/// A task and the ways in which its windows are measured; the first is the one that the
-/// others are compared with.
+/// Task and the ways in which its windows are measured, the reference first.
 pub struct TaskWays {
-    /// The task.
     pub task: Task,
-    /// The ways, at least one.
     pub ways: Vec<Way>,
 }
 
-/// A measured finger on a task.
+/// Measured finger on a task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
-    /// Name of the task.
     pub task: String,
-    /// Infill and measured stiffness of the finger.
     pub design: Measurement,
-    /// The finger: its measured stiffness, not the surrogate's.
+    /// Finger with the measured stiffness, not the surrogate's.
     pub finger: Finger,
 }
 
 impl Subject {
-    /// A measured finger of a shape.
+    /// Measured finger of a shape.
     pub fn new(task: &str, model: &FingerModel, design: Measurement) -> Self {
         let finger = Finger::new(design.compliance, design.assembly);
         let finger = finger.shaped(model, design.direction_deg);
         Subject { task: task.to_owned(), design, finger }
     }
 
-    /// Its infill in words, `10 %, 30 deg`.
+    /// Infill as in `10 %, 30 deg`.
     pub fn infill(&self) -> String {
         format!("{} %, {} deg", self.design.density_percent, self.design.direction_deg)
     }
 }
 
-/// The keys that name a finger on a task in every comparison, and those of what was measured.
+/// JSON keys of a finger on a task, the same in every comparison, and of what was measured.
 fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
     let mut fields = json!({
         "task": task,
@@ -91,8 +82,8 @@ fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
     fields
 }
 
-/// Measures every design on every task; in parallel, collected by task and design, so the
-/// number of threads changes nothing.
+/// Results of every design on every task; measured in parallel, collected by task and design, so
+/// the number of threads changes nothing.
 pub fn each<T: Send>(
     tasks: &[TaskWays],
     designs: &[Measurement],
@@ -106,7 +97,7 @@ pub fn each<T: Send>(
     pairs.into_par_iter().map(one).collect()
 }
 
-/// Failure classes at the negative and the positive end; none without a window.
+/// Failure classes at the negative and the positive end; `None` without a window.
 fn failures(window: &Window) -> [Option<FailureClass>; 2] {
     [window.end_negative, window.end_positive].map(|end| match (window.nominal, end) {
         (Outcome::Inserted, Some(Outcome::Failed(class))) => Some(class),
@@ -114,7 +105,7 @@ fn failures(window: &Window) -> [Option<FailureClass>; 2] {
     })
 }
 
-/// A window with the keys that every command gives it.
+/// JSON keys of a window, the same in every command.
 fn window_json(window: &Window) -> Value {
     let [negative, positive] = failures(window);
     json!({
@@ -127,7 +118,7 @@ fn window_json(window: &Window) -> Value {
     })
 }
 
-/// `-1.4 to +5.8`, in mm; `none` if the nominal start does not insert.
+/// Window as in `-1.4 to +5.8`, mm; `none` if the nominal start does not insert.
 fn window_words(window: &Window) -> String {
     match window.nominal {
         Outcome::Inserted => {

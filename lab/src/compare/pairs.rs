@@ -1,27 +1,34 @@
-//! Windows of the same fingers in two ways: how far their ends lie apart.
+//! Windows of the same fingers in two ways, and the differences of their ends.
 
 use super::{Subject, TaskWays, Way, each, subject_json, window_json, window_words};
 use finger_opt::calibration::statistics::mean;
-use insertion::evaluation::{OffsetStep, Window, grid_mm};
+use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The windows of one finger in two ways.
+/// Windows of a finger in two ways.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WindowPair {
-    /// The finger and its task.
     pub subject: Subject,
-    /// What the two ways are called.
+    /// Names of the ways.
     pub ways: [String; 2],
-    /// The windows found.
     pub windows: [Window; 2],
-    /// Trials run for them.
+    /// Number of trials of each window.
     pub trials: [u32; 2],
 }
 
 impl WindowPair {
-    /// How far the negative and the positive end lie farther out the second way, mm.
+    pub fn new(subject: &Subject, ways: [&Way; 2], found: [&Evaluation; 2]) -> Self {
+        WindowPair {
+            subject: subject.clone(),
+            ways: ways.map(|way| way.name.clone()),
+            windows: found.map(|evaluation| evaluation.window.clone()),
+            trials: found.map(|evaluation| evaluation.trials),
+        }
+    }
+
+    /// Outward shift of the negative and the positive end from the first way to the second, mm.
     pub fn moved_mm(&self) -> [f64; 2] {
         self.moved().map(grid_mm)
     }
@@ -31,40 +38,35 @@ impl WindowPair {
         [first.negative_steps - second.negative_steps, second.positive_steps - first.positive_steps]
     }
 
-    /// Whether the nominal start ends alike and no end moves by more than so many grid steps.
+    /// Whether the nominal outcomes are equal and no end moves by more than `allowed` grid steps.
     pub fn agrees(&self, allowed: OffsetStep) -> bool {
         self.windows[0].nominal == self.windows[1].nominal
             && self.moved().iter().all(|moved| moved.abs() <= allowed)
     }
 }
 
-/// Measures every design on every task in all ways: one pair for each way but the first.
+/// Pairs of the first way with each other one, of every design on every task.
 pub fn measure(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<WindowPair> {
     let pairs = each(tasks, designs, |subject, ways| {
         let Some((first, others)) = ways.split_first() else { return Vec::new() };
         let reference = first.evaluate(&subject.finger);
         let pair = |other: &Way| {
             let found = other.evaluate(&subject.finger);
-            WindowPair {
-                subject: subject.clone(),
-                ways: [first, other].map(|way| way.name.clone()),
-                windows: [reference.window.clone(), found.window],
-                trials: [reference.trials, found.trials],
-            }
+            WindowPair::new(subject, [first, other], [&reference, &found])
         };
         others.iter().map(pair).collect()
     });
     pairs.concat()
 }
 
-/// Mean distance between the ends of the same windows, mm; `None` without pairs.
+/// Mean distance of the ends of the two windows, mm; `None` without pairs.
 pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
     let ends = pairs.iter().flat_map(WindowPair::moved_mm).map(f64::abs);
     mean(&ends.collect::<Vec<_>>())
 }
 
-/// An aligned table at most 80 columns wide, and a line about all pairs; with a verdict on
-/// each if the ends may move by so many grid steps only.
+/// Aligned table at most 80 columns wide with a summary, and with a verdict on each pair if the
+/// grid steps that its ends may move are given.
 pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     let first = pairs.first().map_or("", |pair| &pair.ways[0]);
     let mut text = format!(
@@ -93,27 +95,24 @@ pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     text + &summary(pairs)
 }
 
-/// How many pairs are the same, how far the ranges differ, and what it cost.
+/// Number of equal pairs, differences of the ranges, and numbers of trials.
 fn summary(pairs: &[WindowPair]) -> String {
     let differences: Vec<f64> = pairs
         .iter()
         .map(|pair| (pair.windows[0].range_mm() - pair.windows[1].range_mm()).abs())
         .collect();
-    let trials = |way: usize| pairs.iter().map(|pair| pair.trials[way]).sum::<u32>();
+    let [first, second] = [0, 1].map(|way| pairs.iter().map(|pair| pair.trials[way]).sum::<u32>());
+    let (same, all) = (pairs.iter().filter(|pair| pair.agrees(0)).count(), pairs.len());
+    let average = mean(&differences).unwrap_or(0.0);
+    let most = differences.into_iter().fold(0.0, f64::max);
     format!(
-        "same ends in {} of {}; ranges differ by {:.2} mm in the mean, {:.1} mm at most\n\
-         trials: {} against {}\n",
-        pairs.iter().filter(|pair| pair.agrees(0)).count(),
-        pairs.len(),
-        mean(&differences).unwrap_or(0.0),
-        differences.iter().copied().fold(0.0, f64::max),
-        trials(0),
-        trials(1),
+        "same ends in {same} of {all}; ranges differ by {average:.2} mm in the mean, {most:.1} mm at most\n\
+         trials: {first} against {second}\n"
     )
 }
 
-/// The same for programs: a list with the keys `way` for the name of the second way, and
-/// `windows` for the two windows; a verdict if the ends may move by so many grid steps only.
+/// JSON list with the keys `way` for the name of the second way, and `windows` for the two windows;
+/// `allowed` as in [`text`].
 pub fn json(
     pairs: &[WindowPair],
     allowed: Option<OffsetStep>,

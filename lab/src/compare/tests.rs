@@ -1,41 +1,41 @@
-//! Pairs of windows, and the fingers that are compared.
+//! Pairs of windows, and the compared fingers.
 
 use super::*;
-use finger_opt::calibration::published::designs;
-use finger_opt::calibration::published::three;
+use crate::compare::pairs::WindowPair;
+use finger_opt::calibration::published::{designs, three};
 use input::shipped::TASKS;
 use insertion::evaluation::OffsetStep;
 use insertion::trial::fake::FakeRig;
 
-fn window(negative_steps: OffsetStep, positive_steps: OffsetStep) -> Window {
-    let end = Some(Outcome::Failed(FailureClass::Jammed));
-    Window {
-        nominal: Outcome::Inserted,
-        negative_steps,
-        positive_steps,
-        end_negative: end,
-        end_positive: end,
-    }
+pub(super) fn window(steps: [OffsetStep; 2], ends: [FailureClass; 2]) -> Window {
+    let [negative_steps, positive_steps] = steps;
+    let [end_negative, end_positive] = ends.map(|class| Some(Outcome::Failed(class)));
+    let nominal = Outcome::Inserted;
+    Window { nominal, negative_steps, positive_steps, end_negative, end_positive }
+}
+
+fn jammed(negative: OffsetStep, positive: OffsetStep) -> Window {
+    window([negative, positive], [FailureClass::Jammed; 2])
 }
 
 fn pair(second: Window) -> WindowPair {
     WindowPair {
         subject: Subject::new("usb", &FingerModel::default(), three(designs())[0]),
         ways: ["production", "half the step"].map(str::to_owned),
-        windows: [window(-33, 14), second],
+        windows: [jammed(-33, 14), second],
         trials: [18, 19],
     }
 }
 
 #[test]
 fn an_end_may_move_by_as_much_as_is_allowed() {
-    let moved = pair(window(-34, 13));
+    let moved = pair(jammed(-34, 13));
     assert_eq!(moved.moved_mm(), [0.1, -0.1]);
     assert!(moved.agrees(1) && !moved.agrees(0));
-    assert!(!pair(window(-33, 16)).agrees(1));
-    let jams = Window { nominal: Outcome::Failed(FailureClass::Jammed), ..window(-33, 14) };
+    assert!(!pair(jammed(-33, 16)).agrees(1));
+    let jams = Window { nominal: Outcome::Failed(FailureClass::Jammed), ..jammed(-33, 14) };
     assert!(!pair(jams).agrees(1));
-    assert_eq!(pairs::mean_end_difference_mm(&[moved, pair(window(-38, 14))]), Some(0.175));
+    assert_eq!(pairs::mean_end_difference_mm(&[moved, pair(jammed(-38, 14))]), Some(0.175));
     assert_eq!(pairs::mean_end_difference_mm(&[]), None);
 }
 
@@ -62,11 +62,11 @@ fn every_way_but_the_first_makes_a_pair_and_the_table_fits_a_terminal() {
     let names: Vec<&str> = found.iter().map(|pair| pair.ways[1].as_str()).collect();
     assert_eq!(names, ["strides", "again"].repeat(3));
     assert!(found.iter().all(|pair| pair.agrees(0) && pair.trials[0] > 10));
-    let table = pairs::text(&[found, vec![pair(window(-33, 19))]].concat(), Some(1));
+    let table = pairs::text(&[found, vec![pair(jammed(-33, 19))]].concat(), Some(1));
     assert!(table.lines().all(|line| line.len() <= 80), "{table}");
     assert_eq!((table.matches("FAIL").count(), table.matches(" ok\n").count()), (1, 6), "{table}");
     let row =
-        &pairs::json(&[pair(window(-34, 14))], Some(1), "finer", ["production", "refined"])[0];
+        &pairs::json(&[pair(jammed(-34, 14))], Some(1), "finer", ["production", "refined"])[0];
     assert_eq!((&row["finer"], &row["passed"]), (&"half the step".into(), &true.into()));
     assert_eq!(
         (&row["refined"]["negative_mm"], &row["refined"]["failure_negative"]),

@@ -1,48 +1,32 @@
 //! Functions with known optima.
 
+use clap::ValueEnum;
 use std::f64::consts::PI;
 
-/// A test function, to be minimised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Test function, to be minimised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Function {
-    /// Sum of squares.
+    /// Sum of squares
     Sphere,
-    /// A bent valley.
+    /// Bent valley
     Rosenbrock,
-    /// Squares with weights from 1 to 1e6.
+    /// Squares with weights from 1 to 1e6
     Ellipsoid,
-    /// A bowl with a lattice of local minima.
+    /// Bowl with a lattice of local minima
     Rastrigin,
-    /// Branin on the unit square: three equal minima.
+    /// Branin on the unit square: three equal minima
     Branin,
-    /// Hartmann in six dimensions on the unit cube: one minimum and a second, nearly as deep.
+    /// Hartmann in six dimensions on the unit cube: one minimum and a second, nearly as deep
     Hartmann6,
 }
 
 impl Function {
-    /// All functions, in the order of the tables.
-    pub const ALL: [Function; 6] = [
-        Self::Sphere,
-        Self::Rosenbrock,
-        Self::Ellipsoid,
-        Self::Rastrigin,
-        Self::Branin,
-        Self::Hartmann6,
-    ];
-
-    /// The name in tables and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sphere => "sphere",
-            Self::Rosenbrock => "rosenbrock",
-            Self::Ellipsoid => "ellipsoid",
-            Self::Rastrigin => "rastrigin",
-            Self::Branin => "branin",
-            Self::Hartmann6 => "hartmann6",
-        }
+    /// Name in tables and on the command line.
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
     }
 
-    /// Its value at `x`: of any dimension above 1 for the first four, in the unit cube of its
+    /// Value at `x`: of any dimension above 1 for the first four, in the unit cube of the function's
     /// own dimension for the others.
     pub fn value(self, x: &[f64]) -> f64 {
         match self {

@@ -1,41 +1,40 @@
-//! Recorded landscapes: the objective of every design of a space.
+//! Recorded landscapes: the tolerable range of every design of a space.
 
-use ask_tell::Grid;
-use ask_tell::GridPoint;
+use ask_tell::{Grid, GridPoint};
 use input::InputError;
 
 /// Column of the values; the columns before it are the axes.
 const VALUE: &str = "range_mm";
 
-/// The tolerable range of every design of a space, mm; none where the evaluation diverged.
+/// Tolerable range of every design of a space, mm; `None` where the evaluation diverged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Landscape {
-    grid: Grid,
+    pub grid: Grid,
     /// By level of the first axis, then of the second, and so on.
     values: Vec<Option<f64>>,
 }
 
 impl Landscape {
-    /// Reads a CSV: a header, the axes, then `range_mm` (empty for no value), then anything.
-    /// Every combination of the axes' values has to be there once. `file` is named in errors.
+    /// Landscape of a CSV: a header, the axes, then `range_mm` (empty for no value), then anything.
+    /// `file` is named in errors.
+    ///
+    /// # Errors
+    /// If a row is malformed, or a combination of the axes' values is not there once.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let fail = |message: String| InputError::Syntax { file: file.to_owned(), message };
         let mut lines = text.lines().filter(|line| !line.starts_with('#'));
         let header = lines.next().unwrap_or_default();
         let axes = header.split(',').position(|name| name == VALUE).filter(|&axes| axes > 0);
-        let Some(axes) = axes else {
-            return Err(fail(format!(
-                "the header must name the axes and then {VALUE}: '{header}'"
-            )));
+        let axes = axes
+            .ok_or_else(|| format!("the header must name the axes and then {VALUE}: '{header}'"));
+        let axes = axes.map_err(fail)?;
+        let row = |line: &str| {
+            row(line, axes).ok_or_else(|| {
+                format!("'{line}' does not begin with {axes} finite numbers and {VALUE}")
+            })
         };
-        let mut rows = Vec::new();
-        for line in lines {
-            let row = row(line, axes).ok_or_else(|| {
-                fail(format!("'{line}' does not begin with {axes} finite numbers and {VALUE}"))
-            })?;
-            rows.push(row);
-        }
-        Self::of(&rows, axes).map_err(fail)
+        let rows = lines.map(row).collect::<Result<Vec<_>, _>>();
+        rows.and_then(|rows| Self::of(&rows, axes)).map_err(fail)
     }
 
     fn of(rows: &[DesignRow], axes: usize) -> Result<Self, String> {
@@ -68,17 +67,12 @@ impl Landscape {
         Ok(Landscape { grid, values })
     }
 
-    /// The designs.
-    pub fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
-    /// The range of a design of the grid, mm.
+    /// Range of a design of the grid, mm.
     pub fn value(&self, point: &GridPoint) -> Option<f64> {
         self.values[index(&self.grid, &point.0)]
     }
 
-    /// The largest range, mm.
+    /// Largest range, mm.
     pub fn best(&self) -> f64 {
         self.values.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max)
     }
@@ -114,12 +108,10 @@ mod tests {
     #[test]
     fn values_stand_at_their_designs_in_any_order() {
         let landscape = Landscape::parse(SMALL, "small.csv").unwrap();
-        assert_eq!(landscape.grid().levels(), [3, 2]);
+        assert_eq!(landscape.grid.levels(), [3, 2]);
         let at = |a, b| landscape.value(&GridPoint(vec![a, b]));
-        assert_eq!(
-            (at(0, 1), at(1, 0), at(1, 1), at(2, 1)),
-            (Some(2.0), Some(0.1), None, Some(2.9))
-        );
+        let found = [at(0, 1), at(1, 0), at(1, 1), at(2, 1)];
+        assert_eq!(found, [Some(2.0), Some(0.1), None, Some(2.9)]);
         assert_eq!(landscape.best(), 3.0);
     }
 

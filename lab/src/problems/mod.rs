@@ -1,5 +1,5 @@
-//! How many evaluations the optimizers need on problems whose optimum is known: functions in
-//! closed form, and recorded landscapes of tasks. `scripts/peers.py` measures other libraries on
+//! Evaluations that the optimizers need on problems with a known optimum: functions in closed form,
+//! and recorded landscapes of tasks. `scripts/peers.py` measures other libraries on
 //! the same problems.
 
 mod functions;
@@ -12,13 +12,13 @@ pub use functions::Function;
 pub use landscape::Landscape;
 pub use problem::GridProblem;
 pub use runs::{Runs, csv, markdown};
-pub use time::{SuggestionTime, suggestion_times, time_markdown};
+pub use time::{suggestion_times, time_markdown};
 
 use ask_tell::{OptimizerKind, build};
 use problem::{CMA_DIMENSIONS, cma_evaluations, is_unbounded};
 use rayon::prelude::*;
 
-/// Runs `methods` on a function: CMA-ES alone in R^n to 1e-8, or all of them on a grid.
+/// Runs of `methods` on a function: of CMA-ES alone in R^n to 1e-8, or of all on a grid.
 pub fn on_function(function: Function, methods: &[OptimizerKind], seeds: u64) -> Vec<Runs> {
     if !is_unbounded(function) {
         let problems = GridProblem::of_function(function);
@@ -35,19 +35,19 @@ pub fn on_function(function: Function, methods: &[OptimizerKind], seeds: u64) ->
         .collect()
 }
 
-/// Runs `methods` on a problem on a grid.
+/// Runs of `methods` on a problem on a grid.
 pub fn on_grid(problem: &GridProblem, methods: &[OptimizerKind], seeds: u64) -> Vec<Runs> {
     let of = |&kind: &OptimizerKind| Runs {
-        problem: problem.name().to_owned(),
+        problem: problem.name.clone(),
         method: kind.name().to_owned(),
         evaluations: over_seeds(seeds, |seed| {
-            problem.evaluations(&mut *build(kind, problem.grid().clone(), seed))
+            problem.evaluations(&mut *build(kind, problem.grid.clone(), seed))
         }),
     };
     methods.iter().map(of).collect()
 }
 
-/// In parallel, the results by seed.
+/// Results by seed, run in parallel.
 fn over_seeds(seeds: u64, run: impl Fn(u64) -> Option<usize> + Send + Sync) -> Vec<Option<usize>> {
     (0..seeds).into_par_iter().map(run).collect()
 }

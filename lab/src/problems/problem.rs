@@ -1,25 +1,24 @@
-//! What is to be found, and how many evaluations an optimizer takes to find it.
+//! Problems, and the evaluations that an optimizer takes to solve them.
 
 use super::functions::Function;
 use super::landscape::Landscape;
-use ask_tell::GridPoint;
 use ask_tell::cmaes::{Restarts, Solution, StartBox, Strategy, Tolerances};
-use ask_tell::{Grid, Observation, Optimizer};
+use ask_tell::{Grid, GridPoint, Observation, Optimizer};
 
 /// Levels per axis of the grids on which the functions are searched.
 const LEVELS: u32 = 1001;
 /// Evaluations after which a run on a landscape counts as failed.
 const LANDSCAPE_LIMIT: usize = 100;
-/// What a design may fall short of the best one of its landscape, mm.
+/// Largest shortfall to the best design of a landscape, mm.
 const SHORTFALL_MM: f64 = 0.1;
-/// Less than a step of the ranges, for their rounding, mm.
+/// Rounding of the ranges, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// A problem on a grid: **maximised**, up to a target.
+/// Problem on a grid: maximisation up to a target, in a limited number of evaluations.
 #[derive(Debug, Clone)]
 pub struct GridProblem {
-    name: String,
-    grid: Grid,
+    pub name: String,
+    pub grid: Grid,
     value: Value,
     target: f64,
     limit: usize,
@@ -33,7 +32,7 @@ enum Value {
 }
 
 impl GridProblem {
-    /// Those made of a function; none of the functions that are searched off the grid.
+    /// Problems of a function; none of a function that is searched off the grid.
     pub fn of_function(function: Function) -> Vec<Self> {
         let problem = |goal: &str, dimension, target, limit| GridProblem {
             name: format!("{}{goal}", function.name()),
@@ -55,30 +54,15 @@ impl GridProblem {
         }
     }
 
-    /// Within 0.1 mm of the best design of a recorded landscape.
+    /// Search for a design within 0.1 mm of the best of a recorded landscape.
     pub fn of_landscape(name: &str, landscape: Landscape) -> Self {
         GridProblem {
             name: format!("{name} landscape"),
-            grid: landscape.grid().clone(),
+            grid: landscape.grid.clone(),
             target: landscape.best() - SHORTFALL_MM - ROUNDING_MM,
             limit: LANDSCAPE_LIMIT,
             value: Value::Landscape(landscape),
         }
-    }
-
-    /// What it is called in tables.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// The points.
-    pub fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
-    /// Evaluations after which a run counts as failed.
-    pub fn limit(&self) -> usize {
-        self.limit
     }
 
     fn value(&self, point: &GridPoint) -> Option<f64> {
@@ -88,7 +72,7 @@ impl GridProblem {
         }
     }
 
-    /// Evaluations, one at a time, to the target; none if the limit was not enough.
+    /// Number of evaluations, one at a time, to the target; `None` beyond the limit.
     pub fn evaluations(&self, optimizer: &mut dyn Optimizer) -> Option<usize> {
         for evaluation in 1..=self.limit {
             let point = optimizer.ask(1).pop()?;
@@ -104,9 +88,9 @@ impl GridProblem {
 
 /// Evaluations after which a run of CMA-ES counts as failed.
 const CMA_LIMIT: usize = 1_000_000;
-/// The value it has to get below.
+/// Value that counts as found.
 const CMA_TARGET: f64 = 1e-8;
-/// Dimensions in which it is measured.
+/// Dimensions of the functions.
 pub(super) const CMA_DIMENSIONS: [usize; 2] = [2, 5];
 
 /// Whether a function is searched by CMA-ES in R^n instead of on a grid.
@@ -153,11 +137,11 @@ mod tests {
         let text = "a,range_mm\n1,0.5\n2,\n3,1.9\n4,0.7\n5,2.0\n";
         let landscape = Landscape::parse(text, "l.csv").unwrap();
         let problem = GridProblem::of_landscape("l", landscape);
-        let mut order = GridSearch::new(problem.grid().clone());
+        let mut order = GridSearch::new(problem.grid.clone());
         let points: Vec<u32> =
             std::iter::from_fn(|| order.ask(1).pop()).map(|point| point.0[0]).collect();
         let first = points.iter().position(|&k| k == 2 || k == 4).unwrap() + 1;
-        let mut again = GridSearch::new(problem.grid().clone());
+        let mut again = GridSearch::new(problem.grid.clone());
         assert_eq!(problem.evaluations(&mut again), Some(first));
     }
 
@@ -166,7 +150,7 @@ mod tests {
         let landscape = Landscape::parse("a,range_mm\n1,0.5\n2,3.0\n", "l.csv").unwrap();
         let mut problem = GridProblem::of_landscape("l", landscape);
         problem.target = 4.0;
-        let mut search = GridSearch::new(problem.grid().clone());
+        let mut search = GridSearch::new(problem.grid.clone());
         assert_eq!(problem.evaluations(&mut search), None);
     }
 }

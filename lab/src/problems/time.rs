@@ -1,25 +1,22 @@
-//! Time that the Gaussian process takes for a suggestion.
+//! Processor time of a suggestion of the Gaussian process.
 
 use super::functions::Function;
 use ask_tell::gp::GpOptimizer;
 use ask_tell::{Grid, Observation, Optimizer};
 use std::time::Instant;
 
-/// Evaluations whose time is taken.
+/// Timed evaluations.
 const TIMED: std::ops::RangeInclusive<usize> = 191..=210;
 
 /// Processor time of `ask` and `tell` together near 200 evaluations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SuggestionTime {
-    /// Levels per axis.
     pub levels: Vec<u32>,
-    /// Mean, ms.
     pub mean_ms: f64,
-    /// Largest, ms.
     pub worst_ms: f64,
 }
 
-/// On grids of the printable space, of two fine ones and of six axes.
+/// Times on grids of the printable space, on finer ones and on six axes.
 pub fn suggestion_times() -> Vec<SuggestionTime> {
     let grids = [vec![21, 41], vec![101, 101], vec![141, 141], vec![1001; 2], vec![1001; 6]];
     grids.into_iter().map(suggestion_time).collect()
@@ -61,7 +58,7 @@ fn seconds(origin: Instant) -> f64 {
     nanoseconds.map_or_else(|| origin.elapsed().as_secs_f64(), |n| n * 1e-9)
 }
 
-/// A Markdown table of them.
+/// Markdown table of suggestion times.
 pub fn time_markdown(times: &[SuggestionTime]) -> String {
     let row =
         |t: &SuggestionTime| format!("| {:?} | {:.1} | {:.1} |\n", t.levels, t.mean_ms, t.worst_ms);

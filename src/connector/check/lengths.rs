@@ -1,19 +1,20 @@
-//! Lengths that cannot be millimetres.
+//! Lengths given in another unit than millimetres.
 
 use super::{Case, Problem, mm, part_key};
-use crate::connector::body::span;
+use crate::connector::body::{extent, width};
+use crate::connector::seat::section;
 use input::units::MM;
 use insertion::task::Ending;
 use nalgebra::Vector3;
 
-/// Units that are mistaken for millimetres, and how many millimetres they are.
+/// Units mistaken for millimetres, in mm.
 const UNITS: [(&str, f64); 4] =
     [("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)];
 
-/// A plug that is so many times smaller or larger than its opening is in another unit.
+/// Ratio of plug and opening beyond which one of them is in another unit.
 const OTHER_UNIT: f64 = 8.0;
 
-/// A length that should lie in a range, mm.
+/// Length of a task, m, and the range it should lie in, mm.
 struct Length {
     key: String,
     value: f64,
@@ -31,7 +32,6 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
 fn lengths(case: &Case) -> Vec<Length> {
     let (task, grip) = (case.task, &case.task.grip);
     let length = |key: &str, value, range_mm| Length { key: key.to_owned(), value, range_mm };
-    let width = |[low, high]: [f64; 2]| high - low;
     let mut all = vec![
         length("plug.part", width(case.plug.extent(2)), [8.0, 300.0]),
         length("socket.opening_x_mm", width(task.opening[0]), [0.5, 100.0]),
@@ -46,10 +46,9 @@ fn lengths(case: &Case) -> Vec<Length> {
     for (body, parts) in [("plug", &task.plug.parts), ("socket", &task.socket)] {
         all.extend(parts.iter().map(|part| {
             let corners = part.solid.corners();
-            let along = |axis: usize| width(span(corners.iter().map(|p| p[axis])));
+            let along = |axis: usize| width(extent(&corners, axis));
             let largest = (0..3).map(along).fold(0.0, f64::max);
-            let key = part_key(body, &part.name, "");
-            Length { key: key.trim_end().to_owned(), value: largest, range_mm: [0.3, 1000.0] }
+            length(&part_key(body, &part.name, ""), largest, [0.3, 1000.0])
         }));
     }
     for phase in &task.strategy.phases {
@@ -57,15 +56,13 @@ fn lengths(case: &Case) -> Vec<Length> {
         let by = Vector3::from(phase.displacement).norm();
         all.push(length(&key("move_mm"), by, [0.05, 200.0]));
         all.push(length(&key("speed_mm_per_s"), phase.speed, [0.5, 2000.0]));
-        match phase.ending {
-            Ending::Tolerance(value) => {
-                all.push(length(&key("tolerance_mm"), value, [0.005, 10.0]));
-            }
+        all.extend(match phase.ending {
+            Ending::Tolerance(value) => Some(length(&key("tolerance_mm"), value, [0.005, 10.0])),
             Ending::Touch { preload, .. } => {
-                all.push(length(&key("preload_mm"), preload, [0.01, 10.0]));
+                Some(length(&key("preload_mm"), preload, [0.01, 10.0]))
             }
-            Ending::Duration(_) => {}
-        }
+            Ending::Duration(_) => None,
+        });
     }
     all
 }
@@ -77,9 +74,7 @@ impl Length {
         if (low..=high).contains(&value_mm) {
             return None;
         }
-        let key = &self.key;
-        let size = if value_mm < low { "less" } else { "more" };
-        let [limit, _] = if value_mm < low { [low, high] } else { [high, low] };
+        let (size, limit) = if value_mm < low { ("less", low) } else { ("more", high) };
         let problem = format!("{value_mm:.4} mm are {size} than such a length can be ({limit} mm)");
         let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value_mm * factor));
         let remedy = match UNITS.iter().find(within) {
@@ -89,25 +84,20 @@ impl Length {
             ),
             None => format!("between {low} and {high} mm"),
         };
-        Some(Problem::new(key, problem, remedy))
+        Some(Problem::new(&self.key, problem, remedy))
     }
 }
 
-/// Plug and opening in two units.
+/// Plug and opening in different units.
 fn against_opening(case: &Case) -> Option<Problem> {
-    let depth = case.task.success.depth;
-    let section = crate::connector::seat::section(&case.plug, depth);
-    let ratio = |axis: usize| {
-        let [[from, to], [low, high]] = [section[axis], case.task.opening[axis]];
-        (to - from) / (high - low)
-    };
-    let (x, y) = (ratio(0), ratio(1));
+    let section = section(&case.plug, case.task.success.depth);
+    let [x, y] = [0, 1].map(|axis| width(section[axis]) / width(case.task.opening[axis]));
     let (much, what) = match (x.min(y) > OTHER_UNIT, x.max(y) < 1.0 / OTHER_UNIT) {
         (true, _) => (x.min(y), "larger"),
         (_, true) => (1.0 / x.max(y), "smaller"),
         _ => return None,
     };
-    let widths = section.map(|[from, to]| mm(to - from)).join(" x ");
+    let widths = section.map(|range| mm(width(range))).join(" x ");
     Some(Problem::new(
         "socket.opening_x_mm, socket.opening_y_mm",
         format!("the plug, {widths} mm, is {much:.0} times {what} than the opening"),

@@ -1,4 +1,4 @@
-//! Whether a task can work: geometry and commands, before anything is simulated.
+//! Check of a task's geometry and commanded moves, without simulation.
 
 mod grasp;
 mod lengths;
@@ -7,20 +7,20 @@ mod socket;
 mod strategy;
 
 use super::body::ConvexBody;
-use super::seat::{Seat, Seating};
+use super::seat::Seating;
 use input::InputError;
 use input::units::MM;
-use insertion::task::Task;
+use insertion::task::{Solid, Task};
 use serde::Serialize;
 
-/// Something in a task file that cannot work.
+/// Fault of a task file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Problem {
-    /// The key, as a path that can be read off the file.
+    /// Key, as a path in the file.
     pub key: String,
-    /// What is wrong.
+    /// Description of the fault.
     pub problem: String,
-    /// What would be right.
+    /// Advice on a value that works.
     pub remedy: String,
 }
 
@@ -33,10 +33,11 @@ impl Problem {
 impl From<&InputError> for Problem {
     fn from(error: &InputError) -> Self {
         match error {
-            InputError::Value { key, problem, .. } => match problem.split_once("; ") {
-                Some((problem, remedy)) => Problem::new(key, problem, remedy),
-                None => Problem::new(key, problem, "see docs/guide/tasks.md"),
-            },
+            InputError::Value { key, problem, .. } => {
+                let whole = (&**problem, "see docs/guide/tasks.md");
+                let (problem, remedy) = problem.split_once("; ").unwrap_or(whole);
+                Problem::new(key, problem, remedy)
+            }
             InputError::Syntax { message, .. } => {
                 // The parser names an unknown or missing key in backticks.
                 let key = message.split('`').nth(1).unwrap_or("the file");
@@ -46,14 +47,14 @@ impl From<&InputError> for Problem {
     }
 }
 
-/// What the checks look at.
+/// Task under check, with its two bodies.
 struct Case<'a> {
     task: &'a Task,
     plug: ConvexBody<'a>,
     socket: ConvexBody<'a>,
 }
 
-/// All that is wrong with a task, the cause before what follows from it.
+/// Faults of a task, causes before consequences.
 pub fn problems(task: &Task) -> Vec<Problem> {
     let case =
         Case { task, plug: ConvexBody::plug(&task.plug), socket: ConvexBody::new(&task.socket) };
@@ -64,14 +65,11 @@ pub fn problems(task: &Task) -> Vec<Problem> {
     }
     found.extend(parts::problems(&case));
     found.extend(socket::walls(&case));
-    found.extend(socket::depth(&case, &seat(&case)));
+    let seat = Seating::new(task, &case.plug, &case.socket).deepest();
+    found.extend(socket::depth(&case, &seat));
     found.extend(grasp::problems(&case));
     found.extend(strategy::problems(&case));
     found
-}
-
-fn seat(case: &Case) -> Seat {
-    Seating::new(case.task, &case.plug, &case.socket).deepest()
 }
 
 /// A length for a message: mm, two decimals at most.
@@ -79,19 +77,18 @@ fn mm(length: f64) -> String {
     format!("{}", (length / MM * 100.0).round() / 100.0 + 0.0)
 }
 
-/// From, to for a message.
+/// Interval for a message, mm.
 fn pair([from, to]: [f64; 2]) -> String {
     format!("[{}, {}]", mm(from), mm(to))
 }
 
-/// The key of a part's field.
+/// Key of a part, or of a field of it.
 fn part_key(body: &str, name: &str, field: &str) -> String {
-    format!("{body}.part \"{name}\" {field}")
+    format!("{body}.part \"{name}\" {field}").trim_end().to_owned()
 }
 
-/// The field of a part that has its extent along an axis.
-fn field(solid: &insertion::task::Solid, axis: usize) -> &'static str {
-    use insertion::task::Solid;
+/// Name of the field that gives a part's extent along an axis.
+fn field(solid: &Solid, axis: usize) -> &'static str {
     match solid {
         Solid::Box { .. } => ["x_mm", "y_mm", "z_mm"][axis],
         Solid::Cylinder { .. } => ["diameter_mm", "diameter_mm", "z_mm"][axis],

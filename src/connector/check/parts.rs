@@ -1,18 +1,18 @@
-//! Parts by themselves and against the others of their body.
+//! Parts of plug and socket: thickness, overlaps, gaps, latch and mass.
 
 use super::{Case, Problem, field, mm, part_key};
-use crate::connector::body::{ConvexBody, span};
+use crate::connector::body::{ConvexBody, extent, width};
 use crate::connector::hold::SEAM;
 use input::units::{GRAM, MM};
 use insertion::task::{Part, geometry};
 
-/// Parts that lie in one another by more than this, m, are not only joined.
+/// Largest overlap of joined parts, m.
 const OVERLAP: f64 = 0.5 * MM;
-/// A part that is thinner weighs nothing and stops nothing, m.
+/// Least thickness of a part that weighs and stops something, m.
 const THIN: f64 = 0.01 * MM;
 /// Lightest and heaviest material, kg/m3: foam, tungsten.
 const DENSITIES: [f64; 2] = [100.0, 20e3];
-/// Plastic and steel, for the remedy, kg/m3.
+/// Densities of plastic and steel, kg/m3.
 const USUAL: [f64; 2] = [1000.0, 7850.0];
 
 pub(super) fn problems(case: &Case) -> Vec<Problem> {
@@ -29,10 +29,7 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
 
 fn thin(body: &str, part: &Part) -> Option<Problem> {
     let corners = part.solid.corners();
-    let size = |axis: usize| {
-        let [low, high] = span(corners.iter().map(|p| p[axis]));
-        high - low
-    };
+    let size = |axis: usize| width(extent(&corners, axis));
     let axis = (0..3).find(|&axis| size(axis) < THIN)?;
     Some(Problem::new(
         part_key(body, &part.name, field(&part.solid, axis)),
@@ -52,24 +49,24 @@ fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
             "let the two end where they meet; a common face is enough",
         )
     })
-    .map(|problem| Problem { key: problem.key.trim_end().to_owned(), ..problem })
     .collect()
 }
 
 /// A flexure goes from what stands still of the plug to what moves.
 fn flexure(case: &Case) -> Vec<Problem> {
     let Some(latch) = &case.task.plug.latch else { return Vec::new() };
-    let on = |point, moves: bool| {
-        case.plug.near(point, SEAM).any(|part| latch.parts.contains(&part) == moves)
-    };
     let [root, end] = &latch.flexure;
-    let off = |key: &str, what| {
-        let problem = "lies on no part that ".to_owned() + what;
-        Problem::new(key, problem, "put it on the plug's surface, or name the right parts")
-    };
-    let root = (!on(root, false)).then(|| off("plug.latch.root_mm", "stands still"));
-    let end = (!on(end, true)).then(|| off("plug.latch.end_mm", "moves with the latch"));
-    root.into_iter().chain(end).collect()
+    let ends =
+        [(root, false, "root_mm", "stands still"), (end, true, "end_mm", "moves with the latch")];
+    let off = ends.into_iter().filter(|(point, moves, ..)| {
+        !case.plug.near(point, SEAM).any(|part| latch.parts.contains(&part) == *moves)
+    });
+    off.map(|(.., key, what)| {
+        let problem = format!("lies on no part that {what}");
+        let remedy = "put it on the plug's surface, or name the right parts";
+        Problem::new(format!("plug.latch.{key}"), problem, remedy)
+    })
+    .collect()
 }
 
 /// A plug is one piece: every part touches one that touches the first.
@@ -86,24 +83,19 @@ fn gaps(plug: &ConvexBody) -> Vec<Problem> {
         let gaps = joined.iter().map(|&i| (plug.own_gap(i, j), i));
         let (gap, i) = gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let (part, near) = (&plug.parts[j], &plug.parts[i]);
-        let range = |part: &Part, axis: usize| span(part.solid.corners().iter().map(|p| p[axis]));
+        let range = |part: &Part, axis: usize| extent(part.solid.corners(), axis);
         // The axis along which the two stand apart.
         let apart = |axis: &usize| {
             let ([a, b], [c, d]) = (range(part, *axis), range(near, *axis));
             (c - b).max(a - d) > SEAM / 2.0
         };
         let axis = [2, 1, 0].into_iter().find(apart).unwrap_or(2);
-        let [low, high] = range(near, axis);
+        let ([low, high], near) = (range(near, axis).map(mm), &near.name);
+        let axis_name = ["x", "y", "z"][axis];
         Some(Problem::new(
             part_key("plug", &part.name, field(&part.solid, axis)),
-            format!("a gap of {} mm to `{}`: the plug is not one piece", mm(gap), near.name),
-            format!(
-                "let the parts meet; `{}` reaches from {} to {} mm in {}",
-                near.name,
-                mm(low),
-                mm(high),
-                ["x", "y", "z"][axis]
-            ),
+            format!("a gap of {} mm to `{near}`: the plug is not one piece", mm(gap)),
+            format!("let the parts meet; `{near}` reaches from {low} to {high} mm in {axis_name}"),
         ))
     };
     loose.and_then(problem).into_iter().collect()
@@ -118,14 +110,11 @@ fn mass(case: &Case) -> Option<Problem> {
         return None;
     }
     let [plastic, steel] = USUAL.map(|usual| usual * volume / GRAM);
+    let than = if density < low { "less than foam" } else { "more than tungsten" };
+    let (grams, cm3) = (mass / GRAM, volume * 1e6);
     Some(Problem::new(
         "plug.mass_g",
-        format!(
-            "{} g for {:.2} cm3 are {density:.2} kg/m3, {}",
-            mass / GRAM,
-            volume * 1e6,
-            if density < low { "less than foam" } else { "more than tungsten" }
-        ),
+        format!("{grams} g for {cm3:.2} cm3 are {density:.2} kg/m3, {than}"),
         format!("{plastic:.1} g if it were plastic, {steel:.1} g if it were steel"),
     ))
 }

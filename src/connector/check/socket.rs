@@ -1,21 +1,23 @@
-//! Opening, walls, and how deep the plug goes.
+//! Opening, walls and depth of insertion.
 
 use super::{Case, Problem, field, mm, pair, part_key};
-use crate::connector::body::{clipped, span};
+use crate::connector::body::{clipped, extent, width};
 use crate::connector::seat::{Seat, section};
 use input::units::MM;
+use insertion::task::Part;
 use nalgebra::Point3;
 
-/// How far below the top the walls are looked for, m.
+/// Depth at which the walls are looked for, m.
 const BELOW: f64 = 0.1 * MM;
-/// What walls and opening may differ by, m: polygons for circles, small chamfers.
+/// Tolerance between walls and opening, m: polygons for circles, small chamfers.
 const AGREE: f64 = 0.15 * MM;
-/// How far from the stated edge the wall is looked for, m, and in what steps.
-const LOOK: (f64, f64) = (5.0 * MM, 0.0025 * MM);
-/// What success may be deeper than the seat, m: what contacts give.
+/// Distance from the stated edge within which the wall is looked for, and its step, m.
+const FAR: f64 = 5.0 * MM;
+const STEP: f64 = 0.0025 * MM;
+/// Compliance of the contacts, by which success may be deeper than the seat, m.
 const GIVE: f64 = 0.02 * MM;
 
-/// Opening against walls, and the frame's height.
+/// Faults of the opening's sides and of the socket's height.
 pub(super) fn walls(case: &Case) -> Vec<Problem> {
     let [_, top] = case.socket.extent(2);
     if top < -AGREE {
@@ -29,7 +31,7 @@ pub(super) fn walls(case: &Case) -> Vec<Problem> {
     sides.filter_map(|(axis, end)| side(case, axis, end)).collect()
 }
 
-/// One side of the opening: solid just outside of it, free just inside, halfway along.
+/// Fault of one side of the opening, which is solid just outside and free just inside, halfway along.
 fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
     let opening = case.task.opening;
     let stated = opening[axis][end];
@@ -45,41 +47,35 @@ fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
     if solid(AGREE) && !solid(-AGREE) {
         return None;
     }
-    let key = ["socket.opening_x_mm", "socket.opening_y_mm"][axis];
-    let (far, step) = LOOK;
-    let steps = (far / step) as usize;
+    let name = ["x", "y"][axis];
+    let steps = (FAR / STEP) as usize;
     // The face: solid beyond it, free before it.
     let face =
-        (0..2 * steps).map(|i| i as f64 * step - far).find(|&at| !solid(at) && solid(at + step));
-    let name = ["x", "y"][axis];
-    Some(match face {
+        (0..2 * steps).map(|i| i as f64 * STEP - FAR).find(|&at| !solid(at) && solid(at + STEP));
+    let (says, far) = (mm(stated), mm(FAR));
+    let (problem, remedy) = match face {
         Some(at) => {
-            let right = stated + outward * (at + step / 2.0);
-            let wall = part(right + outward * step).map_or("", |i| &case.socket.parts[i].name);
-            Problem::new(
-                key,
-                format!("says {} mm, but `{wall}` begins at {name} = {} mm", mm(stated), mm(right)),
-                format!("{} mm, or move the wall: the two must agree", mm(right)),
+            let right = stated + outward * (at + STEP / 2.0);
+            let wall = part(right + outward * STEP).map_or("", |i| &case.socket.parts[i].name);
+            let right = mm(right);
+            (
+                format!("says {says} mm, but `{wall}` begins at {name} = {right} mm"),
+                format!("{right} mm, or move the wall: the two must agree"),
             )
         }
-        None if solid(-AGREE) => Problem::new(
-            key,
-            format!(
-                "at {} mm the opening is filled: no free side within {} mm",
-                mm(stated),
-                mm(far)
-            ),
-            "let the opening reach from wall to wall where the socket is hollow",
+        None if solid(-AGREE) => (
+            format!("at {says} mm the opening is filled: no free side within {far} mm"),
+            "let the opening reach from wall to wall where the socket is hollow".to_owned(),
         ),
-        None => Problem::new(
-            key,
-            format!("no wall begins at {name} = {} mm nor within {} mm of it", mm(stated), mm(far)),
-            "state where the walls are, or add the wall as a [[socket.part]]",
+        None => (
+            format!("no wall begins at {name} = {says} mm nor within {far} mm of it"),
+            "state where the walls are, or add the wall as a [[socket.part]]".to_owned(),
         ),
-    })
+    };
+    Some(Problem::new(format!("socket.opening_{name}_mm"), problem, remedy))
 }
 
-/// Success against the opening's width and what stops the plug.
+/// Faults of the success depth: opening too narrow, or plug stopped above it.
 pub(super) fn depth(case: &Case, seat: &Seat) -> Vec<Problem> {
     let success = case.task.success.depth;
     if success <= seat.depth + GIVE {
@@ -89,49 +85,37 @@ pub(super) fn depth(case: &Case, seat: &Seat) -> Vec<Problem> {
     if !wide.is_empty() {
         return wide;
     }
-    let by = seat.stopped_by.map(|[plug, socket]| {
+    let by = seat.stopped_by.map_or(String::new(), |[plug, socket]| {
         format!(": `{}` meets `{}`", case.plug.parts[plug].name, case.socket.parts[socket].name)
     });
     let [_, top] = case.plug.extent(2);
+    let (asked, stops) = (mm(success), mm(seat.depth.min(top)));
     vec![Problem::new(
         "success.depth_mm",
-        format!(
-            "is {} mm, but the plug stops {} mm below the top{}",
-            mm(success),
-            mm(seat.depth.min(top)),
-            by.unwrap_or_default()
-        ),
+        format!("is {asked} mm, but the plug stops {stops} mm below the top{by}"),
         format!("at most {:.1} mm; less, if the plug may stay tilted", (0.96 * seat.depth / MM)),
     )]
 }
 
-/// Whether what must be inside for success is wider than the opening, and the part that is.
+/// Fault of a plug that is wider than the opening over the depth it must enter.
 fn wide(case: &Case, seat: &Seat, axis: usize) -> Option<Problem> {
     // A shoulder that rests on the housing is not meant to go in.
     let depth = case.task.success.depth.min(seat.depth + BELOW);
-    let [from, to] = section(&case.plug, depth)[axis];
-    let [low, high] = case.task.opening[axis];
-    if to - from <= high - low || seat.depth > case.task.success.depth / 2.0 {
+    let (plug, opening) = (section(&case.plug, depth)[axis], case.task.opening[axis]);
+    if width(plug) <= width(opening) || seat.depth > case.task.success.depth / 2.0 {
         return None;
     }
-    let width = |part: &insertion::task::Part| {
-        let below = clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]);
-        let [from, to] = span(below.iter().map(|p| p[axis]));
-        to - from
+    let below = |part: &Part| {
+        width(extent(clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]), axis))
     };
-    let part = case.plug.parts.iter().max_by(|a, b| width(a).total_cmp(&width(b)))?;
-    let name = ["x", "y"][axis];
+    let part = case.plug.parts.iter().max_by(|a, b| below(a).total_cmp(&below(b)))?;
+    let (name, has, range) = (["x", "y"][axis], mm(width(opening)), pair(opening));
+    let wide = mm(width(plug));
     Some(Problem::new(
         part_key("plug", &part.name, field(&part.solid, axis)),
         format!(
-            "the plug is {} mm wide in {name} where the opening has {} mm ({}): it cannot enter",
-            mm(to - from),
-            mm(high - low),
-            pair(case.task.opening[axis])
+            "the plug is {wide} mm wide in {name} where the opening has {has} mm ({range}): it cannot enter"
         ),
-        format!(
-            "make it narrower than {} mm, or widen socket.opening_{name}_mm and its walls",
-            mm(high - low)
-        ),
+        format!("make it narrower than {has} mm, or widen socket.opening_{name}_mm and its walls"),
     ))
 }

@@ -1,4 +1,4 @@
-//! The commanded moves: free of the socket at first, over the opening later, deep enough at last.
+//! Commanded moves: free approach, search over the opening, deep enough push.
 
 use super::{Case, Problem, mm, pair};
 use crate::connector::body::span;
@@ -9,21 +9,19 @@ use input::units::MM;
 use insertion::task::{Ending, Phase, Stage};
 use nalgebra::Vector3;
 
-/// Overlap that is rounding, m.
+/// Overlap that counts as rounding, m.
 const ROUNDING: f64 = 0.01 * MM;
-/// How finely the approach is looked through, m.
+/// Step of the collision check along the approach, m.
 const STEP: f64 = 0.5 * MM;
-/// How far above the socket the tip should be when the approach ends, m.
+/// Recommended clear height of the tip at the end of the approach, m.
 const AIR: f64 = 1.0 * MM;
-/// How far beyond the success depth the push should be commanded, m.
+/// Recommended command of the push beyond the success depth, m.
 const PRESS: f64 = 4.0 * MM;
 
 pub(super) fn problems(case: &Case) -> Vec<Problem> {
     let way = path::waypoints(case.task, &case.plug);
     let mut found: Vec<Problem> = case.task.strategy.phases.iter().filter_map(upward).collect();
-    if let Some(problem) = inside(case, &way) {
-        found.push(problem);
-    }
+    found.extend(inside(case, &way));
     // Of moves that go up nothing else can be said.
     if found.is_empty() {
         found.extend(way.iter().filter_map(short));
@@ -37,7 +35,7 @@ fn key(name: &str) -> String {
     format!("strategy.phase \"{name}\" move_mm")
 }
 
-/// Touch and push go down.
+/// Fault of a touch or push that does not go down.
 fn upward(phase: &Phase) -> Option<Problem> {
     let z = phase.displacement[2];
     let touch = matches!(phase.ending, Ending::Touch { .. });
@@ -56,20 +54,20 @@ fn upward(phase: &Phase) -> Option<Problem> {
     ))
 }
 
-/// Until the touch the plug must be free.
+/// Collision at the start or on the approach.
 fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
-    let depth_at = |tcp: Vector3<f64>| {
+    let collision = |tcp: Vector3<f64>| {
         let pose = path::plug_pose(case.task, tcp);
-        case.plug.overlap(&pose, &case.socket, &Pose::identity()).filter(|o| o.depth > ROUNDING)
+        let found = case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
+        let [plug, socket] = found.parts;
+        let names = [&case.plug.parts[plug].name, &case.socket.parts[socket].name];
+        (found.depth > ROUNDING).then_some((found.depth, names))
     };
-    let names =
-        |parts: [usize; 2]| [&case.plug.parts[parts[0]].name, &case.socket.parts[parts[1]].name];
-    if let Some(overlap) = depth_at(way[0].tcp) {
-        let [plug, socket] = names(overlap.parts);
+    if let Some((depth, [plug, socket])) = collision(way[0].tcp) {
         let right = way[0].tcp.z + 5.0 * MM - way[0].edge.z;
         return Some(Problem::new(
             "strategy.start_mm",
-            format!("at the start `{plug}` lies {} mm deep in `{socket}`", mm(overlap.depth)),
+            format!("at the start `{plug}` lies {} mm deep in `{socket}`", mm(depth)),
             format!("z = {} mm: 5 mm of air below the tip", mm(right)),
         ));
     }
@@ -77,15 +75,14 @@ fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
         let by = pair[1].tcp - pair[0].tcp;
         let steps = (by.norm() / STEP).ceil();
         for i in 1..=steps as usize {
-            let Some(overlap) = depth_at(pair[0].tcp + by * (i as f64 / steps)) else { continue };
-            let [plug, socket] = names(overlap.parts);
+            let at = pair[0].tcp + by * (i as f64 / steps);
+            let Some((_, [plug, socket])) = collision(at) else { continue };
+            let (air, z) = (mm(AIR), mm(by.z + AIR - pair[1].edge.z));
             return Some(Problem::new(
                 key(&pair[1].name),
                 format!("on the way `{plug}` runs into `{socket}`"),
                 format!(
-                    "an approach touches nothing: let the tip end about {} mm above the top, z = {}",
-                    mm(AIR),
-                    mm(by.z + AIR - pair[1].edge.z)
+                    "an approach touches nothing: let the tip end about {air} mm above the top, z = {z}"
                 ),
             ));
         }
@@ -93,7 +90,7 @@ fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     None
 }
 
-/// A touch that ends in the air.
+/// Fault of a touch whose stroke ends above the socket.
 fn short(point: &Waypoint) -> Option<Problem> {
     let by = point.short_by?;
     Some(Problem::new(
@@ -103,28 +100,21 @@ fn short(point: &Waypoint) -> Option<Problem> {
     ))
 }
 
-/// A push that ends above the depth that counts.
+/// Fault of moves that end above the success depth.
 fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let depth = path::commanded_depth(case.task, way);
     let missing = case.task.success.depth - depth;
-    let last = case.task.strategy.phases.last()?;
-    (missing > 0.0).then(|| {
-        Problem::new(
-            key(&last.name),
-            format!(
-                "all moves together bring the tip {} mm deep; success asks for {}",
-                mm(depth),
-                mm(case.task.success.depth)
-            ),
-            format!(
-                "z = {} mm: some mm more than is needed, for the springs give",
-                mm(last.displacement[2] - missing - PRESS)
-            ),
-        )
-    })
+    let last = case.task.strategy.phases.last().filter(|_| missing > 0.0)?;
+    let z = mm(last.displacement[2] - missing - PRESS);
+    let [depth, asked] = [depth, case.task.success.depth].map(mm);
+    Some(Problem::new(
+        key(&last.name),
+        format!("all moves together bring the tip {depth} mm deep; success asks for {asked}"),
+        format!("z = {z} mm: some mm more than is needed, for the springs give"),
+    ))
 }
 
-/// The tip must pass over the opening while it searches.
+/// Fault of a search that does not pass over the opening.
 fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let [bottom, _] = case.plug.extent(2);
     let tip = section(&case.plug, bottom + AIR);
@@ -135,11 +125,11 @@ fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let [left, right] = span(search.iter().map(|point| point.tcp.x));
     let fits = [x[0] - tip[0][0], x[1] - tip[0][1]];
     if right < fits[0].min(fits[1]) || left > fits[0].max(fits[1]) {
+        let at = pair([left, right]);
         return Some(Problem::new(
             "strategy.start_mm",
             format!(
-                "in x the plug is searched at {} mm, but is over its opening at {}",
-                pair([left, right]),
+                "in x the plug is searched at {at} mm, but is over its opening at {}",
                 pair(fits)
             ),
             format!("x = {} mm, or longer moves along x", mm((fits[0] + fits[1]) / 2.0)),
@@ -148,11 +138,11 @@ fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let [low, high] = span(search.iter().map(|point| point.edge.y));
     if high < y[0] || low > y[1] {
         let right = way[0].tcp.y + (y[0] + y[1]) / 2.0 - way[0].edge.y;
+        let at = pair([low, high]);
         return Some(Problem::new(
             "strategy.start_mm",
             format!(
-                "in y the tip's lower edge is searched at {} mm, but the opening is at {}",
-                pair([low, high]),
+                "in y the tip's lower edge is searched at {at} mm, but the opening is at {}",
                 pair(y)
             ),
             format!("y = {} mm puts it over the opening's middle", mm(right)),

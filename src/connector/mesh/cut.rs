@@ -1,61 +1,51 @@
-//! A closed surface cut into convex pieces, exactly: between two neighbouring heights of its
-//! corners it has no corner, so there every side is flat and the outline has the same corners at
-//! every height.
+//! Exact cut of a closed surface into convex pieces. Between two neighbouring heights of its
+//! corners there is no corner, so every side is flat and the outline keeps its corners.
 
 use super::surface::Surface;
+use crate::connector::body::span;
 use input::units::MM;
 use nalgebra::{Point2, Point3};
 use spade::{ConstrainedDelaunayTriangulation, Point2 as Place, Triangulation};
 use std::collections::BTreeMap;
 
-/// Heights that are nearer than this are one, m.
+/// Largest difference of equal coordinates, m.
 const NEAR: f64 = 1e-3 * MM;
-/// More layers than this are no extruded outline, but a curved surface.
+/// Most layers of an extruded outline; a curved surface has more.
 const MOST_LAYERS: usize = 120;
-/// More pieces than this are no extruded outline either.
+/// Most pieces of an extruded outline.
 const MOST_PIECES: usize = 600;
-/// An outline with more levels than this is curved, and triangles do better.
+/// Most levels of y of an outline cut into strips; a curved one is cut into triangles.
 const MOST_STRIPS: usize = 24;
-/// Turns of less area are straight, m2.
+/// Largest area of a straight turn, m2.
 const STRAIGHT: f64 = 1e-4 * MM * MM;
 
-/// A corner of an outline, at the lower and at the upper end of its layer.
+/// Corner of an outline, at the lower and at the upper end of its layer.
 #[derive(Debug, Clone, Copy)]
-struct Riser {
-    ends: [Point3<f64>; 2],
-}
+struct Riser([Point3<f64>; 2]);
 
-/// A closed line of risers, counter-clockwise about what is solid.
+/// Closed line of risers, counter-clockwise about solid, clockwise about holes.
 type Outline = Vec<Riser>;
 
-/// The outline of a layer: closed lines, counter-clockwise about solid, clockwise about holes.
-pub struct Layer {
-    outlines: Vec<Outline>,
-}
+/// Outlines of a layer.
+struct Layer(Vec<Outline>);
 
 impl Riser {
-    /// At a share of the layer's height.
+    /// Place at a share of the layer's height.
     fn at(&self, share: f64) -> Point2<f64> {
-        let [low, high] = self.ends;
+        let [low, high] = self.0;
         (low + (high - low) * share).xy()
     }
 
-    /// The riser at a share of the way to another.
+    /// Riser at a share of the way to another.
     fn towards(&self, other: &Riser, share: f64) -> Riser {
-        Riser { ends: [0, 1].map(|i| self.ends[i] + (other.ends[i] - self.ends[i]) * share) }
+        Riser([0, 1].map(|i| self.0[i] + (other.0[i] - self.0[i]) * share))
     }
 }
 
-/// Without corners that fall on the one before: a trapezoid may be a triangle.
-fn without_doubles(mut outline: Outline) -> Outline {
-    outline.dedup_by(|b, a| (b.at(0.5) - a.at(0.5)).norm() < NEAR);
-    outline
-}
-
-/// Corners of one convex piece.
+/// Corners of a convex piece, m.
 pub type Piece = Vec<Point3<f64>>;
 
-/// The pieces, if the surface can be cut into few layers.
+/// Pieces of the surface; `None` if it cannot be cut into few layers.
 pub fn pieces(surface: &Surface) -> Option<Vec<Piece>> {
     let heights = heights(surface);
     if heights.len() > MOST_LAYERS {
@@ -71,34 +61,34 @@ pub fn pieces(surface: &Surface) -> Option<Vec<Piece>> {
     Some(found)
 }
 
-/// The holes of the highest layer, a box each at this far below the top: from, to in x and y, m.
+/// Bounding boxes in x and y of the highest layer's holes, `below` the top, m.
 pub fn openings(surface: &Surface, below: f64) -> Vec<[[f64; 2]; 2]> {
     let heights = heights(surface);
     let Some(&[low, high]) = heights.last_chunk::<2>() else { return Vec::new() };
     let Some(top) = layer(surface, [low, high]) else { return Vec::new() };
     let share = (1.0 - below / (high - low)).max(0.0);
-    let holes = top.outlines.iter().filter(|outline| area(outline, share) < 0.0);
-    holes
-        .map(|hole| {
-            [0, 1].map(|axis| {
-                super::super::body::span(hole.iter().map(|riser| riser.at(share)[axis]))
-            })
-        })
-        .collect()
+    let holes = top.0.iter().filter(|outline| area(outline, share) < 0.0);
+    let along = |hole: &Outline, axis: usize| span(hole.iter().map(|riser| riser.at(share)[axis]));
+    holes.map(|hole| [0, 1].map(|axis| along(hole, axis))).collect()
 }
 
 fn heights(surface: &Surface) -> Vec<f64> {
-    let mut heights: Vec<f64> = surface.points.iter().map(|p| p.z).collect();
-    heights.sort_by(f64::total_cmp);
-    heights.dedup_by(|b, a| *b - *a < NEAR);
-    heights
+    levels(surface.points.iter().map(|p| p.z))
 }
 
-/// The outlines between two neighbouring heights; none if the surface touches itself.
+/// Numbers in order, without those that are near to the one before.
+fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut levels: Vec<f64> = values.collect();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup_by(|b, a| *b - *a < NEAR);
+    levels
+}
+
+/// Layer between two neighbouring heights; `None` if the surface touches itself.
 fn layer(surface: &Surface, [low, high]: [f64; 2]) -> Option<Layer> {
     let mut next: BTreeMap<[usize; 2], [usize; 2]> = BTreeMap::new();
     for face in &surface.faces {
-        let Some((from, to)) = walk(surface, face, [low, high]) else { continue };
+        let Some((from, to)) = crossing(surface, face, [low, high]) else { continue };
         if next.insert(from, to).is_some() {
             return None;
         }
@@ -118,12 +108,16 @@ fn layer(surface: &Surface, [low, high]: [f64; 2]) -> Option<Layer> {
             outlines.push(outline);
         }
     }
-    Some(Layer { outlines })
+    Some(Layer(outlines))
 }
 
-/// The two edges of a face that cross the layer, in the order that keeps what is solid to the
-/// left, seen from above.
-fn walk(surface: &Surface, face: &[usize; 3], layer: [f64; 2]) -> Option<([usize; 2], [usize; 2])> {
+/// Edges of a face that cross the layer, in the order that keeps the solid to the left, seen from
+/// above.
+fn crossing(
+    surface: &Surface,
+    face: &[usize; 3],
+    layer: [f64; 2],
+) -> Option<([usize; 2], [usize; 2])> {
     let edges = (0..3).map(|i| {
         let (a, b) = (face[i], face[(i + 1) % 3]);
         [a.min(b), a.max(b)]
@@ -148,11 +142,11 @@ fn crosses(surface: &Surface, &[a, b]: &[usize; 2], [low, high]: [f64; 2]) -> bo
 
 fn riser(surface: &Surface, [a, b]: [usize; 2], layer: [f64; 2]) -> Riser {
     let (a, b) = (surface.points[a], surface.points[b]);
-    Riser { ends: layer.map(|z| a + (b - a) * ((z - a.z) / (b.z - a.z))) }
+    Riser(layer.map(|z| a + (b - a) * ((z - a.z) / (b.z - a.z))))
 }
 
-/// Without the corners at which the outline goes straight on at every height. (At an end the
-/// diagonal of a flat side meets a corner, so the middle is asked, too.)
+/// Outline without the corners at which it goes straight on at every height. (At an end the
+/// diagonal of a flat side meets a corner, so the middle counts, too.)
 fn straightened(mut outline: Outline) -> Outline {
     loop {
         let count = outline.len();
@@ -167,21 +161,20 @@ fn straightened(mut outline: Outline) -> Outline {
     }
 }
 
-/// Twice the area of three corners at a height, positive if they turn left.
+/// Twice the area of three corners at a share of the height, positive for a left turn.
 fn turn([a, b, c]: &[Riser; 3], share: f64) -> f64 {
     let [a, b, c] = [a, b, c].map(|riser| riser.at(share));
     (b - a).perp(&(c - b))
 }
 
 fn area(outline: &[Riser], share: f64) -> f64 {
-    let next = |i: usize| outline[(i + 1) % outline.len()].at(share);
-    (0..outline.len()).map(|i| outline[i].at(share).coords.perp(&next(i).coords) / 2.0).sum()
+    edges(outline).map(|(a, b)| a.at(share).coords.perp(&b.at(share).coords) / 2.0).sum()
 }
 
 impl Layer {
-    /// Convex pieces of the layer; none if its outline cannot be meshed.
+    /// Convex pieces of the layer; `None` if its outline cannot be meshed.
     fn pieces(&self) -> Option<Vec<Piece>> {
-        if let [outline] = self.outlines.as_slice()
+        if let [outline] = self.0.as_slice()
             && convex(outline)
         {
             return Some(vec![piece(outline)]);
@@ -190,41 +183,36 @@ impl Layer {
         Some(merged(parts).iter().map(|outline| piece(outline)).collect())
     }
 
-    /// An upright layer cut along x at its corners: trapezoids. Seams then run along walls, as in a
-    /// file written by hand, and none ends askew in a corner of the opening, where plugs catch.
+    /// Trapezoids of an upright layer, cut along x at its corners. Seams then run along walls, as in
+    /// a file written by hand, and none ends askew in a corner of the opening, where plugs catch.
     fn strips(&self) -> Option<Vec<Outline>> {
-        let risers = || self.outlines.iter().flatten();
+        let risers = || self.0.iter().flatten();
         if risers().any(|riser| (riser.at(1.0) - riser.at(0.0)).norm() > NEAR) {
             return None;
         }
-        let mut levels: Vec<f64> = risers().map(|riser| riser.at(0.5).y).collect();
-        levels.sort_by(f64::total_cmp);
-        levels.dedup_by(|b, a| *b - *a < NEAR);
-        if levels.len() > MOST_STRIPS {
-            return None;
-        }
-        Some(levels.windows(2).flat_map(|pair| self.strip([pair[0], pair[1]])).collect())
+        let levels = levels(risers().map(|riser| riser.at(0.5).y));
+        let strips = levels.windows(2).flat_map(|pair| self.strip([pair[0], pair[1]]));
+        (levels.len() <= MOST_STRIPS).then(|| strips.collect())
     }
 
-    /// What is solid between two neighbouring levels of y.
+    /// Solid trapezoids between two neighbouring levels of y.
     fn strip(&self, [low, high]: [f64; 2]) -> Vec<Outline> {
         let middle = (low + high) / 2.0;
         let mut sides: Vec<[Riser; 2]> = Vec::new();
-        for outline in &self.outlines {
-            for i in 0..outline.len() {
-                let (a, b) = (outline[i], outline[(i + 1) % outline.len()]);
-                let (from, to) = (a.at(0.5).y, b.at(0.5).y);
-                if (from > middle) != (to > middle) {
-                    sides.push([low, high].map(|y| a.towards(&b, (y - from) / (to - from))));
-                }
+        for (a, b) in self.0.iter().flat_map(|outline| edges(outline)) {
+            let (from, to) = (a.at(0.5).y, b.at(0.5).y);
+            if (from > middle) != (to > middle) {
+                sides.push([low, high].map(|y| a.towards(b, (y - from) / (to - from))));
             }
         }
         let x = |side: &[Riser; 2]| side[0].at(0.5).x + side[1].at(0.5).x;
         sides.sort_by(|a, b| x(a).total_cmp(&x(b)));
         // From outside the first side enters what is solid, the second leaves it.
         let between = |pair: &[[Riser; 2]]| {
-            let corners = vec![pair[0][0], pair[1][0], pair[1][1], pair[0][1]];
-            straightened(without_doubles(corners))
+            let mut corners = vec![pair[0][0], pair[1][0], pair[1][1], pair[0][1]];
+            // A trapezoid may be a triangle.
+            corners.dedup_by(|b, a| same(b, a));
+            straightened(corners)
         };
         sides.chunks_exact(2).map(between).filter(|outline| outline.len() > 2).collect()
     }
@@ -233,7 +221,7 @@ impl Layer {
     fn triangles(&self) -> Option<Vec<Outline>> {
         let mut mesh = ConstrainedDelaunayTriangulation::<Place<f64>>::new();
         let mut risers: BTreeMap<usize, Riser> = BTreeMap::new();
-        for outline in &self.outlines {
+        for outline in &self.0 {
             let mut ring = Vec::new();
             for riser in outline {
                 // In millimetres: of the size for which the mesher's tolerances are made.
@@ -266,19 +254,26 @@ impl Layer {
         Some(found)
     }
 
-    /// Whether a point lies inside: outlines about it, counted evenly and oddly.
+    /// Whether a point lies inside, by the even-odd rule.
     fn solid_at(&self, p: &Point2<f64>) -> bool {
-        let crossings = self.outlines.iter().flat_map(|outline| {
-            (0..outline.len()).filter(|&i| {
-                let (a, b) = (outline[i].at(0.5), outline[(i + 1) % outline.len()].at(0.5));
-                (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
-            })
-        });
-        crossings.count() % 2 == 1
+        let crossed = |(a, b): &(&Riser, &Riser)| {
+            let (a, b) = (a.at(0.5), b.at(0.5));
+            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
+        };
+        self.0.iter().flat_map(|outline| edges(outline)).filter(crossed).count() % 2 == 1
     }
 }
 
-/// Whether an outline turns left only, at its lower end, its middle and its upper end.
+/// Neighbouring risers, the last with the first.
+fn edges(outline: &[Riser]) -> impl Iterator<Item = (&Riser, &Riser)> {
+    outline.iter().zip(outline.iter().cycle().skip(1))
+}
+
+fn same(a: &Riser, b: &Riser) -> bool {
+    (a.at(0.5) - b.at(0.5)).norm() < NEAR
+}
+
+/// Whether an outline only turns left, at its lower end, its middle and its upper end.
 fn convex(outline: &[Riser]) -> bool {
     let count = outline.len();
     (0..count).all(|i| {
@@ -289,7 +284,6 @@ fn convex(outline: &[Riser]) -> bool {
 
 /// Neighbours joined as long as they stay convex (Hertel and Mehlhorn 1983).
 fn merged(mut outlines: Vec<Outline>) -> Vec<Outline> {
-    let same = |a: &Riser, b: &Riser| (a.at(0.5) - b.at(0.5)).norm() < NEAR;
     let joined = |a: &Outline, b: &Outline| {
         for i in 0..a.len() {
             for j in 0..b.len() {
@@ -319,5 +313,5 @@ fn merged(mut outlines: Vec<Outline>) -> Vec<Outline> {
 }
 
 fn piece(outline: &[Riser]) -> Piece {
-    outline.iter().flat_map(|riser| riser.ends).collect()
+    outline.iter().flat_map(|riser| riser.0).collect()
 }

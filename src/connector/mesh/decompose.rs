@@ -1,7 +1,7 @@
-//! A surface as convex solids: exactly where it can be cut so, else by VHACD.
+//! Decomposition of a surface into convex solids: an exact cut, else VHACD.
 
 use super::surface::Surface;
-use super::{cut, intrusion, merge};
+use super::{Fault, cut, intrusion, merge};
 use contact::shapes;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
@@ -9,59 +9,44 @@ use nalgebra::Point3;
 use parry::transformation::vhacd::{VHACD, VHACDParameters};
 use rapier3d_f64::parry;
 
-/// Most parts, as many as a task may have: exact ones cost a trial less than hulls that are wrong.
+/// Most parts a task may have: exact ones cost a trial less than wrong hulls.
 pub const MOST_PARTS: usize = 200;
-/// An exact cut has the surface's volume, as a share.
+/// Largest relative volume error of an exact cut.
 const ALIKE: f64 = 1e-4;
-/// What parts of an exact cut may share, as a share of the whole.
+/// Largest overlap of an exact cut's parts, as a share of the volume.
 const SHARED: f64 = 0.01;
-/// What they may reach out, m.
+/// Largest intrusion of an exact cut, m.
 const NEAR: f64 = 2e-3 * MM;
 /// Most parts of an approximation while it is cut.
 const MOST_HULLS: u32 = 1024;
-/// Most voxels of an approximation times those along its longest side, which its time goes with:
-/// half a minute of processor.
+/// Most voxels of an approximation times those along its longest side, to which its time is
+/// proportional: half a minute of processor time.
 const MOST_WORK: f64 = 2e8;
-/// Coarsest resolution that is asked for.
+/// Coarsest resolution, voxels along the longest side.
 pub const COARSEST: u32 = 8;
-/// How hollow a part may be, as a share: a tenth of VHACD's default, since what it leaves fills
-/// the clearance.
+/// Largest concavity of a part, as a share: a tenth of VHACD's default, since the rest fills the
+/// clearance.
 const CONCAVITY: f64 = 0.001;
 
-/// A surface as convex solids.
+/// Convex solids of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decomposed {
-    /// The solids.
+    /// Solids in the frame of the surface, m.
     pub solids: Vec<Solid>,
-    /// Whether they are the surface, not near it.
+    /// Whether the solids equal the surface, not approximate it.
     pub exact: bool,
 }
 
-/// Why a surface has no convex solids.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Undone {
-    /// That would take minutes.
-    Long {
-        /// The finest resolution that does not.
-        finest: u32,
-    },
-    /// A task may not have so many.
-    Many {
-        /// How many there would be.
-        parts: usize,
-    },
-}
-
-/// Decomposes; `resolution` is in voxels along the longest side, where it is needed. `say` is told
-/// what takes its time.
+/// Decomposes a surface, approximately with `resolution` voxels along the longest side if no exact
+/// cut is found; `say` gets progress messages.
 ///
 /// # Errors
-/// If no task can have the result, or it would take long.
+/// If the approximation would take minutes or has more parts than a task may have.
 pub fn decompose(
     surface: &Surface,
     resolution: u32,
     say: &dyn Fn(&str),
-) -> Result<Decomposed, Undone> {
+) -> Result<Decomposed, Fault> {
     say(&format!("cutting {} faces into convex pieces", surface.faces.len()));
     let exact = (0..3).filter_map(|turns| cut_along(surface, turns));
     let whole = exact.filter(|solids| is_whole(surface, solids));
@@ -72,24 +57,24 @@ pub fn decompose(
     let most = |finest: &u32| voxels(surface, *finest) * f64::from(*finest) <= MOST_WORK;
     if !most(&resolution) {
         let finest = (COARSEST..resolution).rev().find(most).unwrap_or(COARSEST);
-        return Err(Undone::Long { finest });
+        return Err(Fault::Long { resolution, finest });
     }
     let thousands = voxels(surface, resolution) / 1e3;
     say(&format!("approximating {thousands:.0} thousand voxels by convex hulls"));
     let solids = approximate(surface, resolution);
     match solids.len() {
-        parts if parts > MOST_PARTS => Err(Undone::Many { parts }),
+        parts if parts > MOST_PARTS => Err(Fault::Many(parts)),
         _ => Ok(Decomposed { solids, exact: false }),
     }
 }
 
-/// About how many voxels fill a surface and lie on it.
+/// Approximate number of voxels in a surface and on it.
 fn voxels(surface: &Surface, resolution: u32) -> f64 {
     let side = surface.longest_side() / f64::from(resolution);
     surface.volume() / side.powi(3) + surface.area() / side.powi(2)
 }
 
-/// Cut across z, x or y: after so many turns of the axes.
+/// Exact cut across z, x or y: after 0, 1 or 2 cyclic turns of the axes.
 fn cut_along(surface: &Surface, turns: usize) -> Option<Vec<Solid>> {
     let turned =
         |p: &Point3<f64>, by: usize| Point3::from(std::array::from_fn(|i| p[(i + by) % 3]));
@@ -99,8 +84,8 @@ fn cut_along(surface: &Surface, turns: usize) -> Option<Vec<Solid>> {
     Some(merge::solids(&pieces.iter().map(back).collect::<Vec<cut::Piece>>()))
 }
 
-/// Whether the solids fill the surface and nothing beside it. Where a slanted wall is cut, two
-/// neighbours may share a sliver inside: then what counts is that none reaches out.
+/// Whether the solids fill the surface and nothing else. Where a slanted wall is cut, two
+/// neighbours may share a sliver inside; then none may reach out.
 fn is_whole(surface: &Surface, solids: &[Solid]) -> bool {
     let sum: f64 = solids.iter().map(geometry::volume).sum();
     let more = sum / surface.volume() - 1.0;

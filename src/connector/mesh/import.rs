@@ -1,29 +1,29 @@
-//! A task from a mesh of a plug and one of its socket.
+//! Task from a mesh of a plug and one of its socket.
 
 pub use super::decompose::{COARSEST, MOST_PARTS};
-use super::decompose::{Decomposed, Undone, decompose};
+use super::decompose::{Decomposed, decompose};
 use super::intrusion::{self, Intrusion};
 use super::surface::Surface;
-use super::{MeshError, cut};
-use crate::connector::body::{ConvexBody, span};
+use super::{Fault, MeshError, cut};
+use crate::connector::body::{ConvexBody, clipped, extent};
 use crate::connector::seat::{Seating, section};
 use crate::connector::{draft, hold, plan};
 use input::units::MM;
-use insertion::task::{Part, Task, geometry};
+use insertion::task::{Part, Plug, Solid, Task, geometry};
 use nalgebra::{Matrix3, Point3, Vector3};
 
-/// How far below the top the opening is looked at, m: as in the check of the walls.
+/// Depth at which the opening is measured, m: as in the check of the walls.
 const BELOW_TOP: f64 = 0.1 * MM;
-/// The tip's middle is that of its lowest part of this height, m.
+/// Height of the tip, whose middle is centred, m.
 const TIP: f64 = 1.0 * MM;
-/// Height of a face that pads must find, m.
+/// Least height of a face that pads must meet, m.
 const LEAST_COVER: f64 = 2.0 * MM;
-/// Intrusion counts this far about the opening and below the tip's end, m.
+/// Margin about the opening and below the seated tip within which intrusion counts, m.
 const ABOUT: f64 = 0.5 * MM;
-/// Share of the clearance that may be filled.
+/// Largest share of the clearance that intrusion may fill.
 pub const ALLOWED: f64 = 0.1;
 
-/// The direction, in the files, in which the plug goes in.
+/// Direction of insertion in the axes of the files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Along {
     /// Along x
@@ -47,8 +47,8 @@ pub enum Along {
 }
 
 impl Along {
-    /// The turn that lets this direction be -z. The file's y stays y; where the plug goes in along
-    /// y, the file's x becomes y.
+    /// Rotation of this direction to -z. The file's y stays y; if the plug goes in along y, the
+    /// file's x becomes y.
     fn turn(self) -> Matrix3<f64> {
         let rows = match self {
             Along::MinusZ => [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -62,45 +62,45 @@ impl Along {
     }
 }
 
-/// A mesh and what it is called.
+/// Mesh of a file.
 pub struct Mesh {
-    /// For messages.
+    /// File name for messages.
     pub file: String,
-    /// Its surface.
+    /// Closed surface, m.
     pub surface: Surface,
 }
 
-/// How meshes are brought in.
+/// Settings of an import.
 pub struct Request<'a> {
-    /// Name of the task.
+    /// Name of the new task.
     pub name: &'a str,
-    /// Direction of the insertion.
+    /// Direction of insertion.
     pub along: Along,
     /// Voxels along the longest side, where a mesh is approximated.
     pub resolution: u32,
-    /// A task of which all but the shapes is taken.
+    /// Task whose keys are taken, all but the shapes.
     pub like: Option<&'a Task>,
-    /// Told what is being done.
+    /// Callback for progress messages.
     pub say: &'a dyn Fn(&str),
 }
 
-/// A task and how well it stands for its meshes.
+/// Imported task and its deviation from the meshes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
-    /// The task.
+    /// Task with the parts of plug and socket.
     pub task: Task,
-    /// Whether the parts of plug and socket are the meshes, not near them.
+    /// Whether the parts of plug and of socket equal the meshes, not approximate them.
     pub exact: [bool; 2],
-    /// How far the plug can be moved in its socket, the smaller of x and y, m.
+    /// Play of the plug in its socket, the smaller of x and y, m.
     pub clearance: f64,
-    /// The farthest that a part reaches into the clearance, and whose it is.
+    /// Largest intrusion of a part into the clearance, and its body.
     pub intrusion: Option<(Intrusion, &'static str)>,
 }
 
-/// Brings two meshes in.
+/// Imports a plug and its socket.
 ///
 /// # Errors
-/// If one of them cannot be made of convex parts, opened or held.
+/// If a mesh has no convex parts, the socket no opening, or the plug no grasp or strategy.
 pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, MeshError> {
     let turn = request.along.turn();
     let turned = |surface: Surface| surface.moved(&turn, Vector3::zeros());
@@ -108,8 +108,12 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     let plug_surface = stand(turned(plug.surface), middles[0]);
     let (socket_surface, opening) =
         open(turned(socket.surface), middles[1], &socket.file, request.along)?;
-    let inner = convex(&plug_surface, &plug.file, "plug", request)?;
-    let outer = convex(&socket_surface, &socket.file, "socket", request)?;
+    let convex = |surface: &Surface, file: &str, body: &str| {
+        let say = |what: &str| (request.say)(&format!("{body}: {what}"));
+        decompose(surface, request.resolution, &say).map_err(|fault| fault.of(file))
+    };
+    let inner = convex(&plug_surface, &plug.file, "plug")?;
+    let outer = convex(&socket_surface, &socket.file, "socket")?;
     let mut task = draft::blank(request.name, request.like);
     task.description = format!("from {} and {}", file_name(&plug.file), file_name(&socket.file));
     task.plug.mass = draft::DENSITY * plug_surface.volume();
@@ -118,11 +122,7 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     task.opening = opening;
     let task = match request.like {
         Some(like) => Task {
-            plug: insertion::task::Plug {
-                mass: like.plug.mass,
-                parts: task.plug.parts,
-                latch: None,
-            },
+            plug: Plug { mass: like.plug.mass, ..task.plug },
             grip: like.grip,
             strategy: like.strategy.clone(),
             success: like.success,
@@ -135,22 +135,7 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     Ok(Imported { exact: [inner.exact, outer.exact], clearance, intrusion, task })
 }
 
-/// A body as convex parts.
-fn convex(
-    surface: &Surface,
-    file: &str,
-    body: &str,
-    request: &Request,
-) -> Result<Decomposed, MeshError> {
-    let resolution = request.resolution;
-    let say = |what: &str| (request.say)(&format!("{body}: {what}"));
-    decompose(surface, resolution, &say).map_err(|undone| match undone {
-        Undone::Long { finest } => MeshError::Long { file: file.to_owned(), resolution, finest },
-        Undone::Many { parts } => MeshError::Many { file: file.to_owned(), parts },
-    })
-}
-
-/// The smaller play of the two directions, at the depth of success.
+/// Smaller play of x and y at the success depth, m.
 fn clearance(task: &Task) -> f64 {
     let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
     let seating = Seating::new(task, &plug, &socket);
@@ -166,7 +151,7 @@ fn file_name(path: &str) -> String {
 }
 
 fn parts(body: &str, decomposed: &Decomposed) -> Vec<Part> {
-    let part = |(i, solid): (usize, &insertion::task::Solid)| Part {
+    let part = |(i, solid): (usize, &Solid)| Part {
         name: format!("{body} {}", i + 1),
         solid: solid.clone(),
         friction: None,
@@ -174,39 +159,37 @@ fn parts(body: &str, decomposed: &Decomposed) -> Vec<Part> {
     decomposed.solids.iter().enumerate().map(part).collect()
 }
 
-/// Grip, strategy and success by the shapes.
+/// Task with grip, strategy and success derived from the shapes.
 fn planned(mut task: Task, file: &str) -> Result<Task, MeshError> {
     let found = hold::find(&ConvexBody::plug(&task.plug), LEAST_COVER);
-    let (shoulder, faces) = found.ok_or_else(|| MeshError::NoGrip { file: file.to_owned() })?;
-    (task.grip.shoulder_z, task.grip.faces_y) = (shoulder, faces);
+    (task.grip.shoulder_z, task.grip.faces_y) = found.ok_or_else(|| Fault::NoGrip.of(file))?;
     Ok(plan::complete(task)?)
 }
 
-/// Where the middle of a task's tip lies in its plug frame, and of its opening in the task frame.
+/// Middle of a task's tip in the plug frame, and of its opening in the task frame, m.
 fn middles(task: &Task) -> [[f64; 2]; 2] {
     let plug = ConvexBody::plug(&task.plug);
     let tip = section(&plug, plug.extent(2)[0] + TIP);
-    [tip, task.opening].map(|ranges| ranges.map(|[low, high]| (low + high) / 2.0))
+    [tip, task.opening].map(|ranges| ranges.map(middle))
 }
 
-/// The plug with its lowest point at z = 0 and the middle of its tip at `place`.
+fn middle([low, high]: [f64; 2]) -> f64 {
+    (low + high) / 2.0
+}
+
+/// Plug with its lowest point at z = 0 and the middle of its tip at `place`.
 fn stand(surface: Surface, place: [f64; 2]) -> Surface {
-    let [bottom, _] = span(surface.points.iter().map(|p| p.z));
-    let limit = bottom + TIP;
-    let mut tip: Vec<Point3<f64>> = Vec::new();
-    for face in &surface.faces {
-        let corners = face.map(|corner| surface.points[corner]);
-        tip.extend(crate::connector::body::clipped(&corners, 2, [bottom, limit]));
-    }
-    let middle = |axis: usize| {
-        let [low, high] = span(tip.iter().map(|p| p[axis]));
-        (low + high) / 2.0
-    };
-    let by = Vector3::new(place[0] - middle(0), place[1] - middle(1), -bottom);
+    let [bottom, _] = extent(&surface.points, 2);
+    let faces = surface.faces.iter().map(|face| face.map(|corner| surface.points[corner]));
+    let tip: Vec<Point3<f64>> =
+        faces.flat_map(|corners| clipped(&corners, 2, [bottom, bottom + TIP])).collect();
+    let middle = [0, 1].map(|axis| middle(extent(&tip, axis)));
+    let by = Vector3::new(place[0] - middle[0], place[1] - middle[1], -bottom);
     surface.moved(&Matrix3::identity(), by)
 }
 
-/// The socket with its top at z = 0 and the middle of its largest opening at `place`.
+/// Socket with its top at z = 0 and the middle of its largest opening at `place`, with that
+/// opening.
 fn open(
     surface: Surface,
     place: [f64; 2],
@@ -218,22 +201,17 @@ fn open(
     let largest = holes.into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
     let Some(opening) = largest else {
         let value = clap::ValueEnum::to_possible_value(&along);
-        return Err(MeshError::NoOpening {
-            file: file.to_owned(),
-            along: format!(
-                "--insert-along {}",
-                value.as_ref().map_or("", |value| value.get_name())
-            ),
-        });
+        let value = value.as_ref().map_or("", |value| value.get_name());
+        return Err(Fault::NoOpening(format!("--insert-along {value}")).of(file));
     };
-    let [_, top] = span(surface.points.iter().map(|p| p.z));
-    let middle = opening.map(|[low, high]| (low + high) / 2.0);
+    let [_, top] = extent(&surface.points, 2);
+    let middle = opening.map(middle);
     let by = Vector3::new(place[0] - middle[0], place[1] - middle[1], -top);
     let shifted = [0, 1].map(|axis| opening[axis].map(|v| v + by[axis]));
     Ok((surface.moved(&Matrix3::identity(), by), shifted))
 }
 
-/// The largest intrusion of plug or socket where they meet.
+/// Largest intrusion of plug or socket where they meet, and its body.
 fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(Intrusion, &'static str)> {
     let deep = task.success.depth + ABOUT;
     let [x, y] = task.opening;
@@ -247,12 +225,12 @@ fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(Intrusion, &'static 
 }
 
 impl Imported {
-    /// Number of parts of plug and socket.
+    /// Number of parts of plug and of socket.
     pub fn parts(&self) -> [usize; 2] {
         [self.task.plug.parts.len(), self.task.socket.len()]
     }
 
-    /// Volumes of the parts of plug and socket, m3.
+    /// Volume of the parts of plug and of socket, m3.
     pub fn volumes(&self) -> [f64; 2] {
         [&self.task.plug.parts, &self.task.socket]
             .map(|parts| parts.iter().map(|part| geometry::volume(&part.solid)).sum())

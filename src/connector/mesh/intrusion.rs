@@ -1,4 +1,4 @@
-//! How far convex parts reach beyond the surface that they stand for.
+//! Intrusion of convex parts: their reach beyond the surface that they stand for.
 
 use super::surface::Surface;
 use contact::shapes;
@@ -9,21 +9,21 @@ use parry::query::PointQuery;
 use parry::shape::{TriMesh, TriMeshFlags};
 use rapier3d_f64::parry;
 
-/// Distance of the points at which parts are looked at, m.
+/// Spacing of the sample points on parts, m.
 const SPACING: f64 = 0.2 * MM;
-/// Most points along one side of a triangle.
+/// Most sample points along a side of a triangle.
 const MOST: usize = 60;
 
-/// The farthest that a part reaches out of the surface.
+/// Farthest point of a part outside the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intrusion {
-    /// How far, m.
+    /// Distance from the surface, m.
     pub depth: f64,
-    /// Where, m.
+    /// Point, m.
     pub at: Point3<f64>,
 }
 
-/// The largest intrusion where it counts.
+/// Largest intrusion among the sample points that `counts` accepts; `None` without such points.
 pub fn largest(
     surface: &Surface,
     parts: &[Part],
@@ -42,7 +42,7 @@ pub fn largest(
     samples.map(outside).max_by(|a, b| a.depth.total_cmp(&b.depth))
 }
 
-/// Points all over a part.
+/// Sample points on the faces of a part.
 fn samples(part: &Part) -> Vec<Point3<f64>> {
     let Some((corners, faces)) = geometry::hull(&part.solid.corners()) else { return Vec::new() };
     let mut found = Vec::new();

@@ -1,17 +1,17 @@
-//! Convex pieces put together where they are one convex solid, and named by their shape.
+//! Merging of convex pieces into convex solids: boxes, prisms, hulls.
 
 use super::cut::Piece;
-use crate::connector::body::span;
+use crate::connector::body::extent;
 use input::units::MM;
 use insertion::task::{Solid, geometry};
 use nalgebra::{Point3, Vector3};
 
-/// Two volumes that differ by less than this share are one.
+/// Largest relative difference of equal volumes.
 const ALIKE: f64 = 1e-6;
-/// Coordinates that are nearer than this are one, m.
+/// Largest difference of equal coordinates, m.
 const NEAR: f64 = 1e-3 * MM;
 
-/// A convex piece with its volume.
+/// Convex hull of pieces, with its volume, m3, and bounds, m.
 struct Convex {
     corners: Vec<Point3<f64>>,
     volume: f64,
@@ -23,8 +23,7 @@ impl Convex {
     fn new(piece: &[Point3<f64>]) -> Option<Self> {
         let (corners, faces) = geometry::hull(piece)?;
         let volume = geometry::surface_moments(&corners, &faces).0;
-        let low = Vector3::from_fn(|axis, _| span(corners.iter().map(|p| p[axis]))[0]);
-        let high = Vector3::from_fn(|axis, _| span(corners.iter().map(|p| p[axis]))[1]);
+        let [low, high] = [0, 1].map(|end| Vector3::from_fn(|axis, _| extent(&corners, axis)[end]));
         Some(Convex { corners, volume, low, high })
     }
 
@@ -34,7 +33,7 @@ impl Convex {
         })
     }
 
-    /// The two as one, if nothing is added by that.
+    /// Union of the two, if it is convex.
     fn with(&self, other: &Convex) -> Option<Convex> {
         let corners: Vec<_> = self.corners.iter().chain(&other.corners).copied().collect();
         let both = Convex::new(&corners)?;
@@ -43,7 +42,7 @@ impl Convex {
     }
 }
 
-/// As few solids as the pieces can be put together to.
+/// Solids of the pieces, merged until no two have a convex union, from the lowest up.
 pub fn solids(pieces: &[Piece]) -> Vec<Solid> {
     let mut convex: Vec<_> = pieces.iter().filter_map(|piece| Convex::new(piece)).collect();
     loop {
@@ -67,49 +66,36 @@ pub fn solids(pieces: &[Piece]) -> Vec<Solid> {
             break;
         }
     }
-    // From the lowest up, as hand-written files have them.
-    convex.sort_by(|a, b| {
-        let key = |c: &Convex| [c.low.z, c.low.y, c.low.x];
-        key(a)
-            .iter()
-            .zip(key(b))
-            .map(|(a, b)| a.total_cmp(&b))
-            .find(|o| o.is_ne())
-            .unwrap_or(std::cmp::Ordering::Equal)
+    // As hand-written files have them.
+    convex.sort_by(|Convex { low: a, .. }, Convex { low: b, .. }| {
+        a.z.total_cmp(&b.z).then(a.y.total_cmp(&b.y)).then(a.x.total_cmp(&b.x))
     });
     convex.iter().map(solid).collect()
 }
 
 fn solid(convex: &Convex) -> Solid {
-    for axis in [2, 0, 1] {
-        let Some((outline, span)) = extruded(convex, axis) else { continue };
-        let [low, high] = [convex.low, convex.high];
-        let on_corner = |p: &[f64; 2]| {
-            let (a, b) = others(axis);
-            [(p[0], a), (p[1], b)]
-                .iter()
-                .all(|&(v, i)| (v - low[i]).abs() < NEAR || (v - high[i]).abs() < NEAR)
-        };
-        if outline.len() == 4 && outline.iter().all(on_corner) {
-            return Solid::Box { min: low, max: high };
-        }
-        return Solid::Prism { axis, outline, span };
+    let (min, max) = (convex.low, convex.high);
+    let prism = [2, 0, 1].into_iter().find_map(|axis| Some((axis, extruded(convex, axis)?)));
+    let Some((axis, (outline, span))) = prism else {
+        return Solid::Hull { points: convex.corners.clone() };
+    };
+    let on_corner = |p: &[f64; 2]| {
+        let at_end = |v: f64, i: usize| (v - min[i]).abs() < NEAR || (v - max[i]).abs() < NEAR;
+        p.iter().zip(OTHERS[axis]).all(|(&v, i)| at_end(v, i))
+    };
+    match outline.len() == 4 && outline.iter().all(on_corner) {
+        true => Solid::Box { min, max },
+        false => Solid::Prism { axis, outline, span },
     }
-    Solid::Hull { points: convex.corners.clone() }
 }
 
-fn others(axis: usize) -> (usize, usize) {
-    match axis {
-        0 => (1, 2),
-        1 => (0, 2),
-        _ => (0, 1),
-    }
-}
+/// The two other axes of each axis.
+const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
 /// Outline and span, if the solid is an outline extruded along this axis.
 fn extruded(convex: &Convex, axis: usize) -> Option<(Vec<[f64; 2]>, [f64; 2])> {
     let ends = [convex.low[axis], convex.high[axis]];
-    let (a, b) = others(axis);
+    let [a, b] = OTHERS[axis];
     let at = |end: f64| -> Vec<[f64; 2]> {
         let near = convex.corners.iter().filter(|p| (p[axis] - end).abs() < NEAR);
         near.map(|p| [p[a], p[b]]).collect()
@@ -126,7 +112,7 @@ fn extruded(convex: &Convex, axis: usize) -> Option<(Vec<[f64; 2]>, [f64; 2])> {
     Some((outline(first), ends))
 }
 
-/// The corners in their order about the middle, without those on a straight line.
+/// Corners in their order about the middle, without those on a straight line.
 fn outline(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let count = corners.len() as f64;
     let middle = [0, 1].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / count);

@@ -8,108 +8,79 @@ mod merge;
 mod read;
 mod surface;
 
+use super::plan::PlanError;
 use decompose::MOST_PARTS;
 pub use read::read;
 pub use surface::Surface;
 
-/// Why a mesh cannot be used.
+/// Error of an import.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum MeshError {
-    /// Neither STL nor OBJ.
-    #[error("{file}: is neither an STL nor an OBJ file: {problem}")]
-    Format {
-        /// The file.
-        file: String,
-        /// What was found.
-        problem: String,
-    },
-    /// Open edges.
+    /// File and its fault.
+    #[error("{0}: {1}")]
+    File(String, Fault),
+    /// No strategy can be derived for the shapes.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+}
+
+/// Fault of a mesh.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum Fault {
+    /// Neither STL nor OBJ, with the reason.
+    #[error("is neither an STL nor an OBJ file: {0}")]
+    Format(String),
+    /// Open edges: their number, and the middle of the first, mm.
     #[error(
-        "{file}: is not watertight: {edges} edges have a face on one side only, the first at {at_mm:?} mm \
+        "is not watertight: {0} edges have a face on one side only, the first at {1:?} mm \
          (as in the file, scaled); close the surface in your CAD or with a mesh repair"
     )]
-    Open {
-        /// The file.
-        file: String,
-        /// How many.
-        edges: usize,
-        /// The middle of one of them, mm.
-        at_mm: [f64; 3],
-    },
-    /// Neighbouring faces that look to opposite sides.
+    Open(usize, [f64; 3]),
+    /// Edges between faces of opposite orientation: their number, and the middle of the first, mm.
     #[error(
-        "{file}: {edges} edges lie between faces that look to opposite sides, the first at {at_mm:?} mm; \
+        "{0} edges lie between faces that look to opposite sides, the first at {1:?} mm; \
          let all normals point outward"
     )]
-    Orientation {
-        /// The file.
-        file: String,
-        /// How many.
-        edges: usize,
-        /// The middle of one of them, mm.
-        at_mm: [f64; 3],
-    },
-    /// Nothing inside.
-    #[error("{file}: holds no volume")]
-    Flat {
-        /// The file.
-        file: String,
-    },
-    /// Too large or too small.
-    #[error("{file}: is {size_mm:.3} mm long; connectors are 3 to 300 mm: {hint}")]
-    Size {
-        /// The file.
-        file: String,
-        /// Largest extent, mm.
-        size_mm: f64,
-        /// Which unit it may be in.
-        hint: &'static str,
-    },
-    /// No opening.
-    #[error("{file}: has no opening on its top ({along}): no closed hole goes in from there")]
-    NoOpening {
-        /// The file.
-        file: String,
-        /// Where the top was looked for.
-        along: String,
-    },
-    /// Nothing to hold.
+    Orientation(usize, [f64; 3]),
+    /// No volume.
+    #[error("holds no volume")]
+    Flat,
+    /// Largest extent, mm, of no connector, and a hint at the unit.
+    #[error("is {0:.3} mm long; connectors are 3 to 300 mm: {1}")]
+    Size(f64, &'static str),
+    /// No opening, seen along the option given.
+    #[error("has no opening on its top ({0}): no closed hole goes in from there")]
+    NoOpening(String),
+    /// No place to hold the plug.
     #[error(
-        "{file}: no place to hold the plug was found: two faces across y, with a shoulder above them for \
+        "no place to hold the plug was found: two faces across y, with a shoulder above them for \
          the fingers' roofs; give --like T, whose grip fits, or write [grip] by hand"
     )]
-    NoGrip {
-        /// The file.
-        file: String,
-    },
-    /// To be approximated more finely than there is time for.
+    NoGrip,
+    /// An approximation that would take minutes.
     #[error(
-        "{file}: is no solid of flat sides that up to {MOST_PARTS} convex pieces make, and approximating it \
+        "is no solid of flat sides that up to {MOST_PARTS} convex pieces make, and approximating it \
          with --resolution {resolution} would take minutes: give --resolution {finest} or less, export \
          the mesh with fewer flats (a circle of 32 is exact), begin with `optimize task new --round`, \
          or write its parts by hand (docs/guide/tasks.md)"
     )]
     Long {
-        /// The file.
-        file: String,
-        /// As asked for, voxels along the longest side.
+        /// Resolution requested, voxels along the longest side.
         resolution: u32,
-        /// What does not take long.
+        /// Finest resolution that does not take as long.
         finest: u32,
     },
-    /// More parts than a task may have.
+    /// Number of convex hulls, more than the parts a task may have.
     #[error(
-        "{file}: comes to {parts} convex hulls; a task may have {MOST_PARTS}: export the mesh with fewer \
+        "comes to {0} convex hulls; a task may have {MOST_PARTS}: export the mesh with fewer \
          flats (a circle of 32 is exact), begin with `optimize task new --round`, or write its parts \
          by hand (docs/guide/tasks.md)"
     )]
-    Many {
-        /// The file.
-        file: String,
-        /// How many.
-        parts: usize,
-    },
-    /// No strategy.
-    #[error(transparent)]
-    Plan(#[from] super::plan::PlanError),
+    Many(usize),
+}
+
+impl Fault {
+    fn of(self, file: &str) -> MeshError {
+        MeshError::File(file.to_owned(), self)
+    }
 }

@@ -1,28 +1,29 @@
-//! STL (binary and text) and OBJ files to triangles.
+//! Triangles of STL (binary and text) and OBJ files.
 
-use super::MeshError;
+use super::{Fault, MeshError};
 use nalgebra::Point3;
 
-/// Three corners, in the unit of the file.
+/// Corners of a triangle, in the unit of the file.
 pub type Triangle = [Point3<f64>; 3];
 
 /// Bytes before the triangles of a binary STL, and of each triangle.
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// The triangles of a file; `file` is named in errors, its extension is not asked.
+/// Triangles of a file; the content decides on the format, `file` is named in errors.
+///
+/// # Errors
+/// If the bytes are neither STL nor OBJ, or name no finite triangles.
 pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Triangle>, MeshError> {
-    let fail =
-        |problem: &str| MeshError::Format { file: file.to_owned(), problem: problem.to_owned() };
+    let fail = |problem: &str| Fault::Format(problem.to_owned()).of(file);
     // A binary STL may begin with "solid", too: its length tells.
     let triangles = match binary_count(bytes) {
         Some(count) => binary(&bytes[HEADER..], count),
         None => {
-            let text =
-                std::str::from_utf8(bytes).map_err(|_| fail("a binary file of odd length"))?;
-            let text_stl = text.trim_start().starts_with("solid");
-            let found = if text_stl { stl(text) } else { obj(text) };
-            found.map_err(|problem| fail(&problem))?
+            let text = std::str::from_utf8(bytes);
+            let text = text.map_err(|_| fail("a binary file of odd length"))?;
+            let stl = text.trim_start().starts_with("solid");
+            parsed(text, stl).map_err(|problem| fail(&problem))?
         }
     };
     if triangles.is_empty() {
@@ -59,39 +60,23 @@ fn point<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<Po
     }
 }
 
-fn stl(text: &str) -> Result<Vec<Triangle>, String> {
-    let mut corners = Vec::new();
+/// Triangles of a text file, an STL or else an OBJ.
+fn parsed(text: &str, stl: bool) -> Result<Vec<Triangle>, String> {
+    let mut points = Vec::new();
     let mut triangles = Vec::new();
-    for (number, line) in text.lines().enumerate() {
+    for (number, line) in (1..).zip(text.lines()) {
         let mut words = line.split_whitespace();
-        match words.next() {
-            Some("vertex") => corners.push(point(words, number + 1)?),
-            Some("endfacet") => {
-                let three = <[Point3<f64>; 3]>::try_from(std::mem::take(&mut corners));
-                let three = three
-                    .map_err(|_| format!("line {}: a facet has three vertices", number + 1))?;
-                triangles.push(three);
+        match (stl, words.next()) {
+            (true, Some("vertex")) | (false, Some("v")) => points.push(point(words, number)?),
+            (true, Some("endfacet")) => {
+                let three = Triangle::try_from(std::mem::take(&mut points));
+                let three = three.map_err(|_| format!("line {number}: a facet has three vertices"));
+                triangles.push(three?);
             }
-            _ => {}
-        }
-    }
-    Ok(triangles)
-}
-
-fn obj(text: &str) -> Result<Vec<Triangle>, String> {
-    let mut points: Vec<Point3<f64>> = Vec::new();
-    let mut triangles = Vec::new();
-    for (number, line) in text.lines().enumerate() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => points.push(point(words, number + 1)?),
-            Some("f") => {
-                let corner = |word: &str| corner(word, &points);
-                let face: Option<Vec<_>> = words.map(corner).collect();
-                let face = face.ok_or(format!(
-                    "line {}: a face names a vertex that is not there",
-                    number + 1
-                ))?;
+            (false, Some("f")) => {
+                let face: Option<Vec<_>> = words.map(|word| corner(word, &points)).collect();
+                let missing = || format!("line {number}: a face names a vertex that is not there");
+                let face = face.ok_or_else(missing)?;
                 // A polygon as a fan, as viewers do.
                 triangles.extend((2..face.len()).map(|i| [face[0], face[i - 1], face[i]]));
             }
@@ -101,7 +86,7 @@ fn obj(text: &str) -> Result<Vec<Triangle>, String> {
     Ok(triangles)
 }
 
-/// `7`, `7/1` or `7//3`, counted from 1, or from the end if negative.
+/// Corner by its number, `7`, `7/1` or `7//3`, counted from 1, or from the end if negative.
 fn corner(word: &str, points: &[Point3<f64>]) -> Option<Point3<f64>> {
     let number: i64 = word.split('/').next()?.parse().ok()?;
     let count = i64::try_from(points.len()).ok()?;

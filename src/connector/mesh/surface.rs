@@ -1,37 +1,40 @@
 //! A closed surface of triangles that look outward.
 
-use super::MeshError;
 use super::read::Triangle;
+use super::{Fault, MeshError};
+use crate::connector::body::{extent, width};
 use input::units::MM;
 use insertion::task::geometry::surface_moments;
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
 
-/// Corners that are nearer than this are one, m: files have 32-bit numbers.
+/// Grid on which corners are welded, m: files have 32-bit numbers.
 const GRID: f64 = 1e-4 * MM;
 /// Least and largest size of a connector, m.
 const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
 
-/// A closed surface.
+/// Closed triangle mesh, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// Corners, m.
+    /// Corners, m, on the welding grid.
     pub points: Vec<Point3<f64>>,
-    /// Triangles, counter-clockwise from outside.
+    /// Corner indices of the triangles, counter-clockwise from outside.
     pub faces: Vec<[usize; 3]>,
-    /// Whether the file had them the other way round.
+    /// Whether the file had all triangles clockwise.
     pub was_inward: bool,
 }
 
 impl Surface {
-    /// From triangles in a unit of so many metres; `file` is named in errors.
+    /// Surface of triangles given in a unit of `unit` metres; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the triangles are not watertight, differ in orientation, or have no connector's size.
     pub fn new(triangles: &[Triangle], unit: f64, file: &str) -> Result<Self, MeshError> {
         let (points, mut faces) = weld(triangles, unit);
-        size(&points, file)?;
-        closed(&points, &faces, file)?;
+        size(&points).and_then(|()| closed(&points, &faces)).map_err(|fault| fault.of(file))?;
         let volume = surface_moments(&points, &faces).0;
         if volume.abs() < GRID * GRID * GRID {
-            return Err(MeshError::Flat { file: file.to_owned() });
+            return Err(Fault::Flat.of(file));
         }
         let was_inward = volume < 0.0;
         if was_inward {
@@ -48,16 +51,12 @@ impl Surface {
         self
     }
 
-    /// The longest side of the box about it, m.
+    /// Longest side of the bounding box, m.
     pub fn longest_side(&self) -> f64 {
-        let side = |axis: usize| {
-            let [low, high] = crate::connector::body::span(self.points.iter().map(|p| p[axis]));
-            high - low
-        };
-        (0..3).map(side).fold(0.0, f64::max)
+        longest_side(&self.points)
     }
 
-    /// Area, m2.
+    /// Surface area, m2.
     pub fn area(&self) -> f64 {
         let of = |face: &[usize; 3]| {
             let [a, b, c] = face.map(|corner| self.points[corner]);
@@ -66,13 +65,13 @@ impl Surface {
         self.faces.iter().map(of).sum()
     }
 
-    /// Volume, m3.
+    /// Enclosed volume, m3.
     pub fn volume(&self) -> f64 {
         surface_moments(&self.points, &self.faces).0
     }
 }
 
-/// To the grid.
+/// Coordinate rounded to the grid.
 fn snap(value: f64) -> f64 {
     (value / GRID).round() * GRID
 }
@@ -115,28 +114,28 @@ fn without_films(faces: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
     kept.map(|([a, b, c], count)| if count > 0 { [a, b, c] } else { [a, c, b] }).collect()
 }
 
-fn size(points: &[Point3<f64>], file: &str) -> Result<(), MeshError> {
-    let along = |axis: usize| {
-        let [low, high] = super::super::body::span(points.iter().map(|p| p[axis]));
-        high - low
-    };
-    let largest = (0..3).map(along).fold(0.0, f64::max);
+fn longest_side(points: &[Point3<f64>]) -> f64 {
+    (0..3).map(|axis| width(extent(points, axis))).fold(0.0, f64::max)
+}
+
+fn size(points: &[Point3<f64>]) -> Result<(), Fault> {
+    let largest = longest_side(points);
     let [low, high] = SIZES;
     let hint = match () {
         () if largest > high => "too large; is it in mm and --unit says in or m?",
         () if largest < low => "too small; is it in metres (--unit m) or inches (--unit in)?",
         () => return Ok(()),
     };
-    Err(MeshError::Size { file: file.to_owned(), size_mm: largest / MM, hint })
+    Err(Fault::Size(largest / MM, hint))
 }
 
-/// Every edge is walked as often in one direction as in the other.
-fn closed(points: &[Point3<f64>], faces: &[[usize; 3]], file: &str) -> Result<(), MeshError> {
-    let mut walked: BTreeMap<[usize; 2], [u32; 2]> = BTreeMap::new();
+/// Checks that every edge runs as often in one direction as in the other.
+fn closed(points: &[Point3<f64>], faces: &[[usize; 3]]) -> Result<(), Fault> {
+    let mut ways: BTreeMap<[usize; 2], [u32; 2]> = BTreeMap::new();
     for face in faces {
         for i in 0..3 {
             let (a, b) = (face[i], face[(i + 1) % 3]);
-            let edge = walked.entry([a.min(b), a.max(b)]).or_default();
+            let edge = ways.entry([a.min(b), a.max(b)]).or_default();
             edge[usize::from(a > b)] += 1;
         }
     }
@@ -144,19 +143,11 @@ fn closed(points: &[Point3<f64>], faces: &[[usize; 3]], file: &str) -> Result<()
         let middle = nalgebra::center(&points[*a], &points[*b]) / MM;
         [middle.x, middle.y, middle.z].map(|v| (v * 1e3).round() / 1e3)
     };
-    let file = file.to_owned();
-    let of = |wrong: fn(&[u32; 2]) -> bool| -> Vec<_> {
-        walked.iter().filter(|(_, ways)| wrong(ways)).map(|(edge, _)| *edge).collect()
+    let none_of = |wrong: fn(&[u32; 2]) -> bool, fault: fn(usize, [f64; 3]) -> Fault| {
+        let mut edges = ways.iter().filter(|(_, ways)| wrong(ways)).map(|(edge, _)| edge);
+        let first = edges.next().map(middle);
+        first.map_or(Ok(()), |first| Err(fault(1 + edges.count(), first)))
     };
-    let open = of(|[forth, back]| (forth + back) % 2 == 1);
-    if let Some(first) = open.first() {
-        return Err(MeshError::Open { file, edges: open.len(), at_mm: middle(first) });
-    }
-    let turned = of(|[forth, back]| forth != back);
-    match turned.first() {
-        Some(first) => {
-            Err(MeshError::Orientation { file, edges: turned.len(), at_mm: middle(first) })
-        }
-        None => Ok(()),
-    }
+    none_of(|[forth, back]| (forth + back) % 2 == 1, Fault::Open)?;
+    none_of(|[forth, back]| forth != back, Fault::Orientation)
 }

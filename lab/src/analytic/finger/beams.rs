@@ -16,27 +16,27 @@ const DEPTH: f64 = 0.012;
 const G: f64 = E / 2.0 / (1.0 + NU);
 /// Shear factor of a rectangular section.
 const SHEAR: f64 = 5.0 / 6.0;
-/// A node this near to a line lies on it, m.
+/// Largest distance of a node on a line, m.
 const ON: f64 = 1e-9;
 
-/// What is checked: PETG, as deep as the finger.
+/// Slab of PETG, as deep as the finger.
 pub(super) const SLAB: Slab = Slab { modulus: E, poisson: NU, thickness: DEPTH };
 pub(super) const PLANE: PlaneStress = PlaneStress(SLAB);
 const PLATE: MindlinPlate = MindlinPlate(SLAB);
 
-/// A rectangle, counter-clockwise.
+/// Counter-clockwise rectangle, m.
 pub(super) fn rectangle(x: [f64; 2], y: [f64; 2]) -> Ring {
     [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])]
         .map(|(x, y)| Point2::new(x, y))
         .to_vec()
 }
 
-/// All rows of F1.
+/// Stiffness of beams and a frame, F1 rows.
 pub fn f1() -> Vec<CheckRow> {
     [cantilever(), frame(), wall()].concat()
 }
 
-/// A row for an entry of a matrix; without one, the row fails.
+/// Row of an entry of a matrix; without a matrix it fails.
 fn row(
     text: &str,
     expected: f64,
@@ -47,10 +47,10 @@ fn row(
 ) -> CheckRow {
     let measured = matrix.map(|matrix| matrix[place] * scale).ok_or(());
     let tolerance = Tolerance::Relative(share);
-    CheckRow::new(("F1", text.to_owned()), expected * scale, measured, unit, tolerance)
+    CheckRow::new("F1", text, expected * scale, measured, unit, tolerance)
 }
 
-/// The stiffness of a rigid end (its motions by `follow`), the other end clamped.
+/// Stiffness of a rigid end (its motions by `follow`), the other end clamped.
 fn end<Of: Element>(
     (ring, size): (&Ring, f64),
     element: &Of,

@@ -1,4 +1,4 @@
-//! F3: what must not depend on the mesh.
+//! F3: independence of the mesh.
 
 use super::super::{CheckRow, Tolerance};
 use super::{NoFinger, finray9, infill};
@@ -9,42 +9,40 @@ use finray::meshed::{Body, held};
 use finray::plate::MindlinPlate;
 use nalgebra::Matrix3;
 
-/// Designs looked at: density, percent, and direction, degrees.
+/// Designs: density, percent, and direction, degrees.
 const DESIGNS: [[f64; 2]; 4] = [[10.0, 30.0], [20.0, 20.0], [30.0, 0.0], [30.0, 40.0]];
 /// Largest change of an entry, percent of the springs that it couples.
 const CHANGE_PERCENT: f64 = 2.0;
 /// Rounding, as a share of the springs that an entry couples.
 const ROUNDING: f64 = 1e-9;
 
-/// All rows of F3.
+/// Changes by the mesh, and properties of the matrices, F3 rows.
 pub fn f3() -> Vec<CheckRow> {
     let found: Vec<_> = DESIGNS.iter().map(|&design| (design, Halved::new(design).ok())).collect();
-    let row = |text: String, measured: Option<f64>, unit, allowed| {
-        CheckRow::new(("F3", text), 0.0, measured.ok_or(()), unit, Tolerance::Absolute(allowed))
+    let row = |text: &str, measured: Option<f64>, unit, allowed| {
+        CheckRow::new("F3", text, 0.0, measured.ok_or(()), unit, Tolerance::Absolute(allowed))
     };
     let changes = found.iter().map(|([density, direction], halved)| {
         let text = format!("half the mesh, {density} %, {direction} deg");
         let change = halved.as_ref().map(|halved| 100.0 * halved.change());
-        row(text, change, "%", CHANGE_PERCENT)
+        row(&text, change, "%", CHANGE_PERCENT)
     });
-    let mut rows: Vec<CheckRow> = changes.collect();
-    let all: Option<Vec<_>> =
-        found.iter().map(|(_, halved)| Some(halved.as_ref()?.coarse)).collect();
-    let all = all.map(|designs| designs.concat());
-    let asymmetry = |all: &Vec<Matrix3<f64>>| {
+    let coarse = found.iter().map(|(_, halved)| Some(halved.as_ref()?.coarse));
+    let all = coarse.collect::<Option<Vec<_>>>().map(|designs| designs.concat());
+    let asymmetry = all.as_ref().map(|all| {
         all.iter().map(|matrix| difference(matrix, &matrix.transpose())).fold(0.0, f64::max)
-    };
-    let indefinite = |all: &Vec<Matrix3<f64>>| {
-        all.iter().filter(|matrix| matrix.cholesky().is_none()).count() as f64
-    };
-    let text = "stiffness matrices, most asymmetric entry".to_owned();
-    rows.push(row(text, all.as_ref().map(asymmetry), "-", ROUNDING));
-    let text = "stiffness matrices not positive definite".to_owned();
-    rows.push(row(text, all.as_ref().map(indefinite), "-", 0.0));
-    rows
+    });
+    let indefinite = all
+        .as_ref()
+        .map(|all| all.iter().filter(|matrix| matrix.cholesky().is_none()).count() as f64);
+    let whole = [
+        row("stiffness matrices, most asymmetric entry", asymmetry, "-", ROUNDING),
+        row("stiffness matrices not positive definite", indefinite, "-", 0.0),
+    ];
+    changes.chain(whole).collect()
 }
 
-/// The matrices of a design (pad; pad and roof; across the plane) on both meshes.
+/// Matrices of a design (pad; pad and roof; across the plane) on a mesh and at half its size.
 struct Halved {
     coarse: [Matrix3<f64>; 3],
     fine: [Matrix3<f64>; 3],
@@ -62,7 +60,7 @@ impl Halved {
     }
 }
 
-/// As they come out, before they are made exactly symmetric.
+/// Matrices before they are made exactly symmetric.
 fn matrices(geometry: &Geometry, factor: f64) -> Result<[Matrix3<f64>; 3], NoFinger> {
     let (slab, fails) = (Slab::of(&geometry.finger), |_| NoFinger::None);
     let (plane, plate) = (PlaneStress(slab), MindlinPlate(slab));
@@ -72,7 +70,7 @@ fn matrices(geometry: &Geometry, factor: f64) -> Result<[Matrix3<f64>; 3], NoFin
     Ok([pad, both, across])
 }
 
-/// Largest difference of two matrices, by the springs that the entry couples.
+/// Largest difference of two matrices, relative to the springs that the entry couples.
 fn difference(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
     let entry = |(i, j)| (a[(i, j)] - b[(i, j)]).abs() / (b[(i, i)] * b[(j, j)]).sqrt();
     (0..9).map(|n| entry((n / 3, n % 3))).fold(0.0, f64::max)

@@ -1,4 +1,4 @@
-//! F1 to F4: the stiffness that is computed of a printed finger. They ask no contact engine.
+//! F1 to F4: the computed stiffness of a printed finger, without a contact engine.
 //!
 //! | check | what must be right |
 //! | --- | --- |
@@ -20,12 +20,7 @@ use finray::printed::PrintedFinger;
 use input::InputError;
 use input::shipped::FINGERS;
 
-pub use beams::f1;
-pub use mesh::f3;
-pub use patch::f2;
-pub use reference::f4;
-
-/// Why a finger has no stiffness to be checked.
+/// Error of a finger without stiffness.
 #[derive(Debug, thiserror::Error)]
 enum NoFinger {
     #[error(transparent)]
@@ -36,18 +31,18 @@ enum NoFinger {
     None,
 }
 
-/// Runs them all, in order.
+/// Results of F1 to F4, in order.
 pub fn run() -> Vec<CheckRow> {
-    [f1, f2, f3, f4].iter().flat_map(|check| check()).collect()
+    [beams::f1, patch::f2, mesh::f3, reference::f4].iter().flat_map(|check| check()).collect()
 }
 
-/// The finger of the measured designs.
+/// Shipped finger of the measured designs.
 fn finray9() -> Result<PrintedFinger, NoFinger> {
     let shipped = FINGERS.first().ok_or(NoFinger::None)?;
     Ok(PrintedFinger::parse(shipped.text, shipped.file)?)
 }
 
-/// It with an infill of this density (percent) and direction (degrees).
+/// Finger with an infill of a density (percent) and a direction (degrees).
 fn infill(finger: &PrintedFinger, [density, direction]: [f64; 2]) -> Result<Geometry, NoFinger> {
     let design = Design { density_percent: density, direction_deg: direction, phase_mm: None };
     Ok(Geometry::new(finger, &design)?)

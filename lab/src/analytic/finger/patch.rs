@@ -14,10 +14,10 @@ fn field(p: &Point2<f64>) -> [f64; 2] {
     [0.1 * p.x + 0.3 * p.y, -0.2 * p.x + 0.4 * p.y]
 }
 
-/// Its strains: XX, YY and the shear.
+/// Strains of that field: XX, YY and the shear.
 const STRAIN: [f64; 3] = [0.1, 0.4, 0.3 - 0.2];
 
-/// All rows of F2.
+/// Errors of the patch test, F2 rows.
 pub fn f2() -> Vec<CheckRow> {
     let [xx, yy, xy] = STRAIN;
     let (nu, width, height) = (SLAB.poisson, 1.3, 1.0);
@@ -29,7 +29,7 @@ pub fn f2() -> Vec<CheckRow> {
     let found = Mesh::new(&outer, &[hole], 0.2).ok();
     let found = found.and_then(|mesh| patch(&mesh)).ok_or(());
     let row = |text: &str, expected, measured, unit, tolerance| {
-        CheckRow::new(("F2", text.to_owned()), expected, measured, unit, tolerance)
+        CheckRow::new("F2", text, expected, measured, unit, tolerance)
     };
     let (error, work) = (found.map(|found| found[0]), found.map(|found| found[1]));
     vec![

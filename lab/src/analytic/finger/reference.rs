@@ -32,26 +32,24 @@ const TABLE: [Row; 11] = [
 const HELD_ROOF: f64 = 2.4 * MM;
 /// A centre is given to 0.1 mm, and moves by as much with the mesh, mm.
 const CENTRE: f64 = 0.2;
-/// Of a stiffness and a centre, and of a tilting stiffness.
+/// Largest relative errors of a stiffness and a centre, and of a tilting stiffness.
 const CLOSE: f64 = 0.03;
 const TILTING: f64 = 0.08;
 
-/// A number of the table: what it is called, its unit, the tabled and the computed value.
+/// Number of the table: its name, its unit, the tabled and the computed value.
 type Quantity = (String, &'static str, fn(&Row) -> f64, fn(&[PlanarStiffness; 2]) -> f64);
 
-/// One row for each number of the table: the design that is farthest off.
+/// Design with the largest error for each number of the table, F4 rows.
 pub fn f4() -> Vec<CheckRow> {
     let computed: Result<Vec<_>, NoFinger> = TABLE.iter().map(stiffness).collect();
     quantities().into_iter().map(|quantity| worst(&quantity, computed.as_deref())).collect()
 }
 
-fn stiffness(
-    ([density_percent, direction_deg, phase], ..): &Row,
-) -> Result<[PlanarStiffness; 2], NoFinger> {
+fn stiffness(row: &Row) -> Result<[PlanarStiffness; 2], NoFinger> {
     let mut finger = finray9()?;
     finger.outline.roof = HELD_ROOF;
-    let (density_percent, direction_deg) = (*density_percent, *direction_deg);
-    let design = Design { density_percent, direction_deg, phase_mm: Some(*phase) };
+    let [density_percent, direction_deg, phase] = row.0;
+    let design = Design { density_percent, direction_deg, phase_mm: Some(phase) };
     Ok(planar(&Geometry::new(&finger, &design)?, SIZE)?)
 }
 
@@ -90,7 +88,7 @@ fn worst(
             "mm" => Tolerance::Absolute(allowed(expected)),
             _ => Tolerance::Relative(allowed(expected) / expected),
         };
-        CheckRow::new(("F4", text), expected, measured, unit, tolerance)
+        CheckRow::new("F4", text, expected, measured, unit, tolerance)
     };
     match computed {
         Err(error) => row((&TABLE[0], Err(error))),

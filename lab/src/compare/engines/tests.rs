@@ -1,6 +1,7 @@
-//! The rule of the set and the totals, on the closed form.
+//! Offsets of the trials and totals, on the closed form.
 
 use super::*;
+use crate::compare::tests;
 use finger_opt::calibration::published::designs;
 use input::shipped::TASKS;
 use insertion::evaluation::tolerance::Search;
@@ -11,13 +12,7 @@ use insertion::trial::fake::FakeRig;
 use std::sync::Arc;
 
 fn window(negative: OffsetStep, positive: OffsetStep) -> Window {
-    Window {
-        nominal: Outcome::Inserted,
-        negative_steps: negative,
-        positive_steps: positive,
-        end_negative: Some(Outcome::Failed(FailureClass::Jammed)),
-        end_positive: Some(Outcome::Failed(FailureClass::PlugMissed)),
-    }
+    tests::window([negative, positive], [FailureClass::Jammed, FailureClass::PlugMissed])
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What the two engines made of the set, as text and as JSON.
+//! Results of both engines as text and as JSON.
 
 use super::{AGREEMENT, CrossCheck, END_DIFFERENCE_MM, TrialPair};
 use crate::compare::{pairs, subject_json};
@@ -7,7 +7,7 @@ use insertion::outcome::Outcome;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Tables and totals; `names` are the engines'.
+/// Tables and totals; `names` are those of the engines.
 pub fn text(check: &CrossCheck, names: [&str; 2]) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -21,30 +21,31 @@ pub fn text(check: &CrossCheck, names: [&str; 2]) -> String {
 fn windows(text: &mut String, check: &CrossCheck) {
     let Some(mean) = check.end_difference_mm() else { return };
     text.push_str(&pairs::text(&check.windows, None));
-    let verdict = if mean <= END_DIFFERENCE_MM { "met" } else { "MISSED" };
-    let _ = writeln!(
-        text,
-        "mean difference of an end {mean:.2} mm; target {END_DIFFERENCE_MM} mm: {verdict}\n"
-    );
+    let verdict = verdict(mean <= END_DIFFERENCE_MM);
+    let words = "mean difference of an end";
+    let _ = writeln!(text, "{words} {mean:.2} mm; target {END_DIFFERENCE_MM} mm: {verdict}\n");
+}
+
+fn verdict(met: bool) -> &'static str {
+    if met { "met" } else { "MISSED" }
 }
 
 fn counts(text: &mut String, check: &CrossCheck) {
     let agreed = check.trials.iter().filter(|pair| pair.agrees()).count();
     let total = check.trials.len();
-    let verdict = if check.agreement() >= AGREEMENT { "met" } else { "MISSED" };
+    let verdict = verdict(check.agreement() >= AGREEMENT);
+    let [share, target] = [check.agreement(), AGREEMENT].map(|share| 100.0 * share);
     let _ = writeln!(
         text,
-        "alike in {agreed} of {total} trials, {:.1} %; target {:.0} %: {verdict}",
-        100.0 * check.agreement(),
-        100.0 * AGREEMENT,
+        "alike in {agreed} of {total} trials, {share:.1} %; target {target:.0} %: {verdict}"
     );
     let mut tips: Vec<f64> = check.trials.iter().filter_map(|pair| pair.tip_mm).collect();
     tips.sort_by(f64::total_cmp);
-    if let (Some(median), Some(largest)) = (tips.get(tips.len() / 2), tips.last()) {
+    let count = tips.len();
+    if let (Some(median), Some(largest)) = (tips.get(count / 2), tips.last()) {
         let _ = writeln!(
             text,
-            "tips of the {} plugs that both insert: {median:.3} mm apart (median), {largest:.3} mm at most",
-            tips.len()
+            "tips of the {count} plugs that both insert: {median:.3} mm apart (median), {largest:.3} mm at most"
         );
     }
 }
@@ -61,18 +62,13 @@ fn disagreements(text: &mut String, check: &CrossCheck, [first, second]: [&str; 
     );
     for pair in others {
         let [a, b] = pair.outcomes.map(Outcome::label);
-        let _ = writeln!(
-            text,
-            "{:<7}{:<13}{:>10.1}{:>15.1}  {a:<27}{b}",
-            pair.subject.task,
-            pair.subject.infill(),
-            grid_mm(pair.offset),
-            grid_mm(pair.from_end)
-        );
+        let (task, infill) = (&pair.subject.task, pair.subject.infill());
+        let [offset, beyond] = [pair.offset, pair.from_end].map(grid_mm);
+        let _ = writeln!(text, "{task:<7}{infill:<13}{offset:>10.1}{beyond:>15.1}  {a:<27}{b}");
     }
 }
 
-/// The same for programs; lengths in mm.
+/// Results as JSON, lengths in mm.
 pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
     let trial = |pair: &TrialPair| {
         let measured = json!({

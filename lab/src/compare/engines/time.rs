@@ -1,4 +1,4 @@
-//! How long the same trial takes in both engines.
+//! Time of the same trial in both engines.
 
 use crate::compare::{Subject, TaskWays, Way, subject_json};
 use insertion::outcome::Outcome;
@@ -7,15 +7,13 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Instant;
 
-/// Runs of each trial; the median counts.
+/// Runs of each trial, of which the median counts.
 const RUNS: usize = 5;
 
-/// The nominal trial of a finger, from the grasp to the end, in both engines.
+/// Times of a finger's nominal trial, from the grasp to the end, in both engines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timing {
-    /// The finger and its task.
     pub subject: Subject,
-    /// How it ended.
     pub outcomes: [Outcome; 2],
     /// Simulated time, s.
     pub simulated_s: [f64; 2],
@@ -24,15 +22,15 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// The first engine's wall time per simulated time over the second's.
+    /// Wall time per simulated time of the first engine over that of the second.
     pub fn ratio(&self) -> f64 {
         let [first, second] = [0, 1].map(|i| self.wall_s[i] / self.simulated_s[i]);
         first / second
     }
 }
 
-/// Times every design on every task, one after the other, on this thread, the engines (the
-/// first two ways of the task) in turn.
+/// Times of every design on every task, one after the other on this thread, the engines (the first
+/// two ways of the task) in turn.
 pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
     let timing = |task: &TaskWays, design: &Measurement| {
         let [first, second, ..] = &task.ways[..] else { return None };
@@ -64,20 +62,13 @@ fn time_both(subject: Subject, ways: [&Way; 2]) -> Timing {
     }
 }
 
-/// A table, and the mean ratio.
+/// Table, and the mean ratio.
 pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
+    let unit = "wall s (simulated)";
     let mut text = format!(
         "one nominal trial from the grasp to the end, one thread, medians of {RUNS}\n\n\
-         {:<7}{:<13}{:>20}{:>20}{:>8}\n{:<20}{:>20}{:>20}{:>8}\n",
-        "task",
-        "finger",
-        first,
-        second,
-        "ratio",
-        "",
-        "wall s (simulated)",
-        "wall s (simulated)",
-        ""
+         task   finger       {first:>20}{second:>20}   ratio\n{:20}{unit:>20}{unit:>20}{:8}\n",
+        "", ""
     );
     for row in rows {
         let [a, b] = [0, 1].map(|i| format!("{:.3} ({:.2})", row.wall_s[i], row.simulated_s[i]));
@@ -96,7 +87,7 @@ pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
     text
 }
 
-/// The same for programs.
+/// Times as JSON.
 pub fn time_json(rows: &[Timing], names: [&str; 2]) -> Value {
     json!({
         "engines": names,

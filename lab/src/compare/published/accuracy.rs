@@ -1,6 +1,5 @@
-//! How far the simulations agree with each other and with the experiments, a line a task.
+//! Agreement of the simulations with each other and with the experiments, a line for each task.
 
-use super::table::agreement_json;
 use super::{Agreement, RangeSource, TaskTable};
 use serde_json::{Value, json};
 
@@ -25,7 +24,7 @@ fn words(found: Agreement) -> String {
     [
         value(found.mean_absolute_error_mm, &|error| format!("{error:.2} mm")),
         value(found.spearman, &|rank| format!("{:+.2}", (100.0 * rank).round() / 100.0 + 0.0)),
-        value(found.match_percent(), &|share| format!("{share:.1} %")),
+        value(found.match_percent, &|share| format!("{share:.1} %")),
     ]
     .join(", ")
 }
@@ -33,8 +32,7 @@ fn words(found: Agreement) -> String {
 /// Our agreement and the published simulation's with the experiments: a list of tasks.
 pub fn accuracy_json(tables: &[TaskTable]) -> Value {
     let task = |table: &TaskTable| {
-        let with_bench =
-            |source| agreement_json(&Agreement::of(&table.rows, source, RangeSource::Bench));
+        let with_bench = |source| Agreement::of(&table.rows, source, RangeSource::Bench);
         json!({
             "task": table.task,
             "ours": with_bench(RangeSource::Ours),

@@ -1,14 +1,14 @@
-//! How well two columns of ranges and failure classes agree.
+//! Agreement of two columns of ranges and failure classes.
 
 use super::{DesignRow, RangeSource};
 use finger_opt::calibration::statistics::{mean, spearman};
+use serde::Serialize;
 
 /// Agreement of one source with another (the reference) over the designs of a task.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Agreement {
-    /// What is compared.
+    #[serde(rename = "compared")]
     pub source: RangeSource,
-    /// What it is compared with.
     pub reference: RangeSource,
     /// Designs for which both give a range; the next four values rest on them.
     pub designs: usize,
@@ -24,6 +24,8 @@ pub struct Agreement {
     pub matched_ends: usize,
     /// Window ends for which the reference names a class.
     pub ends: usize,
+    /// Failure match score, percent: the paper's, over both ends of all windows.
+    pub match_percent: Option<f64>,
 }
 
 impl Agreement {
@@ -45,6 +47,7 @@ impl Agreement {
         let over = |measure: &dyn Fn(f64, f64) -> f64| {
             mean(&pairs.iter().map(|&(a, b)| measure(a, b)).collect::<Vec<_>>())
         };
+        let matched_ends = ends().filter(|(a, b)| a == b).count();
         Agreement {
             source,
             reference,
@@ -53,20 +56,17 @@ impl Agreement {
             mean_error_mm: over(&|a, b| a - b),
             mean_deviation_percent: over(&deviation_percent),
             spearman: spearman(&pairs),
-            matched_ends: ends().filter(|(a, b)| a == b).count(),
+            matched_ends,
             ends: ends().count(),
+            match_percent: match ends().count() {
+                0 => None,
+                ends => Some(100.0 * matched_ends as f64 / ends as f64),
+            },
         }
-    }
-
-    /// Failure match score, percent: the paper's, over both ends of all windows.
-    pub fn match_percent(&self) -> Option<f64> {
-        (self.ends > 0).then(|| 100.0 * self.matched_ends as f64 / self.ends as f64)
     }
 }
 
-/// The paper's deviation: `|range - reference| / reference`, in percent.
-///
-/// It gives the last column of the paper's bench tables from the simulated
+/// The paper's deviation: `|range - reference| / reference`, percent. It gives the last column of the paper's bench tables from the simulated
 /// and the bench range, to the 0.1 % by which those are rounded.
 pub fn deviation_percent(range: f64, reference: f64) -> f64 {
     100.0 * (range - reference).abs() / reference

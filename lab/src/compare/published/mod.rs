@@ -1,5 +1,4 @@
-//! Our tolerance windows beside the published ones: tables and statistics,
-//! pure functions of windows that were measured elsewhere.
+//! Our tolerance windows beside the published ones: tables and statistics, pure functions of windows.
 
 mod accuracy;
 mod agreement;
@@ -11,8 +10,7 @@ mod text;
 
 pub use accuracy::{accuracy, accuracy_json};
 pub use agreement::Agreement;
-pub use table::{CSV_HEADER, SUMMARY_HEADER, csv, json, summary_csv};
-pub use targets::{Target, targets};
+pub use table::{csv, json, summary_csv};
 pub use text::text;
 
 use super::failures;
@@ -21,8 +19,9 @@ use insertion::evaluation::Window;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::stiffness::Measurement;
 
-/// Where a range and the failures at its ends come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Source of a range and the failures at its ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum RangeSource {
     /// This program's simulation.
     Ours,
@@ -33,54 +32,43 @@ pub enum RangeSource {
 }
 
 impl RangeSource {
-    /// A name for tables and plots.
-    pub fn label(self) -> &'static str {
+    /// Names in text and in files.
+    pub fn names(self) -> [&'static str; 2] {
         match self {
-            RangeSource::Ours => "ours",
-            RangeSource::Simulation => "published simulation",
-            RangeSource::Bench => "bench experiments",
-        }
-    }
-
-    /// A name for keys and columns.
-    pub fn key(self) -> &'static str {
-        match self {
-            RangeSource::Ours => "ours",
-            RangeSource::Simulation => "simulation",
-            RangeSource::Bench => "bench",
+            RangeSource::Ours => ["ours", "ours"],
+            RangeSource::Simulation => ["published simulation", "simulation"],
+            RangeSource::Bench => ["bench experiments", "bench"],
         }
     }
 }
 
-/// What is compared with what.
+/// Compared sources, each with its reference.
 pub const COMPARISONS: [(RangeSource, RangeSource); 3] = [
     (RangeSource::Ours, RangeSource::Simulation),
     (RangeSource::Ours, RangeSource::Bench),
     (RangeSource::Simulation, RangeSource::Bench),
 ];
 
-/// Range and failures of one design according to one source.
+/// Range and failures of a design from one source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// Tolerable range, mm; `None` if there is none.
+    /// Tolerable range, mm; `None` if the source gives none.
     pub range_mm: Option<f64>,
-    /// Failure at the negative and at the positive end of the window, if there is one.
+    /// Failure at the negative and at the positive end of the window.
     pub failures: [Option<FailureClass>; 2],
 }
 
-/// One measured design: our window and what was published of it.
+/// Measured design with our window and the published readings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesignRow {
-    /// The design and its measured stiffness.
     pub design: Measurement,
-    /// Our window.
     pub window: Window,
     simulation: Option<Reading>,
     bench: Option<Reading>,
 }
 
 impl DesignRow {
-    /// What a source says of this design, if anything.
+    /// Reading of a source, if it has the design.
     pub fn reading(&self, source: RangeSource) -> Option<Reading> {
         match source {
             RangeSource::Ours => Some(Reading::from(&self.window)),
@@ -88,16 +76,11 @@ impl DesignRow {
             RangeSource::Bench => self.bench,
         }
     }
-
-    /// The range according to a source, mm.
-    pub fn range_mm(&self, source: RangeSource) -> Option<f64> {
-        self.reading(source)?.range_mm
-    }
 }
 
 impl From<&Window> for Reading {
-    /// A nominal start that diverges says nothing of the range; one that fails
-    /// makes it 0. Either way there is no window, so no ends to be credited with.
+    /// A nominal start that diverges gives no range; one that fails gives 0. Either way there is no
+    /// window, so no ends to be credited with.
     fn from(window: &Window) -> Self {
         Reading {
             range_mm: (window.nominal != Outcome::Diverged).then(|| window.range_mm()),
@@ -118,14 +101,13 @@ impl From<&Published> for Reading {
 /// All measured designs on one task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TaskTable {
-    /// Name of the task.
     pub task: String,
-    /// One row per design, in the order of the designs.
+    /// A row for each design, in order.
     pub rows: Vec<DesignRow>,
 }
 
 impl TaskTable {
-    /// Puts windows beside what is published of a task.
+    /// Table of our windows beside the published readings of a task.
     pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
         let [simulation, bench] =
             [Origin::Simulation, Origin::Bench].map(|origin| published::of_task(task, origin));
@@ -141,7 +123,7 @@ impl TaskTable {
         TaskTable { task: task.to_owned(), rows: windows.into_iter().map(row).collect() }
     }
 
-    /// The agreement of each pair of [`COMPARISONS`].
+    /// Agreement of each pair of [`COMPARISONS`].
     pub fn agreements(&self) -> [Agreement; 3] {
         COMPARISONS.map(|(source, reference)| Agreement::of(&self.rows, source, reference))
     }

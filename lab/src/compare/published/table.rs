@@ -1,79 +1,52 @@
 //! `validation.csv`, `validation_summary.csv` and the JSON of the command.
 
 use super::agreement::deviation_percent;
-use super::{Agreement, COMPARISONS, DesignRow, Reading, TaskTable, targets};
+use super::targets::targets;
+use super::{Agreement, COMPARISONS, DesignRow, Reading, TaskTable};
 use crate::compare::{subject_json, window_json};
 use input::units::N_PER_MM;
 use insertion::outcome::Outcome;
 use serde_json::{Value, json};
 
 /// Columns of `validation.csv`; a deviation is `|range - reference| / reference`.
-pub const CSV_HEADER: [&str; 24] = [
-    "task",
-    "design",
-    "infill_density_percent",
-    "infill_direction_deg",
-    "stiffness_assembly_n_per_mm",
-    "stiffness_compliance_n_per_mm",
-    "nominal",
-    "negative_mm",
-    "positive_mm",
-    "range_mm",
-    "failure_negative",
-    "failure_positive",
-    "simulation_range_mm",
-    "simulation_failure_negative",
-    "simulation_failure_positive",
-    "bench_range_mm",
-    "bench_failure_negative",
-    "bench_failure_positive",
-    "error_to_simulation_mm",
-    "deviation_to_simulation_percent",
-    "error_to_bench_mm",
-    "deviation_to_bench_percent",
-    "simulation_error_to_bench_mm",
-    "simulation_deviation_to_bench_percent",
-];
+pub const CSV_HEADER: &str = "task,design,infill_density_percent,infill_direction_deg,\
+    stiffness_assembly_n_per_mm,stiffness_compliance_n_per_mm,nominal,\
+    negative_mm,positive_mm,range_mm,failure_negative,failure_positive,\
+    simulation_range_mm,simulation_failure_negative,simulation_failure_positive,\
+    bench_range_mm,bench_failure_negative,bench_failure_positive,\
+    error_to_simulation_mm,deviation_to_simulation_percent,\
+    error_to_bench_mm,deviation_to_bench_percent,\
+    simulation_error_to_bench_mm,simulation_deviation_to_bench_percent";
 
 /// Columns of `validation_summary.csv`.
-pub const SUMMARY_HEADER: [&str; 11] = [
-    "task",
-    "compared",
-    "reference",
-    "designs",
-    "mean_absolute_error_mm",
-    "mean_error_mm",
-    "mean_deviation_percent",
-    "spearman",
-    "matched_ends",
-    "ends",
-    "match_percent",
-];
+pub const SUMMARY_HEADER: &str = "task,compared,reference,designs,mean_absolute_error_mm,\
+    mean_error_mm,mean_deviation_percent,spearman,matched_ends,ends,match_percent";
 
-/// One line per task and design. Errors are signed: range minus reference.
+/// `validation.csv`, a line for each task and design; errors are range minus reference.
 pub fn csv(tables: &[TaskTable]) -> String {
     let line = |table: &TaskTable, row: &DesignRow| {
         let mut cells = vec![table.task.clone()];
         cells.extend(design_cells(row));
         cells.extend(reading_cells(row));
         for (source, reference) in COMPARISONS {
-            let pair = row.range_mm(source).zip(row.range_mm(reference));
+            let range = |source| row.reading(source)?.range_mm;
+            let pair = range(source).zip(range(reference));
             cells.push(number(pair.map(|(a, b)| a - b), 1));
             cells.push(number(pair.map(|(a, b)| deviation_percent(a, b)), 1));
         }
         cells.join(",")
     };
     let lines = tables.iter().flat_map(|t| t.rows.iter().map(move |row| line(t, row)));
-    lines_of(&CSV_HEADER, lines)
+    lines_of(CSV_HEADER, lines)
 }
 
-/// One line per task and comparison.
+/// `validation_summary.csv`, a line for each task and comparison.
 pub fn summary_csv(tables: &[TaskTable]) -> String {
     let line = |table: &TaskTable, found: Agreement| {
         [
             table.task.clone(),
-            found.source.key().to_owned(),
-            found.reference.key().to_owned(),
+            found.source.names()[1].to_owned(),
+            found.reference.names()[1].to_owned(),
             found.designs.to_string(),
             number(found.mean_absolute_error_mm, 3),
             number(found.mean_error_mm, 3),
@@ -81,16 +54,16 @@ pub fn summary_csv(tables: &[TaskTable]) -> String {
             number(found.spearman, 3),
             found.matched_ends.to_string(),
             found.ends.to_string(),
-            number(found.match_percent(), 1),
+            number(found.match_percent, 1),
         ]
         .join(",")
     };
     let lines = tables.iter().flat_map(|t| t.agreements().map(|found| line(t, found)));
-    lines_of(&SUMMARY_HEADER, lines)
+    lines_of(SUMMARY_HEADER, lines)
 }
 
-fn lines_of(header: &[&str], lines: impl Iterator<Item = String>) -> String {
-    [header.join(",")].into_iter().chain(lines).map(|line| line + "\n").collect()
+fn lines_of(header: &str, lines: impl Iterator<Item = String>) -> String {
+    [header.to_owned()].into_iter().chain(lines).map(|line| line + "\n").collect()
 }
 
 fn design_cells(row: &DesignRow) -> [String; 5] {
@@ -133,27 +106,20 @@ fn reading_cells(row: &DesignRow) -> Vec<String> {
     cells
 }
 
-/// An empty cell where there is no value; never a negative zero.
+/// Cell of a number, empty without a value; never a negative zero.
 fn number(value: Option<f64>, digits: usize) -> String {
     let scale = 10f64.powi(digits as i32);
     value.map_or(String::new(), |v| format!("{:.digits$}", (v * scale).round() / scale + 0.0))
 }
 
-/// Everything as JSON: a list of tasks with `designs`, `agreement` and `targets`.
+/// JSON list of tasks with `designs`, `agreement` and `targets`.
 pub fn json(tables: &[TaskTable]) -> Value {
     let task = |table: &TaskTable| {
         json!({
             "task": table.task,
             "designs": table.rows.iter().map(|row| row_json(&table.task, row)).collect::<Vec<_>>(),
-            "agreement": table.agreements().iter().map(agreement_json).collect::<Vec<_>>(),
-            "targets": targets(table).iter().map(|target| json!({
-                "quantity": target.quantity,
-                "found": target.found,
-                "limit": target.limit,
-                "unit": target.unit,
-                "limit_is": if target.at_most { "largest" } else { "smallest" },
-                "met": target.met(),
-            })).collect::<Vec<_>>(),
+            "agreement": table.agreements(),
+            "targets": targets(table),
         })
     };
     tables.iter().map(task).collect()
@@ -176,19 +142,4 @@ fn row_json(task: &str, row: &DesignRow) -> Value {
         "bench": reading(row.bench),
     });
     subject_json(task, &row.design, measured)
-}
-
-pub(super) fn agreement_json(found: &Agreement) -> Value {
-    json!({
-        "compared": found.source.key(),
-        "reference": found.reference.key(),
-        "designs": found.designs,
-        "mean_absolute_error_mm": found.mean_absolute_error_mm,
-        "mean_error_mm": found.mean_error_mm,
-        "mean_deviation_percent": found.mean_deviation_percent,
-        "spearman": found.spearman,
-        "matched_ends": found.matched_ends,
-        "ends": found.ends,
-        "match_percent": found.match_percent(),
-    })
 }

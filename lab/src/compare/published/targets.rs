@@ -1,6 +1,7 @@
-//! What we ask of our simulation against the published one, and whether it holds.
+//! Targets for the agreement of our simulation with the published one.
 
-use super::{RangeSource, TaskTable, agreement::Agreement};
+use super::{Agreement, RangeSource, TaskTable};
+use serde::Serialize;
 
 /// Largest mean absolute error of the range, mm.
 const LARGEST_ERROR_MM: f64 = 1.0;
@@ -11,63 +12,48 @@ const VARYING: [&str; 2] = ["ket8", "usb"];
 /// Smallest failure match score, percent.
 const SMALLEST_MATCH_PERCENT: f64 = 70.0;
 
-/// A target on one task.
-#[derive(Debug, Clone, PartialEq)]
+/// Target on a task.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Target {
-    /// What is asked.
     pub quantity: &'static str,
-    /// What was found; `None` if it is not defined.
+    /// Value found; `None` if it is not defined, which meets nothing.
     pub found: Option<f64>,
-    /// The limit.
     pub limit: f64,
     /// Unit of both; empty for pure numbers.
     pub unit: &'static str,
-    /// Whether the limit is the largest allowed, not the smallest.
-    pub at_most: bool,
+    pub limit_is: Limit,
+    pub met: bool,
 }
 
-impl Target {
-    /// Whether it is met; a value that is not defined meets nothing.
-    pub fn met(&self) -> bool {
-        self.found.is_some_and(|found| match self.at_most {
-            true => found <= self.limit,
-            false => found >= self.limit,
-        })
-    }
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Limit {
+    Largest,
+    Smallest,
 }
 
-/// The targets of a task, all against the published simulation.
+/// Targets of a task, all against the published simulation.
 pub fn targets(table: &TaskTable) -> Vec<Target> {
     let agreement = Agreement::of(&table.rows, RangeSource::Ours, RangeSource::Simulation);
-    let mut targets = vec![Target {
-        quantity: "mean absolute error of the range",
-        found: agreement.mean_absolute_error_mm,
-        limit: LARGEST_ERROR_MM,
-        unit: "mm",
-        at_most: true,
-    }];
-    if VARYING.contains(&table.task.as_str()) {
-        targets.push(Target {
-            quantity: "rank correlation (Spearman)",
-            found: agreement.spearman,
-            limit: SMALLEST_SPEARMAN,
-            unit: "",
-            at_most: false,
+    let target = |quantity, found: Option<f64>, limit_is, limit, unit| {
+        let met = found.is_some_and(|found| match limit_is {
+            Limit::Largest => found <= limit,
+            Limit::Smallest => found >= limit,
         });
+        Target { quantity, found, limit, unit, limit_is, met }
+    };
+    let at_least =
+        |quantity, found, limit, unit| target(quantity, found, Limit::Smallest, limit, unit);
+    let error = agreement.mean_absolute_error_mm;
+    let quantity = "mean absolute error of the range";
+    let mut targets = vec![target(quantity, error, Limit::Largest, LARGEST_ERROR_MM, "mm")];
+    if VARYING.contains(&table.task.as_str()) {
+        let quantity = "rank correlation (Spearman)";
+        targets.push(at_least(quantity, agreement.spearman, SMALLEST_SPEARMAN, ""));
     }
-    targets.push(Target {
-        quantity: "nominal starts that insert",
-        found: Some(table.nominal_inserted() as f64),
-        limit: table.rows.len() as f64,
-        unit: "",
-        at_most: false,
-    });
-    targets.push(Target {
-        quantity: "failure classes matched",
-        found: agreement.match_percent(),
-        limit: SMALLEST_MATCH_PERCENT,
-        unit: "%",
-        at_most: false,
-    });
+    let (inserted, all) = (table.nominal_inserted() as f64, table.rows.len() as f64);
+    targets.push(at_least("nominal starts that insert", Some(inserted), all, ""));
+    let matched = agreement.match_percent;
+    targets.push(at_least("failure classes matched", matched, SMALLEST_MATCH_PERCENT, "%"));
     targets
 }

@@ -1,40 +1,28 @@
-//! The tables and the summary of a task as text, within 80 columns.
+//! Table and summary of a task as text, within 80 columns.
 
-use super::{DesignRow, Reading, TaskTable, targets};
+use super::targets::{Limit, targets};
+use super::{DesignRow, Reading, TaskTable};
 use input::units::N_PER_MM;
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
+use insertion::stiffness::Measurement;
 use std::fmt::Write;
 
-/// A task's designs, the agreement of the sources, and the targets.
+/// Designs of a task, agreement of the sources, and targets.
 pub fn text(table: &TaskTable) -> String {
     let mut text = format!(
-        "{}\n{:>3} {:>9}{:>7}{:>7}  {:<23} {:<14} {}\n{:>13}{:>7}{:>7}  {:<23} {:<14} {}\n",
-        table.task,
-        "no.",
-        "infill",
-        "y",
-        "z",
-        "ours: window range ends",
-        "published sim.",
-        "bench",
-        "",
-        "N/mm",
-        "N/mm",
-        "mm",
-        "mm",
-        "mm"
+        "{}\n\
+         no.    infill      y      z  ours: window range ends published sim. bench\n\
+         {:16}N/mm   N/mm  mm                      mm             mm\n",
+        table.task, ""
     );
     for row in &table.rows {
         text.push_str(&design(row));
     }
-    let _ = writeln!(
-        text,
-        "\n{:<41}{:>3}{:>9}{:>9}{:>9}{:>9}",
-        "compared", "of", "mean |e|", "mean e", "off by", "Spearman"
-    );
+    let columns = ["mean |e|", "mean e", "off by", "Spearman"].map(|name| format!("{name:>9}"));
+    let _ = writeln!(text, "\n{:<41} of{}", "compared", columns.concat());
     for found in table.agreements() {
-        let compared = format!("{} - {}", found.source.label(), found.reference.label());
+        let compared = format!("{} - {}", found.source.names()[0], found.reference.names()[0]);
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
@@ -45,14 +33,14 @@ pub fn text(table: &TaskTable) -> String {
             value(found.mean_deviation_percent, |v| format!("{v:.1} %")),
             value(found.spearman, |v| format!("{v:+.2}")),
         );
-        let percent = value(found.match_percent(), |v| format!("{v:.1} %"));
+        let percent = value(found.match_percent, |v| format!("{v:.1} %"));
         let (matched, ends) = (found.matched_ends, found.ends);
         let _ = writeln!(text, "  failures matched at {matched} of {ends} ends: {percent}");
     }
     text.push('\n');
     for target in targets(table) {
-        let bound = if target.at_most { "at most" } else { "at least" };
-        let verdict = if target.met() { "met" } else { "MISSED" };
+        let bound = if target.limit_is == Limit::Largest { "at most" } else { "at least" };
+        let verdict = if target.met { "met" } else { "MISSED" };
         let found = value(target.found, |v| short(v, target.unit));
         let asked = format!("{bound} {}", short(target.limit, target.unit));
         let quantity = target.quantity;
@@ -62,21 +50,16 @@ pub fn text(table: &TaskTable) -> String {
 }
 
 fn design(row: &DesignRow) -> String {
-    let m = &row.design;
+    let Measurement { design, density_percent, direction_deg, .. } = row.design;
+    let [y, z] = [row.design.compliance, row.design.assembly].map(|k| k / N_PER_MM);
+    let ours = ours(&row.window);
+    let [simulation, bench] = [row.simulation, row.bench].map(|r| r.map_or(String::new(), reading));
     format!(
-        "{:>3} {:>4} % {:>2}°{:>7}{:>7}  {:<23} {:<14} {}\n",
-        m.design,
-        m.density_percent,
-        m.direction_deg,
-        format!("{:.2}", m.compliance / N_PER_MM),
-        format!("{:.1}", m.assembly / N_PER_MM),
-        ours(&row.window),
-        row.simulation.map_or(String::new(), reading),
-        row.bench.map_or(String::new(), reading),
+        "{design:>3} {density_percent:>4} % {direction_deg:>2}°{y:>7.2}{z:>7.1}  {ours:<23} {simulation:<14} {bench}\n"
     )
 }
 
-/// `-4.2 +3.1  7.3  4 | 3`.
+/// Window as in `-4.2 +3.1  7.3  4 | 3`.
 fn ours(window: &Window) -> String {
     if window.nominal != Outcome::Inserted {
         return format!("none: nominal start {}", end(Some(window.nominal)));
@@ -86,7 +69,7 @@ fn ours(window: &Window) -> String {
     format!("{negative:>5.1} {positive:>+5.1} {:>4.1}  {ends}", window.range_mm())
 }
 
-/// The class; `x` for a divergence, `-` for no failure.
+/// Number of the failure class; `x` for a divergence, `-` for no failure.
 fn end(outcome: Option<Outcome>) -> String {
     match outcome {
         Some(Outcome::Failed(class)) => class.number().to_string(),
@@ -106,7 +89,7 @@ fn value(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
     value.map_or("-".to_owned(), format)
 }
 
-/// A number with as many digits as its unit needs.
+/// Number with as many digits as its unit needs.
 fn short(value: f64, unit: &str) -> String {
     match unit {
         "" if value.fract() == 0.0 => format!("{value:.0}"),

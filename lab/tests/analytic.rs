@@ -19,7 +19,7 @@ fn direct(factor: f64) -> Box<dyn Engine> {
 }
 
 /// Number of rows by check; all pass but those of `missed`.
-fn passed(rows: &[CheckRow], missed: &str) -> impl Fn(&str) -> usize {
+fn passed(rows: &[CheckRow], missed: &str) -> impl Fn(&str) -> usize + use<> {
     let table = analytic::table(rows);
     assert!(rows.iter().all(|row| row.passed || row.check == missed), "\n{table}");
     let checks: Vec<_> = rows.iter().map(|row| row.check).collect();

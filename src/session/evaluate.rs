@@ -69,7 +69,7 @@ impl EvaluateRequest {
             Some(repeat) => repeat.bands(&setup, &chosen, &evaluation, stop)?,
             None => None,
         };
-        let by_ribs = self.from_ribs(&setup, stop)?;
+        let by_ribs = self.by_ribs(&setup, stop)?;
         Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s })
     }
 
@@ -80,7 +80,7 @@ impl EvaluateRequest {
     /// Measures the finger once more, from its ribs, with the start taught where the task's own does
     /// not insert; nothing if a finger model was asked for, if the finger is given by its springs, or
     /// if the engine has no such fingers.
-    fn from_ribs(&self, setup: &Setup, stop: &AtomicBool) -> Result<Option<ByRibs>, Failure> {
+    fn by_ribs(&self, setup: &Setup, stop: &AtomicBool) -> Result<Option<ByRibs>, Failure> {
         if !self.by_ribs || self.setup.finger_model.is_some() || self.finger.springs_are_given() {
             return Ok(None);
         }

@@ -300,7 +300,7 @@ impl Shape {
             Shape::Cylinder { half_height, radius } => {
                 let corner = |i: u32| {
                     let angle = f64::from(i / 2) * std::f64::consts::TAU / 16.0;
-                    let z = if i % 2 == 0 { -half_height } else { *half_height };
+                    let z = if i.is_multiple_of(2) { -half_height } else { *half_height };
                     Point3::new(radius * angle.cos(), radius * angle.sin(), z)
                 };
                 (0..32).map(corner).collect()

@@ -96,7 +96,8 @@ fn design_parameters_move_what_they_name() {
 
 #[test]
 fn parts_that_do_not_fit_are_refused_by_their_key() {
-    let cases: [(&str, Design, fn(&mut PrintedFinger)); 12] = [
+    type Change = fn(&mut PrintedFinger);
+    let cases: [(&str, Design, Change); 12] = [
         ("ribs.thickness_mm", MIDDLE, |finger| finger.ribs.thickness = 2.0 * MM),
         ("ribs.thickness_mm", MIDDLE, |finger| finger.ribs.thickness = 0.1 * MM),
         ("skin.thickness_mm", MIDDLE, |finger| finger.skin = 5.0 * MM),

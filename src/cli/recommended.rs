@@ -118,7 +118,7 @@ fn robot(known: &TaskOrder) -> String {
     )
 }
 
-/// The [`json`] of a study's answer.
+/// The [`json()`] of a study's answer.
 pub fn to_json(record: &StudyRecord) -> Value {
     json(&Answer::of(record))
 }

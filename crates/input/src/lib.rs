@@ -115,7 +115,7 @@ impl Check<'_> {
         Ok(values)
     }
 
-    /// The value, if it is finite and not beyond [`LARGEST`].
+    /// The value, if it is finite and not beyond 1e9.
     pub fn finite(&self, key: &str, value: f64) -> Result<f64, InputError> {
         // Written so that a NaN is outside.
         if value.abs() <= LARGEST {
@@ -125,7 +125,7 @@ impl Check<'_> {
         self.fail(key, format!("is {value}; it must be a finite number of size 1e9 or less"))
     }
 
-    /// The value, if it is above 0: from [`SMALLEST`] to [`LARGEST`].
+    /// The value, if it is above 0: from 1e-9 to 1e9.
     pub fn positive(&self, key: &str, value: f64) -> Result<f64, InputError> {
         if (SMALLEST..=LARGEST).contains(&value) {
             return Ok(value);
@@ -134,7 +134,7 @@ impl Check<'_> {
         self.fail(key, format!("is {value}; it must be a finite number above 0, 1e-9 to 1e9"))
     }
 
-    /// The value, if it is not below 0 and not beyond [`LARGEST`].
+    /// The value, if it is not below 0 and not beyond 1e9.
     pub fn not_negative(&self, key: &str, value: f64) -> Result<f64, InputError> {
         if (0.0..=LARGEST).contains(&value) {
             return Ok(value);

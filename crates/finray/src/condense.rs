@@ -8,7 +8,7 @@
 //! The order of all sums depends on the mesh alone.
 
 use super::frontal::Frontal;
-use super::halving::{Halved, halve};
+use super::halving::halve;
 use super::mesh::{Mesh, MeshError};
 use nalgebra::{DMatrix, DVector, Point2};
 use std::ops::Range;
@@ -58,7 +58,7 @@ pub fn condense<E: Element>(
     roles: &[Role],
     remember: bool,
 ) -> Result<Condensed, MeshError> {
-    let Halved { order, cuts } = halve(mesh, LEAF);
+    let (order, cuts) = halve(mesh, LEAF);
     let mut work = Condensation {
         mesh,
         element,

@@ -79,12 +79,6 @@ pub fn shape([a, b, c]: [Point2<f64>; 3], [l, m, n]: [f64; 3]) -> Shape {
     }
 }
 
-/// Shape functions at the three integration points, each with its share of the area, m2.
-pub fn integration(corners: [Point2<f64>; 3]) -> [(Shape, f64); 3] {
-    let share = area(corners) / 3.0;
-    POINTS.map(|point| (shape(corners, point), share))
-}
-
 impl Element for PlaneStress {
     /// Displacements along X and Y.
     const FREEDOMS: usize = 2;
@@ -95,7 +89,8 @@ impl Element for PlaneStress {
         let shear = plane * (1.0 - poisson) / 2.0;
         let mixed = plane * poisson;
         let mut matrix = vec![0.0; 144];
-        for (Shape { gradients, .. }, weight) in integration(corners) {
+        let weight = area(corners) / 3.0;
+        for Shape { gradients, .. } in POINTS.map(|point| shape(corners, point)) {
             for (a, [ax, ay]) in gradients.into_iter().enumerate() {
                 for (b, [bx, by]) in gradients.into_iter().enumerate() {
                     let at = 24 * a + 2 * b;

@@ -3,17 +3,10 @@
 use super::mesh::Mesh;
 use nalgebra::Point2;
 
-/// An order of triangles in which the parts of a mesh lie one after the other.
-pub(super) struct Halved {
-    /// Numbers of the triangles.
-    pub order: Vec<u32>,
-    /// Number of triangles before each cut, in the order in which the parts are visited: the
-    /// whole, its first part with all its parts, its second.
-    pub cuts: Vec<usize>,
-}
-
-/// Halves a mesh, and each half, down to parts of at most `leaf` triangles.
-pub(super) fn halve(mesh: &Mesh, leaf: usize) -> Halved {
+/// Halves a mesh, and each half, down to parts of at most `leaf` triangles: order of the triangles
+/// in which the parts lie one after the other, and number of triangles before each cut, in the
+/// order in which the parts are visited: the whole, its first part with all its parts, its second.
+pub(super) fn halve(mesh: &Mesh, leaf: usize) -> (Vec<u32>, Vec<usize>) {
     let centre = |t| mesh.corners(t).iter().fold(Point2::origin(), |sum, p| sum + p.coords / 3.0);
     let centres: Vec<_> = (0..mesh.triangles.len()).map(centre).collect();
     let mut halving = Halving {
@@ -26,7 +19,7 @@ pub(super) fn halve(mesh: &Mesh, leaf: usize) -> Halved {
     };
     let mut order: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     halving.sort(&mut order);
-    Halved { order, cuts: halving.cuts }
+    (order, halving.cuts)
 }
 
 /// Rank of each triangle along a direction: none is given twice.
@@ -52,7 +45,7 @@ struct Halving {
     ranks: [Vec<u32>; 4],
     /// Scratch of [`Halving::shared`].
     stamps: Vec<u8>,
-    /// As of [`Halved`].
+    /// As of [`halve`].
     cuts: Vec<usize>,
 }
 

@@ -103,8 +103,7 @@ impl MeshedFinger {
                 follow[(i * freedoms + d, 3 + k * freedoms + d)] = 1.0;
             }
         }
-        let stiffness = follow.transpose() * &condensed.stiffness * &follow;
-        Held::new(stiffness, follow)
+        Held::new(follow.transpose() * &condensed.stiffness * &follow, follow)
     }
 }
 

@@ -123,7 +123,7 @@ fn words(out: &mut String, geometry: &Geometry, [y, z]: [f64; 2], factor: f64, h
          <text x=\"{x:.0}\" y=\"50\" fill=\"#555\">{note}</text>\n\
          <path d=\"M{x:.0} {bar:.0} h{:.0}\" stroke=\"#000\" stroke-width=\"3\"/>\n\
          <text x=\"{x:.0}\" y=\"{:.0}\">{BAR} mm</text>\n",
-        escape(&title),
+        title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;"),
         BAR * SCALE,
         bar + 20.0,
     );
@@ -148,8 +148,4 @@ fn path(points: impl Iterator<Item = Point2<f64>>) -> String {
 fn pixels(point: Point2<f64>) -> String {
     let [left, top, ..] = MARGIN;
     format!("{:.1},{:.1}", (point.x / MM + left) * SCALE, (top - point.y / MM) * SCALE)
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -26,11 +26,6 @@ const WIDTH: f64 = 1e-3;
 /// Least and largest impedance in MuJoCo.
 const IMPEDANCES: [f64; 2] = [1e-4, 0.9999];
 
-/// Ratio of the resistance against sticking friction to that along the normal, for all pairs.
-pub(super) fn impratio(settings: &MjcfSettings) -> f64 {
-    settings.stick_damping / (settings.friction_rate * settings.contact_mass)
-}
-
 /// Pairs of geoms that may touch.
 pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
     let names = geom_names(scene).concat();

@@ -110,7 +110,8 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         // Springs and dampers are solved for together with the contacts.
         .with("integrator", "discrete")
         .with("cone", "elliptic")
-        .with("impratio", contact::impratio(settings))
+        // Resistance of sticking friction by that along the normal, for all pairs.
+        .with("impratio", settings.stick_damping / (settings.friction_rate * settings.contact_mass))
         .with("solver", "Newton")
         .with("tolerance", settings.tolerance)
         // A diverged state is to be seen, not to be reset.

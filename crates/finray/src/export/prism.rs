@@ -109,20 +109,15 @@ impl Prism {
         triangles.extend(rim.flat_map(|&[a, b]| [[a, b, b + 1], [a, b + 1, a + 1]]));
         let prism = Prism { corners, triangles };
         let area = polygon::area(outer) + holes.iter().map(|hole| polygon::area(hole)).sum::<f64>();
-        prism.check(area * depth)?;
-        Ok(prism)
-    }
-
-    fn check(&self, expected: f64) -> Result<(), PrismError> {
-        let open = self.open_edges();
+        let open = prism.open_edges();
         if open > 0 {
             return Err(PrismError::Open(open));
         }
-        let found = self.volume();
+        let (found, expected) = (prism.volume(), area * depth);
         if (found - expected).abs() > VOLUME_TOLERANCE * expected {
             return Err(PrismError::Volume { found, expected });
         }
-        Ok(())
+        Ok(prism)
     }
 
     /// Number of edges that are not met exactly twice, once each way; corners are told apart by

@@ -66,11 +66,15 @@ def test_stiffness():
         fo.stiffness(20)
 
 
+def test_an_infill_without_its_direction_is_refused():
+    with pytest.raises(fo.InputError, match="direction"):
+        fo.evaluate("usb", density=20)
+
+
 @pytest.mark.parametrize(
     "words, settings",
     [
         (["--density", "5", "--direction", "10"], {"density": 5, "direction": 10}),
-        (["--density", "20"], {"density": 20}),
         (["--density", "20", "--direction", "10", "--set", "task.gripp=1"],
          {"density": 20, "direction": 10, "task.gripp": 1}),
     ],

@@ -265,8 +265,11 @@ def test_a_study_of_poisoned_results_stops_and_says_by_whom(create):
 def test_a_worker_of_other_sources_refuses_by_name(create):
     _, work = jobs(create("sources"))
     job = bytes(work[0][1])
-    foreign = resealed_work(job, _native.source_sha256(), "f" * 64)
-    with pytest.raises(fo.InputError, match=rf"(?s)worker .*:{os.getpid()} .*source_sha256"):
+    # Other sources of a study's course measure the same; other sources of the simulation do not.
+    fo.perform(resealed_work(job, _native.source_sha256(), "f" * 64))
+    simulation = re.search(r'"simulation_sha256":"([0-9a-f]{64})"', job.decode())[1]
+    foreign = resealed_work(job, simulation, "f" * 64)
+    with pytest.raises(fo.InputError, match=rf"(?s)worker .*:{os.getpid()} .*simulation_sha256"):
         fo.perform(foreign)
     with pytest.raises(fo.InputError, match="not a work"):
         fo.perform(b"nonsense")

@@ -1,6 +1,6 @@
 //! `optimize report DIR`: makes the tables and plots of a study again.
 
-use super::{Failure, print};
+use super::{Failure, print, say};
 use crate::session::{PAGE, rewrite};
 use clap::Args;
 use std::path::PathBuf;
@@ -14,7 +14,9 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let count = rewrite(&arguments.dir)?.evaluations.len();
+    let record = rewrite(&arguments.dir)?;
+    record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));
+    let count = record.evaluations.len();
     let page = arguments.dir.join(PAGE);
     print(&format!("wrote the report of {count} evaluations: {}\n", page.display()))
 }

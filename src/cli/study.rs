@@ -10,6 +10,7 @@ use insertion::evaluation::objective::{AggregateKind, Constraint, Objectives};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// Run a study.
 #[derive(Debug, Args)]
@@ -109,17 +110,19 @@ pub fn to_its_end(open: OpenStudy, arguments: &RunArguments) -> Result<(), Failu
     unusable.map_or(Ok(()), Err)
 }
 
-/// A flag that Ctrl-C (or a polite kill) sets; a second one ends the process
-/// at once, which the journal survives as well.
+/// How long a study may take to end by itself once it is told to stop.
+const GRACE: Duration = Duration::from_millis(400);
+
+/// A flag that Ctrl-C (or a polite kill) sets. What has not looked at it in time is given up: the
+/// journal survives that.
 fn stop_on_interrupt(dir: &Path) -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     let (flag, dir) = (Arc::clone(&stop), dir.display().to_string());
     let handler = move || {
-        if flag.swap(true, Ordering::SeqCst) {
-            say(&format!("stopped; continue with: optimize resume {dir}"));
-            std::process::exit(1);
-        }
-        say("stopping; once more to stop at once");
+        flag.store(true, Ordering::SeqCst);
+        std::thread::sleep(GRACE);
+        say(&format!("stopped; continue with: optimize resume {dir}"));
+        std::process::exit(1);
     };
     ctrlc::set_handler(handler)
         .map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;

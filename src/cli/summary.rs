@@ -2,7 +2,7 @@
 
 use super::terminal::merge;
 use super::words::wrapped;
-use super::{Failure, on_bench, print, recommended};
+use super::{Failure, on_bench, print, recommended, say};
 use crate::answer::words::{evaluated, volume_unit};
 use crate::answer::{Answer, Front, Nearest, NothingInserts, WalkedDesign};
 use crate::study::{Ending, Recorded, StudyRecord};
@@ -17,6 +17,7 @@ pub fn show(
     known: u64,
     as_json: bool,
 ) -> Result<(), Failure> {
+    record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));
     print(&words(dir, record, ending, known, as_json))
 }
 

@@ -48,6 +48,7 @@ fn config(task: &str) -> StudyConfig {
         finger_model: Default::default(),
         batch: 4,
         asynchronous: false,
+        conclusion: Default::default(),
         provenance: provenance(),
         space: Space::parse(include_str!("../../spaces/infill.toml"), "infill.toml").unwrap(),
     }
@@ -59,6 +60,7 @@ fn record(task: &str, evaluations: Vec<Recorded>) -> StudyRecord {
         config: config(task),
         segments,
         evaluations,
+        foreign: 0,
         walked: Vec::new(),
         finger: None,
         firm_values: Default::default(),
@@ -89,7 +91,7 @@ fn recorded(
     let score = Goals::of(Measure::Range).score(&[&evaluation]);
     let design = Design::infill(infill[0], infill[1]);
     let (tasks, timing) = (vec![evaluation], Timing::default());
-    Recorded { index, proposal: None, design, score, stiffness, tasks, timing }
+    Recorded { index, proposal: None, design, score, stiffness, tasks, timing, refused: None }
 }
 
 #[test]

@@ -82,7 +82,21 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             // The errors' own texts already hold their causes, so not `{error:#}`.
-            Failure::Input(error) | Failure::Run(error) => write!(f, "{error}"),
+            Failure::Input(error) | Failure::Run(error) => f.write_str(&short(&error.to_string())),
         }
     }
+}
+
+/// Longest line of a message, and most lines, in characters: what it quotes of a file may be anything.
+const LONGEST: usize = 600;
+const MOST_LINES: usize = 60;
+
+fn short(text: &str) -> String {
+    let line = |line: &str| match line.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} .. (cut)", &line[..end]),
+        None => line.to_owned(),
+    };
+    let left_out = text.lines().count().saturating_sub(MOST_LINES);
+    let more = (left_out > 0).then(|| format!(".. and {left_out} lines more"));
+    text.lines().take(MOST_LINES).map(line).chain(more).collect::<Vec<_>>().join("\n")
 }

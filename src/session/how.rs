@@ -3,7 +3,7 @@
 use super::failure::within;
 use super::{Failure, Setup};
 use crate::calibration::sampler::{Effort, Settings};
-use crate::study::{BenchEffort, Cache, IfChanged};
+use crate::study::{BenchEffort, Cache, Conclusion, IfChanged};
 use rayon::ThreadPool;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -102,6 +102,16 @@ impl RunRequest {
     /// What to do with a study that was measured otherwise.
     pub(super) fn if_changed(&self) -> IfChanged {
         if self.accept_changed { IfChanged::NewSegment } else { IfChanged::Refuse }
+    }
+
+    /// How a study of this setup ends; `known` is how much was computed for its bench so far.
+    pub(super) fn conclusion(
+        &self,
+        setup: &Setup,
+        known: Option<BenchEffort>,
+    ) -> Result<Conclusion, Failure> {
+        let bench = setup.measured.as_ref().map(|_| self.effort.or(known)).transpose()?;
+        Ok(Conclusion { no_confirm: self.no_confirm, bench })
     }
 
     /// How many threads measure; 0 for one per processor.

@@ -41,10 +41,9 @@ pub(super) fn predict(
     stop: &AtomicBool,
     watch: &mut Watch<'_>,
 ) -> Result<(), Failure> {
-    let Some(measured) = &setup.measured else { return Ok(()) };
-    let known = study.record().on_bench.map(|known| known.effort);
-    let effort = how.effort.or(known)?;
-    if known == Some(effort) {
+    let wanted = setup.measured.as_ref().zip(study.config.conclusion.bench);
+    let Some((measured, effort)) = wanted else { return Ok(()) };
+    if study.record().on_bench.is_some_and(|known| known.effort == effort) {
         return Ok(());
     }
     let ground = Ground {

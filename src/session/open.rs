@@ -38,8 +38,12 @@ pub struct Ended {
 }
 
 impl OpenStudy {
-    pub(super) fn new(study: Study, setup: Setup, how: RunRequest) -> Result<Self, Failure> {
+    pub(super) fn new(mut study: Study, setup: Setup, how: RunRequest) -> Result<Self, Failure> {
         check(&study.config, &setup)?;
+        // Folders up to version 0.4.0 have it with the prediction only.
+        let predicted = || study.record().on_bench.map(|found| found.effort);
+        let known = study.config.conclusion.bench.or_else(predicted);
+        study.conclude_by(how.conclusion(&setup, known)?)?;
         let goals = study.config.goals();
         let plan = setup.plan(study.config.seed, |measure| goals.need(measure))?;
         let cache = how.cache(&setup)?;
@@ -92,8 +96,9 @@ impl OpenStudy {
     ) -> Result<Ended, Failure> {
         let known = self.cache.as_ref().map_or(0, Cache::found);
         let OpenStudy { study, setup, how, cache, .. } = self;
+        let conclusion = study.config.conclusion;
         let interrupted = || ending == Ending::Interrupted || stop.load(Ordering::SeqCst);
-        if ending != Ending::Interrupted && !how.no_confirm {
+        if ending != Ending::Interrupted && !conclusion.no_confirm {
             confirm((study, setup), cache.as_ref(), pool, stop)?;
         }
         study.check_journal()?;

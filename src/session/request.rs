@@ -8,6 +8,7 @@ use insertion::finger::model::{FingerModelKind, FingerSource};
 use insertion::space::{Parameter, Space};
 use insertion::task::StartRule;
 use insertion::trial::engine::EngineKind;
+use std::path::Path;
 
 /// Robot used unless another is named.
 pub const DEFAULT_ROBOT: &str = "servo";
@@ -26,8 +27,11 @@ pub enum TaskSource {
 }
 
 impl TaskSource {
-    /// The tasks of a list of names by commas.
+    /// The tasks of a list of names by commas, or the one file whose path has commas.
     pub fn list(names: &str) -> Vec<Self> {
+        if Path::new(names).is_file() {
+            return vec![TaskSource::Named(names.to_owned())];
+        }
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }
 

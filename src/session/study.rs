@@ -115,10 +115,11 @@ impl ResumeRequest {
     pub fn open(&self) -> Result<OpenStudy, Failure> {
         self.run.check()?;
         let mut study = Study::resume(&self.dir)?;
+        let no_confirm = study.config.conclusion.no_confirm || self.run.no_confirm;
         let inputs = study.inputs()?;
         let setup = Setup::from_inputs(&inputs, &study.provenance().engine.name)?;
         study.measure_with(&setup.provenance(), &inputs, self.run.if_changed())?;
-        OpenStudy::new(study, setup, self.run.clone())
+        OpenStudy::new(study, setup, RunRequest { no_confirm, ..self.run.clone() })
     }
 }
 
@@ -237,6 +238,7 @@ impl StudyRequest {
             polish: self.polish,
             batch: self.batch.unwrap_or(DEFAULT_BATCH),
             asynchronous: self.asynchronous,
+            conclusion: self.run.conclusion(setup, None)?,
             provenance: setup.provenance(),
             space: setup.space.clone(),
         })

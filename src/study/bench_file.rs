@@ -17,5 +17,6 @@ pub(super) fn read(dir: &Path, provenance: &Provenance, space: &Space) -> Option
     let found: OnBench = serde_json::from_str(&text).ok()?;
     let fits = |finger: &BenchFinger| fits::off_the_space(&finger.design, space).is_none();
     let sound = !found.best.is_empty() && found.best.iter().all(fits);
-    (found.provenance == *provenance && sound && fits::plausible(&found.simulated)).then_some(found)
+    let sound = sound && fits::implausible(&found.simulated).is_none();
+    (found.provenance == *provenance && sound).then_some(found)
 }

@@ -1,6 +1,7 @@
 //! The resolved configuration of a study, as `study.toml` keeps it.
 
 use super::differences::differences;
+use super::on_bench::BenchEffort;
 use super::provenance::Provenance;
 use ask_tell::OptimizerKind;
 use insertion::evaluation::objective::{Aggregate, Constraint, Goals, Objectives};
@@ -52,10 +53,31 @@ pub struct StudyConfig {
     /// Whether each result is told as it comes, and one more design asked for.
     #[serde(rename = "async", default, skip_serializing_if = "std::ops::Not::not")]
     pub asynchronous: bool,
+    /// What follows the search.
+    #[serde(default, skip_serializing_if = "Conclusion::is_usual")]
+    pub conclusion: Conclusion,
     /// What the study began to be measured with.
     pub provenance: Provenance,
     /// The search space in full.
     pub space: Space,
+}
+
+/// How a study ends. It changes no evaluation, so it may be settled anew.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Conclusion {
+    /// Whether what is recommended stays unconfirmed.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub no_confirm: bool,
+    /// How much is computed for the bench, if there are measurements.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bench: Option<BenchEffort>,
+}
+
+impl Conclusion {
+    fn is_usual(&self) -> bool {
+        *self == Conclusion::default()
+    }
 }
 
 impl StudyConfig {
@@ -143,7 +165,8 @@ impl StudyConfig {
         let may_rise = asked.polish == 0 && asked.budget > self.budget;
         let budget = if may_rise { asked.budget } else { self.budget };
         let provenance = asked.provenance.clone();
-        let raised = StudyConfig { budget, provenance, ..self.clone() };
+        let conclusion = asked.conclusion;
+        let raised = StudyConfig { budget, provenance, conclusion, ..self.clone() };
         differences(&raised, asked, ["the study", "now"])
     }
 }

@@ -170,6 +170,7 @@ impl Course {
             stiffness,
             tasks,
             timing,
+            refused: None,
         };
         // What is no number has failed.
         recorded.score = self.goals.score(&recorded.tasks()).filter(fits::sound);
@@ -279,11 +280,14 @@ impl Course {
     }
 
     fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {
-        match recorded.score.as_ref().zip(self.goals.told(&recorded.tasks())) {
+        let told = match &recorded.refused {
+            // Told as it was then, so that the designs that follow repeat.
+            Some(refused) => refused.told.clone(),
+            None => fits::told(recorded, &self.goals),
+        };
+        match told {
             None => Observation::new(point, None),
-            Some((score, values)) => {
-                Observation { point, values, violations: score.violations.clone() }
-            }
+            Some([values, violations]) => Observation { point, values, violations },
         }
     }
 }

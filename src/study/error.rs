@@ -66,6 +66,20 @@ pub enum StudyError {
         /// One line for each difference, with both values.
         differences: String,
     },
+    /// What has changed would decide no evaluation.
+    #[error(
+        "{}: simulates otherwise than before, and all its {evaluations} evaluations are done:\n\
+         {differences}\nraise --budget to measure with that, or give another --out",
+        dir.display()
+    )]
+    Spent {
+        /// The study's folder.
+        dir: PathBuf,
+        /// How many evaluations it has.
+        evaluations: u64,
+        /// One line for each difference, with both values.
+        differences: String,
+    },
     /// One line of the journal is damaged.
     #[error(
         "{}: line {line}: {source}; restore the file from a copy, or delete line {line} and \

@@ -3,9 +3,11 @@
 
 use super::config::StudyConfig;
 use super::error::LineError;
-use super::record::Recorded;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::Score;
+use super::record::{Recorded, Refused, Timing};
+use insertion::evaluation::objective::{Goals, Score};
+
+use insertion::evaluation::{Evaluation, RobustRange, SuccessRate, Window, grid_mm};
+use insertion::outcome::Outcome;
 use insertion::space::{Design, Space};
 use insertion::surrogate::Prediction;
 
@@ -37,18 +39,56 @@ pub fn fits(recorded: &Recorded, config: &StudyConfig) -> Result<(), LineError> 
                 counts[0], counts[1], expected[0], expected[1]
             ));
         }
-        if !sound(score) {
-            return wrong("a value is no number, or far too large".to_owned());
+    }
+    Ok(())
+}
+
+/// What the optimizer is told of an evaluation: values and violations, if it has any.
+pub fn told(recorded: &Recorded, goals: &Goals) -> Option<[Vec<f64>; 2]> {
+    let score = recorded.score.as_ref()?;
+    Some([goals.told(&recorded.tasks())?, score.violations.clone()])
+}
+
+/// An evaluation that cannot be one counts as diverged from now on: it costs itself, and not those
+/// after it. What the optimizer was told of it is kept, so that what it proposed next repeats.
+pub fn refuse_doubtful(recorded: &mut Recorded, goals: &Goals) {
+    let doubtful = recorded.tasks.iter().find_map(implausible);
+    let problem = match &recorded.score {
+        Some(score) if !sound(score) => Some("a value is not a number, or far too large"),
+        _ if !known(&recorded.stiffness) => Some("its stiffness is not a finite number"),
+        _ => doubtful.or_else(|| recorded.timing.implausible()),
+    };
+    if let Some(problem) = problem {
+        recorded.refused = Some(Refused { problem, told: told(recorded, goals) });
+        recorded.tasks.fill(NOTHING);
+        recorded.score = None;
+        recorded.timing = Timing::default();
+        if !known(&recorded.stiffness) {
+            recorded.stiffness = Prediction::exact(1.0, 1.0);
         }
     }
-    if !known(&recorded.stiffness) {
-        return wrong("its stiffness is no finite number".to_owned());
-    }
-    match recorded.tasks.iter().all(plausible) {
-        true => Ok(()),
-        false => wrong("its numbers cannot be those of an evaluation".to_owned()),
-    }
 }
+
+/// What is left of an evaluation that was refused.
+const NOTHING: Evaluation = Evaluation {
+    window: Window {
+        nominal: Outcome::Diverged,
+        negative_steps: 0,
+        positive_steps: 0,
+        end_negative: Some(Outcome::Diverged),
+        end_positive: Some(Outcome::Diverged),
+    },
+    failure_counts: [0; 4],
+    diverged: 1,
+    trials: 1,
+    peak_force_n: f64::NAN,
+    slip_mm: f64::NAN,
+    simulated_s: 0.0,
+    end_shares: [0.0; 2],
+    taught: None,
+    success: None,
+    robust: None,
+};
 
 /// Whether all values are numbers of a size that plots and sums can take.
 pub fn sound(score: &Score) -> bool {
@@ -74,53 +114,125 @@ fn known(stiffness: &Prediction) -> bool {
     each.iter().all(|k| sound(k.mean) && sound(k.sd)) && sound(stiffness.hull_distance)
 }
 
-/// Whether the numbers of an evaluation are such as a simulation can give.
-pub fn plausible(evaluation: &Evaluation) -> bool {
-    let window = &evaluation.window;
+/// What is impossible about an evaluation, if anything is: asked of all that is read or taken in, from
+/// journals, the cache and workers.
+pub fn implausible(evaluation: &Evaluation) -> Option<&'static str> {
+    let Evaluation { window, failure_counts, diverged, trials, .. } = evaluation;
+    let farthest = |steps: &i32| steps.unsigned_abs() <= FARTHEST_STEPS;
     let ends = [window.negative_steps, window.positive_steps];
-    let ends = ends.iter().all(|end| end.unsigned_abs() <= FARTHEST_STEPS)
-        && window.negative_steps <= 0
-        && window.positive_steps >= 0;
-    let mut counts = evaluation.failure_counts.to_vec();
-    counts.extend([evaluation.diverged, evaluation.trials]);
-    let mut numbers = evaluation.end_shares.to_vec();
-    if let Some(success) = &evaluation.success {
-        counts.extend(success.failure_counts);
-        counts.extend([success.inserted, success.diverged]);
-        numbers.push(success.confidence);
-    }
-    if let Some(robust) = &evaluation.robust {
-        counts.extend([robust.diverged, robust.trials]);
-        numbers.extend(robust.ranges_mm.iter().chain(&robust.value_mm));
-    }
-    // Force, slip and time may be NaN: null in the journal, not measured.
-    let infinite = [evaluation.peak_force_n, evaluation.slip_mm, evaluation.simulated_s];
-    ends && counts.iter().all(|&count| count <= MOST_TRIALS)
-        && numbers.iter().all(|number| number.abs() <= LARGEST)
-        && !infinite.iter().any(|number| number.is_infinite())
+    let failed = failure_counts.iter().fold(*diverged, |sum, &count| sum.saturating_add(count));
+    let inserts = window.nominal == Outcome::Inserted;
+    // NaN, null in the journal, is not measured.
+    let size = |number: f64| number.is_nan() || (0.0..=LARGEST).contains(&number);
+    let sizes = [evaluation.peak_force_n, evaluation.slip_mm, evaluation.simulated_s];
+    let checks = [
+        (ends.iter().chain(&evaluation.taught).all(farthest), "its window lies too far out"),
+        (ends[0] <= 0 && ends[1] >= 0, "its window does not hold the nominal start"),
+        (inserts || ends == [0, 0], "its nominal start fails, and it has a window"),
+        ((1..=MOST_TRIALS).contains(trials) && failed <= *trials, "its trials do not add up"),
+        (inserts || failed > 0, "its nominal start failed in no trial"),
+        (sizes.into_iter().all(size), "a force, a slip or a time is negative or far too large"),
+        (
+            evaluation.end_shares.iter().all(|share| share.abs() <= 1.0),
+            "an end is no share of a step",
+        ),
+        (evaluation.success.iter().all(possible_rate), "its success rate cannot be one"),
+        (evaluation.robust.iter().all(possible_range), "its robust range cannot be one"),
+    ];
+    checks.into_iter().find_map(|(holds, problem)| (!holds).then_some(problem))
+}
+
+fn possible_rate(success: &SuccessRate) -> bool {
+    let counts = success.failure_counts.into_iter().chain([success.inserted, success.diverged]);
+    counts.map(u64::from).sum::<u64>() <= u64::from(MOST_TRIALS)
+        && (0.0..=1.0).contains(&success.confidence)
+}
+
+fn possible_range(robust: &RobustRange) -> bool {
+    let widest = 2.0 * grid_mm(FARTHEST_STEPS as i32);
+    let mut ranges = robust.ranges_mm.iter().chain(&robust.value_mm);
+    ranges.all(|range| (-widest..=widest).contains(range))
+        && robust.diverged <= robust.trials
+        && robust.trials <= MOST_TRIALS
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use insertion::evaluation::tolerance::{Search, evaluate};
     use insertion::finger::Finger;
     use insertion::trial::fake::FakeRig;
+    use proptest::prelude::*;
+
+    pub fn sound() -> Evaluation {
+        evaluate(&FakeRig::default(), &Finger::new(3e3, 2e4), Search::Strides)
+    }
+
+    pub type Change = fn(&mut Evaluation, f64);
+
+    /// Numbers of an evaluation with the least and the largest value they may have.
+    pub const BOUNDS: [(&str, Change, [f64; 2]); 10] = [
+        ("negative_steps", |e, x| e.window.negative_steps = x as i32, [-1000.0, 0.0]),
+        ("positive_steps", |e, x| e.window.positive_steps = x as i32, [0.0, 1000.0]),
+        ("taught", |e, x| e.taught = Some(x as i32), [-1000.0, 1000.0]),
+        ("trials", |e, x| e.trials = x as u32, [2.0, 1e7]),
+        ("failures", |e, x| e.failure_counts = [0, 0, x as u32, 0], [0.0, 20.0]),
+        ("peak_force_n", |e, x| e.peak_force_n = x, [0.0, LARGEST]),
+        ("slip_mm", |e, x| e.slip_mm = x, [0.0, LARGEST]),
+        ("simulated_s", |e, x| e.simulated_s = x, [0.0, LARGEST]),
+        ("end_shares", |e, x| e.end_shares[1] = x, [-1.0, 1.0]),
+        ("confidence", |e, x| e.success = Some(rate(x)), [0.0, 1.0]),
+    ];
+
+    fn rate(confidence: f64) -> SuccessRate {
+        SuccessRate { confidence, inserted: 3, failure_counts: [0; 4], diverged: 0 }
+    }
 
     #[test]
-    fn an_evaluation_is_plausible_until_a_number_is_none() {
-        let sound = evaluate(&FakeRig::default(), &Finger::new(3e3, 2e4), Search::Strides);
-        assert!(plausible(&sound));
-        let changed = |change: &dyn Fn(&mut Evaluation)| {
-            let mut evaluation = sound.clone();
+    fn a_number_is_plausible_up_to_its_bounds_and_not_beyond() {
+        for (name, change, [least, most]) in BOUNDS {
+            let plausible = |value: f64| {
+                let mut evaluation = Evaluation { trials: 20, ..sound() };
+                change(&mut evaluation, value);
+                implausible(&evaluation).is_none()
+            };
+            // Beyond by one in whole numbers, by a little in others.
+            let beyond = |bound: f64| if most > 1.5 { bound.abs() * 1e-3 + 1.0 } else { 1e-9 };
+            assert!(plausible(least) && plausible(most), "{name}");
+            assert!(!plausible(most + beyond(most)), "{name} above {most}");
+            // Counts are not negative.
+            if !["trials", "failures"].contains(&name) {
+                assert!(!plausible(least - beyond(least)), "{name} below {least}");
+            }
+        }
+    }
+
+    proptest! {
+        /// What the journal reads back it does not refuse, and what it refuses it has not taken.
+        #[test]
+        fn reading_refuses_what_taking_refuses(at in 0..BOUNDS.len(), value in -1e17..1e17f64) {
+            let mut evaluation = sound();
+            BOUNDS[at].1(&mut evaluation, value);
+            let text = serde_json::to_string(&evaluation).unwrap();
+            if let Ok(read) = serde_json::from_str::<Evaluation>(&text) {
+                prop_assert_eq!(implausible(&read), implausible(&evaluation));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_measured_is_plausible_and_a_window_needs_its_nominal_start() {
+        let with = |change: &dyn Fn(&mut Evaluation)| {
+            let mut evaluation = sound();
             change(&mut evaluation);
-            plausible(&evaluation)
+            implausible(&evaluation)
         };
-        assert!(changed(&|e| e.peak_force_n = f64::NAN), "no trial inserted");
-        assert!(!changed(&|e| e.peak_force_n = f64::INFINITY));
-        assert!(!changed(&|e| e.window.positive_steps = i32::MAX));
-        assert!(!changed(&|e| e.window.negative_steps = i32::MIN));
-        assert!(!changed(&|e| e.failure_counts[2] = u32::MAX));
-        assert!(!changed(&|e| e.end_shares[0] = f64::NAN));
+        assert_eq!(with(&|_| ()), None);
+        assert_eq!(with(&|e| e.peak_force_n = f64::NAN), None);
+        assert_eq!(implausible(&NOTHING), None);
+        assert!(with(&|e| e.peak_force_n = f64::INFINITY).is_some());
+        assert!(with(&|e| e.end_shares[0] = f64::NAN).is_some());
+        assert!(with(&|e| e.window.nominal = Outcome::Diverged).is_some());
+        assert!(with(&|e| e.window.negative_steps = i32::MIN).is_some());
     }
 }

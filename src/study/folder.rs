@@ -14,7 +14,7 @@
 //! ```
 
 use super::bench_file::{self, BENCH_FILE};
-use super::config::StudyConfig;
+use super::config::{Conclusion, StudyConfig};
 use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
 use super::on_bench::OnBench;
@@ -61,6 +61,8 @@ pub struct Study {
     pub evaluations: Vec<Recorded>,
     /// What it was measured with.
     segments: Vec<Segment>,
+    /// Records in the journal that another program wrote.
+    foreign: usize,
     pub(super) journal: Journal,
     dir: PathBuf,
     // Dropping the file, or the end of the process, releases the lock.
@@ -94,9 +96,10 @@ impl Study {
                 return Err(StudyError::Different { dir: dir.to_owned(), differences });
             }
             let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
+            let raised = study.config.budget < config.budget;
+            study.config.budget = config.budget.max(study.config.budget);
             study.measure_with(&config.provenance, inputs, if_changed)?;
-            if study.config.budget < config.budget {
-                study.config.budget = config.budget;
+            if raised {
                 write_config(dir, &study.config)?;
             }
             return Ok(study);
@@ -131,11 +134,16 @@ impl Study {
         let (journal, contents) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
         sync_folder(dir)?;
         files::remove_abandoned(dir);
-        let Contents { evaluations, segments, .. } = contents;
-        Ok(Study { config, evaluations, segments, journal, dir: dir.to_owned(), _lock: lock })
+        let Contents { evaluations, segments, foreign, .. } = contents;
+        let dir = dir.to_owned();
+        Ok(Study { config, evaluations, segments, foreign, journal, dir, _lock: lock })
     }
 
-    /// Makes sure that what is measured from now on belongs to what was measured before.
+    /// Makes sure that what is measured from now on belongs to what was measured before; a new
+    /// segment is in the journal when this returns.
+    ///
+    /// # Errors
+    /// If it does not belong, and no new segment is wanted or none of its evaluations is left.
     pub fn measure_with(
         &mut self,
         now: &Provenance,
@@ -146,12 +154,26 @@ impl Study {
         if if_changed == IfChanged::Refuse {
             return Err(StudyError::Changed { dir: self.dir.clone(), differences });
         }
-        let number = self.segments.len() + 1;
-        write_inputs(&self.dir, number, inputs)?;
-        let first = self.evaluations.len() as u64;
+        let (first, evaluations) = (self.evaluations.len() as u64, self.config.evaluations());
+        if first >= evaluations && !self.provenance().simulates_like(now) {
+            return Err(StudyError::Spent { dir: self.dir.clone(), evaluations, differences });
+        }
+        write_inputs(&self.dir, self.segments.len() + 1, inputs)?;
         let segment = Segment { first, provenance: now.clone() };
-        self.journal.begin_segment(number, segment.clone());
+        self.journal.begin_segment(segment.clone())?;
         self.segments.push(segment);
+        Ok(())
+    }
+
+    /// Settles how the study ends, whoever goes on with it.
+    ///
+    /// # Errors
+    /// If that cannot be written.
+    pub fn conclude_by(&mut self, conclusion: Conclusion) -> Result<(), StudyError> {
+        if self.config.conclusion != conclusion {
+            self.config.conclusion = conclusion;
+            write_config(&self.dir, &self.config)?;
+        }
         Ok(())
     }
 
@@ -203,8 +225,8 @@ impl Study {
 
     /// A copy that needs no open study.
     pub fn record(&self) -> StudyRecord {
-        let (config, segments) = (self.config.clone(), self.segments.clone());
-        StudyRecord::new(&self.dir, config, segments, self.evaluations.clone())
+        let (segments, evaluations) = (self.segments.clone(), self.evaluations.clone());
+        StudyRecord::new(&self.dir, self.config.clone(), segments, evaluations, self.foreign)
     }
 }
 
@@ -213,8 +235,8 @@ impl StudyRecord {
     pub fn load(dir: &Path) -> Result<StudyRecord, StudyError> {
         let config = read_config(dir)?;
         let contents = journal::read(&dir.join(JOURNAL_FILE), &config)?;
-        let Contents { evaluations, segments, .. } = contents;
-        Ok(StudyRecord::new(dir, config, segments, evaluations))
+        let Contents { evaluations, segments, foreign, .. } = contents;
+        Ok(StudyRecord::new(dir, config, segments, evaluations, foreign))
     }
 
     fn new(
@@ -222,6 +244,7 @@ impl StudyRecord {
         config: StudyConfig,
         segments: Vec<Segment>,
         evaluations: Vec<Recorded>,
+        foreign: usize,
     ) -> Self {
         let (walked, firm_values) = Default::default();
         let finger = read_inputs(dir, &segments)
@@ -230,8 +253,16 @@ impl StudyRecord {
         let on_bench = segments
             .last()
             .and_then(|segment| bench_file::read(dir, &segment.provenance, &config.space));
-        let mut record =
-            StudyRecord { config, segments, evaluations, walked, finger, firm_values, on_bench };
+        let mut record = StudyRecord {
+            config,
+            segments,
+            evaluations,
+            foreign,
+            walked,
+            finger,
+            firm_values,
+            on_bench,
+        };
         let provenance = record.segments.last().map(|segment| &segment.provenance);
         let goals = record.config.goals();
         let rule = Rule { goals: &goals, space: &record.config.space };

@@ -40,8 +40,8 @@ struct UserAttribute {
     finger_opt: Identity,
 }
 
-/// The configuration without what may change while the journal stays the same: with a
-/// polish the budget decides where that begins, without one it may rise.
+/// The configuration without what may change while the journal stays the same: how the study ends, and
+/// its budget. With a polish the budget decides where that begins, without one it may rise.
 #[derive(Serialize, Deserialize)]
 struct Identity {
     schema_version: u64,
@@ -55,6 +55,7 @@ impl Identity {
             serde_json::Value::Object(fields) => fields,
             _ => serde_json::Map::new(),
         };
+        fields.remove("conclusion");
         if config.polish == 0 {
             fields.remove("budget");
         }

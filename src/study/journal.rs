@@ -24,8 +24,6 @@ pub struct Journal {
     segments: Vec<Segment>,
     /// Bytes of whole, synced lines.
     len: u64,
-    /// A segment that begins with the next evaluation, and its number.
-    next_segment: Option<(usize, Segment)>,
     /// A write failed: what follows could not be trusted.
     broken: bool,
 }
@@ -36,6 +34,9 @@ pub struct Contents {
     pub evaluations: Vec<Recorded>,
     /// Where what they were measured with changed; the first begins at 0.
     pub segments: Vec<Segment>,
+    /// Records that another program wrote (a note made in Optuna's dashboard): they stay where they
+    /// are and say nothing here.
+    pub foreign: usize,
     /// How many of its bytes are whole lines.
     whole: usize,
 }
@@ -61,7 +62,6 @@ impl Journal {
             config: config.clone(),
             segments: parsed.segments.clone(),
             len: parsed.whole as u64,
-            next_segment: None,
             broken: false,
         };
         if parsed.whole == 0 {
@@ -73,14 +73,15 @@ impl Journal {
 
     /// Adds one evaluation; when this returns it survives a power failure.
     pub fn append(&mut self, recorded: &Recorded) -> Result<(), StudyError> {
-        let encoded = || -> Result<String, serde_json::Error> {
-            let line = line::encode(recorded, &self.config.space)?;
-            let Some((number, segment)) = &self.next_segment else { return Ok(line) };
-            Ok(header::encode_segment(*number, segment)? + &line)
-        };
-        let lines = encoded().map_err(|error| self.failed(error.into()))?;
-        self.write(&lines)?;
-        self.segments.extend(self.next_segment.take().map(|(_, segment)| segment));
+        let line = line::encode(recorded, &self.config.space);
+        self.write(&line.map_err(|error| self.failed(error.into()))?)
+    }
+
+    /// Begins a segment: what is appended from now on belongs to it.
+    pub(super) fn begin_segment(&mut self, segment: Segment) -> Result<(), StudyError> {
+        let line = header::encode_segment(self.segments.len() + 1, &segment);
+        self.write(&line.map_err(|error| self.failed(error.into()))?)?;
+        self.segments.push(segment);
         Ok(())
     }
 
@@ -99,14 +100,15 @@ impl Journal {
     /// Writes a whole journal of these evaluations beside the lost one.
     pub(super) fn rescue(&self, evaluations: &[Recorded]) -> io::Result<PathBuf> {
         let mut text = header::encode(&self.config)?;
-        let next = self.next_segment.iter().map(|(_, segment)| segment);
-        let further: Vec<&Segment> = self.segments.iter().skip(1).chain(next).collect();
-        for recorded in evaluations {
-            let begins = |(_, segment): &(usize, &&Segment)| segment.first == recorded.index;
-            for (number, segment) in (2..).zip(&further).filter(begins) {
+        let mut further = (2..).zip(self.segments.iter().skip(1)).peekable();
+        for index in 0..=evaluations.len() {
+            let begins = |(_, segment): &(usize, &Segment)| segment.first == index as u64;
+            while let Some((number, segment)) = further.next_if(begins) {
                 text.push_str(&header::encode_segment(number, segment)?);
             }
-            text.push_str(&line::encode(recorded, &self.config.space)?);
+            if let Some(recorded) = evaluations.get(index) {
+                text.push_str(&line::encode(recorded, &self.config.space)?);
+            }
         }
         let folder = self.path.parent().unwrap_or(Path::new("."));
         std::fs::create_dir_all(folder)?;
@@ -123,11 +125,6 @@ impl Journal {
             }
         }
         Err(io::Error::other("no name is left"))
-    }
-
-    /// Lets a segment, the `number`th, begin with the next evaluation.
-    pub(super) fn begin_segment(&mut self, number: usize, segment: Segment) {
-        self.next_segment = Some((number, segment));
     }
 
     /// Where it is kept.
@@ -170,7 +167,8 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, St
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
     let lines: Vec<&[u8]> = bytes[..whole].split_inclusive(|&byte| byte == b'\n').collect();
     let beginning = Segment { first: 0, provenance: config.provenance.clone() };
-    let mut contents = Contents { evaluations: Vec::new(), segments: vec![beginning], whole };
+    let mut contents =
+        Contents { evaluations: Vec::new(), segments: vec![beginning], foreign: 0, whole };
     let [first, second, rest @ ..] = lines.as_slice() else {
         // Killed while the header was written; anything else is not ours to overwrite.
         let header = header::encode(config).map_err(|error| foreign(error.to_string()))?;
@@ -198,10 +196,15 @@ impl Contents {
     /// Reads one line after the header.
     fn add(&mut self, line: &str, config: &StudyConfig) -> Result<(), LineError> {
         let expected = self.evaluations.len() as u64;
+        if line::is_foreign(line) {
+            self.foreign += 1;
+            return Ok(());
+        }
         match header::decode_segment(line)? {
             None => {
-                let recorded = line::decode(line, expected)?;
+                let mut recorded = line::decode(line, expected)?;
                 fits::fits(&recorded, config)?;
+                fits::refuse_doubtful(&mut recorded, &config.goals());
                 self.evaluations.push(recorded);
             }
             Some(segment) if segment.first != expected => {
@@ -209,8 +212,6 @@ impl Contents {
             }
             Some(segment) => {
                 segment.provenance.check().map_err(LineError::Format)?;
-                // The evaluation it was written with was torn off.
-                self.segments.retain(|other| other.first < expected || other.first == 0);
                 self.segments.push(segment);
             }
         }

@@ -13,8 +13,7 @@
 
 use super::error::LineError;
 use super::record::{Recorded, Timing};
-use super::seal::{seal, unseal};
-use super::time::is_timestamp;
+use super::seal::{is_sealed, seal, unseal};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Score;
 use insertion::space::{Design, Parameter, Space};
@@ -128,14 +127,6 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
         return Err(LineError::Order { found: trial.evaluation, expected });
     }
     let times: Times = serde_json::from_str(&rest).map_err(format)?;
-    for stamp in [&times.datetime_start, &times.datetime_complete] {
-        if !is_timestamp(stamp) {
-            return Err(LineError::Format(format!("`{stamp}` is not a time stamp")));
-        }
-    }
-    if !(times.wall_s >= 0.0 && times.wall_s.is_finite()) {
-        return Err(LineError::Format("`wall_s` is no duration".to_owned()));
-    }
     Ok(Recorded {
         index: trial.evaluation,
         proposal: trial.proposal,
@@ -145,6 +136,7 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
         design: Design(trial.params),
         stiffness: trial.user_attrs.stiffness,
         tasks: trial.user_attrs.tasks,
+        refused: None,
         timing: Timing {
             datetime_start: times.datetime_start,
             datetime_complete: times.datetime_complete,
@@ -152,6 +144,18 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
             cached: times.cached,
         },
     })
+}
+
+/// Whether a line is a record of Optuna's journals that another program wrote.
+pub fn is_foreign(line: &str) -> bool {
+    #[derive(Deserialize)]
+    struct Record {
+        #[serde(rename = "op_code")]
+        _op_code: u8,
+        worker_id: String,
+    }
+    let record = || serde_json::from_str::<Record>(line).ok();
+    !is_sealed(line) && record().is_some_and(|record| record.worker_id != WORKER)
 }
 
 /// A parameter as Optuna describes it: a JSON text within the JSON line.

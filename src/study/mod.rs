@@ -28,7 +28,7 @@ mod walked;
 mod work;
 
 pub use cache::{Cache, Key};
-pub use config::{LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
+pub use config::{Conclusion, LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
 pub use course::{Arrived, Course, Ending, Next, Wanted};
 pub use error::{LineError, StudyError};
 pub use folder::{

@@ -3,6 +3,7 @@
 use super::StudyConfig;
 use super::on_bench::OnBench;
 use super::provenance::Segment;
+use super::time::is_timestamp;
 use ask_tell::pareto;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Goals, Measure, Score};
@@ -22,6 +23,8 @@ pub struct StudyRecord {
     pub segments: Vec<Segment>,
     /// What was measured, by index: `evaluations[i].index == i`.
     pub evaluations: Vec<Recorded>,
+    /// Records in its journal that another program wrote; they are passed over.
+    pub foreign: usize,
     /// What the walk found of the best designs, best first; empty if they were not walked.
     pub walked: Vec<Walked>,
     /// The finger file, if its fingers were computed.
@@ -70,6 +73,17 @@ pub struct Recorded {
     pub tasks: Vec<Evaluation>,
     /// When it was measured; the only part that differs between equal runs.
     pub timing: Timing,
+    /// Why its line was refused when it was read: it then counts as diverged.
+    pub refused: Option<Refused>,
+}
+
+/// A line of a journal whose numbers cannot be those of an evaluation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refused {
+    /// What is impossible about them.
+    pub problem: &'static str,
+    /// The values and violations that the optimizer was told at the time, if any.
+    pub(super) told: Option<[Vec<f64>; 2]>,
 }
 
 /// When an evaluation was measured and how long that took.
@@ -83,6 +97,17 @@ pub struct Timing {
     pub wall_s: f64,
     /// For each task whether its values came from the cache; empty where that is not known.
     pub cached: Vec<bool>,
+}
+
+impl Timing {
+    /// What is impossible about it, if anything is.
+    pub fn implausible(&self) -> Option<&'static str> {
+        let stamps = [&self.datetime_start, &self.datetime_complete];
+        let sound = stamps.into_iter().all(|stamp| is_timestamp(stamp))
+            && self.wall_s.is_finite()
+            && self.wall_s >= 0.0;
+        (!sound).then_some("its times are none")
+    }
 }
 
 impl Recorded {
@@ -108,6 +133,18 @@ impl Recorded {
 }
 
 impl StudyRecord {
+    /// What reading it passed over, a line each.
+    pub fn remarks(&self) -> Vec<String> {
+        let refused = self.evaluations.iter().filter_map(|r| Some((r.index, r.refused.as_ref()?)));
+        let refused = refused.map(|(index, refused)| {
+            format!("evaluation {index} is passed over: {}", refused.problem)
+        });
+        let foreign = (self.foreign > 0).then(|| {
+            format!("records of other programs in the journal, passed over: {}", self.foreign)
+        });
+        refused.chain(foreign).collect()
+    }
+
     /// The evaluations of the last segment, and of those before it that simulate the same: only they
     /// are of the present model.
     pub fn current(&self) -> &[Recorded] {

@@ -125,6 +125,7 @@ mod tests {
             stiffness: Prediction::exact(3e3, 2e4),
             tasks: vec![task],
             timing: Default::default(),
+            refused: None,
         }
     }
 

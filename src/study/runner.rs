@@ -9,8 +9,10 @@ use super::time;
 use ask_tell::Optimizer;
 use insertion::evaluation::evaluator::Evaluate;
 use rayon::ThreadPool;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
+use std::thread;
 use std::time::Instant;
 
 /// What a run works with.
@@ -59,7 +61,7 @@ impl Runner<'_> {
                             for wanted in wanted {
                                 let sender = sender.clone();
                                 // The receiver is there until the scope ends.
-                                scope.spawn(move |_| drop(sender.send(self.measure(&wanted))));
+                                scope.spawn(move |_| drop(sender.send(self.caught(&wanted))));
                             }
                             return Ok(None);
                         }
@@ -72,7 +74,10 @@ impl Runner<'_> {
                 running -= 1;
                 // This end has a sender, so there is always one.
                 if let Ok(result) = receiver.recv()
-                    && let Some(arrived) = result?
+                    && let Some(arrived) = result.unwrap_or_else(|panic| {
+                        self.stop.store(true, Ordering::SeqCst);
+                        resume_unwind(panic)
+                    })?
                 {
                     course.take(study, arrived, progress)?;
                 }
@@ -89,6 +94,11 @@ impl Runner<'_> {
                 }
             }
         })
+    }
+
+    /// A measurement, or the panic that ended it: whoever waits for it must learn of that.
+    fn caught(&self, wanted: &Wanted) -> thread::Result<Result<Option<Arrived>, StudyError>> {
+        catch_unwind(AssertUnwindSafe(|| self.measure(wanted)))
     }
 
     /// One measurement, `None` if the run was to stop before it was complete.
@@ -115,5 +125,40 @@ impl Runner<'_> {
             cached: std::mem::take(&mut measured.cached),
         };
         Ok(Some(Arrived { proposal: *proposal, measured, timing }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::Study;
+    use ask_tell::{Grid, RandomSearch};
+    use insertion::evaluation::evaluator::Measured;
+    use insertion::evaluation::template::Impossible;
+    use insertion::space::Design;
+    use std::path::Path;
+
+    struct Panics;
+
+    impl Evaluate for Panics {
+        fn evaluate(&self, _: &Design) -> Result<Measured, Impossible> {
+            panic!("a defect")
+        }
+    }
+
+    #[test]
+    fn a_panic_in_a_measuring_thread_ends_the_study() {
+        let dir = tempfile::tempdir().unwrap();
+        let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/study/study.toml");
+        std::fs::copy(fixture, dir.path().join("study.toml")).unwrap();
+        let mut study = Study::resume(dir.path()).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let stop = AtomicBool::new(false);
+        let mut optimizer = RandomSearch::new(Grid::new(study.config.space.levels()), 0);
+        let runner = Runner { evaluator: &Panics, pool: &pool, stop: &stop };
+        let run = AssertUnwindSafe(|| runner.run(&mut study, &mut optimizer, &mut |_| ()));
+        assert!(catch_unwind(run).is_err());
+        drop(study);
+        assert!(Study::resume(dir.path()).is_ok(), "journal and lock are as they should be");
     }
 }

@@ -39,6 +39,11 @@ pub fn seal(
     Ok(line)
 }
 
+/// Whether a line has a check, be it the right one or not.
+pub fn is_sealed(line: &str) -> bool {
+    line.contains(CHECK_KEY)
+}
+
 /// The JSON objects before and after the check of a line, which must fit.
 pub fn unseal(line: &str) -> Result<(String, String), LineError> {
     let (content, rest) = line.rsplit_once(CHECK_KEY).ok_or(LineError::Check)?;

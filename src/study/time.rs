@@ -2,10 +2,14 @@
 
 use jiff::Timestamp;
 use jiff::civil::DateTime;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Now, `YYYY-MM-DDTHH:MM:SS.ffffff` in UTC.
 pub fn now() -> String {
-    format(Timestamp::now())
+    // A clock that is wrong by thousands of years is no reason to lose a measurement.
+    let clock = SystemTime::now();
+    let last = if clock > UNIX_EPOCH { Timestamp::MAX } else { Timestamp::UNIX_EPOCH };
+    format(Timestamp::try_from(clock).unwrap_or(last).max(Timestamp::UNIX_EPOCH))
 }
 
 fn format(moment: Timestamp) -> String {
@@ -24,6 +28,7 @@ mod tests {
 
     #[test]
     fn a_moment_is_written_with_all_its_digits_and_read_again() {
+        assert!(is_timestamp(&format(Timestamp::MAX)));
         for (microseconds, text) in [
             (0, "1970-01-01T00:00:00.000000"),
             (1_709_251_199_000_070, "2024-02-29T23:59:59.000070"),

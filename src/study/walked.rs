@@ -72,9 +72,9 @@ impl WalkFile {
         let text = files::read_own(&dir.join(WALK_FILE), LARGEST_OWN).ok()?;
         let file: WalkFile = serde_json::from_str(&text).ok()?;
         let walked = file.designs.iter().filter_map(|row| row.walked.as_ref());
-        let plausible = walked.flat_map(WalkedRow::evaluations).all(fits::plausible);
+        let doubtful = walked.flat_map(WalkedRow::evaluations).find_map(fits::implausible);
         let same = provenance.is_some_and(|own| own.simulates_like(&file.provenance));
-        (same && plausible).then_some(file)
+        (same && doubtful.is_none()).then_some(file)
     }
 }
 

@@ -8,14 +8,13 @@
 //! Nothing of a result is believed before [`Work::check`] has looked at it.
 
 use super::course::{Arrived, Wanted};
+use super::fits;
 use super::folder::Inputs;
 use super::provenance::Provenance;
 use super::record::Timing;
 use super::seal::{seal, sha256_hex, unseal};
-use super::time::is_timestamp;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Measured;
-use insertion::outcome::Outcome;
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use serde::de::DeserializeOwned;
@@ -189,26 +188,26 @@ impl Work {
     pub fn check(&self, bytes: &[u8], stiffness: &Prediction) -> Result<Arrived, WorkError> {
         let again = |done: &Done, times: &Times| seal(done, Some(times));
         let (done, times) = read(bytes, "result", again)?;
-        if let Some(problem) = self.problem(&done, &times, stiffness)? {
+        let Times { datetime_start, datetime_complete, wall_s } = times;
+        let timing = Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() };
+        if let Some(problem) = self.problem(&done, &timing, stiffness)? {
             return Err(WorkError::Poisoned { worker: done.worker, problem });
         }
-        let Times { datetime_start, datetime_complete, wall_s } = times;
         Ok(Arrived {
             proposal: self.proposal,
             measured: Measured { stiffness: *stiffness, tasks: done.tasks, cached: Vec::new() },
-            timing: Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() },
+            timing,
         })
     }
 
     fn problem(
         &self,
         done: &Done,
-        times: &Times,
+        timing: &Timing,
         stiffness: &Prediction,
     ) -> Result<Option<String>, WorkError> {
         let sources = &self.provenance.source_sha256;
         let json = |prediction: &Prediction| serde_json::to_value(prediction).ok();
-        let stamps = [&times.datetime_start, &times.datetime_complete];
         let problem = if done.source_sha256 != *sources {
             format!("it was measured by the sources {}, not by {sources}", done.source_sha256)
         } else if done.design != self.design {
@@ -219,37 +218,109 @@ impl Work {
             "its stiffness is not the one that the study's model predicts".to_owned()
         } else if done.tasks.len() as u64 != self.tasks {
             format!("it has {} tasks in place of {}", done.tasks.len(), self.tasks)
-        } else if !stamps.iter().all(|stamp| is_timestamp(stamp)) || !times.wall_s.is_finite() {
-            "its times are none".to_owned()
         } else {
-            return Ok(done.tasks.iter().find_map(|task| self.contradiction(task)));
+            let doubtful = done.tasks.iter().find_map(|task| self.contradiction(task));
+            return Ok(doubtful.or_else(|| timing.implausible()).map(str::to_owned));
         };
         Ok(Some(problem))
     }
 
-    /// What is impossible about an evaluation.
-    fn contradiction(&self, found: &Evaluation) -> Option<String> {
-        let window = &found.window;
-        let numbers = [found.peak_force_n, found.slip_mm, found.simulated_s];
-        let numbers = numbers.into_iter().chain(found.end_shares);
-        let failed: u32 =
-            found.failure_counts.iter().fold(found.diverged, |n, &m| n.saturating_add(m));
-        let inserted = window.nominal == Outcome::Inserted;
-        let problem = if numbers.into_iter().any(|number| !number.is_finite()) {
-            "a number in it is not finite"
-        } else if window.negative_steps > 0 || window.positive_steps < 0 {
-            "its window does not hold the nominal start"
-        } else if failed > found.trials || found.trials == 0 {
-            "its trials do not add up"
-        } else if !inserted && failed == 0 {
-            "its nominal start failed in no trial"
-        } else if found.success.is_some() != self.success_rate
-            || found.robust.is_some() != self.robust_range
-        {
-            "it does not have what was asked for"
-        } else {
-            return None;
+    /// What is impossible about an evaluation as the result of this work.
+    fn contradiction(&self, found: &Evaluation) -> Option<&'static str> {
+        let asked = [self.success_rate, self.robust_range];
+        match [found.success.is_some(), found.robust.is_some()] == asked {
+            true => fits::implausible(found),
+            false => Some("it does not have what was asked for"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::fits::tests::{BOUNDS, sound};
+    use crate::study::record::Recorded;
+    use crate::study::{decode, encode};
+    use insertion::evaluation::objective::{Goals, Measure};
+    use insertion::space::Space;
+    use insertion::trial::engine::EngineKind;
+    use proptest::prelude::*;
+    use std::collections::BTreeMap;
+
+    fn work() -> Work {
+        Work {
+            proposal: 0,
+            design: Design::infill(20.0, 10.0),
+            seed: 0,
+            success_rate: false,
+            robust_range: false,
+            tasks: 1,
+            provenance: Provenance::new(EngineKind::Direct, BTreeMap::new()),
+            inputs: Inputs::new(),
+        }
+    }
+
+    fn timing(wall_s: f64) -> Timing {
+        let stamp = "2026-01-02T03:04:05.678901".to_owned();
+        Timing { datetime_start: stamp.clone(), datetime_complete: stamp, wall_s, cached: vec![] }
+    }
+
+    /// Whether a result with these numbers is taken; if it is, its line is read again.
+    fn taken(evaluation: Evaluation, wall_s: f64) -> bool {
+        let (work, stiffness) = (work(), Prediction::exact(3e3, 2e4));
+        let measured = Measured { stiffness, tasks: vec![evaluation], cached: Vec::new() };
+        let bytes = work.done(measured, &timing(wall_s), "a worker").unwrap();
+        let Ok(Arrived { measured, timing, .. }) = work.check(&bytes, &stiffness) else {
+            return false;
         };
-        Some(problem.to_owned())
+        let goals = Goals::of(Measure::Range);
+        let tasks = measured.tasks;
+        let score = goals.score(&tasks.iter().collect::<Vec<_>>()).filter(fits::sound);
+        let (design, refused) = (work.design.clone(), None);
+        let recorded =
+            Recorded { index: 0, proposal: None, design, score, stiffness, tasks, timing, refused };
+        let space = include_str!("../../spaces/infill.toml");
+        let space = Space::parse(space, "infill.toml").unwrap();
+        let mut read = decode(encode(&recorded, &space).unwrap().trim_end(), 0).unwrap();
+        fits::refuse_doubtful(&mut read, &goals);
+        assert_eq!(read.refused, None);
+        true
+    }
+
+    #[test]
+    fn the_lies_that_were_believed_are_refused() {
+        assert!(taken(sound(), 1.0));
+        for wall_s in [-1e9, f64::INFINITY] {
+            assert!(!taken(sound(), wall_s), "{wall_s} s");
+        }
+        let lies: [fn(&mut Evaluation); 6] = [
+            |e| (e.window.negative_steps, e.window.positive_steps) = (-1015, 1015),
+            |e| e.trials = 20_000_000,
+            |e| e.end_shares[0] = 1e300,
+            |e| e.peak_force_n = -50.0,
+            |e| e.slip_mm = -3.0,
+            |e| e.simulated_s = -1.0,
+        ];
+        for (i, lie) in lies.into_iter().enumerate() {
+            let mut evaluation = sound();
+            lie(&mut evaluation);
+            assert!(!taken(evaluation, 1.0), "lie {i}");
+        }
+    }
+
+    proptest! {
+        /// All numbers of the schema, at their bounds, around them and far beyond.
+        #[test]
+        fn what_is_taken_from_a_worker_can_be_read_again(
+            at in 0..BOUNDS.len(),
+            near in prop::sample::select(vec![0, 1]),
+            away in prop::sample::select(vec![0.0, 1e-9, 1.0, -1.0, 1e3, -1e3, 1e17, -1e17, f64::NAN]),
+            wall_s in prop::sample::select(vec![0.0, 1.0, -1e-9, 1e300, f64::NAN]),
+        ) {
+            let (_, change, bounds) = BOUNDS[at];
+            let mut evaluation = sound();
+            change(&mut evaluation, bounds[near] + away);
+            taken(evaluation, wall_s);
+        }
     }
 }

@@ -128,6 +128,93 @@ pub fn write_own(path: &Path, content: &[u8]) -> io::Result<()> {
     written
 }
 
+/// A text file of the user's that lines are added to, by one process at a time. It stays the file it
+/// is, with its mode and all its names.
+#[derive(Debug)]
+pub struct Table {
+    file: File,
+    path: PathBuf,
+    text: String,
+    made: bool,
+}
+
+impl Table {
+    /// Opens the file, which need not exist, and waits until no other process adds to it.
+    ///
+    /// # Errors
+    /// If it cannot be read and written, is no UTF-8 or is longer than `limit` bytes.
+    pub fn open(path: &Path, limit: u64) -> io::Result<Self> {
+        loop {
+            let made = !path.try_exists()?;
+            let file = File::options().read(true).append(true).create(true).open(path)?;
+            let found = file.metadata()?;
+            if !found.is_file() {
+                return Err(io::Error::other("it is a folder, a pipe or a device"));
+            }
+            if found.permissions().readonly() {
+                return Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only"));
+            }
+            file.lock()?;
+            // Who had it before may have removed or replaced it.
+            if fs::metadata(path).is_ok_and(|now| is_open_file(&now, &file).unwrap_or(false)) {
+                let text = text(read_up_to(&file, limit)?)?;
+                return Ok(Table { file, path: path.to_owned(), text, made });
+            }
+        }
+    }
+
+    /// What it holds.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Writes a new text in place of the old one: only what is new, if it begins with that. When
+    /// this returns it survives a power failure.
+    ///
+    /// # Errors
+    /// If it cannot be written; the file is then as it was.
+    pub fn replace(&mut self, new: &str) -> io::Result<()> {
+        let kept = new.strip_prefix(&self.text).map_or(0, |_| self.text.len());
+        let written = match kept == self.text.len() {
+            true => self.rewrite(kept, new),
+            false => {
+                // A copy, for the case that the process dies in between.
+                let mut name = self.path.file_name().unwrap_or_default().to_owned();
+                name.push(".before");
+                let copy = self.path.with_file_name(name);
+                write_own(&copy, self.text.as_bytes())?;
+                let written = self.rewrite(0, new);
+                if written.is_ok() {
+                    fs::remove_file(copy)?;
+                }
+                written
+            }
+        };
+        match written {
+            Ok(()) => self.text = new.to_owned(),
+            // If this fails, too, nothing can be done.
+            Err(_) => drop(self.rewrite(kept, &self.text)),
+        }
+        written
+    }
+
+    fn rewrite(&self, kept: usize, text: &str) -> io::Result<()> {
+        let mut file = &self.file;
+        file.set_len(kept as u64)?;
+        file.write_all(&text.as_bytes()[kept..])?;
+        file.sync_all()
+    }
+}
+
+impl Drop for Table {
+    /// A file to which nothing was added is not left behind.
+    fn drop(&mut self) {
+        if self.made && self.text.is_empty() {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
 /// A new file under a name that no other thread, process or machine writes to.
 fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
     static WRITES: AtomicU64 = AtomicU64::new(0);
@@ -244,6 +331,34 @@ mod tests {
         remove_abandoned(dir.path());
         let left = |name: &str| dir.path().join(name).exists();
         assert_eq!([old, new, other].map(left), [false, true, true]);
+    }
+
+    #[test]
+    fn lines_added_by_many_at_once_are_all_there() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("table.csv");
+        std::thread::scope(|scope| {
+            for thread in 0..8 {
+                let path = &path;
+                scope.spawn(move || {
+                    for line in 0..25 {
+                        let mut table = Table::open(path, LARGEST_INPUT).unwrap();
+                        let new = format!("{}{thread}-{line}\n", table.text());
+                        table.replace(&new).unwrap();
+                    }
+                });
+            }
+        });
+        let mut lines: Vec<String> =
+            fs::read_to_string(&path).unwrap().lines().map(str::to_owned).collect();
+        lines.sort();
+        lines.dedup();
+        assert_eq!(lines.len(), 200);
+        let mut table = Table::open(&path, LARGEST_INPUT).unwrap();
+        table.replace("another beginning\n").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "another beginning\n");
+        drop(Table::open(&dir.path().join("new.csv"), LARGEST_INPUT).unwrap());
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "no copy, no empty file");
     }
 
     #[cfg(unix)]

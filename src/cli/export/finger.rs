@@ -114,10 +114,21 @@ fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<(), Failure> 
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let beside = |part: &str| out.with_file_name(format!("{stem}-{part}.stl"));
     let [outline, base] = ["outline", "base"].map(beside);
-    let [outline_part, base_part] = [Prism::outline(geometry), Prism::base(geometry)];
+    let parts = [
+        (&outline, closed(Prism::outline(geometry), geometry)?.stl(&format!("{title}, outline"))),
+        (&base, closed(Prism::base(geometry), geometry)?.stl(&format!("{title}, solid base"))),
+    ];
+    // Nobody named these files.
+    for (file, content) in &parts {
+        if std::fs::read(file).is_ok_and(|found| found != *content) {
+            let problem = "is there already, with other contents; remove it, or give another --out";
+            return Err(Failure::usage(format!("{}: {problem}", file.display())));
+        }
+    }
     write_file(out, text)?;
-    write_file(&outline, &closed(outline_part, geometry)?.stl(&format!("{title}, outline")))?;
-    write_file(&base, &closed(base_part, geometry)?.stl(&format!("{title}, solid base")))?;
+    for (file, content) in &parts {
+        write_file(file, content)?;
+    }
     print(&format!(
         "wrote settings for {title}: {}\n\
          to be sliced with them: {}\n\

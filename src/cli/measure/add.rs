@@ -3,8 +3,8 @@
 use crate::calibration::experiments::{COLUMNS, Column, NOT_MEASURABLE, appended, parse};
 use crate::cli::{Failure, print, say};
 use crate::session::read_task;
-use crate::study::write_file;
 use clap::Args;
+use input::files::{LARGEST_INPUT, Table};
 use input::shipped::MEASUREMENTS;
 use std::io::{self, BufRead};
 use std::path::Path;
@@ -79,12 +79,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
         return Err(Failure::usage(format!("`{file}` is shipped; give a file of your own")));
     }
-    let path = Path::new(file);
-    let text = match std::fs::read_to_string(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
-        read => read.map_err(|error| Failure::usage(format!("{file}: cannot read it: {error}")))?,
-    };
-    parse(&text, file).map_err(Failure::input)?;
     let mut cells = arguments.cells();
     if cells.is_empty() {
         cells = asked(&mut io::stdin().lock())?;
@@ -92,9 +86,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == Column::Task) {
         *name = read_task(name)?.task.name;
     }
-    let new = appended(&text, &cells).map_err(Failure::input)?;
+    // Read only now: others may have added lines meanwhile.
+    let unusable = |error| Failure::usage(format!("{file}: cannot add to it: {error}"));
+    let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
+    parse(table.text(), file).map_err(Failure::input)?;
+    let new = appended(table.text(), &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;
-    write_file(path, &new)?;
+    table.replace(&new).map_err(unusable)?;
     print(&format!("{file}: {}\n", super::lines(&found)))
 }
 

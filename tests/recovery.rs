@@ -1,0 +1,351 @@
+//! What interruptions, other programs, lying workers and changed files must not cost.
+
+mod common;
+
+use ask_tell::stream::stream;
+use common::{Ran, Studies, command, optimize, read, run};
+use rand::RngExt;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+/// What makes a prediction for the bench quick.
+const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
+/// Kills of each flag; set the environment variable `KILLS` for more.
+const KILLS: u32 = 2;
+
+/// A measurement file of two fingers.
+fn bench(folder: &Studies) -> (std::path::PathBuf, String) {
+    let path = folder.dir("bench.csv");
+    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
+    let lines = format!("{head}ket8,10,0,7.6\nket8,20,0,5.7\n");
+    fs::write(&path, &lines).expect("the file is written");
+    (path, lines)
+}
+
+/// What a study answers, without where it is and what it took from the cache.
+fn answer(ran: &Ran) -> Value {
+    let mut json = ran.json();
+    let fields = json.as_object_mut().expect("an object");
+    fields.remove("study");
+    fields.remove("cached");
+    json
+}
+
+#[test]
+fn measurements_taken_when_the_budget_is_spent_are_kept() {
+    let folder = Studies::new();
+    let (path, lines) = bench(&folder);
+    let file = path.to_str().expect("a path in UTF-8");
+    let with = |more: &[&str]| {
+        folder.study("a", 12, &[&FEW[..], &["--json", "--measurements", file], more].concat())
+    };
+    let before = answer(&with(&[]));
+    fs::write(&path, lines + "ket8,25,20,9.9\n").expect("the file is written");
+    let after = answer(&with(&["--accept-changed"]));
+    assert_eq!(after["bench"]["measured"], 3);
+    assert_ne!(after["recommended"]["bench"], before["recommended"]["bench"]);
+    // Whoever asks from now on gets the same answer, and nobody has to accept anything again.
+    assert_eq!(answer(&with(&[])), after);
+    let dir = folder.dir("a");
+    let dir = dir.to_str().expect("a path in UTF-8");
+    assert_eq!(answer(&optimize(&["resume", dir, "--quiet", "--json"])), after);
+    optimize(&["report", dir]).succeeds();
+    assert!(read(&folder.dir("a").join("report.html")).contains("Best on the bench"));
+    let title = optimize(&["export", "finger", dir, "--format", "dxf", "--out", "/dev/null"]);
+    let density = after["recommended"]["values"]["infill_density_percent"].to_string();
+    let density = density.trim_end_matches(".0").to_owned();
+    assert!(title.succeeds().contains(&format!("{density} %")), "{}", title.stdout);
+}
+
+#[test]
+fn a_changed_task_needs_evaluations_of_its_own() {
+    let folder = Studies::new();
+    let task = folder.dir("usb.toml");
+    let usb = include_str!("../tasks/usb.toml");
+    fs::write(&task, usb).expect("the file is written");
+    let own = ["--task", task.to_str().expect("a path in UTF-8"), "--json"];
+    folder.study("s", 12, &own).succeeds();
+    let journal = folder.journal("s");
+    fs::write(&task, format!("# other\n{usb}")).expect("the file is written");
+    let accepted = [&own[..], &["--accept-changed"]].concat();
+    let parts = ["simulates otherwise", "all its 12 evaluations", "raise --budget"];
+    folder.study("s", 12, &accepted).fails(2, &parts);
+    assert_eq!(folder.journal("s"), journal, "nothing is written");
+    let raised = folder.study("s", 16, &accepted).json();
+    assert_eq!((&raised["evaluations"], &raised["segments"][1]["first"]), (&16.into(), &12.into()));
+    // Accepted twice before anything was measured: both segments stay readable.
+    for comment in ["# a third", "# a fourth"] {
+        fs::write(&task, format!("{comment}\n{usb}")).expect("the file is written");
+        let mut child = folder.command("s", 900, &accepted);
+        let child = child.env("FINGER_OPT_FAKE_DELAY_US", "2000").stdout(Stdio::null()).spawn();
+        std::thread::sleep(Duration::from_millis(150));
+        kill(child.expect("the command starts"), "KILL");
+    }
+    let resumed = folder.resume("s").succeeds().to_owned();
+    assert!(resumed.contains("segment"), "{resumed}");
+}
+
+fn kill(mut child: Child, signal: &str) -> Duration {
+    let sent = Instant::now();
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args([&format!("-{signal}"), &id]).status().is_ok());
+    child.wait().expect("it ends");
+    sent.elapsed()
+}
+
+/// Waits until a journal has so many lines, or its study has ended.
+fn wait_for_lines(path: &Path, lines: usize, child: &mut Child) {
+    let begun = Instant::now();
+    while fs::read_to_string(path).unwrap_or_default().lines().count() < lines
+        && child.try_wait().expect("it can be asked").is_none()
+    {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no journal of {lines} lines");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
+    let folder = Studies::new();
+    let (path, _) = bench(&folder);
+    let file = path.to_str().expect("a path in UTF-8");
+    let kills = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(KILLS);
+    let with_bench = [&FEW[..], &["--measurements", file]].concat();
+    let flags: [&[&str]; 14] = [
+        &with_bench,
+        &["--no-confirm"],
+        &["--optimizer", "cma-es"],
+        &["--polish", "6"],
+        &["--objective", "centred-range"],
+        &["--objective", "success-rate", "--uncertainty", "typical"],
+        &["--objective", "range,peak-force"],
+        &["--constraint", "peak-force<=30"],
+        &["--task", "usb,ket8", "--aggregate", "weighted", "--weights", "1,2"],
+        &["--space", "codesign"],
+        &["--robot", "rigid"],
+        &["--start", "taught"],
+        &["--batch", "3", "--seed", "5"],
+        &["--finger-model", "computed"],
+    ];
+    let mut random = stream(0, 0, "kills of flags");
+    for (i, flags) in flags.into_iter().enumerate() {
+        let whole = folder.study(&format!("whole-{i}"), 20, &[flags, &["--json"]].concat());
+        let whole = answer(&whole);
+        for round in 0..kills {
+            let name = format!("killed-{i}-{round}");
+            let mut killed = folder.command(&name, 20, flags);
+            let killed = killed.env("FINGER_OPT_FAKE_DELAY_US", "150").stdout(Stdio::null());
+            let mut child = killed.stderr(Stdio::null()).spawn().expect("the command starts");
+            let journal = folder.dir(&name).join("journal.jsonl");
+            wait_for_lines(&journal, random.random_range(2..24), &mut child);
+            std::thread::sleep(Duration::from_millis(random.random_range(0..40)));
+            kill(child, "KILL");
+            let dir = folder.dir(&name);
+            let dir = dir.to_str().expect("a path in UTF-8");
+            let resumed = answer(&optimize(&["resume", dir, "--quiet", "--json"]));
+            assert_eq!(resumed, whole, "{flags:?}");
+        }
+    }
+}
+
+#[test]
+fn one_signal_ends_a_study_within_half_a_second_in_every_phase() {
+    let folder = Studies::new();
+    for (i, signal) in ["INT", "TERM", "HUP"].into_iter().enumerate() {
+        // While it searches, and while it predicts the bench.
+        for (phase, budget) in [("search", 400), ("bench", 8)] {
+            let name = format!("{phase}-{i}");
+            let many = ["--task", "ket8", "--samples", "20000", "--measurements", "published"];
+            let flags: &[&str] = if phase == "bench" { &many } else { &[] };
+            let mut study = folder.command(&name, budget, flags);
+            let study = study.env("FINGER_OPT_FAKE_DELAY_US", "100").stdout(Stdio::null());
+            let mut child = study.stderr(Stdio::null()).spawn().expect("the command starts");
+            wait_for_lines(&folder.dir(&name).join("journal.jsonl"), 10, &mut child);
+            std::thread::sleep(Duration::from_millis(if phase == "bench" { 1500 } else { 0 }));
+            assert!(child.try_wait().expect("it can be asked").is_none(), "{name} has ended");
+            let took = kill(child, signal);
+            assert!(took < Duration::from_millis(900), "{name}: {took:?} after SIG{signal}");
+            let dir = folder.dir(&name);
+            optimize(&["report", dir.to_str().expect("a path in UTF-8")]).succeeds();
+        }
+    }
+}
+
+#[test]
+fn what_another_program_adds_to_a_journal_is_passed_over_and_said() {
+    let folder = Studies::new();
+    let expected = answer(&folder.study("whole", 24, &["--json"]));
+    folder.study("s", 16, &[]).succeeds();
+    let path = folder.dir("s").join("journal.jsonl");
+    let foreign = [
+        r#"{"op_code":3,"worker_id":"5b0e-140","study_id":0,"system_attr":{"dashboard:note_id":1}}"#,
+        r#"{"op_code":4,"worker_id":"5b0e-140","study_id":0,"datetime_start":"2026-01-01T00:00:00"}"#,
+    ];
+    let text = read(&path) + &foreign.join("\n") + "\n";
+    fs::write(&path, text).expect("the journal is written");
+    let dir = folder.dir("s");
+    let report = optimize(&["report", dir.to_str().expect("a path in UTF-8")]);
+    assert!(report.stderr.contains("records of other programs"), "{}", report.stderr);
+    report.succeeds();
+    assert_eq!(answer(&folder.study("s", 24, &["--json"])), expected);
+    let kept = read(&path);
+    assert!(foreign.iter().all(|line| kept.contains(line)), "they stay where they are");
+    // A line of our own that is damaged is still an error.
+    let torn = kept.replacen("\"evaluation\":3,", "\"evaluation\":3, ", 1);
+    fs::write(&path, torn).expect("the journal is written");
+    folder.resume("s").fails(2, &["line 6", "damaged"]);
+}
+
+/// The journal with a number of one evaluation changed, and the check made to fit.
+fn with_lie(text: &str, evaluation: usize, from: &str, to: &str) -> String {
+    use sha2::{Digest, Sha256};
+    let lie = |(number, line): (usize, &str)| {
+        let Some((content, rest)) = line.split_once(",\"check\":\"") else {
+            return line.to_owned();
+        };
+        if number != 2 + evaluation {
+            return line.to_owned();
+        }
+        assert!(content.contains(from), "{from}: {content}");
+        let at = content.find(from).expect("it is there") + from.len();
+        let end = at + content[at..].find([',', '}']).expect("a number ends");
+        let content = format!("{}{to}{}", &content[..at], &content[end..]);
+        let digest = Sha256::digest(content.as_bytes());
+        let check: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
+        format!("{content},\"check\":\"{check}{}", &rest[16..])
+    };
+    text.lines().enumerate().map(lie).map(|line| line + "\n").collect()
+}
+
+#[test]
+fn an_impossible_entry_costs_itself_and_not_those_after_it() {
+    let folder = Studies::new();
+    folder.study("whole", 24, &[]).succeeds();
+    let whole = folder.journal("whole");
+    for (i, (key, lie)) in [
+        ("\"trials\":", "20000000"),
+        ("\"peak_force_n\":", "-50.0"),
+        ("\"slip_mm\":", "-3.0"),
+        ("\"simulated_s\":", "-1e9"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let name = format!("lie-{i}");
+        folder.study(&name, 16, &[]).succeeds();
+        let path = folder.dir(&name).join("journal.jsonl");
+        fs::write(&path, with_lie(&read(&path), 5, key, lie)).expect("the journal is written");
+        let dir = folder.dir(&name);
+        let report = optimize(&["report", dir.to_str().expect("a path in UTF-8")]);
+        report.succeeds();
+        assert!(report.stderr.contains("evaluation 5 is passed over"), "{key}: {}", report.stderr);
+        // What was proposed after it repeats, and the study goes on as it would have.
+        folder.study(&name, 24, &[]).succeeds();
+        let same = |text: &str| -> Vec<String> {
+            let but_it = text.lines().enumerate().filter(|(number, _)| *number != 7);
+            but_it.map(|(_, line)| line.to_owned()).collect()
+        };
+        assert_eq!(same(&folder.journal(&name)), same(&whole), "{key}");
+    }
+}
+
+#[test]
+fn twenty_who_add_measurements_at_once_lose_none() {
+    let folder = Studies::new();
+    let path = folder.dir("bench.csv");
+    let file = path.to_str().expect("a path in UTF-8");
+    let add = |direction: usize, more: &[&str]| {
+        let direction = direction.to_string();
+        let line = ["measure", "add", file, "--task", "usb", "--density", "20"];
+        command(&[&line, &["--direction", &direction, "--range-mm", "5.7"][..], more].concat())
+    };
+    let mut children: Vec<Child> = (0..20)
+        .map(|i| add(i, &[]).stdout(Stdio::null()).spawn().expect("the command starts"))
+        .collect();
+    assert!(children.iter_mut().all(|child| child.wait().expect("it ends").success()));
+    let lines =
+        |file: &str| optimize(&["measure", "check", file, "--json"]).json()["lines"].clone();
+    assert_eq!(lines(file), 20);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{MetadataExt, PermissionsExt};
+        // Mode, links and the file itself stay, also where a column is new.
+        let link = folder.dir("link.csv");
+        fs::hard_link(&path, &link).expect("a second name");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).expect("a mode");
+        let before = fs::metadata(&path).expect("it is there").ino();
+        run(&mut add(30, &["--set", "task.strategy.tilt_deg=8"])).succeeds();
+        let after = fs::metadata(&link).expect("it is there");
+        assert_eq!((after.ino(), after.mode() & 0o777), (before, 0o640));
+        assert_eq!(lines(link.to_str().expect("a path in UTF-8")), 21);
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o440)).expect("a mode");
+        run(&mut add(31, &[])).fails(2, &["bench.csv", "read-only"]);
+        assert_eq!(lines(file), 21);
+    }
+}
+
+#[test]
+fn the_order_of_measured_lines_changes_no_answer() {
+    let folder = Studies::new();
+    let path = folder.dir("bench.csv");
+    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
+    let lines = ["ket8,10,0,7.6\n", "ket8,20.5,0,5.7\n", "ket8,12.5,13,6.4\n"];
+    let asked = |lines: &[&str], command: &str, more: &[&str]| {
+        fs::write(&path, head.to_owned() + &lines.concat()).expect("the file is written");
+        let file = path.to_str().expect("a path in UTF-8");
+        let all =
+            [&[command, "--engine", "fake", "--json", "--measurements", file], &FEW[..], more];
+        optimize(&all.concat()).json()
+    };
+    let turned = [lines[2], lines[0], lines[1]];
+    for (command, more) in [("next", &["--count", "2"][..]), ("calibrate", &[])] {
+        assert_eq!(asked(&lines, command, more), asked(&turned, command, more), "{command}");
+    }
+}
+
+#[test]
+fn files_that_are_too_much_are_refused_at_once() {
+    let folder = Studies::new();
+    let path = folder.dir("bench.csv");
+    let file = path.to_str().expect("a path in UTF-8");
+    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
+    let next = || optimize(&["next", "--task", "ket8", "--measurements", file]);
+    let finger = |i: u32| format!("ket8,{}.{:02},{},5.7\n", 10 + i % 20, i / 20, i % 41);
+    let many: String = (0..201).map(finger).collect();
+    fs::write(&path, head.to_owned() + &many).expect("the file is written");
+    next().fails(2, &["201 different fingers", "at most 200"]);
+    // Sparse: nothing of it is on the disk.
+    fs::File::options().write(true).open(&path).and_then(|f| f.set_len(3 << 30)).expect("a size");
+    let begun = Instant::now();
+    next().fails(2, &["longer than"]);
+    assert!(begun.elapsed() < Duration::from_secs(5));
+    fs::write(&path, "x".repeat(5_000_000)).expect("the file is written");
+    let long = optimize(&["measure", "check", file]);
+    assert_eq!(long.code, Some(2));
+    assert!(long.stderr.len() < 3000, "{} bytes", long.stderr.len());
+}
+
+#[test]
+fn an_export_overwrites_no_neighbour_and_a_task_path_may_have_a_comma() {
+    let folder = Studies::new();
+    let out = folder.dir("part.curaprofile");
+    let neighbour = folder.dir("part-outline.stl");
+    fs::write(&neighbour, "precious").expect("the file is written");
+    let export = |density: &str| {
+        let finger = ["export", "finger", "--density", density, "--direction", "0"];
+        let out = out.to_str().expect("a path in UTF-8");
+        optimize(&[&finger[..], &["--format", "cura", "--out", out]].concat())
+    };
+    export("20").fails(2, &["part-outline.stl", "is there already"]);
+    assert_eq!(read(&neighbour), "precious");
+    fs::remove_file(&neighbour).expect("it is removed");
+    export("20").succeeds();
+    export("20").succeeds();
+    let task = folder.dir("usb,old.toml");
+    fs::write(&task, include_str!("../tasks/usb.toml")).expect("the file is written");
+    let task = task.to_str().expect("a path in UTF-8");
+    folder.study("s", 4, &["--task", task]).succeeds();
+}

@@ -170,12 +170,12 @@
   const player = at("player");
   if (player) {
     at("close").addEventListener("click", () => player.close());
-    // What is pressed in the film is not heard out here.
-    at("film").addEventListener("load", () => {
-      const film = at("film").contentDocument;
-      film?.addEventListener("keydown", (event) => { if (event.key === "Escape") player.close(); });
-      film?.getElementById("play")?.focus();
+    // The film is a document of its own, which can be heard, not looked into.
+    window.addEventListener("message", ({ source, data }) => {
+      if (source !== at("film").contentWindow) return;
+      if (data === "ready") { player.dataset.ready = ""; at("film").focus(); }
+      if (data === "close") player.close();
     });
-    player.addEventListener("close", () => { at("film").srcdoc = ""; });
+    player.addEventListener("close", () => { at("film").srcdoc = ""; delete player.dataset.ready; });
   }
 })();

@@ -88,11 +88,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     // Read only now: others may have added lines meanwhile.
     let unusable = |error| Failure::usage(format!("{file}: cannot add to it: {error}"));
+    let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
     let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
     let new = appended(table.text(), &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;
-    table.replace(&new).map_err(unusable)?;
+    table.replace(&new).map_err(full)?;
     print(&format!("{file}: {}\n", super::lines(&found)))
 }
 

@@ -3,6 +3,7 @@
 pub use super::decompose::{COARSEST, MOST_PARTS};
 use super::decompose::{Decomposed, decompose};
 use super::intrusion::{self, Intrusion};
+use super::reduce::{TOLERANCE, reduced};
 use super::surface::Surface;
 use super::{Fault, MeshError, cut};
 use crate::connector::body::{ConvexBody, clipped, extent};
@@ -20,6 +21,10 @@ const TIP: f64 = 1.0 * MM;
 const LEAST_COVER: f64 = 2.0 * MM;
 /// Margin about the opening and below the seated tip within which intrusion counts, m.
 const ABOUT: f64 = 0.5 * MM;
+/// Faces from which on a mesh is reduced.
+const MANY_FACES: usize = 2000;
+/// Most faces that are cut into convex parts: more take minutes.
+pub const MOST_FACES: usize = 8000;
 /// Largest share of the clearance that intrusion may fill.
 pub const ALLOWED: f64 = 0.1;
 
@@ -102,6 +107,8 @@ pub struct Imported {
 /// # Errors
 /// If a mesh has no convex parts, the socket no opening, or the plug no grasp or strategy.
 pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, MeshError> {
+    let plug = few_faces(plug, request.say)?;
+    let socket = few_faces(socket, request.say)?;
     let turn = request.along.turn();
     let turned = |surface: Surface| surface.moved(&turn, Vector3::zeros());
     let middles = request.like.map_or([[0.0; 2]; 2], middles);
@@ -133,6 +140,22 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     let clearance = clearance(&task);
     let intrusion = intrude(&task, [&plug_surface, &socket_surface]);
     Ok(Imported { exact: [inner.exact, outer.exact], clearance, intrusion, task })
+}
+
+/// The mesh with faces that can be cut, few enough to be cut in seconds.
+fn few_faces(mesh: Mesh, say: &dyn Fn(&str)) -> Result<Mesh, MeshError> {
+    let Mesh { file, surface } = mesh;
+    let before = surface.faces.len();
+    if before <= MANY_FACES {
+        return Ok(Mesh { file, surface });
+    }
+    let surface = reduced(surface);
+    let (after, tolerance) = (surface.faces.len(), TOLERANCE / MM);
+    if after > MOST_FACES {
+        return Err(Fault::Faces(before, after).of(&file));
+    }
+    say(&format!("{file}: {before} faces reduced to {after}, within {tolerance} mm"));
+    Ok(Mesh { file, surface })
 }
 
 /// Smaller play of x and y at the success depth, m.

@@ -6,11 +6,15 @@ pub mod import;
 mod intrusion;
 mod merge;
 mod read;
+mod reduce;
 mod surface;
 
 use super::plan::PlanError;
 use decompose::MOST_PARTS;
+use import::MOST_FACES;
+use input::units::MM;
 pub use read::read;
+use reduce::TOLERANCE;
 pub use surface::Surface;
 
 /// Error of an import.
@@ -70,6 +74,13 @@ pub enum Fault {
         /// Finest resolution that does not take as long.
         finest: u32,
     },
+    /// Number of faces of the file, and of those left within the tolerance of a reduction.
+    #[error(
+        "has {0} faces, and {1} where all within {tolerance} mm is made flat; at most {MOST_FACES} are \
+         taken: leave out threads, text and knurls, or export the mesh more coarsely",
+        tolerance = TOLERANCE / MM
+    )]
+    Faces(usize, usize),
     /// Number of convex hulls, more than the parts a task may have.
     #[error(
         "comes to {0} convex hulls; a task may have {MOST_PARTS}: export the mesh with fewer \

@@ -312,4 +312,10 @@
   // The search is what one has come to see.
   const grasp = films[0].phases.findIndex(([name]) => name === "carry");
   seekTo(grasp >= 0 ? films[0].phases[grasp][1] : 0);
+  // Inside a report.
+  if (window.parent !== window) {
+    window.addEventListener("keydown", (event) => { if (event.key === "Escape") window.parent.postMessage("close", "*"); });
+    window.addEventListener("focus", () => at("play").focus());
+    window.parent.postMessage("ready", "*");
+  }
 })();

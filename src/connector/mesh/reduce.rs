@@ -10,6 +10,8 @@ use std::collections::{BTreeSet, BinaryHeap};
 
 /// Largest distance of the surface from the corners of the file, m.
 pub const TOLERANCE: f64 = 0.01 * MM;
+/// Most faces about a corner that goes: the pole of a fine dome has hundreds.
+const MOST_ABOUT: usize = 64;
 /// Least cosine between the normals of a face before and after.
 const LEAST_COSINE: f64 = 0.5;
 
@@ -63,9 +65,10 @@ impl Collapsing {
     }
 
     fn queue(&self, from: usize, queue: &mut BinaryHeap<Queued>) {
-        let near = self.neighbours(from);
+        let faces = self.about[from].len();
+        let near = if faces > MOST_ABOUT { BTreeSet::new() } else { self.neighbours(from) };
         // A closed fan has as many neighbours as faces; where surfaces touch nothing is changed.
-        if near.len() != self.about[from].len() {
+        if near.len() != faces {
             return;
         }
         let best = near.iter().filter_map(|&to| Some((self.cost(from, to, &near)?, to)));
@@ -77,10 +80,16 @@ impl Collapsing {
         }
     }
 
+    /// Whether two corners have a face in common.
+    fn meet(&self, a: usize, b: usize) -> bool {
+        let [few, other] = if self.about[a].len() < self.about[b].len() { [a, b] } else { [b, a] };
+        self.about[few].iter().any(|&face| self.faces[face].contains(&other))
+    }
+
     /// How far the corner that goes is then from the surface, and those that went before it; `None`
     /// if a face would turn over or the surface would touch itself.
     fn cost(&self, from: usize, to: usize, near: &BTreeSet<usize>) -> Option<f64> {
-        if self.neighbours(to).intersection(near).count() != 2 {
+        if near.iter().filter(|&&other| other != to && self.meet(other, to)).count() != 2 {
             return None;
         }
         let mut distance = f64::INFINITY;

@@ -2,7 +2,6 @@
 
 mod geometry;
 mod solid;
-mod touch;
 
 use super::geometry::Geometry;
 use super::infill::Design;

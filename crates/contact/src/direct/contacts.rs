@@ -151,7 +151,7 @@ impl Solid {
                 return false;
             }
             let local = solids[j].pose.inverse_transform_point(&outside).coords * MILLIMETRES;
-            let distance = solids[j].shape.distance_to_local_point(shapes::vector(&local), true);
+            let distance = solids[j].shape.distance_to_local_point(local.into(), true);
             distance < SEAM * MILLIMETRES
         })
     }
@@ -182,13 +182,13 @@ impl Candidate {
     /// parts the hidden end face of the next one would stop a sliding edge, 0.1 um deep.
     fn drop_covered(&mut self, solids: &[Solid]) {
         let manifold = &mut self.manifold;
-        let outward = [manifold.local_n1, manifold.local_n2].map(shapes::from_vector);
+        let outward = [manifold.local_n1, manifold.local_n2].map(Vector3::from);
         let sides = [&solids[self.pair.first], &solids[self.pair.second]];
         if sides.iter().all(|side| side.neighbours.is_empty()) {
             return;
         }
         manifold.points.retain(|point| {
-            let places = [point.local_p1, point.local_p2].map(shapes::from_vector);
+            let places = [point.local_p1, point.local_p2].map(Vector3::from);
             (0..2).all(|i| !sides[i].covered(&(places[i] / MILLIMETRES), &outward[i], solids))
         });
     }
@@ -197,11 +197,11 @@ impl Candidate {
     fn report(&mut self, geoms: usize, first: &Pose, prediction: f64, found: &mut Vec<Touch>) {
         let limit = prediction * MILLIMETRES;
         self.manifold.points.retain(|point| point.dist <= limit);
-        let axis = shapes::from_vector(self.manifold.local_n1);
+        let axis = Vector3::from(self.manifold.local_n1);
         let normal = first.rotation * axis;
         let middle = |i: usize| {
             let point = &self.manifold.points[i];
-            (shapes::from_vector(point.local_p1) + axis * (0.5 * point.dist)) / MILLIMETRES
+            (Vector3::from(point.local_p1) + axis * (0.5 * point.dist)) / MILLIMETRES
         };
         let add = |i: usize| {
             found.push(Touch {

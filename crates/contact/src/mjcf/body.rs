@@ -3,7 +3,7 @@
 use super::xml::Element;
 use super::{AXES, HEAVY, axis_name, driven_axis_name, geom_names, mesh_name};
 use crate::scene::{
-    Body, BodyId, Geom, Inertia, Joint, JointAxis, Motion, Pose, Scene, Shape, Springs,
+    Body, BodyId, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Spring, Springs,
 };
 use nalgebra::{Point3, Vector3};
 
@@ -96,8 +96,8 @@ fn driven_joints(body: &Body) -> Vec<Element> {
 fn joints(tie: &Joint) -> Vec<Element> {
     // Coupled springs are refused before.
     let Springs::Axes(axes) = &tie.springs else { return Vec::new() };
-    let element = |(i, axis): (usize, &JointAxis)| {
-        let JointAxis::Sprung(spring) = axis else { return None };
+    let element = |(i, axis): (usize, &Option<Spring>)| {
+        let spring = axis.as_ref()?;
         let element = joint(&axis_name(tie, i), &tie.in_child, i);
         // A servo is an actuator.
         if spring.limit.is_finite() {

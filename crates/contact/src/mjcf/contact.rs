@@ -16,7 +16,7 @@
 
 use super::{HEAVY, MjcfSettings, geom_names, xml::Element};
 use crate::scene::{
-    Body, BodyId, ContactPair, Friction, GeomPair, Inertia, Joint, JointAxis, Motion, Pose, Scene,
+    Body, BodyId, ContactPair, Friction, GeomPair, Inertia, Joint, Motion, Pose, Scene, Spring,
     Springs, Torsion,
 };
 use nalgebra::{DMatrix, Matrix3, Point3, Vector3, Vector6};
@@ -79,7 +79,7 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     let alone = 1.0 / inertia.mass;
     let Some(joint) = scene.joints.iter().find(|joint| joint.child == body) else { return alone };
     let Springs::Axes(axes) = &joint.springs else { return alone };
-    let free = axes[..3].iter().filter(|axis| matches!(axis, JointAxis::Sprung(_))).count();
+    let free = axes[..3].iter().flatten().count();
     let loose = !scene.joints.iter().any(|other| other.child == joint.parent);
     match scene.bodies[joint.parent.0].motion {
         Motion::Free(parent) | Motion::Carried(parent) if free < 3 && loose => {
@@ -94,14 +94,14 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
 fn on_free_body(
     scene: &Scene,
     joint: &Joint,
-    axes: &[JointAxis; 6],
+    axes: &[Option<Spring>; 6],
     [parent, child]: [&Inertia; 2],
 ) -> f64 {
     let [above, below] = [joint.parent, joint.child].map(|body| scene.bodies[body.0].pose);
     let at = below * child.centre;
     let frame = above * joint.in_parent;
     // Columns: linear velocity at the child's centre of mass, and angular, of each free axis.
-    let free = (0..6).filter(|&i| matches!(axes[i], JointAxis::Sprung(_)));
+    let free = (0..6).filter(|&i| axes[i].is_some());
     let column = |i: usize| {
         let axis = frame.rotation * Vector3::ith(i % 3, 1.0);
         let arm = at.coords - frame.translation.vector;

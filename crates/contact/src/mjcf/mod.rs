@@ -18,7 +18,7 @@ mod contact;
 mod xml;
 
 use super::lacking;
-use crate::scene::{Body, Joint, JointAxis, Motion, Scene, Spring, Springs};
+use crate::scene::{Body, Joint, Motion, Scene, Spring, Springs};
 use xml::Element;
 
 /// Step and stiffness of the simulation in MuJoCo.
@@ -165,8 +165,7 @@ fn actuator(joint: &str, spring: &Spring, reach: f64) -> Element {
 /// Spring of an axis that is a servo: one with a limit.
 pub(crate) fn servo(joint: &Joint, axis: usize) -> Option<&Spring> {
     let Springs::Axes(axes) = &joint.springs else { return None };
-    let JointAxis::Sprung(spring) = &axes[axis] else { return None };
-    spring.limit.is_finite().then_some(spring)
+    axes[axis].as_ref().filter(|spring| spring.limit.is_finite())
 }
 
 const AXES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];

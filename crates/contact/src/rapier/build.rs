@@ -1,9 +1,9 @@
 //! Bodies, joints and settings of rapier from those of a scene.
 
 use super::Rapier;
-use crate::scene::{Body, BodyId, Joint, JointAxis, Motion, Pose, Scene, Spring, Springs};
+use crate::scene::{Body, BodyId, Joint, Motion, Pose, Scene, Spring, Springs};
 use crate::shapes;
-use nalgebra::{Translation3, UnitQuaternion};
+use nalgebra::UnitQuaternion;
 use rapier3d_f64::math as rm;
 use rapier3d_f64::prelude as rp;
 
@@ -63,7 +63,7 @@ fn insert_body(
         Motion::Fixed | Motion::Mechanism(_) => rp::RigidBodyBuilder::fixed(),
         Motion::Driven => rp::RigidBodyBuilder::kinematic_position_based(),
         Motion::Free(inertia) | Motion::Carried(inertia) => {
-            let [centre, moments] = [&inertia.centre.coords, &inertia.moments].map(shapes::vector);
+            let (centre, moments) = (inertia.centre.coords.into(), inertia.moments.into());
             let properties = rp::MassProperties::new(centre, inertia.mass, moments);
             rp::RigidBodyBuilder::dynamic().additional_mass_properties(properties)
         }
@@ -104,10 +104,10 @@ pub(super) fn generic_joint(joint: &Joint) -> rp::GenericJoint {
     let Springs::Axes(axes) = &joint.springs else { return made };
     for (axis, spring) in JOINT_AXES.into_iter().zip(axes) {
         match spring {
-            JointAxis::Locked => {
+            None => {
                 made.lock_axes(axis.into());
             }
-            JointAxis::Sprung(spring) => set_motor(&mut made, axis, spring),
+            Some(spring) => set_motor(&mut made, axis, spring),
         }
     }
     made
@@ -122,7 +122,6 @@ pub(super) fn set_motor(joint: &mut rp::GenericJoint, axis: rp::JointAxis, sprin
 
 /// Pose from rapier's.
 pub(super) fn from_rapier(pose: &rm::Pose) -> Pose {
-    let (t, q) = (pose.translation, pose.rotation);
-    let quaternion = nalgebra::Quaternion::new(q.w, q.x, q.y, q.z);
-    Pose::from_parts(Translation3::new(t.x, t.y, t.z), UnitQuaternion::new_unchecked(quaternion))
+    let rotation = UnitQuaternion::new_unchecked(pose.rotation.into());
+    Pose::from_parts(pose.translation.into(), rotation)
 }

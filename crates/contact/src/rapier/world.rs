@@ -47,7 +47,7 @@ impl rp::PhysicsHooks for Frictions {
 impl RapierWorld {
     pub fn new(scene: &Scene, settings: &Rapier) -> Self {
         let mut world = rp::PhysicsWorld::new();
-        world.gravity = shapes::vector(&scene.gravity);
+        world.gravity = scene.gravity.into();
         world.integration_parameters = build::parameters(settings);
         let bodies = build::insert_bodies(&mut world, scene);
         let mut insert = |joint: &Joint| {
@@ -94,8 +94,8 @@ impl World for RapierWorld {
         // rapier adds up what it is given until told to forget it.
         body.reset_forces(true);
         body.reset_torques(true);
-        body.add_force(shapes::vector(&force), true);
-        body.add_torque(shapes::vector(&moment), true);
+        body.add_force(force.into(), true);
+        body.add_torque(moment.into(), true);
     }
 
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
@@ -147,12 +147,12 @@ fn add_pair(
             solved.map(|contact| &manifold.points[contact.contact_indices()[0] as usize].data)
         };
         let pressed = active().map(|point| point.impulse).sum::<f64>() / parameters.dt;
-        sum.net += shapes::from_vector(manifold.data.normal) * (sign * pressed);
+        sum.net += Vector3::from(manifold.data.normal) * (sign * pressed);
         sum.normal_sum += pressed;
         // `Simplified` friction is one force for the whole manifold, repeated at each active point:
         // the impulse of the last substep alone, in the world's axes, on the first body.
         let Some(point) = active().next() else { continue };
-        let rubbed = shapes::from_vector(point.warmstart_tangent_world);
+        let rubbed = Vector3::from(point.warmstart_tangent_world);
         let substep = parameters.dt / parameters.num_solver_iterations as f64;
         sum.net -= rubbed * (sign / substep);
     }

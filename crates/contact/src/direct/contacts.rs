@@ -231,10 +231,5 @@ impl Candidate {
 
 /// First index below `count` with the largest value.
 fn best(count: usize, value: impl Fn(usize) -> f64) -> usize {
-    let start = (0, f64::NEG_INFINITY);
-    let keep = |best: (usize, f64), i: usize| {
-        let now = value(i);
-        if now > best.1 { (i, now) } else { best }
-    };
-    (0..count).fold(start, keep).0
+    (1..count).fold(0, |best, i| if value(i) > value(best) { i } else { best })
 }

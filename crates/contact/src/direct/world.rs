@@ -3,7 +3,7 @@
 use super::Direct;
 use super::blocks::{Blocks, Vector6};
 use super::body::{Kind, MovingBody};
-use super::cone::{Compliance, Cone};
+use super::cone::Cone;
 use super::contacts::{Detector, Touch};
 use super::joints::SprungJoint;
 use super::patch::Patch;
@@ -77,21 +77,20 @@ impl DirectWorld {
         // Force at the end of the step: k gap + c rate; `share` is that of the gap at its start.
         let spring = self.settings.contact_stiffness * step;
         let share = spring / (spring + self.settings.contact_damping);
-        let compliance = Compliance {
-            normal: share / (spring * step),
-            tangent: 1.0 / (self.settings.stick_damping * step),
-        };
+        let normal = share / (spring * step);
+        let tangent = 1.0 / (self.settings.stick_damping * step);
         self.press(None);
         for touch in &self.touches {
             let pair = &self.pairs[touch.pair];
             let ends = [&self.bodies[pair.first.0], &self.bodies[pair.second.0]];
             let place = ends.map(|body| body.place().map(|place| place - self.eliminated));
             let arm = ends.map(|body| touch.point - body.centre);
-            let cone = Cone { mu: touch.friction.coefficient, compliance };
+            let cone = Cone { mu: touch.friction.coefficient, normal, tangent };
             let lever = match touch.friction.torsion {
                 Torsion::Radius(radius) => arm.map(|arm| lever(&arm, &(touch.normal * radius))),
                 Torsion::Patch => {
-                    let aside = self.aside(touch, ends[0]);
+                    let aside = |p: &Patch| p.aside(&ends[0].pose, &touch.point, &touch.normal);
+                    let aside = self.patches[touch.geoms].as_ref().map_or(Vector3::zeros(), aside);
                     let at_point = arm.map(|arm| lever(&arm, &Vector3::zeros()));
                     at_point.map(|lever| moved_aside(&lever, &aside, &touch.normal))
                 }
@@ -108,12 +107,6 @@ impl DirectWorld {
             let (normal, rest) = (touch.normal.push(0.0), Contact::default());
             self.contacts.push(Contact { place, lever, normal, drift, bias, cone, ..rest });
         }
-    }
-
-    /// Distance from a point of a patch to where its friction acts, m; `first` is the first body.
-    fn aside(&self, touch: &Touch, first: &MovingBody) -> Vector3<f64> {
-        let aside = |patch: &Patch| patch.aside(&first.pose, &touch.point, &touch.normal);
-        self.patches[touch.geoms].as_ref().map_or(Vector3::zeros(), aside)
     }
 
     /// Sets the patches as these contacts load them; without contacts the new ones, evenly.

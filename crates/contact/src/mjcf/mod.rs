@@ -129,9 +129,8 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         contact::pairs(scene, settings),
         actuators(scene),
     ]);
-    let mut text = "<!-- Lengths in m, masses in kg, forces in N, angles in rad. -->\n".to_owned();
-    model.write(0, &mut text);
-    Ok(text)
+    let units = "<!-- Lengths in m, masses in kg, forces in N, angles in rad. -->\n";
+    Ok(units.to_owned() + &model.text(0))
 }
 
 /// Actuators of the driven bodies and of the servos.
@@ -140,15 +139,12 @@ fn actuators(scene: &Scene) -> Element {
     let stiffness = HEAVY * VIEWER_FREQUENCY * VIEWER_FREQUENCY;
     let damping = 2.0 * HEAVY * VIEWER_FREQUENCY;
     let follows = Spring::new(stiffness, damping);
-    let command = |(body, axis)| {
-        // As far as the sliders of a viewer reach: 0.1 m, 0.5 rad.
-        actuator(&driven_axis_name(body, axis), &follows, if axis < 3 { 0.1 } else { 0.5 })
-    };
-    let commands = driven.flat_map(|body| (0..6).map(move |axis| (body, axis))).map(command);
-    let axes = scene.joints.iter().flat_map(|joint| (0..6).map(move |axis| (joint, axis)));
-    let servos = axes.filter_map(|(joint, axis)| {
-        Some(actuator(&axis_name(joint, axis), servo(joint, axis)?, 0.02))
-    });
+    // As far as the sliders of a viewer reach: 0.1 m, 0.5 rad.
+    let command =
+        |body, i| actuator(&driven_axis_name(body, i), &follows, if i < 3 { 0.1 } else { 0.5 });
+    let commands = driven.flat_map(|body| (0..6).map(move |axis| command(body, axis)));
+    let servo = |joint, i| Some(actuator(&axis_name(joint, i), servo(joint, i)?, 0.02));
+    let servos = scene.joints.iter().flat_map(|joint| (0..6).filter_map(move |i| servo(joint, i)));
     Element::new("actuator").holding(commands).holding(servos)
 }
 
@@ -186,9 +182,9 @@ pub fn geom_names(scene: &Scene) -> Vec<Vec<String>> {
         let mut names: Vec<String> = Vec::new();
         for geom in &body.geoms {
             let name = format!("{}: {}", body.name, geom.name);
-            let unique = (1..).map(|n| if n == 1 { name.clone() } else { format!("{name} {n}") });
-            let free = unique.into_iter().find(|name| !names.contains(name));
-            names.extend(free);
+            let unique = (2..).map(|n| format!("{name} {n}"));
+            let mut unique = std::iter::once(name.clone()).chain(unique);
+            names.extend(unique.find(|name| !names.contains(name)));
         }
         names
     };

@@ -10,6 +10,7 @@
 use super::frontal::Frontal;
 use super::halving::halve;
 use super::mesh::{Mesh, MeshError};
+use crate::printed::Outline;
 use nalgebra::{DMatrix, DVector, Point2};
 use std::ops::Range;
 
@@ -22,6 +23,9 @@ pub trait Element {
     const FREEDOMS: usize;
     /// Lower half of a triangle's stiffness matrix, square, row by row, by its six nodes' freedoms.
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64>;
+    /// Rows, one for each degree of freedom, of a node at a distance along y and z from the pad's
+    /// middle, m: its displacement by the three motions of a rigid pad.
+    fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
 }
 
 /// Part of a node in the condensation.

@@ -36,22 +36,18 @@ impl Fit<'_> {
         self.below("base.solid_mm", solid, length, "the base is a part of the finger")?;
         let in_base = "what is clamped is solid";
         self.below("base.clamped_mm", clamped, solid * (1.0 + 1e-9), in_base)?;
+        let (radius, rise, ribbed) = (back_radius / MM, (width - tip) / MM, length - solid);
         let Some(centre) = outline.arc_centre() else {
             let problem = format!(
-                "is {:.3}; it must be above {:.3}: the arc leads from the tip to the back",
-                back_radius / MM,
-                (width - tip) / MM
+                "is {radius:.3}; it must be above {rise:.3}: the arc leads from the tip to the back"
             );
             return self.fail("outline.back_radius_mm", problem);
         };
-        let ribbed = length - solid;
         if centre.x >= ribbed {
+            let (end, base) = (centre.x / MM, ribbed / MM);
             let problem = format!(
-                "is {:.3}; the arc would end at X = {:.3}, in the solid base that begins at \
-                 {:.3}: a smaller radius, or a longer finger",
-                back_radius / MM,
-                centre.x / MM,
-                ribbed / MM
+                "is {radius:.3}; the arc would end at X = {end:.3}, in the solid base that begins \
+                 at {base:.3}: a smaller radius, or a longer finger"
             );
             return self.fail("outline.back_radius_mm", problem);
         }
@@ -66,14 +62,12 @@ impl Fit<'_> {
     pub fn ribs(&self, pitch: f64) -> Checked {
         let PrintedFinger { ribs, line_width, smallest_gap, skin, .. } = self.finger;
         let Design { density_percent, direction_deg, phase_mm } = *self.design;
-        if !(density_percent > 0.0 && density_percent < 100.0) {
-            let problem = format!("is {density_percent}; it must be above 0 and below 100");
-            return self.fail("infill_density_percent", problem);
-        }
-        if !(-80.0..=80.0).contains(&direction_deg) {
-            let problem = format!("is {direction_deg}; it must be from -80 to 80 (degrees)");
-            return self.fail("infill_direction_deg", problem);
-        }
+        let check = Check { file: &self.finger.file };
+        let (key, fits) =
+            ("infill_density_percent", density_percent > 0.0 && density_percent < 100.0);
+        check.require(key, density_percent, fits, "be above 0 and below 100")?;
+        let (key, fits) = ("infill_direction_deg", (-80.0..=80.0).contains(&direction_deg));
+        check.require(key, direction_deg, fits, "be from -80 to 80 (degrees)")?;
         if !phase_mm.is_none_or(f64::is_finite) {
             return self.fail("phase_mm", "must be a finite number");
         }

@@ -9,10 +9,10 @@ use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
 use super::infill::{Design, RibLines};
 use super::mesh::MeshError;
-use super::meshed::{Body, Follow, held};
+use super::meshed::{Body, held};
 use super::plate::MindlinPlate;
 use super::stiffness::{CrossStiffness, PlanarStiffness};
-use crate::printed::{Outline, PrintedFinger};
+use crate::printed::PrintedFinger;
 use input::units::{MM, N_PER_MM};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -137,24 +137,5 @@ impl Known {
             known.insert(key, stiffness);
         }
         Ok(stiffness)
-    }
-}
-
-impl Follow for PlaneStress {
-    /// The body moves along y and z and turns about x = y x z.
-    fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
-        let (y, z) = (outline.out_of_pad(), outline.along_pad());
-        let turn = z * at_y - y * at_z;
-        (0..2).map(|d| [y[d], z[d], turn[d]]).collect()
-    }
-}
-
-impl Follow for MindlinPlate {
-    /// The body moves along x and turns about y and z. The plate's own deflection is along
-    /// -x: its axes X, Y turn the other way than y, z.
-    fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
-        let (y, z) = (outline.out_of_pad(), outline.along_pad());
-        // u_x = ry z - rz y
-        vec![[-1.0, -at_z, at_y], [0.0, y.x, z.x], [0.0, y.y, z.y]]
     }
 }

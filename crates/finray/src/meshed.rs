@@ -31,13 +31,6 @@ pub enum Body {
     PadAndRoof,
 }
 
-/// Motion of a node with a rigid body.
-pub trait Follow: Element {
-    /// Rows, one for each degree of freedom, of a node at a distance along y and z from the
-    /// body's origin, m: its displacement by the body's three motions.
-    fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
-}
-
 impl MeshedFinger {
     /// Mesh with triangles of sides of about `size`, m.
     ///
@@ -78,7 +71,7 @@ impl MeshedFinger {
     ///
     /// # Errors
     /// If a part of the finger is held by nothing.
-    pub fn hold<E: Follow>(
+    pub fn hold<E: Element>(
         &self,
         condensed: &Condensed,
         element: &E,
@@ -112,7 +105,7 @@ impl MeshedFinger {
 ///
 /// # Errors
 /// If the profile cannot be meshed, or a part of it is held by nothing.
-pub fn held<E: Follow, const N: usize>(
+pub fn held<E: Element, const N: usize>(
     geometry: &Geometry,
     element: &E,
     size: f64,

@@ -75,7 +75,7 @@ impl Bent {
         let condensed = condense(&meshed.mesh, &element, &meshed.roles, true)?;
         let held = meshed.hold(&condensed, &element, Body::Pad)?;
         let stiffness = PlanarStiffness::new(held.stiffness).ok_or(MeshError::Limp)?;
-        let motion = stiffness.displacement(&Vector3::new(y, z, 0.0));
+        let motion = stiffness.compliance * Vector3::new(y, z, 0.0);
         let displacements = condensed.expand(&held.kept(&motion));
         let largest = displacements.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
         let exaggeration = round(LONGEST * MM / largest);

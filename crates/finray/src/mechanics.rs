@@ -72,7 +72,12 @@ pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], Fi
     let pad = stiffness(held[0])?;
     let compliance = pad.in_compliance() / N_PER_MM;
     if !PLAUSIBLE.contains(&compliance) {
-        return Err(FingerError::Units { file: geometry.finger.file.clone(), compliance });
+        let problem = format!(
+            "the units look wrong: the compliance stiffness comes out as {compliance:.3e} N/mm, a \
+             finger has 0.05 to 100; check that lengths are in mm and material.modulus_gpa in GPa \
+             (PETG has 2)"
+        );
+        return Err(FingerError::Unfit { file: geometry.finger.file.clone(), problem });
     }
     Ok([pad, stiffness(held[1])?])
 }

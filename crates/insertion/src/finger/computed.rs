@@ -131,14 +131,14 @@ impl Computed<'_> {
         lever: f64,
         tilting: f64,
     ) -> Result<f64, FingerError> {
-        Err(FingerError::Springs {
-            file: self.printed.file.clone(),
-            axis,
-            at_pad: stiffness / N_PER_MM,
-            lever: lever / MM,
-            tilting,
-            turning: tilting / (lever * lever) / N_PER_MM,
-        })
+        let (at_pad, turning) = (stiffness / N_PER_MM, tilting / (lever * lever) / N_PER_MM);
+        let problem = format!(
+            "a finger of {at_pad:.2} N/mm in {axis} at its pad cannot turn about a centre {:.1} mm \
+             beside it at {tilting:.2} N m/rad: that alone gives way at {turning:.2} N/mm; bring \
+             finger.rcc_mm nearer to the pad, or use --finger-model paper",
+            lever / MM
+        );
+        Err(FingerError::Unfit { file: self.printed.file.clone(), problem })
     }
 }
 

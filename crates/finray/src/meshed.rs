@@ -6,7 +6,7 @@ use super::mesh::{Mesh, MeshError};
 use super::polygon::{Ring, edges};
 use crate::printed::Outline;
 use input::units::MM;
-use nalgebra::{DMatrix, DVector, Matrix3, Point2, Vector3};
+use nalgebra::{DMatrix, Matrix3, Point2};
 
 /// Distance within which a node lies on a line, m.
 const ON: f64 = 1e-6 * MM;
@@ -125,7 +125,7 @@ pub struct Held {
     /// Forces and moments on the body by its motions.
     pub stiffness: Matrix3<f64>,
     /// Displacements of the kept nodes by the body's motions.
-    follow: DMatrix<f64>,
+    pub follow: DMatrix<f64>,
 }
 
 impl Held {
@@ -139,15 +139,9 @@ impl Held {
         let among = stiffness.view((3, 3), (free, free)).into_owned();
         let answer = -among.cholesky().ok_or(MeshError::Loose)?.solve(&mixed);
         let condensed = own + mixed.transpose() * &answer;
-        let motion =
+        let follow =
             follow.columns(0, 3).into_owned() + follow.columns(3, free).into_owned() * answer;
-        let stiffness = condensed.fixed_view::<3, 3>(0, 0).into_owned();
-        Ok(Held { stiffness, follow: motion })
-    }
-
-    /// Displacements of the kept nodes under a motion of the body.
-    pub fn kept(&self, motion: &Vector3<f64>) -> DVector<f64> {
-        &self.follow * motion
+        Ok(Held { stiffness: condensed.fixed_view::<3, 3>(0, 0).into_owned(), follow })
     }
 }
 

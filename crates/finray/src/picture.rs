@@ -76,7 +76,7 @@ impl Bent {
         let held = meshed.hold(&condensed, &element, Body::Pad)?;
         let stiffness = PlanarStiffness::new(held.stiffness).ok_or(MeshError::Limp)?;
         let motion = stiffness.compliance * Vector3::new(y, z, 0.0);
-        let displacements = condensed.expand(&held.kept(&motion));
+        let displacements = condensed.expand(&(&held.follow * motion));
         let largest = displacements.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
         let exaggeration = round(LONGEST * MM / largest);
         Ok(Bent { meshed, displacements, exaggeration, motion })

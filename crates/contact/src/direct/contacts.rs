@@ -55,7 +55,7 @@ struct Solid {
 
 /// Pair of shapes that may touch.
 #[derive(Clone)]
-struct Candidate {
+pub(super) struct Candidate {
     pair: GeomPair,
     manifold: ContactManifold<(), ()>,
 }
@@ -64,7 +64,8 @@ struct Candidate {
 #[derive(Clone)]
 pub(super) struct Detector {
     solids: Vec<Solid>,
-    candidates: Vec<Candidate>,
+    /// Pairs of geoms.
+    pub candidates: Vec<Candidate>,
     prediction: f64,
 }
 
@@ -75,9 +76,6 @@ impl Detector {
         for (index, body) in scene.bodies.iter().enumerate() {
             solids.extend(body.geoms.iter().map(|geom| Solid::new(index, geom)));
         }
-        for solid in &mut solids {
-            solid.enclose(&Pose::identity());
-        }
         for i in 0..solids.len() {
             let (own, all) = (&solids[i], 0..solids.len());
             let near =
@@ -87,11 +85,6 @@ impl Detector {
         let candidate = |pair: GeomPair| Candidate { pair, manifold: ContactManifold::new() };
         let candidates = scene.geom_pairs().into_iter().map(candidate).collect();
         Detector { solids, candidates, prediction }
-    }
-
-    /// Number of pairs of geoms.
-    pub fn pairs(&self) -> usize {
-        self.candidates.len()
     }
 
     /// Finds the contacts at the bodies' poses.
@@ -119,7 +112,7 @@ impl Solid {
     fn new(body: usize, geom: &Geom) -> Self {
         let (shape, turn) = shapes::shared(&geom.shape, MILLIMETRES);
         let (centre, half) = shapes::bounds(&geom.shape);
-        Solid {
+        let mut solid = Solid {
             body,
             shape,
             pose: geom.pose * turn,
@@ -128,7 +121,9 @@ impl Solid {
             low: Vector3::zeros(),
             high: Vector3::zeros(),
             neighbours: Vec::new(),
-        }
+        };
+        solid.enclose(&Pose::identity());
+        solid
     }
 
     fn enclose(&mut self, body: &Pose) {
@@ -163,7 +158,8 @@ impl Candidate {
         // With points left in it parry would only move them along.
         self.manifold.points.clear();
         let relative = shapes::pose(&first.inv_mul(second), MILLIMETRES);
-        let result = DefaultQueryDispatcher.contact_manifold_convex_convex(
+        // No error is reached: every shape that a scene can hold is convex.
+        let _ = DefaultQueryDispatcher.contact_manifold_convex_convex(
             &relative,
             &*solids.0.shape,
             &*solids.1.shape,
@@ -172,10 +168,6 @@ impl Candidate {
             prediction * MILLIMETRES,
             &mut self.manifold,
         );
-        if result.is_err() {
-            // Not reached: every shape that a scene can hold is convex.
-            self.manifold.points.clear();
-        }
     }
 
     /// Drops the points on faces that another shape of the same body covers: at a seam of flush

@@ -56,7 +56,10 @@ impl DirectWorld {
             joints: scene.joints.iter().map(SprungJoint::new).collect(),
             pairs: scene.contacts.clone(),
             forces: vec![ContactForce::default(); scene.contacts.len()],
-            patches: vec![None; if scene.patched().is_some() { detector.pairs() } else { 0 }],
+            patches: vec![
+                None;
+                if scene.patched().is_some() { detector.candidates.len() } else { 0 }
+            ],
             detector,
             system: Blocks::new(size, eliminated, &coupled),
             values: vec![Vector6::zeros(); size],

@@ -118,7 +118,7 @@ impl ContactPair {
 }
 
 /// Mass properties of a body about its centre of mass, along the body axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inertia {
     /// Mass, kg.
     pub mass: f64,

@@ -5,7 +5,7 @@ use super::fit::Fit;
 use super::infill::{Design, NARROWEST_VOID, RibLines};
 use super::outline::ring;
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
-use crate::printed::{Outline, PrintedFinger};
+use crate::printed::PrintedFinger;
 use input::units::MM;
 
 /// Checked profile of a finger, SI units: X from the tip to the base, Y across, 0 on the front side.
@@ -62,12 +62,6 @@ impl Geometry {
     /// Mass of the printed finger, kg.
     pub fn mass(&self) -> f64 {
         self.area() * self.finger.outline.depth * self.finger.material.density
-    }
-
-    /// Outline of the part that the gripper leaves free: it ends at the clamp.
-    pub(super) fn free_ring(&self) -> Ring {
-        let Outline { length, clamped, .. } = self.finger.outline;
-        ring(&self.finger.outline, 0.0, length - clamped)
     }
 }
 

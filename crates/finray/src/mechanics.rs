@@ -37,10 +37,6 @@ pub struct FingerStiffness {
     pub pad_and_roof: PlanarStiffness,
     /// Across the plane, the part touching the pad.
     pub cross: CrossStiffness,
-    /// Solid area of the profile, m2.
-    pub area: f64,
-    /// Mass of the whole finger, kg.
-    pub mass: f64,
 }
 
 /// Stiffness of a finger.
@@ -50,13 +46,7 @@ pub struct FingerStiffness {
 /// finger, as when a length or the modulus is in other units than its key says.
 pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
     let [pad, pad_and_roof] = planar(geometry, SIZE)?;
-    Ok(FingerStiffness {
-        pad,
-        pad_and_roof,
-        cross: cross(geometry, CROSS_SIZE)?,
-        area: geometry.area(),
-        mass: geometry.mass(),
-    })
+    Ok(FingerStiffness { pad, pad_and_roof, cross: cross(geometry, CROSS_SIZE)? })
 }
 
 /// Stiffness in the plane, of the part touching the pad alone, then of it touching pad and

@@ -3,6 +3,7 @@
 use super::condense::{Condensed, Element, Role, condense};
 use super::geometry::Geometry;
 use super::mesh::{Mesh, MeshError};
+use super::outline::ring;
 use super::polygon::{Ring, edges};
 use crate::printed::Outline;
 use input::units::MM;
@@ -40,10 +41,10 @@ impl MeshedFinger {
         let outline = geometry.finger.outline;
         let roof_end = outline.corner() + outline.out_of_pad() * outline.roof;
         let ends = [outline.tip_point(), outline.corner(), roof_end];
-        let ring = graded(&geometry.free_ring(), &ends, size);
+        let clamp = outline.length - outline.clamped;
+        let ring = graded(&ring(&outline, 0.0, clamp), &ends, size);
         let mesh = Mesh::new(&ring, &geometry.voids, size)?;
         let mut meshed = MeshedFinger { mesh, outline, roles: Vec::new() };
-        let clamp = outline.length - outline.clamped;
         let role = |p: &Point2<f64>| match () {
             () if p.x > clamp - ON => Role::Fixed,
             () if meshed.holds(Body::PadAndRoof, p) => Role::Kept,

@@ -40,10 +40,10 @@ impl MovingBody {
     /// Body at rest; `place` is its place in the system if it is dynamic.
     pub fn new(body: &Body, place: usize) -> Self {
         let (kind, inertia) = match body.motion {
-            Motion::Fixed => (Kind::Fixed, MASSLESS),
-            Motion::Driven => (Kind::Driven(body.pose), MASSLESS),
+            Motion::Fixed => (Kind::Fixed, Inertia::default()),
+            Motion::Driven => (Kind::Driven(body.pose), Inertia::default()),
             Motion::Free(inertia) | Motion::Carried(inertia) => (Kind::Dynamic(place), inertia),
-            Motion::Mechanism(_) => (Kind::Dynamic(place), MASSLESS),
+            Motion::Mechanism(_) => (Kind::Dynamic(place), Inertia::default()),
         };
         let mut made = MovingBody {
             kind,
@@ -138,6 +138,3 @@ impl MovingBody {
         self.tensor = axes * Matrix3::from_diagonal(&self.inertia.moments) * axes.transpose();
     }
 }
-
-const MASSLESS: Inertia =
-    Inertia { mass: 0.0, centre: Point3::new(0.0, 0.0, 0.0), moments: Vector3::new(0.0, 0.0, 0.0) };

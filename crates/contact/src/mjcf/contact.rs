@@ -32,9 +32,18 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
     let pair = |pair: GeomPair| {
         let ContactPair { first, second, .. } = scene.contacts[pair.bodies];
         let weight = inverse_weight(scene, first) + inverse_weight(scene, second);
+        let share = settings.contact_mass * weight;
+        let impedance = (share / (1.0 + share)).clamp(IMPEDANCES[0], IMPEDANCES[1]);
+        // MuJoCo divides both by the impedance.
+        let scale = impedance / settings.contact_mass;
+        let solref = [settings.contact_stiffness, settings.contact_damping].map(|by| -by * scale);
+        // Friction knows no gap; its stiffness only has to be negative, too.
+        let friction = [solref[0], -settings.friction_rate * impedance];
         let element = Element::new("pair").with("geom1", &names[pair.first]);
-        let element = element.with("geom2", &names[pair.second]);
-        soft(rough(element, pair.friction), weight, settings)
+        rough(element.with("geom2", &names[pair.second]), pair.friction)
+            .numbers("solref", solref)
+            .numbers("solreffriction", friction)
+            .numbers("solimp", [impedance, impedance, WIDTH])
     };
     Element::new("contact").holding(scene.geom_pairs().into_iter().map(pair))
 }
@@ -51,20 +60,6 @@ fn rough(pair: Element, Friction { coefficient, torsion }: Friction) -> Element 
             .numbers("friction", [coefficient, coefficient, coefficient * radius]),
         _ => pair.with("condim", 3).numbers("friction", [coefficient; 2]),
     }
-}
-
-/// Adds stiffness and damping of two geoms of bodies of this inverse mass, 1/kg.
-fn soft(pair: Element, weight: f64, settings: &MjcfSettings) -> Element {
-    let share = settings.contact_mass * weight;
-    let impedance = (share / (1.0 + share)).clamp(IMPEDANCES[0], IMPEDANCES[1]);
-    // MuJoCo divides both by the impedance.
-    let scale = impedance / settings.contact_mass;
-    let solref = [settings.contact_stiffness, settings.contact_damping].map(|by| -by * scale);
-    // Friction knows no gap; its stiffness only has to be negative, too.
-    let friction = [solref[0], -settings.friction_rate * impedance];
-    pair.numbers("solref", solref)
-        .numbers("solreffriction", friction)
-        .numbers("solimp", [impedance, impedance, WIDTH])
 }
 
 /// Inverse mass that MuJoCo gives a body, 1/kg: the mean over the three axes of the inverse mass at

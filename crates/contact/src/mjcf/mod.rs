@@ -18,6 +18,7 @@ mod contact;
 mod xml;
 
 use super::lacking;
+use crate::direct::Direct;
 use crate::scene::{Body, Joint, Motion, Scene, Spring, Springs};
 use xml::Element;
 
@@ -46,11 +47,12 @@ pub struct MjcfSettings {
 
 impl Default for MjcfSettings {
     fn default() -> Self {
+        let Direct { contact_stiffness, contact_damping, stick_damping, .. } = Direct::default();
         MjcfSettings {
             step_s: 5e-5,
-            contact_stiffness: 5.5e5,
-            contact_damping: 1500.0,
-            stick_damping: 2e6,
+            contact_stiffness,
+            contact_damping,
+            stick_damping,
             contact_mass: 0.1,
             friction_rate: 3000.0,
             tolerance: 1e-10,

@@ -185,7 +185,7 @@ mod tests {
         let plane = PlanarStiffness::new(to_centre.transpose() * springs * to_centre).unwrap();
         let across = Matrix3::new(6e4, -600.0, -200.0, -600.0, 9.0, 1.0, -200.0, 1.0, 5.0);
         let cross = CrossStiffness::new(across).unwrap();
-        FingerStiffness { pad: plane, pad_and_roof: plane, cross, area: 1e-4, mass: 5e-3 }
+        FingerStiffness { pad: plane, pad_and_roof: plane, cross }
     }
 
     fn finger(at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {

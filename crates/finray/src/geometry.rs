@@ -1,12 +1,12 @@
 //! The solid profile of a printed finger: outline, skin and ribs, checked.
 
 use super::FingerError;
-use super::fit::Fit;
 use super::infill::{Design, NARROWEST_VOID, RibLines};
 use super::outline::ring;
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
-use crate::printed::PrintedFinger;
-use input::units::MM;
+use crate::printed::{Outline, PrintedFinger};
+use input::units::{MM, PERCENT};
+use input::{Check, InputError};
 
 /// Checked profile of a finger, SI units: X from the tip to the base, Y across, 0 on the front side.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,13 +35,13 @@ impl Geometry {
     /// If its parts do not fit one another; the message names file and key.
     pub fn new(finger: &PrintedFinger, design: &Design) -> Result<Self, FingerError> {
         let lines = RibLines::new(finger, design);
-        let check = Fit { finger, design };
-        check.outline()?;
-        check.ribs(lines.pitch)?;
+        let check = Check { file: &finger.file };
+        check_outline(check, &finger.outline)?;
+        check_ribs(check, finger, design, lines.pitch)?;
         let outer = without_repeats(&ring(&finger.outline, 0.0, finger.outline.length), 1e-9);
         let ribbed = finger.outline.length - finger.outline.solid;
         let inside = ring(&finger.outline, finger.skin, ribbed);
-        check.rings(&outer, &inside)?;
+        check_rings(check, finger, &outer, &inside)?;
         let gaps = gaps(&inside, finger, &lines);
         let ribs = gaps.windows(2).filter(|pair| pair[1].0 == pair[0].0 + 1).count();
         let voids = gaps.into_iter().flat_map(|(_, voids)| voids).collect();
@@ -79,4 +79,101 @@ fn gaps(inside: &Ring, finger: &PrintedFinger, lines: &RibLines) -> Vec<(i64, Ve
         (n, voids)
     };
     lines.range(inside).map(gap).filter(|(_, voids)| !voids.is_empty()).collect()
+}
+
+type Checked = Result<(), InputError>;
+
+/// Refuses a value of the key, m, that is not below a limit.
+fn below(check: Check<'_>, key: &str, value: f64, limit: f64, because: &str) -> Checked {
+    if value < limit {
+        return Ok(());
+    }
+    let (value, limit) = (value / MM, limit / MM);
+    check.fail(key, format!("is {value:.3}; it must be below {limit:.3}: {because}"))
+}
+
+/// Checks that tip, arc, notch and base fit into the outline.
+fn check_outline(check: Check<'_>, outline: &Outline) -> Checked {
+    let Outline { length, width, tip, back_radius, pad, roof, solid, clamped, .. } = *outline;
+    below(check, "outline.tip_mm", tip, width, "the tip lies in front of the back")?;
+    below(check, "base.solid_mm", solid, length, "the base is a part of the finger")?;
+    let in_base = "what is clamped is solid";
+    below(check, "base.clamped_mm", clamped, solid * (1.0 + 1e-9), in_base)?;
+    let (radius, rise, ribbed) = (back_radius / MM, (width - tip) / MM, length - solid);
+    let Some(centre) = outline.arc_centre() else {
+        let problem = format!(
+            "is {radius:.3}; it must be above {rise:.3}: the arc leads from the tip to the back"
+        );
+        return check.fail("outline.back_radius_mm", problem);
+    };
+    if centre.x >= ribbed {
+        let (end, base) = (centre.x / MM, ribbed / MM);
+        let problem = format!(
+            "is {radius:.3}; the arc would end at X = {end:.3}, in the solid base that begins \
+             at {base:.3}: a smaller radius, or a longer finger"
+        );
+        return check.fail("outline.back_radius_mm", problem);
+    }
+    let to_side = tip / outline.pad_angle.sin();
+    below(check, "notch.pad_mm", pad, to_side, "the pad ends behind the front")?;
+    let to_base = ribbed / outline.pad_angle.cos();
+    below(check, "notch.pad_mm", pad, to_base, "the notch ends before the solid base")?;
+    below(check, "notch.roof_mm", roof, outline.roof_length(), "the roof is no longer")
+}
+
+/// Checks that ribs at this pitch, m, can be printed and leave room between them.
+fn check_ribs(check: Check<'_>, finger: &PrintedFinger, design: &Design, pitch: f64) -> Checked {
+    let PrintedFinger { ribs, line_width, smallest_gap, skin, .. } = finger;
+    let Design { density_percent, direction_deg, phase_mm } = *design;
+    let (key, fits) = ("infill_density_percent", density_percent > 0.0 && density_percent < 100.0);
+    check.require(key, density_percent, fits, "be above 0 and below 100")?;
+    let (key, fits) = ("infill_direction_deg", (-80.0..=80.0).contains(&direction_deg));
+    check.require(key, direction_deg, fits, "be from -80 to 80 (degrees)")?;
+    if !phase_mm.is_none_or(f64::is_finite) {
+        return check.fail("phase_mm", "must be a finite number");
+    }
+    let gap = smallest_gap.max(NARROWEST_VOID);
+    if pitch - ribs.thickness < gap {
+        let most = ribs.line_spacing / (ribs.thickness + gap) / PERCENT;
+        let problem = format!(
+            "is {:.3}; at {density_percent} % infill the ribs lie {:.3} mm apart and merge, \
+             their gaps below print.smallest_gap_mm = {:.3}: thinner ribs, or a density of at \
+             most {most:.1} %",
+            ribs.thickness / MM,
+            pitch / MM,
+            gap / MM,
+        );
+        return check.fail("ribs.thickness_mm", problem);
+    }
+    let walls = [("ribs.thickness_mm", ribs.thickness), ("skin.thickness_mm", *skin)];
+    let Some((key, thickness)) = walls.into_iter().find(|(_, t)| *t < 0.5 * line_width) else {
+        return Ok(());
+    };
+    let problem = format!(
+        "is {:.3}; a line of print.line_width_mm = {:.3} does not print thinner than half of it",
+        thickness / MM,
+        line_width / MM
+    );
+    check.fail(key, problem)
+}
+
+/// Checks that outline and inside are simple rings.
+fn check_rings(check: Check<'_>, finger: &PrintedFinger, outer: &Ring, inside: &Ring) -> Checked {
+    if polygon::crosses_itself(outer) || polygon::area(outer) <= 0.0 {
+        let problem = "its sides cross one another; check outline.length_mm, \
+                       outline.width_mm, outline.tip_mm and notch.pad_mm";
+        return check.fail("outline", problem);
+    }
+    // Moved inwards by too much, sides change places and the ring crosses itself.
+    let finite = inside.iter().all(|p| p.x.is_finite() && p.y.is_finite());
+    let hollow = inside.first().is_some_and(|tip| tip.x < finger.outline.corner().x);
+    if !finite || !hollow || polygon::crosses_itself(inside) || polygon::area(inside) <= 0.0 {
+        let problem = format!(
+            "is {:.3}; it is thicker than the tip and leaves no room for ribs behind the pad: a \
+             thinner one",
+            finger.skin / MM
+        );
+        return check.fail("skin.thickness_mm", problem);
+    }
+    Ok(())
 }

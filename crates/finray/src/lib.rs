@@ -1,7 +1,7 @@
 //! The printed finger: its profile, its stiffness from its ribs, its picture.
 //!
 //! ```text
-//! geometry (outline, fit, polygon) -> mesh -> meshed -> condense (halving, frontal)
+//! geometry (outline, polygon) -> mesh -> meshed -> condense (halving, frontal)
 //!     elements: elasticity (in the plane), plate (across it) -> stiffness, mechanics, picture
 //! ```
 #![forbid(unsafe_code)]
@@ -12,7 +12,6 @@
 pub mod condense;
 pub mod elasticity;
 pub mod export;
-mod fit;
 mod frontal;
 pub mod geometry;
 mod halving;

@@ -92,12 +92,24 @@ impl MeshedFinger {
                 follow.fixed_view_mut::<1, 3>(i * freedoms + d, 0).copy_from_slice(row);
             }
         }
-        for (k, i) in free.iter().enumerate() {
+        for (k, i) in free.into_iter().enumerate() {
             for d in 0..freedoms {
                 follow[(i * freedoms + d, 3 + k * freedoms + d)] = 1.0;
             }
         }
-        Held::new(follow.transpose() * &condensed.stiffness * &follow, follow)
+        let stiffness = follow.transpose() * &condensed.stiffness * &follow;
+        let free = stiffness.nrows() - 3;
+        let own: Matrix3<f64> = stiffness.fixed_view::<3, 3>(0, 0).into_owned();
+        if free == 0 {
+            return Ok(Held { stiffness: own, follow });
+        }
+        let mixed = stiffness.view((3, 0), (free, 3)).into_owned();
+        let among = stiffness.view((3, 3), (free, free)).into_owned();
+        let answer = -among.cholesky().ok_or(MeshError::Loose)?.solve(&mixed);
+        let condensed = own + mixed.transpose() * &answer;
+        let follow =
+            follow.columns(0, 3).into_owned() + follow.columns(3, free).into_owned() * answer;
+        Ok(Held { stiffness: condensed.fixed_view::<3, 3>(0, 0).into_owned(), follow })
     }
 }
 
@@ -127,23 +139,6 @@ pub struct Held {
     pub stiffness: Matrix3<f64>,
     /// Displacements of the kept nodes by the body's motions.
     pub follow: DMatrix<f64>,
-}
-
-impl Held {
-    fn new(stiffness: DMatrix<f64>, follow: DMatrix<f64>) -> Result<Self, MeshError> {
-        let free = stiffness.nrows() - 3;
-        let own: Matrix3<f64> = stiffness.fixed_view::<3, 3>(0, 0).into_owned();
-        if free == 0 {
-            return Ok(Held { stiffness: own, follow });
-        }
-        let mixed = stiffness.view((3, 0), (free, 3)).into_owned();
-        let among = stiffness.view((3, 3), (free, free)).into_owned();
-        let answer = -among.cholesky().ok_or(MeshError::Loose)?.solve(&mixed);
-        let condensed = own + mixed.transpose() * &answer;
-        let follow =
-            follow.columns(0, 3).into_owned() + follow.columns(3, free).into_owned() * answer;
-        Ok(Held { stiffness: condensed.fixed_view::<3, 3>(0, 0).into_owned(), follow })
-    }
 }
 
 /// Ring with its edges divided finely near some of its corners.

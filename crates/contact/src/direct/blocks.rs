@@ -17,7 +17,7 @@ pub(super) struct Blocks {
     /// Number of bodies.
     size: usize,
     /// Number of bodies, the first, that are eliminated.
-    eliminated: usize,
+    pub eliminated: usize,
     /// Place in `blocks` of a block (row >= column).
     index: Vec<usize>,
     blocks: Vec<Matrix6<f64>>,
@@ -28,10 +28,7 @@ impl Blocks {
     /// Zero matrix with the blocks of the pairs, and those that the elimination fills in.
     pub fn new(size: usize, eliminated: usize, pairs: &[(usize, usize)]) -> Self {
         let mut present = vec![false; size * size];
-        for i in 0..size {
-            present[i * size + i] = true;
-        }
-        for &(a, b) in pairs {
+        for (a, b) in (0..size).map(|i| (i, i)).chain(pairs.iter().copied()) {
             present[a.max(b) * size + a.min(b)] = true;
         }
         for k in 0..eliminated {

@@ -207,8 +207,7 @@ impl Candidate {
         };
         let count = self.manifold.points.len();
         if count <= POINTS {
-            (0..count).for_each(add);
-            return;
+            return (0..count).for_each(add);
         }
         let deepest = best(count, |i| -self.manifold.points[i].dist);
         let far = best(count, |i| (middle(i) - middle(deepest)).norm_squared());

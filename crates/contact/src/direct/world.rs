@@ -32,8 +32,6 @@ pub(super) struct DirectWorld {
     values: Vec<Vector6>,
     /// Force at the centre of mass and moment applied to each body, N, N m.
     pushes: Vec<Vector6>,
-    /// Number of places, the first, that are eliminated before contacts are solved.
-    eliminated: usize,
     solver: Solver,
     touches: Vec<Touch>,
     contacts: Vec<Contact>,
@@ -64,7 +62,6 @@ impl DirectWorld {
             system: Blocks::new(size, eliminated, &coupled),
             values: vec![Vector6::zeros(); size],
             pushes: vec![Vector6::zeros(); scene.bodies.len()],
-            eliminated,
             solver: Solver::new(size - eliminated),
             touches: Vec::new(),
             contacts: Vec::new(),
@@ -86,7 +83,7 @@ impl DirectWorld {
         for touch in &self.touches {
             let pair = &self.pairs[touch.pair];
             let ends = [&self.bodies[pair.first.0], &self.bodies[pair.second.0]];
-            let place = ends.map(|body| body.place().map(|place| place - self.eliminated));
+            let place = ends.map(|body| body.place().map(|place| place - self.system.eliminated));
             let arm = ends.map(|body| touch.point - body.centre);
             let cone = Cone { mu: touch.friction.coefficient, normal, tangent };
             let lever = match touch.friction.torsion {
@@ -149,7 +146,7 @@ impl DirectWorld {
         self.system.eliminate()?;
         self.system.reduce(&mut self.values);
         self.system.remainder(&mut self.solver.system);
-        let free = &mut self.values[self.eliminated..];
+        let free = &mut self.values[self.system.eliminated..];
         for (rhs, value) in self.solver.rhs.iter_mut().zip(&*free) {
             *rhs = (*value).into();
         }
@@ -175,7 +172,9 @@ impl DirectWorld {
         let step = self.settings.step_s;
         for body in &mut self.bodies {
             body.steer(step);
-            if let Some(free) = body.place().and_then(|place| place.checked_sub(self.eliminated)) {
+            if let Some(free) =
+                body.place().and_then(|place| place.checked_sub(self.system.eliminated))
+            {
                 self.solver.velocities[free] = body.velocity.into();
             }
         }

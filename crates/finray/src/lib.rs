@@ -1,7 +1,7 @@
 //! The printed finger: its profile, its stiffness from its ribs, its picture.
 //!
 //! ```text
-//! geometry (outline, polygon) -> mesh -> meshed -> condense (halving, frontal)
+//! geometry (polygon) -> mesh -> meshed -> condense (halving, frontal)
 //!     elements: elasticity (in the plane), plate (across it) -> stiffness, mechanics, picture
 //! ```
 #![forbid(unsafe_code)]
@@ -19,7 +19,6 @@ pub mod infill;
 pub mod mechanics;
 pub mod mesh;
 pub mod meshed;
-mod outline;
 pub mod picture;
 pub mod plate;
 pub mod polygon;

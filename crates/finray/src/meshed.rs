@@ -1,9 +1,8 @@
 //! A finger as finite elements: its mesh, its clamped nodes, and its pad as a rigid body.
 
 use super::condense::{Condensed, Element, Role, condense};
-use super::geometry::Geometry;
+use super::geometry::{Geometry, ring};
 use super::mesh::{Mesh, MeshError};
-use super::outline::ring;
 use super::polygon::{Ring, edges};
 use crate::printed::Outline;
 use input::units::MM;

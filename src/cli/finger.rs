@@ -118,8 +118,8 @@ impl FingerRow {
             infill_density_percent: design.density_percent,
             infill_direction_deg: design.direction_deg,
             phase_mm: design.phase_mm.unwrap_or(geometry.finger.ribs.phase / MM),
-            area_mm2: computed.area / (MM * MM),
-            mass_g: computed.mass / GRAM,
+            area_mm2: geometry.area() / (MM * MM),
+            mass_g: geometry.mass() / GRAM,
             pad: PlanarRow::from(&computed.pad),
             pad_and_roof: PlanarRow::from(&computed.pad_and_roof),
             across: AcrossRow {

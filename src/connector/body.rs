@@ -93,7 +93,7 @@ impl<'a> ConvexBody<'a> {
 
     /// Index of the first part that contains a point.
     pub fn part_at(&self, point: &Point3<f64>) -> Option<usize> {
-        let point = shapes::vector(&(point.coords * MILLIMETRES));
+        let point = (point.coords * MILLIMETRES).into();
         let holds = |part: &Placed| {
             part.shape.contains_point(&shapes::pose(&part.pose, MILLIMETRES), point)
         };
@@ -102,7 +102,7 @@ impl<'a> ConvexBody<'a> {
 
     /// Indices of the parts within a distance, m, of a point.
     pub fn near(&self, point: &Point3<f64>, within: f64) -> impl Iterator<Item = usize> {
-        let point = shapes::vector(&(point.coords * MILLIMETRES));
+        let point = (point.coords * MILLIMETRES).into();
         let close = move |part: &Placed| {
             let pose = shapes::pose(&part.pose, MILLIMETRES);
             part.shape.distance_to_point(&pose, point, true) <= within * MILLIMETRES

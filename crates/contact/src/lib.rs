@@ -74,7 +74,7 @@ pub enum Unsupported {
 /// Parts of a scene that only `direct` can simulate, each with the feature that others lack:
 /// springs that couple axes, friction of a patch, mass that depends on the direction.
 fn lacking(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str)> {
-    let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled(_));
+    let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled { .. });
     let mechanism = |body: &&Body| matches!(body.motion, Motion::Mechanism(_));
     let joint = scene.joints.iter().find(coupled).map(|joint| joint.name.as_str());
     let patch = scene.patched().map(|pair| scene.bodies[pair.first.0].name.as_str());

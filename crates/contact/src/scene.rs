@@ -102,12 +102,6 @@ impl Friction {
 }
 
 impl ContactPair {
-    /// Friction of a geom of the first body on one of the second.
-    fn between(&self, first: &Geom, second: &Geom) -> Friction {
-        let own = first.friction.into_iter().chain(second.friction).reduce(f64::min);
-        Friction { coefficient: own.unwrap_or(self.friction.coefficient), ..self.friction }
-    }
-
     /// 1 for the bodies of the pair, -1 for them in the other order.
     pub fn sign(&self, first: BodyId, second: BodyId) -> Option<f64> {
         match (self.first, self.second) {
@@ -124,7 +118,7 @@ impl ContactPair {
 }
 
 /// Mass properties of a body about its centre of mass, along the body axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inertia {
     /// Mass, kg.
     pub mass: f64,
@@ -184,32 +178,19 @@ impl Spring {
     }
 }
 
-/// One of the six axes of a joint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum JointAxis {
-    /// No relative motion.
-    Locked,
-    /// Motion against a spring.
-    Sprung(Spring),
-}
-
-/// Springs of a joint whose axes pull at one another.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coupled {
-    /// Stiffness, symmetric, positive definite: N/m, N/rad (N m/m) and N m/rad.
-    pub stiffness: Matrix6<f64>,
-    /// Damping, symmetric, not negative: N s/m, N s/rad and N m s/rad.
-    pub damping: Matrix6<f64>,
-}
-
 /// Springs that hold a joint's child to its parent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a scene has a handful of joints")]
 pub enum Springs {
-    /// One for each axis: translations x, y, z, rotations x, y, z.
-    Axes([JointAxis; 6]),
+    /// One for each axis, none if it is locked: translations x, y, z, rotations x, y, z.
+    Axes([Option<Spring>; 6]),
     /// Coupled ones; coordinates as above, the rotations as a rotation vector.
-    Coupled(Coupled),
+    Coupled {
+        /// Stiffness, symmetric, positive definite: N/m, N/rad (N m/m) and N m/rad.
+        stiffness: Matrix6<f64>,
+        /// Damping, symmetric, not negative: N s/m, N s/rad and N m s/rad.
+        damping: Matrix6<f64>,
+    },
 }
 
 /// Joint: translations along, then rotations about, the x, y and z axes of the parent's frame.
@@ -267,18 +248,19 @@ impl Scene {
 
     /// Pairs of geoms that may touch, in the order of the contacts.
     pub fn geom_pairs(&self) -> Vec<GeomPair> {
-        let mut next = 0;
-        let count = |body: &Body| {
-            next += body.geoms.len();
-            next - body.geoms.len()
-        };
-        let from: Vec<usize> = self.bodies.iter().map(count).collect();
+        let mut from = vec![0];
+        from.extend(self.bodies.iter().scan(0, |next, body| {
+            *next += body.geoms.len();
+            Some(*next)
+        }));
         let mut found = Vec::new();
         for (bodies, pair) in self.contacts.iter().enumerate() {
             let (a, b) = (pair.first.0, pair.second.0);
             for (i, first) in self.bodies[a].geoms.iter().enumerate() {
                 for (j, second) in self.bodies[b].geoms.iter().enumerate() {
-                    let friction = pair.between(first, second);
+                    let own = first.friction.into_iter().chain(second.friction).reduce(f64::min);
+                    let coefficient = own.unwrap_or(pair.friction.coefficient);
+                    let friction = Friction { coefficient, ..pair.friction };
                     let (first, second) = (from[a] + i, from[b] + j);
                     found.push(GeomPair { bodies, first, second, friction });
                 }

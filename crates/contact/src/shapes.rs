@@ -1,4 +1,4 @@
-//! Shapes, vectors and poses of parry, and so of rapier, in a unit of length of the caller's
+//! Shapes and poses of parry, and so of rapier, in a unit of length of the caller's
 //! choice (`scale` of them make a metre), and triangles of shapes for pictures and exports.
 
 use crate::scene::{Pose, Shape};
@@ -15,9 +15,9 @@ const MM: f64 = 1e-3;
 /// corners, m, and triangles, counter-clockwise from outside. Empty for a hull without volume,
 /// which no checked file has.
 pub fn surface(shape: &Shape) -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
-    let points: Vec<_> = shape.corners().iter().map(|p| vector(&(p.coords / MM))).collect();
+    let points: Vec<_> = shape.corners().iter().map(|p| (p.coords / MM).into()).collect();
     let (points, triangles) = try_convex_hull(&points).unwrap_or_default();
-    (points.into_iter().map(|p| Point3::from(from_vector(p) * MM)).collect(), triangles)
+    (points.into_iter().map(|p| Point3::from(Vector3::from(p) * MM)).collect(), triangles)
 }
 
 /// Shape of parry, and the turn from its frame to ours.
@@ -35,7 +35,7 @@ pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
             (shape, Pose::from_parts(Translation3::identity(), turn))
         }
         Shape::Hull { points } => {
-            let points: Vec<_> = points.iter().map(|p| vector(&(p.coords * scale))).collect();
+            let points: Vec<_> = points.iter().map(|p| (p.coords * scale).into()).collect();
             // The task file's checks leave no degenerate hull; a ball would be seen at once.
             let hull = SharedShape::convex_hull(&points);
             (hull.unwrap_or_else(|| SharedShape::ball(0.0)), Pose::identity())
@@ -45,37 +45,17 @@ pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
 
 /// Centre and half extents, m, of the box in the shape's frame that encloses it.
 pub(super) fn bounds(shape: &Shape) -> (Vector3<f64>, Vector3<f64>) {
-    match shape {
-        Shape::Box { half } => (Vector3::zeros(), *half),
-        Shape::Cylinder { half_height, radius } => {
-            (Vector3::zeros(), Vector3::new(*radius, *radius, *half_height))
-        }
-        Shape::Hull { points } => {
-            let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-            let span = |(low, high): (Vector3<f64>, _), p: &Point3<f64>| {
-                (low.inf(&p.coords), p.coords.sup(&high))
-            };
-            let (low, high) = points.iter().fold(start, span);
-            ((low + high) / 2.0, (high - low) / 2.0)
-        }
-    }
-}
-
-/// Vector of parry, in the same unit.
-pub fn vector(v: &Vector3<f64>) -> pm::Vector {
-    pm::Vector::new(v.x, v.y, v.z)
-}
-
-/// Vector from parry's, in the same unit.
-pub fn from_vector(v: pm::Vector) -> Vector3<f64> {
-    Vector3::new(v.x, v.y, v.z)
+    // A cylinder's prism has corners on both axes.
+    let corners = shape.corners();
+    let infinite = Vector3::repeat(f64::INFINITY);
+    let low = corners.iter().fold(infinite, |low, p| low.inf(&p.coords));
+    let high = corners.iter().fold(-infinite, |high, p| p.coords.sup(&high));
+    ((low + high) / 2.0, (high - low) / 2.0)
 }
 
 /// Pose of parry from one in metres.
 pub fn pose(pose: &Pose, scale: f64) -> pm::Pose {
-    let q = pose.rotation.coords;
-    let rotation = pm::Rotation::from_xyzw(q.x, q.y, q.z, q.w);
-    pm::Pose::from_parts(vector(&(pose.translation.vector * scale)), rotation)
+    pm::Pose::from_parts((pose.translation.vector * scale).into(), pose.rotation.into())
 }
 
 #[cfg(test)]

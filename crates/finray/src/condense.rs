@@ -10,6 +10,7 @@
 use super::frontal::Frontal;
 use super::halving::halve;
 use super::mesh::{Mesh, MeshError};
+use crate::printed::Outline;
 use nalgebra::{DMatrix, DVector, Point2};
 use std::ops::Range;
 
@@ -22,6 +23,9 @@ pub trait Element {
     const FREEDOMS: usize;
     /// Lower half of a triangle's stiffness matrix, square, row by row, by its six nodes' freedoms.
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64>;
+    /// Rows, one for each degree of freedom, of a node at a distance along y and z from the pad's
+    /// middle, m: its displacement by the three motions of a rigid pad.
+    fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
 }
 
 /// Part of a node in the condensation.
@@ -113,17 +117,24 @@ impl<E: Element> Condensation<'_, E> {
     fn part(&mut self, range: Range<usize>) -> Result<Frontal, MeshError> {
         let cut = if range.len() > LEAF { self.cuts.next() } else { None };
         let parts: Vec<(Vec<u32>, Vec<f64>)> = match cut.map(|cut| range.start + cut) {
-            None => self.order[range.clone()].iter().map(|&t| self.triangle(t as usize)).collect(),
+            None => {
+                let triangle = |&t: &u32| {
+                    let matrix = self.element.stiffness(self.mesh.corners(t as usize));
+                    (self.mesh.triangles[t as usize].to_vec(), matrix)
+                };
+                self.order[range.clone()].iter().map(triangle).collect()
+            }
             Some(cut) => [self.part(range.start..cut)?, self.part(cut..range.end)?]
                 .map(|half| (half.nodes, half.values))
                 .into(),
         };
+        let roles = self.roles;
+        let moves = |node: &u32| roles[*node as usize] != Role::Fixed;
         let nodes = parts.iter().flat_map(|(nodes, _)| nodes).copied();
-        let moving = nodes.filter(|&node| self.roles[node as usize] != Role::Fixed).collect();
-        let mut frontal = self.frontal(moving, &range);
+        let mut frontal = self.frontal(nodes.filter(moves).collect(), &range);
         for (nodes, matrix) in parts {
-            let places: Vec<_> = nodes.into_iter().map(|node| self.place(node)).collect();
-            frontal.add(&places, &matrix);
+            let place = |node: u32| moves(&node).then(|| self.places[node as usize] as usize);
+            frontal.add(&nodes.into_iter().map(place).collect::<Vec<_>>(), &matrix);
         }
         frontal.eliminate()?;
         let rest = frontal.rest();
@@ -131,11 +142,6 @@ impl<E: Element> Condensation<'_, E> {
             steps.push(frontal);
         }
         Ok(rest)
-    }
-
-    /// Nodes and stiffness matrix of a triangle.
-    fn triangle(&self, t: usize) -> (Vec<u32>, Vec<f64>) {
-        (self.mesh.triangles[t].to_vec(), self.element.stiffness(self.mesh.corners(t)))
     }
 
     /// Zero matrix of these nodes, first those that no triangle outside the range touches.
@@ -153,10 +159,6 @@ impl<E: Element> Condensation<'_, E> {
             self.places[node as usize] = place as u32;
         }
         Frontal::new(inner, eliminated, E::FREEDOMS)
-    }
-
-    fn place(&self, node: u32) -> Option<usize> {
-        (self.roles[node as usize] != Role::Fixed).then(|| self.places[node as usize] as usize)
     }
 }
 

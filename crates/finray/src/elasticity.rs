@@ -1,7 +1,7 @@
 //! Plane stress in quadratic triangles (Zienkiewicz and Taylor, The Finite Element Method, vol. 1).
 
 use super::condense::Element;
-use crate::printed::PrintedFinger;
+use crate::printed::{Outline, PrintedFinger};
 use nalgebra::Point2;
 
 /// Profile extruded to a slab of an elastic material.
@@ -102,5 +102,12 @@ impl Element for PlaneStress {
             }
         }
         matrix
+    }
+
+    /// The body moves along y and z and turns about x = y x z.
+    fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
+        let (y, z) = (outline.out_of_pad(), outline.along_pad());
+        let turn = z * at_y - y * at_z;
+        (0..2).map(|d| [y[d], z[d], turn[d]]).collect()
     }
 }

@@ -56,12 +56,8 @@ const SHARES: [f64; 3] = [0.5, 0.4, 0.6];
 /// Number of triangles below which a set is halved along x or y, whichever is longer.
 const FEW: usize = 30;
 
-/// Division of triangles into those that lie first along a direction, and the others.
-#[derive(Debug, Clone, Copy)]
-struct Cut {
-    direction: usize,
-    first: usize,
-}
+/// Direction, and number of the triangles that lie first along it.
+type Cut = (usize, usize);
 
 impl Halving {
     fn sort(&mut self, order: &mut [u32]) {
@@ -71,14 +67,14 @@ impl Halving {
         }
         let cut = if order.len() < FEW { self.longest(order) } else { self.best(order) };
         self.cut(order, cut);
-        self.cuts.push(cut.first);
-        let (first, second) = order.split_at_mut(cut.first);
+        self.cuts.push(cut.1);
+        let (first, second) = order.split_at_mut(cut.1);
         self.sort(first);
         self.sort(second);
     }
 
     /// Moves the triangles that lie first along a direction to the start.
-    fn cut(&self, order: &mut [u32], Cut { direction, first }: Cut) {
+    fn cut(&self, order: &mut [u32], (direction, first): Cut) {
         let ranks = &self.ranks[direction];
         order.select_nth_unstable_by_key(first, |&t| ranks[t as usize]);
     }
@@ -92,17 +88,17 @@ impl Halving {
         };
         // The first two directions are x and y.
         let direction = usize::from(extent(|p| p.x) <= extent(|p| p.y));
-        Cut { direction, first: order.len() / 2 }
+        (direction, order.len() / 2)
     }
 
     /// The cut across which the fewest corners are shared.
     fn best(&mut self, order: &mut [u32]) -> Cut {
-        let mut best = (usize::MAX, Cut { direction: 0, first: order.len() / 2 });
+        let mut best = (usize::MAX, (0, order.len() / 2));
         for direction in 0..DIRECTIONS.len() {
             for share in SHARES {
-                let cut = Cut { direction, first: (order.len() as f64 * share) as usize };
+                let cut = (direction, (order.len() as f64 * share) as usize);
                 self.cut(order, cut);
-                let count = self.shared(order, cut.first);
+                let count = self.shared(order, cut.1);
                 if count < best.0 {
                     best = (count, cut);
                 }

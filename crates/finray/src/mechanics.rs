@@ -9,10 +9,10 @@ use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
 use super::infill::{Design, RibLines};
 use super::mesh::MeshError;
-use super::meshed::{Body, Follow, held};
+use super::meshed::{Body, held};
 use super::plate::MindlinPlate;
 use super::stiffness::{CrossStiffness, PlanarStiffness};
-use crate::printed::{Outline, PrintedFinger};
+use crate::printed::PrintedFinger;
 use input::units::{MM, N_PER_MM};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -37,10 +37,6 @@ pub struct FingerStiffness {
     pub pad_and_roof: PlanarStiffness,
     /// Across the plane, the part touching the pad.
     pub cross: CrossStiffness,
-    /// Solid area of the profile, m2.
-    pub area: f64,
-    /// Mass of the whole finger, kg.
-    pub mass: f64,
 }
 
 /// Stiffness of a finger.
@@ -50,13 +46,7 @@ pub struct FingerStiffness {
 /// finger, as when a length or the modulus is in other units than its key says.
 pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
     let [pad, pad_and_roof] = planar(geometry, SIZE)?;
-    Ok(FingerStiffness {
-        pad,
-        pad_and_roof,
-        cross: cross(geometry, CROSS_SIZE)?,
-        area: geometry.area(),
-        mass: geometry.mass(),
-    })
+    Ok(FingerStiffness { pad, pad_and_roof, cross: cross(geometry, CROSS_SIZE)? })
 }
 
 /// Stiffness in the plane, of the part touching the pad alone, then of it touching pad and
@@ -72,7 +62,12 @@ pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], Fi
     let pad = stiffness(held[0])?;
     let compliance = pad.in_compliance() / N_PER_MM;
     if !PLAUSIBLE.contains(&compliance) {
-        return Err(FingerError::Units { file: geometry.finger.file.clone(), compliance });
+        let problem = format!(
+            "the units look wrong: the compliance stiffness comes out as {compliance:.3e} N/mm, a \
+             finger has 0.05 to 100; check that lengths are in mm and material.modulus_gpa in GPa \
+             (PETG has 2)"
+        );
+        return Err(FingerError::Unfit { file: geometry.finger.file.clone(), problem });
     }
     Ok([pad, stiffness(held[1])?])
 }
@@ -137,24 +132,5 @@ impl Known {
             known.insert(key, stiffness);
         }
         Ok(stiffness)
-    }
-}
-
-impl Follow for PlaneStress {
-    /// The body moves along y and z and turns about x = y x z.
-    fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
-        let (y, z) = (outline.out_of_pad(), outline.along_pad());
-        let turn = z * at_y - y * at_z;
-        (0..2).map(|d| [y[d], z[d], turn[d]]).collect()
-    }
-}
-
-impl Follow for MindlinPlate {
-    /// The body moves along x and turns about y and z. The plate's own deflection is along
-    /// -x: its axes X, Y turn the other way than y, z.
-    fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
-        let (y, z) = (outline.out_of_pad(), outline.along_pad());
-        // u_x = ry z - rz y
-        vec![[-1.0, -at_z, at_y], [0.0, y.x, z.x], [0.0, y.y, z.y]]
     }
 }

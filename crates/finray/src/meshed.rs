@@ -1,12 +1,12 @@
 //! A finger as finite elements: its mesh, its clamped nodes, and its pad as a rigid body.
 
 use super::condense::{Condensed, Element, Role, condense};
-use super::geometry::Geometry;
+use super::geometry::{Geometry, ring};
 use super::mesh::{Mesh, MeshError};
 use super::polygon::{Ring, edges};
 use crate::printed::Outline;
 use input::units::MM;
-use nalgebra::{DMatrix, DVector, Matrix3, Point2, Vector3};
+use nalgebra::{DMatrix, Matrix3, Point2};
 
 /// Distance within which a node lies on a line, m.
 const ON: f64 = 1e-6 * MM;
@@ -31,13 +31,6 @@ pub enum Body {
     PadAndRoof,
 }
 
-/// Motion of a node with a rigid body.
-pub trait Follow: Element {
-    /// Rows, one for each degree of freedom, of a node at a distance along y and z from the
-    /// body's origin, m: its displacement by the body's three motions.
-    fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
-}
-
 impl MeshedFinger {
     /// Mesh with triangles of sides of about `size`, m.
     ///
@@ -47,10 +40,10 @@ impl MeshedFinger {
         let outline = geometry.finger.outline;
         let roof_end = outline.corner() + outline.out_of_pad() * outline.roof;
         let ends = [outline.tip_point(), outline.corner(), roof_end];
-        let ring = graded(&geometry.free_ring(), &ends, size);
+        let clamp = outline.length - outline.clamped;
+        let ring = graded(&ring(&outline, 0.0, clamp), &ends, size);
         let mesh = Mesh::new(&ring, &geometry.voids, size)?;
         let mut meshed = MeshedFinger { mesh, outline, roles: Vec::new() };
-        let clamp = outline.length - outline.clamped;
         let role = |p: &Point2<f64>| match () {
             () if p.x > clamp - ON => Role::Fixed,
             () if meshed.holds(Body::PadAndRoof, p) => Role::Kept,
@@ -78,7 +71,7 @@ impl MeshedFinger {
     ///
     /// # Errors
     /// If a part of the finger is held by nothing.
-    pub fn hold<E: Follow>(
+    pub fn hold<E: Element>(
         &self,
         condensed: &Condensed,
         element: &E,
@@ -98,12 +91,24 @@ impl MeshedFinger {
                 follow.fixed_view_mut::<1, 3>(i * freedoms + d, 0).copy_from_slice(row);
             }
         }
-        for (k, i) in free.iter().enumerate() {
+        for (k, i) in free.into_iter().enumerate() {
             for d in 0..freedoms {
                 follow[(i * freedoms + d, 3 + k * freedoms + d)] = 1.0;
             }
         }
-        Held::new(follow.transpose() * &condensed.stiffness * &follow, follow)
+        let stiffness = follow.transpose() * &condensed.stiffness * &follow;
+        let free = stiffness.nrows() - 3;
+        let own: Matrix3<f64> = stiffness.fixed_view::<3, 3>(0, 0).into_owned();
+        if free == 0 {
+            return Ok(Held { stiffness: own, follow });
+        }
+        let mixed = stiffness.view((3, 0), (free, 3)).into_owned();
+        let among = stiffness.view((3, 3), (free, free)).into_owned();
+        let answer = -among.cholesky().ok_or(MeshError::Loose)?.solve(&mixed);
+        let condensed = own + mixed.transpose() * &answer;
+        let follow =
+            follow.columns(0, 3).into_owned() + follow.columns(3, free).into_owned() * answer;
+        Ok(Held { stiffness: condensed.fixed_view::<3, 3>(0, 0).into_owned(), follow })
     }
 }
 
@@ -112,7 +117,7 @@ impl MeshedFinger {
 ///
 /// # Errors
 /// If the profile cannot be meshed, or a part of it is held by nothing.
-pub fn held<E: Follow, const N: usize>(
+pub fn held<E: Element, const N: usize>(
     geometry: &Geometry,
     element: &E,
     size: f64,
@@ -132,30 +137,7 @@ pub struct Held {
     /// Forces and moments on the body by its motions.
     pub stiffness: Matrix3<f64>,
     /// Displacements of the kept nodes by the body's motions.
-    follow: DMatrix<f64>,
-}
-
-impl Held {
-    fn new(stiffness: DMatrix<f64>, follow: DMatrix<f64>) -> Result<Self, MeshError> {
-        let free = stiffness.nrows() - 3;
-        let own: Matrix3<f64> = stiffness.fixed_view::<3, 3>(0, 0).into_owned();
-        if free == 0 {
-            return Ok(Held { stiffness: own, follow });
-        }
-        let mixed = stiffness.view((3, 0), (free, 3)).into_owned();
-        let among = stiffness.view((3, 3), (free, free)).into_owned();
-        let answer = -among.cholesky().ok_or(MeshError::Loose)?.solve(&mixed);
-        let condensed = own + mixed.transpose() * &answer;
-        let motion =
-            follow.columns(0, 3).into_owned() + follow.columns(3, free).into_owned() * answer;
-        let stiffness = condensed.fixed_view::<3, 3>(0, 0).into_owned();
-        Ok(Held { stiffness, follow: motion })
-    }
-
-    /// Displacements of the kept nodes under a motion of the body.
-    pub fn kept(&self, motion: &Vector3<f64>) -> DVector<f64> {
-        &self.follow * motion
-    }
+    pub follow: DMatrix<f64>,
 }
 
 /// Ring with its edges divided finely near some of its corners.

@@ -31,12 +31,12 @@ pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> 
     let bent = Bent::new(geometry, force).map_err(|error| FingerError::mesh(geometry, error))?;
     let outline = &geometry.finger.outline;
     let [left, top, right, bottom] = MARGIN;
-    let (width, height) = (outline.length / MM + left + right, outline.width / MM + top + bottom);
+    let (wide, height) = (outline.length / MM + left + right, outline.width / MM + top + bottom);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0} {:.0}\" \
          font-family=\"sans-serif\" font-size=\"14\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-        width * SCALE,
+        wide * SCALE,
         height * SCALE,
     );
     words(&mut out, geometry, force, bent.exaggeration, height);
@@ -46,7 +46,10 @@ pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> 
     };
     shape(&mut out, &rings(&|node| bent.meshed.mesh.nodes[node]), "#d9dde3");
     shape(&mut out, &rings(&|node| bent.moved(node)), "#33507a");
-    shape(&mut out, &path(base(outline).into_iter()), "#8a8f98");
+    let Outline { length, width, clamped, .. } = *outline;
+    let (start, back) = (length - clamped, -width);
+    let base = [[start, 0.0], [length, 0.0], [length, back], [start, back]];
+    shape(&mut out, &path(base.into_iter().map(Point2::from)), "#8a8f98");
     let [tip, corner] = [outline.tip_point(), outline.corner()]
         .map(|p| pixels(p + bent.rigid(outline, &p) * bent.exaggeration));
     // Writing to a string cannot fail.
@@ -75,8 +78,8 @@ impl Bent {
         let condensed = condense(&meshed.mesh, &element, &meshed.roles, true)?;
         let held = meshed.hold(&condensed, &element, Body::Pad)?;
         let stiffness = PlanarStiffness::new(held.stiffness).ok_or(MeshError::Limp)?;
-        let motion = stiffness.displacement(&Vector3::new(y, z, 0.0));
-        let displacements = condensed.expand(&held.kept(&motion));
+        let motion = stiffness.compliance * Vector3::new(y, z, 0.0);
+        let displacements = condensed.expand(&(&held.follow * motion));
         let largest = displacements.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
         let exaggeration = round(LONGEST * MM / largest);
         Ok(Bent { meshed, displacements, exaggeration, motion })
@@ -131,13 +134,6 @@ fn words(out: &mut String, geometry: &Geometry, [y, z]: [f64; 2], factor: f64, h
 
 fn shape(out: &mut String, path: &str, fill: &str) {
     let _ = writeln!(out, "<path d=\"{path}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>");
-}
-
-/// Corners of the clamped base, m.
-fn base(outline: &Outline) -> [Point2<f64>; 4] {
-    let Outline { length, width, clamped, .. } = *outline;
-    let start = length - clamped;
-    [[start, 0.0], [length, 0.0], [length, -width], [start, -width]].map(Point2::from)
 }
 
 fn path(points: impl Iterator<Item = Point2<f64>>) -> String {

@@ -7,6 +7,7 @@
 
 use super::condense::Element;
 use super::elasticity::{Shape, Slab, area, shape};
+use crate::printed::Outline;
 use nalgebra::Point2;
 
 /// Slab loaded across its plane.
@@ -41,6 +42,14 @@ impl Element for MindlinPlate {
             }
         }
         matrix
+    }
+
+    /// The body moves along x and turns about y and z. The plate's own deflection is along
+    /// -x: its axes X, Y turn the other way than y, z.
+    fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
+        let (y, z) = (outline.out_of_pad(), outline.along_pad());
+        // u_x = ry z - rz y
+        vec![[-1.0, -at_z, at_y], [0.0, y.x, z.x], [0.0, y.y, z.y]]
     }
 }
 

@@ -60,7 +60,7 @@ impl HalfPlane {
         let mut chains: Vec<Ring> = Vec::new();
         for (a, b) in edges(&turned) {
             let (before, after) = (inside(&a), inside(&b));
-            if before != after && after {
+            if !before && after {
                 chains.push(vec![self.crossing(a, b)]);
             }
             // The walk starts outside, so a chain has begun wherever it is inside.
@@ -90,11 +90,8 @@ impl HalfPlane {
         crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut next = vec![None; chains.len()];
         for pair in crossings.chunks_exact(2) {
-            match (pair[0], pair[1]) {
-                ((_, from, true), (_, to, false)) | ((_, to, false), (_, from, true)) => {
-                    next[from] = Some(to);
-                }
-                _ => {}
+            if let [(_, from, true), (_, to, false)] | [(_, to, false), (_, from, true)] = *pair {
+                next[from] = Some(to);
             }
         }
         let mut rings = Vec::new();
@@ -117,12 +114,8 @@ impl HalfPlane {
 
 /// The ring without corners closer than `distance` to the one before.
 pub fn without_repeats(ring: &[Point2<f64>], distance: f64) -> Ring {
-    let mut kept: Ring = Vec::with_capacity(ring.len());
-    for &p in ring {
-        if kept.last().is_none_or(|q| (p - q).norm() > distance) {
-            kept.push(p);
-        }
-    }
+    let mut kept = ring.to_vec();
+    kept.dedup_by(|p, before| (*p - *before).norm() <= distance);
     while kept.len() > 1 && (kept[0] - kept[kept.len() - 1]).norm() <= distance {
         kept.pop();
     }

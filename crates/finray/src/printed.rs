@@ -1,7 +1,7 @@
 //! Finger files: outline, skin, ribs and material of a printed finger.
 
 use input::units::{DEG, MM};
-use input::{Check, InputError, read};
+use input::{Check, InputError, read, syntax};
 use nalgebra::Point2;
 use serde::Deserialize;
 
@@ -139,23 +139,41 @@ impl PrintedFinger {
     /// # Errors
     /// As of [`PrintedFinger::parse`].
     pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
-        let raw = table.try_into().map_err(|error: toml::de::Error| InputError::Syntax {
-            file: file.to_owned(),
-            message: error.to_string().trim_end().to_owned(),
-        })?;
-        PrintedFinger::checked(raw, file)
+        PrintedFinger::checked(table.try_into().map_err(|error| syntax(file, &error))?, file)
     }
 
     fn checked(raw: RawFinger, file: &str) -> Result<Self, InputError> {
         let check = Check { file };
+        let length = |key, value| length(check, key, value);
+        let coordinate = |key, value| check.finite(key, value).map(|value| value * MM);
+        let RawFinger { outline, notch, base, skin, ribs, material, mount, print, .. } = raw;
         Ok(PrintedFinger {
-            outline: finger_outline(check, &raw)?,
-            skin: length(check, "skin.thickness_mm", raw.skin.thickness_mm)?,
-            ribs: ribs(check, &raw.ribs)?,
-            material: material(check, raw.material)?,
-            tilt: angle(check, "mount.tilt_deg", raw.mount.tilt_deg)?,
-            line_width: length(check, "print.line_width_mm", raw.print.line_width_mm)?,
-            smallest_gap: length(check, "print.smallest_gap_mm", raw.print.smallest_gap_mm)?,
+            outline: Outline {
+                length: length("outline.length_mm", outline.length_mm)?,
+                width: length("outline.width_mm", outline.width_mm)?,
+                depth: length("outline.depth_mm", outline.depth_mm)?,
+                tip: length("outline.tip_mm", outline.tip_mm)?,
+                back_radius: length("outline.back_radius_mm", outline.back_radius_mm)?,
+                pad: length("notch.pad_mm", notch.pad_mm)?,
+                pad_angle: angle(check, "notch.pad_deg", notch.pad_deg)?,
+                roof: length("notch.roof_mm", notch.roof_mm)?,
+                solid: length("base.solid_mm", base.solid_mm)?,
+                clamped: length("base.clamped_mm", base.clamped_mm)?,
+            },
+            skin: length("skin.thickness_mm", skin.thickness_mm)?,
+            ribs: Ribs {
+                thickness: length("ribs.thickness_mm", ribs.thickness_mm)?,
+                line_spacing: length("ribs.line_spacing_mm", ribs.line_spacing_mm)?,
+                origin: Point2::new(
+                    coordinate("ribs.origin_mm", ribs.origin_mm[0])?,
+                    coordinate("ribs.origin_mm", ribs.origin_mm[1])?,
+                ),
+                phase: coordinate("ribs.phase_mm", ribs.phase_mm)?,
+            },
+            material: checked_material(check, material)?,
+            tilt: angle(check, "mount.tilt_deg", mount.tilt_deg)?,
+            line_width: length("print.line_width_mm", print.line_width_mm)?,
+            smallest_gap: length("print.smallest_gap_mm", print.smallest_gap_mm)?,
             name: raw.name,
             description: raw.description,
             file: file.to_owned(),
@@ -172,61 +190,24 @@ const MODULI_GPA: std::ops::RangeInclusive<f64> = 1e-4..=500.0;
 const STEEPEST_DEG: f64 = 60.0;
 
 fn length(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
-    if check.positive(key, value)? > LONGEST_MM {
-        let problem = format!("is {value}; it must be at most {LONGEST_MM} (millimetres)");
-        return check.fail(key, problem);
-    }
-    Ok(value * MM)
+    let fits = check.positive(key, value)? <= LONGEST_MM;
+    let must = format!("be at most {LONGEST_MM} (millimetres)");
+    Ok(check.require(key, value, fits, &must)? * MM)
 }
 
 fn angle(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
-    if check.not_negative(key, value)? > STEEPEST_DEG {
-        let problem = format!("is {value}; it must be from 0 to {STEEPEST_DEG} (degrees)");
-        return check.fail(key, problem);
-    }
-    Ok(value * DEG)
+    let fits = check.not_negative(key, value)? <= STEEPEST_DEG;
+    let must = format!("be from 0 to {STEEPEST_DEG} (degrees)");
+    Ok(check.require(key, value, fits, &must)? * DEG)
 }
 
-fn finger_outline(check: Check<'_>, raw: &RawFinger) -> Result<Outline, InputError> {
-    let RawFinger { outline, notch, base, .. } = raw;
-    Ok(Outline {
-        length: length(check, "outline.length_mm", outline.length_mm)?,
-        width: length(check, "outline.width_mm", outline.width_mm)?,
-        depth: length(check, "outline.depth_mm", outline.depth_mm)?,
-        tip: length(check, "outline.tip_mm", outline.tip_mm)?,
-        back_radius: length(check, "outline.back_radius_mm", outline.back_radius_mm)?,
-        pad: length(check, "notch.pad_mm", notch.pad_mm)?,
-        pad_angle: angle(check, "notch.pad_deg", notch.pad_deg)?,
-        roof: length(check, "notch.roof_mm", notch.roof_mm)?,
-        solid: length(check, "base.solid_mm", base.solid_mm)?,
-        clamped: length(check, "base.clamped_mm", base.clamped_mm)?,
-    })
-}
-
-fn ribs(check: Check<'_>, raw: &RawRibs) -> Result<Ribs, InputError> {
-    let place = |value| check.finite("ribs.origin_mm", value).map(|value| value * MM);
-    let [x, y] = raw.origin_mm;
-    Ok(Ribs {
-        thickness: length(check, "ribs.thickness_mm", raw.thickness_mm)?,
-        line_spacing: length(check, "ribs.line_spacing_mm", raw.line_spacing_mm)?,
-        origin: Point2::new(place(x)?, place(y)?),
-        phase: check.finite("ribs.phase_mm", raw.phase_mm)? * MM,
-    })
-}
-
-fn material(check: Check<'_>, raw: RawMaterial) -> Result<Material, InputError> {
+fn checked_material(check: Check<'_>, raw: RawMaterial) -> Result<Material, InputError> {
     let modulus = check.positive("material.modulus_gpa", raw.modulus_gpa)?;
-    if !MODULI_GPA.contains(&modulus) {
-        let (least, most) = (MODULI_GPA.start(), MODULI_GPA.end());
-        let problem =
-            format!("is {modulus}; it must be from {least} to {most} (gigapascals; PETG has 2)");
-        return check.fail("material.modulus_gpa", problem);
-    }
+    let (least, most) = (MODULI_GPA.start(), MODULI_GPA.end());
+    let must = format!("be from {least} to {most} (gigapascals; PETG has 2)");
+    check.require("material.modulus_gpa", modulus, MODULI_GPA.contains(&modulus), &must)?;
     let poisson = check.not_negative("material.poisson", raw.poisson)?;
-    if poisson >= 0.5 {
-        let problem = format!("is {poisson}; it must be at least 0 and below 0.5");
-        return check.fail("material.poisson", problem);
-    }
+    check.require("material.poisson", poisson, poisson < 0.5, "be at least 0 and below 0.5")?;
     Ok(Material {
         modulus: modulus * 1e9,
         poisson,

@@ -7,7 +7,8 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarStiffness {
     stiffness: Matrix3<f64>,
-    compliance: Matrix3<f64>,
+    /// Displacements (m, m, rad) by forces and a moment (N, N, N m).
+    pub(super) compliance: Matrix3<f64>,
 }
 
 impl PlanarStiffness {
@@ -30,11 +31,6 @@ impl PlanarStiffness {
     /// Stiffness matrix: N/m, N/rad, N m/rad; order y, z, rx.
     pub fn matrix(&self) -> &Matrix3<f64> {
         &self.stiffness
-    }
-
-    /// Displacement (m, m, rad) under forces and a moment at the pad's middle (N, N, N m).
-    pub fn displacement(&self, load: &Vector3<f64>) -> Vector3<f64> {
-        self.compliance * load
     }
 
     /// Stiffness in y with z and rx free, N/m.

@@ -1,9 +1,8 @@
-//! Files: read up to a limit, written whole or not at all; and what no text may hold that
-//! others are to see.
+//! Files: read up to a limit, written whole or not at all; and texts made safe for terminals.
 //!
-//! What the user names may be anything that opens: a link, a pipe, a device. What the
-//! program keeps for itself, in a study's folder or in the cache, are plain files: there no
-//! link is followed and nothing that could block is opened.
+//! A path from the user may be anything that opens: a link, a pipe, a device. The program's own
+//! files, in a study's folder or in the cache, are plain: no link to one is followed, and nothing
+//! that could block is opened.
 
 use std::fmt::Write as _;
 use std::fs::{self, File, Metadata, OpenOptions};

@@ -101,6 +101,21 @@ impl Check<'_> {
         })
     }
 
+    /// The value, if it fits; `must` says what would.
+    pub fn require(
+        &self,
+        key: &str,
+        value: f64,
+        fits: bool,
+        must: &str,
+    ) -> Result<f64, InputError> {
+        if fits {
+            Ok(value)
+        } else {
+            self.fail(key, format!("is {}; it must {must}", shown(value)))
+        }
+    }
+
     /// The values, if each passes a check of one value, such as [`Check::finite`].
     ///
     /// # Errors
@@ -118,37 +133,25 @@ impl Check<'_> {
     /// The value, if it is finite and not beyond 1e9.
     pub fn finite(&self, key: &str, value: f64) -> Result<f64, InputError> {
         // Written so that a NaN is outside.
-        if value.abs() <= LARGEST {
-            return Ok(value);
-        }
-        let value = shown(value);
-        self.fail(key, format!("is {value}; it must be a finite number of size 1e9 or less"))
+        let fits = value.abs() <= LARGEST;
+        self.require(key, value, fits, "be a finite number of size 1e9 or less")
     }
 
     /// The value, if it is above 0: from 1e-9 to 1e9.
     pub fn positive(&self, key: &str, value: f64) -> Result<f64, InputError> {
-        if (SMALLEST..=LARGEST).contains(&value) {
-            return Ok(value);
-        }
-        let value = shown(value);
-        self.fail(key, format!("is {value}; it must be a finite number above 0, 1e-9 to 1e9"))
+        let fits = (SMALLEST..=LARGEST).contains(&value);
+        self.require(key, value, fits, "be a finite number above 0, 1e-9 to 1e9")
     }
 
     /// The value, if it is not below 0 and not beyond 1e9.
     pub fn not_negative(&self, key: &str, value: f64) -> Result<f64, InputError> {
-        if (0.0..=LARGEST).contains(&value) {
-            return Ok(value);
-        }
-        let value = shown(value);
-        self.fail(key, format!("is {value}; it must be a finite number, 0 or above, 1e9 at most"))
+        let fits = (0.0..=LARGEST).contains(&value);
+        self.require(key, value, fits, "be a finite number, 0 or above, 1e9 at most")
     }
 
     /// A coordinate or a difference of two, mm.
     pub fn distance(&self, key: &str, mm: f64) -> Result<f64, InputError> {
-        if self.finite(key, mm)?.abs() <= LONGEST_MM {
-            return Ok(mm);
-        }
-        let mm = shown(mm);
-        self.fail(key, format!("is {mm}; it must lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))
+        let fits = self.finite(key, mm)?.abs() <= LONGEST_MM;
+        self.require(key, mm, fits, &format!("lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))
     }
 }

@@ -15,7 +15,8 @@ const VECTOR: [&str; 3] = ["x", "y", "z"];
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumberFile {
     root: &'static str,
-    file: String,
+    /// The file as given.
+    pub file: String,
     table: Table,
 }
 
@@ -26,11 +27,6 @@ impl NumberFile {
     /// If the text is not TOML.
     pub fn parse(root: &'static str, text: &str, file: &str) -> Result<Self, InputError> {
         Ok(NumberFile { root, file: file.to_owned(), table: read(text, file)? })
-    }
-
-    /// The file as given.
-    pub fn file(&self) -> &str {
-        &self.file
     }
 
     /// The keys of all numbers, in alphabetical order.

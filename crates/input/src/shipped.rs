@@ -74,61 +74,31 @@ pub struct Source {
 
 /// Error of a name or path that gives no text.
 #[derive(Debug, thiserror::Error)]
-pub enum ShippedError {
-    /// Not a shipped name.
-    #[error(
-        "no {kind} is called `{name}`{}; there are {names}, or give the path of a file",
-        hint(nearest)
-    )]
-    Unknown {
-        /// Kind of file: "task", "space", ...
-        kind: &'static str,
-        /// Name as given.
-        name: String,
-        /// The shipped name most like it.
-        nearest: Option<&'static str>,
-        /// All shipped names, comma-separated.
-        names: String,
-    },
-    /// A path that cannot be read.
-    #[error("{file}: cannot read the {kind}: {source}")]
-    Unreadable {
-        /// Path as given.
-        file: String,
-        /// Kind of file: "task", "space", ...
-        kind: &'static str,
-        /// Error of the operating system.
-        source: std::io::Error,
-    },
-}
-
-fn hint(nearest: &Option<&str>) -> String {
-    nearest.map_or(String::new(), |name| format!(" (did you mean `{name}`?)"))
-}
+#[error("{0}")]
+pub struct ShippedError(String);
 
 /// The shipped file of that name or, if `name` looks like a path (it has a
 /// separator or an extension), the file there.
-pub fn resolve(
-    kind: &'static str,
-    shipped: &[Shipped],
-    name: &str,
-) -> Result<Source, ShippedError> {
+///
+/// # Errors
+/// If there is no such file; the message tells the nearest name and all names.
+pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, ShippedError> {
     if let Some(found) = shipped.iter().find(|shipped| shipped.name == name) {
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
     }
     if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
         return match files::read_named(Path::new(name), LARGEST_INPUT) {
             Ok(text) => Ok(Source { file: name.to_owned(), text }),
-            Err(source) => Err(ShippedError::Unreadable { file: name.to_owned(), kind, source }),
+            Err(error) => Err(ShippedError(format!("{name}: cannot read the {kind}: {error}"))),
         };
     }
     let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
-    Err(ShippedError::Unknown {
-        kind,
-        name: name.to_owned(),
-        nearest: nearest(name, &names),
-        names: names.join(", "),
-    })
+    let hint = nearest(name, &names).map(|name| format!(" (did you mean `{name}`?)"));
+    Err(ShippedError(format!(
+        "no {kind} is called `{name}`{}; there are {}, or give the path of a file",
+        hint.unwrap_or_default(),
+        names.join(", ")
+    )))
 }
 
 /// The name that differs least from `name`, if less than half of it differs.

@@ -1,6 +1,5 @@
 //! What the models say, read back as XML.
 
-use contact::direct::Direct;
 use contact::mjcf::*;
 use contact::scene::*;
 use input::shipped::{ROBOTS, Shipped, TASKS};
@@ -161,14 +160,6 @@ fn contacts_have_the_stiffness_and_friction_of_the_pair() {
         assert!(rough.iter().zip(&friction).all(|(a, b)| (a - b).abs() < 1e-12), "{rough:?}");
         assert_eq!(numbers(found, "condim"), [if friction.len() == 3 { 4.0 } else { 3.0 }]);
     }
-}
-
-#[test]
-fn the_give_of_contacts_is_that_of_the_engine_direct() {
-    let (ours, direct) = (MjcfSettings::default(), Direct::default());
-    assert_eq!(ours.contact_stiffness, direct.contact_stiffness);
-    assert_eq!(ours.contact_damping, direct.contact_damping);
-    assert_eq!(ours.stick_damping, direct.stick_damping);
 }
 
 #[test]

@@ -3,9 +3,7 @@
 #![cfg(feature = "mujoco")]
 
 use contact::mujoco::*;
-use contact::scene::{
-    Body, BodyId, Inertia, Joint, JointAxis, JointId, Motion, Pose, Scene, Spring, Springs,
-};
+use contact::scene::{Body, BodyId, Inertia, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
 use contact::{Engine, Unsupported, World, mjcf};
 use insertion::robot::{Flange, Servo};
 use insertion::trial::cell;
@@ -23,8 +21,8 @@ fn servo_scene() -> (Scene, BodyId, JointId) {
     };
     let base = scene.body(body("base", Motion::Fixed));
     let jaw = scene.body(body("jaw", Motion::Carried(inertia)));
-    let mut axes = [JointAxis::Locked; 6];
-    axes[1] = JointAxis::Sprung(Spring { limit: 5.0, ..Spring::new(1000.0, 30.0) });
+    let mut axes = [None; 6];
+    axes[1] = Some(Spring { limit: 5.0, ..Spring::new(1000.0, 30.0) });
     let slide = scene.joint(Joint {
         name: "slide".into(),
         parent: base,

@@ -10,7 +10,7 @@
 use super::build::{self, Measured, Wrench};
 use super::{CheckRow, Tolerance};
 use contact::Engine;
-use contact::scene::{Body, BodyId, JointAxis, Motion, Pose, Scene, Spring};
+use contact::scene::{Body, BodyId, Motion, Pose, Scene, Spring};
 use input::shipped::ROBOTS;
 use input::units::MM;
 use insertion::arm::{Arm, JOINTS};
@@ -141,9 +141,8 @@ pub fn chain(arm: &Arm) -> Loaded {
             pose: posture.links[i],
             geoms: Vec::new(),
         });
-        let mut axes = [JointAxis::Locked; 6];
-        axes[3 + joint.axis.iamax()] =
-            JointAxis::Sprung(Spring::new(joint.stiffness, joint.damping));
+        let mut axes = [None; 6];
+        axes[3 + joint.axis.iamax()] = Some(Spring::new(joint.stiffness, joint.damping));
         // The hinge's zero is the home angle.
         let turn = UnitQuaternion::from_axis_angle(&joint.axis, arm.home[i]);
         let hinge = joint.frame * Pose::from_parts(Translation3::identity(), turn);

@@ -1,7 +1,7 @@
 //! Scenes of the checks: bodies, joints, loads, simulated time.
 
 use contact::scene::{
-    Body, BodyId, Geom, Inertia, Joint, JointAxis, Motion, Pose, Scene, Shape, Springs,
+    Body, BodyId, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Spring, Springs,
 };
 use contact::{Diverged, World};
 use nalgebra::{Point3, Vector3};
@@ -46,7 +46,7 @@ pub fn joint(
     name: &str,
     bodies: [BodyId; 2],
     frames: [Pose; 2],
-    axes: [JointAxis; 6],
+    axes: [Option<Spring>; 6],
 ) {
     let ([parent, child], [in_parent, in_child]) = (bodies, frames);
     let springs = Springs::Axes(axes);

@@ -9,7 +9,7 @@
 
 use super::build;
 use super::{CheckRow, Tolerance};
-use contact::scene::{Body, Friction, JointAxis, Motion, Pose, Scene};
+use contact::scene::{Body, Friction, Motion, Pose, Scene};
 use contact::{Diverged, Engine};
 use input::units::{DEG, GRAM, MM, N_PER_MM};
 use insertion::finger::Finger;
@@ -58,7 +58,7 @@ fn force_ratio(engine: &dyn Engine, socket: Body) -> Result<f64, Diverged> {
         pose: Pose::identity(),
         geoms: vec![build::cuboid("plug", size, middle)],
     });
-    let springs = support.springs().map(JointAxis::Sprung);
+    let springs = support.springs().map(Some);
     build::joint(&mut scene, "springs", [flange, plug], [middle; 2], springs);
     let socket = scene.body(socket);
     scene.contact(socket, plug, Friction::hard(FRICTION));

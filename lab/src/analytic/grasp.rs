@@ -15,7 +15,7 @@
 use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
 use contact::Engine;
-use contact::scene::{BodyId, Friction, JointAxis, Pose, Scene, Spring, Torsion};
+use contact::scene::{BodyId, Friction, Pose, Scene, Spring, Torsion};
 use input::units::{GRAM, MM};
 use nalgebra::{Rotation2, Translation3, UnitQuaternion, Vector2, Vector3};
 
@@ -189,7 +189,7 @@ impl Case {
         let hand = scene.body(build::driven("hand", Pose::identity(), Vec::new()));
         let springs = [self.guide, self.guide, 0.0, 0.0, 0.0, TURN];
         // Damped within a few milliseconds.
-        let sprung = |stiffness: f64| JointAxis::Sprung(Spring::new(stiffness, stiffness * 2e-3));
+        let sprung = |stiffness: f64| Some(Spring::new(stiffness, stiffness * 2e-3));
         let frames = [Pose::identity(), foot()];
         build::joint(&mut scene, "springs", [hand, block], frames, springs.map(sprung));
         (scene, hand, block)

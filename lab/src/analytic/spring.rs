@@ -8,7 +8,7 @@
 use super::build::{self, Measured, Wrench};
 use super::{CheckRow, Tolerance};
 use contact::Engine;
-use contact::scene::{Body, BodyId, JointAxis, Motion, Pose, Scene};
+use contact::scene::{Body, BodyId, Motion, Pose, Scene};
 use input::units::{GRAM, MM, N_PER_MM};
 use insertion::finger::{self, Finger};
 use nalgebra::{Point3, Vector3};
@@ -78,7 +78,7 @@ fn mounted(finger: &Finger) -> (Scene, BodyId) {
         geoms: Vec::new(),
     });
     let centre = remote_centre(finger);
-    let springs = finger.springs().map(JointAxis::Sprung);
+    let springs = finger.springs().map(Some);
     build::joint(&mut scene, "springs", [jaw, body], [centre; 2], springs);
     (scene, body)
 }
@@ -127,7 +127,7 @@ fn held_part(engine: &dyn Engine, finger: &Finger, along: usize, above: f64) -> 
     let (mut scene, holder) = mounted(finger);
     let size = Vector3::repeat(PART_SIZE);
     let part = scene.body(build::block("part", PART_MASS, size, Pose::identity()));
-    let rigid = [JointAxis::Locked; 6];
+    let rigid = [None; 6];
     build::joint(&mut scene, "grasp", [holder, part], [Pose::identity(); 2], rigid);
     let mut world = engine.world(&scene);
     let wrench = Wrench::along(along, SIDE_FORCE);

@@ -10,7 +10,7 @@
 use super::build;
 use super::peg::{Peg, REFERENCE};
 use super::{CheckRow, Tolerance};
-use contact::scene::{Body, Friction, JointAxis, Motion, Pose, Scene, Spring};
+use contact::scene::{Body, Friction, Motion, Pose, Scene, Spring};
 use contact::{Diverged, Engine};
 use input::units::{GRAM, MM};
 use nalgebra::{Point3, Vector3};
@@ -61,8 +61,8 @@ pub(super) fn wedges(engine: &dyn Engine, friction: f64, depth: f64) -> Result<b
     let inertia = build::box_inertia(WALL_MASS, size, Point3::origin());
     let wall = scene.body(Body { motion: Motion::Carried(inertia), ..wall });
     let slide = scene.bodies[wall.0].pose;
-    let mut axes = [JointAxis::Locked; 6];
-    axes[1] = JointAxis::Sprung(Spring::new(0.0, WALL_DAMPING));
+    let mut axes = [None; 6];
+    axes[1] = Some(Spring::new(0.0, WALL_DAMPING));
     let ground = scene.body(build::fixed("ground", Pose::identity(), Vec::new()));
     build::joint(&mut scene, "slide", [ground, wall], [slide, Pose::identity()], axes);
     for side in [fixed, wall] {

@@ -2,10 +2,9 @@
 
 use super::surface::Surface;
 use super::{Fault, cut, intrusion, merge};
-use contact::shapes;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use parry::transformation::vhacd::{VHACD, VHACDParameters};
 use rapier3d_f64::parry;
 
@@ -103,7 +102,7 @@ fn is_whole(surface: &Surface, solids: &[Solid]) -> bool {
 /// Volumetric hierarchical approximate convex decomposition (Mamou 2016), of voxels, each part
 /// the hull of the surface within it.
 fn approximate(surface: &Surface, resolution: u32) -> Vec<Solid> {
-    let points: Vec<_> = surface.points.iter().map(|p| shapes::vector(&(p.coords / MM))).collect();
+    let points: Vec<_> = surface.points.iter().map(|p| (p.coords / MM).into()).collect();
     let faces: Vec<_> = surface.faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
     let parameters = VHACDParameters {
         resolution,
@@ -115,7 +114,7 @@ fn approximate(surface: &Surface, resolution: u32) -> Vec<Solid> {
     let parts = VHACD::decompose(&parameters, &points, &faces, true);
     let hulls = parts.compute_exact_convex_hulls(&points, &faces);
     let corners = hulls.into_iter().map(|(corners, _)| -> Vec<_> {
-        corners.into_iter().map(|v| Point3::from(shapes::from_vector(v) * MM)).collect()
+        corners.into_iter().map(|v| Point3::from(Vector3::from(v) * MM)).collect()
     });
     let solid = |points: Vec<_>| {
         let (points, _) = geometry::hull(&points)?;

@@ -1,10 +1,10 @@
 //! Intrusion of convex parts: their reach beyond the surface that they stand for.
 
 use super::surface::Surface;
-use contact::shapes;
 use input::units::MM;
 use insertion::task::{Part, geometry};
 use nalgebra::Point3;
+use parry::math::Vector;
 use parry::query::PointQuery;
 use parry::shape::{TriMesh, TriMeshFlags};
 use rapier3d_f64::parry;
@@ -29,11 +29,11 @@ pub fn largest(
     parts: &[Part],
     counts: impl Fn(&Point3<f64>) -> bool,
 ) -> Option<Intrusion> {
-    let points: Vec<_> = surface.points.iter().map(|p| shapes::vector(&(p.coords / MM))).collect();
+    let points: Vec<_> = surface.points.iter().map(|p| (p.coords / MM).into()).collect();
     let faces: Vec<_> = surface.faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
     let mesh = TriMesh::with_flags(points, faces, TriMeshFlags::ORIENTED).ok()?;
     let outside = |at: Point3<f64>| {
-        let point = shapes::vector(&(at.coords / MM));
+        let point: Vector = (at.coords / MM).into();
         let found = mesh.project_local_point(point, true);
         let depth = if found.is_inside { 0.0 } else { (found.point - point).length() * MM };
         Intrusion { depth, at }

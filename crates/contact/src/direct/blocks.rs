@@ -17,7 +17,7 @@ pub(super) struct Blocks {
     /// Number of bodies.
     size: usize,
     /// Number of bodies, the first, that are eliminated.
-    eliminated: usize,
+    pub eliminated: usize,
     /// Place in `blocks` of a block (row >= column).
     index: Vec<usize>,
     blocks: Vec<Matrix6<f64>>,
@@ -28,10 +28,7 @@ impl Blocks {
     /// Zero matrix with the blocks of the pairs, and those that the elimination fills in.
     pub fn new(size: usize, eliminated: usize, pairs: &[(usize, usize)]) -> Self {
         let mut present = vec![false; size * size];
-        for i in 0..size {
-            present[i * size + i] = true;
-        }
-        for &(a, b) in pairs {
+        for (a, b) in (0..size).map(|i| (i, i)).chain(pairs.iter().copied()) {
             present[a.max(b) * size + a.min(b)] = true;
         }
         for k in 0..eliminated {
@@ -137,45 +134,5 @@ impl Blocks {
                 }
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn elimination_and_expansion_solve_the_system() {
-        // A chain 2 - 0 - 1 - 3 with 0 and 1 eliminated.
-        let pairs = [(0, 1), (0, 2), (1, 3)];
-        let mut system = Blocks::new(4, 2, &pairs);
-        let block = |seed: usize| Matrix6::from_fn(|r, c| ((seed + 7 * r + 3 * c) as f64).sin());
-        let mut whole = nalgebra::DMatrix::<f64>::zeros(24, 24);
-        for i in 0..4 {
-            let diagonal = block(i) * block(i).transpose() + Matrix6::identity() * 20.0;
-            system.add(i, i, &diagonal);
-            whole.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&diagonal);
-        }
-        for &(a, b) in &pairs {
-            system.add(b, a, &block(a + b));
-            whole.view_mut((6 * b, 6 * a), (6, 6)).copy_from(&block(a + b));
-            whole.view_mut((6 * a, 6 * b), (6, 6)).copy_from(&block(a + b).transpose());
-        }
-        let mut rhs: Vec<Vector6> =
-            (0..4).map(|i| Vector6::from_fn(|r, _| (i + r) as f64)).collect();
-        let expected = whole.lu().solve(&nalgebra::DVector::from_fn(24, |i, _| rhs[i / 6][i % 6]));
-        system.eliminate().expect("positive definite");
-        system.reduce(&mut rhs);
-        let mut dense = vec![[0.0; 6]; 24];
-        system.remainder(&mut dense);
-        let reduced = nalgebra::DMatrix::from_row_slice(12, 12, dense.as_flattened());
-        let right = nalgebra::DVector::from_fn(12, |i, _| rhs[2 + i / 6][i % 6]);
-        let solved = reduced.lu().solve(&right).expect("regular");
-        for i in 0..12 {
-            rhs[2 + i / 6][i % 6] = solved[i];
-        }
-        system.expand(&mut rhs);
-        let expected = expected.expect("regular");
-        assert!((0..24).all(|i| (rhs[i / 6][i % 6] - expected[i]).abs() < 1e-12));
     }
 }

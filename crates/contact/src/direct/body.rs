@@ -21,10 +21,9 @@ pub(super) struct MovingBody {
     pub kind: Kind,
     /// Body frame in the world.
     pub pose: Pose,
+    motion: Motion,
+    /// Zero without a mass that is the same in all directions.
     inertia: Inertia,
-    /// Mass by direction of the end of a mechanism, body axes.
-    mechanism: Option<Matrix6<f64>>,
-    weightless: bool,
     /// Centre of mass in the world, m; the body frame's origin if it has no mass.
     pub centre: Point3<f64>,
     /// Of the centre of mass (m/s) and angular (rad/s), world axes.
@@ -40,20 +39,17 @@ pub(super) struct MovingBody {
 impl MovingBody {
     /// Body at rest; `place` is its place in the system if it is dynamic.
     pub fn new(body: &Body, place: usize) -> Self {
-        let dynamic = Kind::Dynamic(place);
-        let (kind, inertia, weightless, mechanism) = match body.motion {
-            Motion::Fixed => (Kind::Fixed, MASSLESS, true, None),
-            Motion::Driven => (Kind::Driven(body.pose), MASSLESS, true, None),
-            Motion::Free(inertia) => (dynamic, inertia, false, None),
-            Motion::Carried(inertia) => (dynamic, inertia, true, None),
-            Motion::Mechanism(mass) => (dynamic, MASSLESS, true, Some(mass)),
+        let (kind, inertia) = match body.motion {
+            Motion::Fixed => (Kind::Fixed, Inertia::default()),
+            Motion::Driven => (Kind::Driven(body.pose), Inertia::default()),
+            Motion::Free(inertia) | Motion::Carried(inertia) => (Kind::Dynamic(place), inertia),
+            Motion::Mechanism(_) => (Kind::Dynamic(place), Inertia::default()),
         };
         let mut made = MovingBody {
             kind,
             pose: body.pose,
+            motion: body.motion,
             inertia,
-            mechanism,
-            weightless,
             centre: Point3::origin(),
             velocity: Vector6::zeros(),
             momentum: Vector6::zeros(),
@@ -80,8 +76,12 @@ impl MovingBody {
     /// Mass matrix about the centre of mass, world axes. That of a mechanism turns with its end;
     /// its change with the mechanism's pose is left out.
     pub fn mass(&self) -> Matrix6<f64> {
-        if let Some(mass) = &self.mechanism {
-            return turned(mass, &self.pose.rotation.to_rotation_matrix().into_inner());
+        if let Motion::Mechanism(mass) = &self.motion {
+            let axes = self.pose.rotation.to_rotation_matrix().into_inner();
+            let mut both = Matrix6::zeros();
+            both.fixed_view_mut::<3, 3>(0, 0).copy_from(&axes);
+            both.fixed_view_mut::<3, 3>(3, 3).copy_from(&axes);
+            return both * mass * both.transpose();
         }
         let mut mass = Matrix6::from_diagonal_element(self.inertia.mass);
         mass.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.tensor);
@@ -91,7 +91,7 @@ impl MovingBody {
     /// Momentum at the end of a step in which only gravity acts.
     pub fn momentum(&self, gravity: &Vector3<f64>, step: f64) -> Vector6 {
         let mut all = self.momentum;
-        if !self.weightless {
+        if let Motion::Free(_) = self.motion {
             let mut linear = all.fixed_rows_mut::<3>(0);
             linear += gravity * (step * self.inertia.mass);
         }
@@ -138,14 +138,3 @@ impl MovingBody {
         self.tensor = axes * Matrix3::from_diagonal(&self.inertia.moments) * axes.transpose();
     }
 }
-
-/// Turns a 6x6 matrix from body axes to world axes.
-fn turned(matrix: &Matrix6<f64>, axes: &Matrix3<f64>) -> Matrix6<f64> {
-    let mut both = Matrix6::zeros();
-    both.fixed_view_mut::<3, 3>(0, 0).copy_from(axes);
-    both.fixed_view_mut::<3, 3>(3, 3).copy_from(axes);
-    both * matrix * both.transpose()
-}
-
-const MASSLESS: Inertia =
-    Inertia { mass: 0.0, centre: Point3::new(0.0, 0.0, 0.0), moments: Vector3::new(0.0, 0.0, 0.0) };

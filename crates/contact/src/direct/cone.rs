@@ -13,15 +13,6 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-/// Compliances of a contact, 1/kg: relative velocity per impulse.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Compliance {
-    /// Along the normal.
-    pub normal: f64,
-    /// In the tangent plane, and about the normal at the patch radius.
-    pub tangent: f64,
-}
-
 /// Motion of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
@@ -51,26 +42,27 @@ impl Pull {
     }
 }
 
-/// Friction cone with its compliances.
+/// Friction cone with its compliances, 1/kg: relative velocity per impulse.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Cone {
     pub mu: f64,
-    pub compliance: Compliance,
+    /// Compliance along the normal.
+    pub normal: f64,
+    /// Compliance in the tangent plane, and about the normal at the patch radius.
+    pub tangent: f64,
 }
 
 impl Cone {
     /// Compliance along the edge of the cone, 1/kg.
     #[inline]
     fn edge(&self) -> f64 {
-        let Compliance { normal, tangent } = self.compliance;
-        normal * (1.0 + self.mu * self.mu * (tangent / normal))
+        self.normal * (1.0 + self.mu * self.mu * (self.tangent / self.normal))
     }
 
     /// Part of the cone on which the impulse lies.
     #[inline]
     pub fn state(&self, pull: &Pull) -> State {
-        let Compliance { normal, tangent } = self.compliance;
-        if pull.speed * normal <= self.mu * pull.normal * tangent {
+        if pull.speed * self.normal <= self.mu * pull.normal * self.tangent {
             State::Stick
         } else if self.mu * pull.speed <= -pull.normal {
             State::Apart
@@ -90,10 +82,7 @@ impl Cone {
     pub fn impulse(&self, pull: &Pull, normal: &Vector4<f64>) -> Vector4<f64> {
         match self.state(pull) {
             State::Apart => Vector4::zeros(),
-            State::Stick => {
-                normal * (pull.normal / self.compliance.normal)
-                    + pull.tangent / self.compliance.tangent
-            }
+            State::Stick => normal * (pull.normal / self.normal) + pull.tangent / self.tangent,
             State::Slide => {
                 let pressed = self.sliding(pull);
                 normal * pressed + pull.tangent * (self.mu * pressed / pull.speed)
@@ -107,8 +96,8 @@ impl Cone {
         match self.state(pull) {
             State::Apart => Matrix4::zeros(),
             State::Stick => {
-                let tangent = 1.0 / self.compliance.tangent;
-                let extra = 1.0 / self.compliance.normal - tangent;
+                let tangent = 1.0 / self.tangent;
+                let extra = 1.0 / self.normal - tangent;
                 Matrix4::from_diagonal_element(tangent) + (normal * extra) * normal.transpose()
             }
             State::Slide => {
@@ -129,7 +118,7 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    const CONE: Cone = Cone { mu: 0.3, compliance: Compliance { normal: 0.02, tangent: 0.001 } };
+    const CONE: Cone = Cone { mu: 0.3, normal: 0.02, tangent: 0.001 };
 
     fn impulse(u: Vector4<f64>) -> Vector4<f64> {
         CONE.impulse(&Pull::new(&u, &Vector4::z(), 0.0), &Vector4::z())
@@ -145,7 +134,7 @@ mod tests {
             let friction = Vector3::new(l.x, l.y, l.w).norm();
             assert!(l.z >= 0.0 && friction <= CONE.mu * l.z * (1.0 + 1e-12));
             let step = impulse(u + Vector4::repeat(1e-9)) - l;
-            assert!(step.norm() < 4e-9 / CONE.compliance.tangent);
+            assert!(step.norm() < 4e-9 / CONE.tangent);
         }
     }
 

@@ -55,7 +55,7 @@ struct Solid {
 
 /// Pair of shapes that may touch.
 #[derive(Clone)]
-struct Candidate {
+pub(super) struct Candidate {
     pair: GeomPair,
     manifold: ContactManifold<(), ()>,
 }
@@ -64,7 +64,8 @@ struct Candidate {
 #[derive(Clone)]
 pub(super) struct Detector {
     solids: Vec<Solid>,
-    candidates: Vec<Candidate>,
+    /// Pairs of geoms.
+    pub candidates: Vec<Candidate>,
     prediction: f64,
 }
 
@@ -75,9 +76,6 @@ impl Detector {
         for (index, body) in scene.bodies.iter().enumerate() {
             solids.extend(body.geoms.iter().map(|geom| Solid::new(index, geom)));
         }
-        for solid in &mut solids {
-            solid.enclose(&Pose::identity());
-        }
         for i in 0..solids.len() {
             let (own, all) = (&solids[i], 0..solids.len());
             let near =
@@ -87,11 +85,6 @@ impl Detector {
         let candidate = |pair: GeomPair| Candidate { pair, manifold: ContactManifold::new() };
         let candidates = scene.geom_pairs().into_iter().map(candidate).collect();
         Detector { solids, candidates, prediction }
-    }
-
-    /// Number of pairs of geoms.
-    pub fn pairs(&self) -> usize {
-        self.candidates.len()
     }
 
     /// Finds the contacts at the bodies' poses.
@@ -119,7 +112,7 @@ impl Solid {
     fn new(body: usize, geom: &Geom) -> Self {
         let (shape, turn) = shapes::shared(&geom.shape, MILLIMETRES);
         let (centre, half) = shapes::bounds(&geom.shape);
-        Solid {
+        let mut solid = Solid {
             body,
             shape,
             pose: geom.pose * turn,
@@ -128,7 +121,9 @@ impl Solid {
             low: Vector3::zeros(),
             high: Vector3::zeros(),
             neighbours: Vec::new(),
-        }
+        };
+        solid.enclose(&Pose::identity());
+        solid
     }
 
     fn enclose(&mut self, body: &Pose) {
@@ -151,7 +146,7 @@ impl Solid {
                 return false;
             }
             let local = solids[j].pose.inverse_transform_point(&outside).coords * MILLIMETRES;
-            let distance = solids[j].shape.distance_to_local_point(shapes::vector(&local), true);
+            let distance = solids[j].shape.distance_to_local_point(local.into(), true);
             distance < SEAM * MILLIMETRES
         })
     }
@@ -163,7 +158,8 @@ impl Candidate {
         // With points left in it parry would only move them along.
         self.manifold.points.clear();
         let relative = shapes::pose(&first.inv_mul(second), MILLIMETRES);
-        let result = DefaultQueryDispatcher.contact_manifold_convex_convex(
+        // No error is reached: every shape that a scene can hold is convex.
+        let _ = DefaultQueryDispatcher.contact_manifold_convex_convex(
             &relative,
             &*solids.0.shape,
             &*solids.1.shape,
@@ -172,23 +168,19 @@ impl Candidate {
             prediction * MILLIMETRES,
             &mut self.manifold,
         );
-        if result.is_err() {
-            // Not reached: every shape that a scene can hold is convex.
-            self.manifold.points.clear();
-        }
     }
 
     /// Drops the points on faces that another shape of the same body covers: at a seam of flush
     /// parts the hidden end face of the next one would stop a sliding edge, 0.1 um deep.
     fn drop_covered(&mut self, solids: &[Solid]) {
         let manifold = &mut self.manifold;
-        let outward = [manifold.local_n1, manifold.local_n2].map(shapes::from_vector);
+        let outward = [manifold.local_n1, manifold.local_n2].map(Vector3::from);
         let sides = [&solids[self.pair.first], &solids[self.pair.second]];
         if sides.iter().all(|side| side.neighbours.is_empty()) {
             return;
         }
         manifold.points.retain(|point| {
-            let places = [point.local_p1, point.local_p2].map(shapes::from_vector);
+            let places = [point.local_p1, point.local_p2].map(Vector3::from);
             (0..2).all(|i| !sides[i].covered(&(places[i] / MILLIMETRES), &outward[i], solids))
         });
     }
@@ -197,11 +189,11 @@ impl Candidate {
     fn report(&mut self, geoms: usize, first: &Pose, prediction: f64, found: &mut Vec<Touch>) {
         let limit = prediction * MILLIMETRES;
         self.manifold.points.retain(|point| point.dist <= limit);
-        let axis = shapes::from_vector(self.manifold.local_n1);
+        let axis = Vector3::from(self.manifold.local_n1);
         let normal = first.rotation * axis;
         let middle = |i: usize| {
             let point = &self.manifold.points[i];
-            (shapes::from_vector(point.local_p1) + axis * (0.5 * point.dist)) / MILLIMETRES
+            (Vector3::from(point.local_p1) + axis * (0.5 * point.dist)) / MILLIMETRES
         };
         let add = |i: usize| {
             found.push(Touch {
@@ -215,8 +207,7 @@ impl Candidate {
         };
         let count = self.manifold.points.len();
         if count <= POINTS {
-            (0..count).for_each(add);
-            return;
+            return (0..count).for_each(add);
         }
         let deepest = best(count, |i| -self.manifold.points[i].dist);
         let far = best(count, |i| (middle(i) - middle(deepest)).norm_squared());
@@ -231,10 +222,5 @@ impl Candidate {
 
 /// First index below `count` with the largest value.
 fn best(count: usize, value: impl Fn(usize) -> f64) -> usize {
-    let start = (0, f64::NEG_INFINITY);
-    let keep = |best: (usize, f64), i: usize| {
-        let now = value(i);
-        if now > best.1 { (i, now) } else { best }
-    };
-    (0..count).fold(start, keep).0
+    (1..count).fold(0, |best, i| if value(i) > value(best) { i } else { best })
 }

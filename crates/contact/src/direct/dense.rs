@@ -98,27 +98,3 @@ fn solved(factor: &[f64], vector: &mut [f64], sixes: usize) {
         vector[k] = (vector[k] - sum) * factor[k * n + k];
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::{DMatrix, DVector};
-
-    #[test]
-    fn factor_and_solution_undo_the_product() {
-        let side = DMatrix::from_fn(12, 12, |r, c| ((1 + 5 * r + 3 * c) as f64).sin());
-        let whole = &side * side.transpose() + DMatrix::identity(12, 12);
-        let wanted: Vec<Six> =
-            (0..2).map(|i| std::array::from_fn(|r| (6 * i + r) as f64 - 4.0)).collect();
-        let mut square = whole.as_slice().as_chunks::<6>().0.to_vec();
-        let mut product = vec![[0.0; 6]; 2];
-        multiply(&square, &wanted, &mut product);
-        let flat = |parts: &[Six]| DVector::from_column_slice(parts.as_flattened());
-        assert!((&whole * flat(&wanted) - flat(&product)).norm() < 1e-12);
-        factor(&mut square, 2).expect("positive definite");
-        let mut solved = product.clone();
-        solve(&square, &mut solved);
-        assert!((flat(&solved) - flat(&wanted)).norm() < 1e-9);
-        assert!(factor(&mut [[-1.0; 6]; 6], 1).is_none());
-    }
-}

@@ -10,29 +10,13 @@
 
 use super::blocks::{Blocks, Vector6};
 use super::body::{Kind, MovingBody};
-use crate::scene::{Coupled, Joint, JointAxis, Pose, Spring, Springs};
+use crate::scene::{Joint, Spring, Springs};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
 /// Stiffness of a locked translation, N/m.
 const LOCKED: f64 = 1e9;
 /// Stiffness of a locked rotation, N m/rad: as stiff at an arm of 30 mm.
 const LOCKED_TURN: f64 = 1e6;
-
-/// Spring of one axis of a joint.
-#[derive(Debug, Clone, Copy)]
-struct Drive {
-    spring: Spring,
-    /// Sign of the force if the servo is at its limit, else 0.
-    saturated: f64,
-}
-
-/// Law of the force by the coordinates.
-#[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "a world has a handful of joints")]
-enum Law {
-    Drives([Drive; 6]),
-    Coupled(Coupled),
-}
 
 /// Impulse of a joint by its rate at the end of the step, `h c + h^2 k`: of each axis or of all.
 #[expect(clippy::large_enum_variant, reason = "lives on the stack of one call")]
@@ -68,11 +52,10 @@ impl Answer {
 /// Joint with its coordinates at the start of the step.
 #[derive(Debug, Clone)]
 pub(super) struct SprungJoint {
-    parent: usize,
-    child: usize,
-    in_parent: Pose,
-    in_child: Pose,
-    law: Law,
+    /// Joint of the scene, its locked axes sprung.
+    joint: Joint,
+    /// Sign of the force of each servo at its limit, else 0.
+    saturated: [f64; 6],
     /// Coordinates, m, rad.
     position: Vector6,
     /// Jacobians of the coordinates by the child's and by the parent's velocity.
@@ -82,23 +65,15 @@ pub(super) struct SprungJoint {
 
 impl SprungJoint {
     pub fn new(joint: &Joint) -> Self {
-        let drive = |i: usize, axis: JointAxis| {
-            let spring = match axis {
-                JointAxis::Sprung(spring) => spring,
-                JointAxis::Locked => Spring::new(if i < 3 { LOCKED } else { LOCKED_TURN }, 0.0),
-            };
-            Drive { spring, saturated: 0.0 }
-        };
-        let law = match &joint.springs {
-            Springs::Axes(axes) => Law::Drives(std::array::from_fn(|i| drive(i, axes[i]))),
-            Springs::Coupled(coupled) => Law::Coupled(*coupled),
-        };
+        let mut joint = joint.clone();
+        if let Springs::Axes(axes) = &mut joint.springs {
+            for (i, axis) in axes.iter_mut().enumerate() {
+                axis.get_or_insert(Spring::new(if i < 3 { LOCKED } else { LOCKED_TURN }, 0.0));
+            }
+        }
         SprungJoint {
-            parent: joint.parent.0,
-            child: joint.child.0,
-            in_parent: joint.in_parent,
-            in_child: joint.in_child,
-            law,
+            joint,
+            saturated: [0.0; 6],
             position: Vector6::zeros(),
             by_child: Matrix6::zeros(),
             by_parent: Matrix6::zeros(),
@@ -107,18 +82,17 @@ impl SprungJoint {
 
     /// Replaces the spring of an axis, if any; a servo stays at its limit till the next step.
     pub fn set(&mut self, axis: usize, spring: Spring) {
-        let Law::Drives(drives) = &mut self.law else { return };
-        let drive = &mut drives[axis];
-        drive.spring = spring;
+        let Springs::Axes(axes) = &mut self.joint.springs else { return };
+        axes[axis] = Some(spring);
         if spring.limit.is_infinite() {
-            drive.saturated = 0.0;
+            self.saturated[axis] = 0.0;
         }
     }
 
     /// Computes the coordinates and their Jacobian at the bodies' poses.
     pub fn locate(&mut self, bodies: &[MovingBody]) {
-        let (parent, child) = (&bodies[self.parent], &bodies[self.child]);
-        let (p, c) = (parent.pose * self.in_parent, child.pose * self.in_child);
+        let (parent, child) = (&bodies[self.joint.parent.0], &bodies[self.joint.child.0]);
+        let (p, c) = (parent.pose * self.joint.in_parent, child.pose * self.joint.in_child);
         let relative = p.inv_mul(&c);
         let turn = relative.rotation.scaled_axis();
         self.position.fixed_rows_mut::<3>(0).copy_from(&relative.translation.vector);
@@ -133,21 +107,21 @@ impl SprungJoint {
 
     /// Impulse by the rates, and at no rate.
     fn answer(&self, step: f64) -> (Answer, Vector6) {
-        let drives = match &self.law {
-            Law::Drives(drives) => drives,
-            Law::Coupled(coupled) => {
-                let stiff = (coupled.damping + coupled.stiffness * step) * step;
-                return (Answer::All(stiff), coupled.stiffness * self.position * -step);
+        let axes = match &self.joint.springs {
+            Springs::Axes(axes) => axes.iter().flatten(),
+            Springs::Coupled { stiffness, damping } => {
+                let stiff = (damping + stiffness * step) * step;
+                return (Answer::All(stiff), stiffness * self.position * -step);
             }
         };
         let mut stiff = Vector6::zeros();
         let mut push = Vector6::zeros();
-        for (i, drive) in drives.iter().enumerate() {
-            if drive.saturated == 0.0 {
-                stiff[i] = step * (drive.spring.damping + step * drive.spring.stiffness);
-                push[i] = -step * drive.spring.stiffness * (self.position[i] - drive.spring.target);
+        for (i, spring) in axes.enumerate() {
+            if self.saturated[i] == 0.0 {
+                stiff[i] = step * (spring.damping + step * spring.stiffness);
+                push[i] = -step * spring.stiffness * (self.position[i] - spring.target);
             } else {
-                push[i] = step * drive.saturated * drive.spring.limit;
+                push[i] = step * self.saturated[i] * spring.limit;
             }
         }
         (Answer::Each(stiff), push)
@@ -163,12 +137,13 @@ impl SprungJoint {
     ) {
         let (answer, mut push) = self.answer(step);
         // A driven end moves at a known velocity: it belongs on the right-hand side.
-        for (end, jacobian) in [(self.parent, &self.by_parent), (self.child, &self.by_child)] {
-            if let Kind::Driven(_) = bodies[end].kind {
-                push -= answer.to(&(jacobian * bodies[end].velocity));
+        let [parent, child] = [self.joint.parent, self.joint.child].map(|end| &bodies[end.0]);
+        for (end, jacobian) in [(parent, &self.by_parent), (child, &self.by_child)] {
+            if let Kind::Driven(_) = end.kind {
+                push -= answer.to(&(jacobian * end.velocity));
             }
         }
-        let (parent, child) = (bodies[self.parent].place(), bodies[self.child].place());
+        let (parent, child) = (parent.place(), child.place());
         for (place, jacobian) in [(parent, &self.by_parent), (child, &self.by_child)] {
             let Some(place) = place else { continue };
             system.add(place, place, &jacobian.tr_mul(&answer.through(jacobian)));
@@ -185,23 +160,22 @@ impl SprungJoint {
 
     /// Sets the servos that are at their limits; whether the last solution assumed the same.
     pub fn update_limits(&mut self, bodies: &[MovingBody], step: f64) -> bool {
-        let Law::Drives(drives) = &mut self.law else { return true };
-        if drives.iter().all(|drive| drive.spring.limit.is_infinite()) {
+        let Springs::Axes(axes) = &self.joint.springs else { return true };
+        if axes.iter().flatten().all(|spring| spring.limit.is_infinite()) {
             return true;
         }
-        let rate = self.by_child * bodies[self.child].velocity
-            + self.by_parent * bodies[self.parent].velocity;
-        let mut as_assumed = true;
-        for (i, drive) in drives.iter_mut().enumerate() {
-            let Spring { stiffness, damping, target, limit } = drive.spring;
+        let rate = self.by_child * bodies[self.joint.child.0].velocity
+            + self.by_parent * bodies[self.joint.parent.0].velocity;
+        let before = self.saturated;
+        for (i, spring) in axes.iter().flatten().enumerate() {
+            let &Spring { stiffness, damping, target, limit } = spring;
             let end = self.position[i] + step * rate[i];
             let force = -stiffness * (end - target) - damping * rate[i];
             // A margin, lest rounding flips it for ever.
-            let now = if force.abs() > limit * (1.0 + 1e-9) { force.signum() } else { 0.0 };
-            as_assumed &= now == drive.saturated;
-            drive.saturated = now;
+            let beyond = force.abs() > limit * (1.0 + 1e-9);
+            self.saturated[i] = if beyond { force.signum() } else { 0.0 };
         }
-        as_assumed
+        self.saturated == before
     }
 }
 

@@ -145,7 +145,20 @@ impl Solver {
             contact.slide = contact.sliding();
         }
         for _ in 0..ROUNDS {
-            self.newton(contacts, step * FORCE_TOLERANCE, &mut iterations)?;
+            while iterations < ITERATIONS {
+                // A NaN goes on, and is found when the matrix is factored.
+                if self.slope(contacts) < step * FORCE_TOLERANCE {
+                    break;
+                }
+                iterations += 1;
+                self.descend(contacts)?;
+                let along = self.search(contacts);
+                let direction = self.direction.as_flattened();
+                for (v, d) in self.velocities.as_flattened_mut().iter_mut().zip(direction) {
+                    *v += d * along;
+                }
+                self.update_velocities(contacts);
+            }
             let mut error: f64 = 0.0;
             for contact in contacts.iter_mut() {
                 // With the sliding term that the velocities were solved with.
@@ -159,30 +172,6 @@ impl Solver {
             if error < SLIDING_TOLERANCE {
                 break;
             }
-        }
-        Some(())
-    }
-
-    /// Newton's iterations, `iterations` of which were made in this step already.
-    fn newton(
-        &mut self,
-        contacts: &mut [Contact],
-        tolerance: f64,
-        iterations: &mut usize,
-    ) -> Option<()> {
-        while *iterations < ITERATIONS {
-            // A NaN goes on, and is found when the matrix is factored.
-            if self.slope(contacts) < tolerance {
-                break;
-            }
-            *iterations += 1;
-            self.descend(contacts)?;
-            let along = self.search(contacts);
-            let direction = self.direction.as_flattened();
-            for (v, d) in self.velocities.as_flattened_mut().iter_mut().zip(direction) {
-                *v += d * along;
-            }
-            self.update_velocities(contacts);
         }
         Some(())
     }

@@ -5,9 +5,7 @@ use super::Direct;
 use super::body::MovingBody;
 use super::world::DirectWorld;
 use crate::World;
-use crate::scene::{
-    Body, BodyId, Coupled, Inertia, Joint, JointAxis, JointId, Motion, Pose, Scene, Spring, Springs,
-};
+use crate::scene::{Body, BodyId, Inertia, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
 use nalgebra::{Matrix6, Point3, Vector3, Vector6};
 
 fn world(scene: &Scene, step_s: f64) -> DirectWorld {
@@ -37,7 +35,7 @@ fn sprung(springs: [f64; 6], gravity: Vector3<f64>, arm: Vector3<f64>) -> Scene 
         in_parent: Pose::identity(),
         in_child: Pose::identity(),
         springs: Springs::Axes(std::array::from_fn(|i| {
-            JointAxis::Sprung(Spring::new(springs[i], if i < 3 { 20.0 } else { 0.02 }))
+            Some(Spring::new(springs[i], if i < 3 { 20.0 } else { 0.02 }))
         })),
     });
     scene
@@ -54,7 +52,7 @@ fn coupled_springs_give_by_their_inverse() {
     }
     let damping = Matrix6::from_diagonal(&[20.0, 20.0, 20.0, 0.02, 0.02, 0.02].into());
     let mut scene = sprung([1.0; 6], Vector3::zeros(), Vector3::zeros());
-    scene.joints[0].springs = Springs::Coupled(Coupled { stiffness, damping });
+    scene.joints[0].springs = Springs::Coupled { stiffness, damping };
     for axis in 0..6 {
         let load = Vector6::ith(axis, if axis < 3 { 0.5 } else { 2e-3 });
         let mut world = world(&scene, 5e-4);

@@ -3,7 +3,7 @@
 use super::Direct;
 use super::blocks::{Blocks, Vector6};
 use super::body::{Kind, MovingBody};
-use super::cone::{Compliance, Cone};
+use super::cone::Cone;
 use super::contacts::{Detector, Touch};
 use super::joints::SprungJoint;
 use super::patch::Patch;
@@ -32,8 +32,6 @@ pub(super) struct DirectWorld {
     values: Vec<Vector6>,
     /// Force at the centre of mass and moment applied to each body, N, N m.
     pushes: Vec<Vector6>,
-    /// Number of places, the first, that are eliminated before contacts are solved.
-    eliminated: usize,
     solver: Solver,
     touches: Vec<Touch>,
     contacts: Vec<Contact>,
@@ -56,12 +54,14 @@ impl DirectWorld {
             joints: scene.joints.iter().map(SprungJoint::new).collect(),
             pairs: scene.contacts.clone(),
             forces: vec![ContactForce::default(); scene.contacts.len()],
-            patches: vec![None; if scene.patched().is_some() { detector.pairs() } else { 0 }],
+            patches: vec![
+                None;
+                if scene.patched().is_some() { detector.candidates.len() } else { 0 }
+            ],
             detector,
             system: Blocks::new(size, eliminated, &coupled),
             values: vec![Vector6::zeros(); size],
             pushes: vec![Vector6::zeros(); scene.bodies.len()],
-            eliminated,
             solver: Solver::new(size - eliminated),
             touches: Vec::new(),
             contacts: Vec::new(),
@@ -77,21 +77,20 @@ impl DirectWorld {
         // Force at the end of the step: k gap + c rate; `share` is that of the gap at its start.
         let spring = self.settings.contact_stiffness * step;
         let share = spring / (spring + self.settings.contact_damping);
-        let compliance = Compliance {
-            normal: share / (spring * step),
-            tangent: 1.0 / (self.settings.stick_damping * step),
-        };
+        let normal = share / (spring * step);
+        let tangent = 1.0 / (self.settings.stick_damping * step);
         self.press(None);
         for touch in &self.touches {
             let pair = &self.pairs[touch.pair];
             let ends = [&self.bodies[pair.first.0], &self.bodies[pair.second.0]];
-            let place = ends.map(|body| body.place().map(|place| place - self.eliminated));
+            let place = ends.map(|body| body.place().map(|place| place - self.system.eliminated));
             let arm = ends.map(|body| touch.point - body.centre);
-            let cone = Cone { mu: touch.friction.coefficient, compliance };
+            let cone = Cone { mu: touch.friction.coefficient, normal, tangent };
             let lever = match touch.friction.torsion {
                 Torsion::Radius(radius) => arm.map(|arm| lever(&arm, &(touch.normal * radius))),
                 Torsion::Patch => {
-                    let aside = self.aside(touch, ends[0]);
+                    let aside = |p: &Patch| p.aside(&ends[0].pose, &touch.point, &touch.normal);
+                    let aside = self.patches[touch.geoms].as_ref().map_or(Vector3::zeros(), aside);
                     let at_point = arm.map(|arm| lever(&arm, &Vector3::zeros()));
                     at_point.map(|lever| moved_aside(&lever, &aside, &touch.normal))
                 }
@@ -108,12 +107,6 @@ impl DirectWorld {
             let (normal, rest) = (touch.normal.push(0.0), Contact::default());
             self.contacts.push(Contact { place, lever, normal, drift, bias, cone, ..rest });
         }
-    }
-
-    /// Distance from a point of a patch to where its friction acts, m; `first` is the first body.
-    fn aside(&self, touch: &Touch, first: &MovingBody) -> Vector3<f64> {
-        let aside = |patch: &Patch| patch.aside(&first.pose, &touch.point, &touch.normal);
-        self.patches[touch.geoms].as_ref().map_or(Vector3::zeros(), aside)
     }
 
     /// Sets the patches as these contacts load them; without contacts the new ones, evenly.
@@ -153,7 +146,7 @@ impl DirectWorld {
         self.system.eliminate()?;
         self.system.reduce(&mut self.values);
         self.system.remainder(&mut self.solver.system);
-        let free = &mut self.values[self.eliminated..];
+        let free = &mut self.values[self.system.eliminated..];
         for (rhs, value) in self.solver.rhs.iter_mut().zip(&*free) {
             *rhs = (*value).into();
         }
@@ -179,7 +172,9 @@ impl DirectWorld {
         let step = self.settings.step_s;
         for body in &mut self.bodies {
             body.steer(step);
-            if let Some(free) = body.place().and_then(|place| place.checked_sub(self.eliminated)) {
+            if let Some(free) =
+                body.place().and_then(|place| place.checked_sub(self.system.eliminated))
+            {
                 self.solver.velocities[free] = body.velocity.into();
             }
         }

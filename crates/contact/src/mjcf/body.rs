@@ -3,7 +3,7 @@
 use super::xml::Element;
 use super::{AXES, HEAVY, axis_name, driven_axis_name, geom_names, mesh_name};
 use crate::scene::{
-    Body, BodyId, Geom, Inertia, Joint, JointAxis, Motion, Pose, Scene, Shape, Springs,
+    Body, BodyId, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Spring, Springs,
 };
 use nalgebra::{Point3, Vector3};
 
@@ -27,11 +27,15 @@ pub(super) fn world(scene: &Scene) -> Element {
     let light =
         Element::new("light").numbers("pos", [0.1, -0.2, 0.5]).numbers("dir", [-0.2, 0.4, -1.0]);
     let list = roots.map(|body| {
-        let placed = placed(element(scene, body), &scene.bodies[body].pose);
-        let rooted = match scene.bodies[body].motion {
+        let root = &scene.bodies[body];
+        let placed = element(root, &root.pose);
+        let rooted = match root.motion {
             // Movable, since the trial shifts the socket and takes the stand away.
             Motion::Fixed => placed.with("mocap", "true"),
-            Motion::Driven => placed.holding(driven_joints(&scene.bodies[body])),
+            // Slides along and hinges about the axes of its first pose.
+            Motion::Driven => placed.holding(
+                (0..6).map(|axis| joint(&driven_axis_name(root, axis), &Pose::identity(), axis)),
+            ),
             _ => placed.holding([Element::new("freejoint")]),
         };
         rooted.holding(inside(scene, body, &names))
@@ -46,7 +50,7 @@ fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     list.extend(geoms.map(|(geom, name)| geom_element(scene, body, geom, name)));
     for joint in scene.joints.iter().filter(|joint| joint.parent.0 == body) {
         let child = joint.child.0;
-        let carried = placed(element(scene, child), &zero(joint));
+        let carried = element(&scene.bodies[child], &zero(joint));
         list.push(carried.holding(joints(joint)).holding(inside(scene, child, names)));
     }
     list
@@ -57,13 +61,10 @@ pub(super) fn zero(joint: &Joint) -> Pose {
     joint.in_parent * joint.in_child.inverse()
 }
 
-fn element(scene: &Scene, body: usize) -> Element {
-    let Body { name, motion, .. } = &scene.bodies[body];
+fn element(Body { name, motion, .. }: &Body, pose: &Pose) -> Element {
     let element = Element::new("body").with("name", name);
-    match motion {
-        Motion::Carried(_) | Motion::Driven => element.with("gravcomp", 1),
-        Motion::Fixed | Motion::Free(_) | Motion::Mechanism(_) => element,
-    }
+    let compensated = matches!(motion, Motion::Carried(_) | Motion::Driven);
+    placed(if compensated { element.with("gravcomp", 1) } else { element }, pose)
 }
 
 fn placed(element: Element, pose: &Pose) -> Element {
@@ -87,17 +88,12 @@ fn inertial(motion: &Motion) -> Option<Element> {
     Some(element.numbers("diaginertia", inertia.moments.iter().copied()))
 }
 
-/// Slides along and hinges about the axes of the body's first pose.
-fn driven_joints(body: &Body) -> Vec<Element> {
-    (0..6).map(|axis| joint(&driven_axis_name(body, axis), &Pose::identity(), axis)).collect()
-}
-
 /// First the slides, so that their axes are the parent's.
 fn joints(tie: &Joint) -> Vec<Element> {
     // Coupled springs are refused before.
     let Springs::Axes(axes) = &tie.springs else { return Vec::new() };
-    let element = |(i, axis): (usize, &JointAxis)| {
-        let JointAxis::Sprung(spring) = axis else { return None };
+    let element = |(i, axis): (usize, &Option<Spring>)| {
+        let spring = axis.as_ref()?;
         let element = joint(&axis_name(tie, i), &tie.in_child, i);
         // A servo is an actuator.
         if spring.limit.is_finite() {
@@ -111,7 +107,7 @@ fn joints(tie: &Joint) -> Vec<Element> {
 }
 
 fn joint(name: &str, frame: &Pose, axis: usize) -> Element {
-    let along = frame.rotation * Vector3::from(std::array::from_fn(|i| f64::from(i == axis % 3)));
+    let along = frame.rotation * Vector3::ith(axis % 3, 1.0);
     let kind = if axis < AXES.len() / 2 { "slide" } else { "hinge" };
     let element = Element::new("joint").with("name", name).with("type", kind);
     let element = element.numbers("axis", along.iter().copied());

@@ -16,7 +16,7 @@
 
 use super::{HEAVY, MjcfSettings, geom_names, xml::Element};
 use crate::scene::{
-    Body, BodyId, ContactPair, Friction, GeomPair, Inertia, Joint, JointAxis, Motion, Pose, Scene,
+    Body, BodyId, ContactPair, Friction, GeomPair, Inertia, Joint, Motion, Pose, Scene, Spring,
     Springs, Torsion,
 };
 use nalgebra::{DMatrix, Matrix3, Point3, Vector3, Vector6};
@@ -32,9 +32,18 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
     let pair = |pair: GeomPair| {
         let ContactPair { first, second, .. } = scene.contacts[pair.bodies];
         let weight = inverse_weight(scene, first) + inverse_weight(scene, second);
+        let share = settings.contact_mass * weight;
+        let impedance = (share / (1.0 + share)).clamp(IMPEDANCES[0], IMPEDANCES[1]);
+        // MuJoCo divides both by the impedance.
+        let scale = impedance / settings.contact_mass;
+        let solref = [settings.contact_stiffness, settings.contact_damping].map(|by| -by * scale);
+        // Friction knows no gap; its stiffness only has to be negative, too.
+        let friction = [solref[0], -settings.friction_rate * impedance];
         let element = Element::new("pair").with("geom1", &names[pair.first]);
-        let element = element.with("geom2", &names[pair.second]);
-        soft(rough(element, pair.friction), weight, settings)
+        rough(element.with("geom2", &names[pair.second]), pair.friction)
+            .numbers("solref", solref)
+            .numbers("solreffriction", friction)
+            .numbers("solimp", [impedance, impedance, WIDTH])
     };
     Element::new("contact").holding(scene.geom_pairs().into_iter().map(pair))
 }
@@ -53,20 +62,6 @@ fn rough(pair: Element, Friction { coefficient, torsion }: Friction) -> Element 
     }
 }
 
-/// Adds stiffness and damping of two geoms of bodies of this inverse mass, 1/kg.
-fn soft(pair: Element, weight: f64, settings: &MjcfSettings) -> Element {
-    let share = settings.contact_mass * weight;
-    let impedance = (share / (1.0 + share)).clamp(IMPEDANCES[0], IMPEDANCES[1]);
-    // MuJoCo divides both by the impedance.
-    let scale = impedance / settings.contact_mass;
-    let solref = [settings.contact_stiffness, settings.contact_damping].map(|by| -by * scale);
-    // Friction knows no gap; its stiffness only has to be negative, too.
-    let friction = [solref[0], -settings.friction_rate * impedance];
-    pair.numbers("solref", solref)
-        .numbers("solreffriction", friction)
-        .numbers("solimp", [impedance, impedance, WIDTH])
-}
-
 /// Inverse mass that MuJoCo gives a body, 1/kg: the mean over the three axes of the inverse mass at
 /// its centre of mass, 0 for an axis that is locked to a parent on a joint of its own.
 pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
@@ -79,7 +74,7 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     let alone = 1.0 / inertia.mass;
     let Some(joint) = scene.joints.iter().find(|joint| joint.child == body) else { return alone };
     let Springs::Axes(axes) = &joint.springs else { return alone };
-    let free = axes[..3].iter().filter(|axis| matches!(axis, JointAxis::Sprung(_))).count();
+    let free = axes[..3].iter().flatten().count();
     let loose = !scene.joints.iter().any(|other| other.child == joint.parent);
     match scene.bodies[joint.parent.0].motion {
         Motion::Free(parent) | Motion::Carried(parent) if free < 3 && loose => {
@@ -94,14 +89,14 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
 fn on_free_body(
     scene: &Scene,
     joint: &Joint,
-    axes: &[JointAxis; 6],
+    axes: &[Option<Spring>; 6],
     [parent, child]: [&Inertia; 2],
 ) -> f64 {
     let [above, below] = [joint.parent, joint.child].map(|body| scene.bodies[body.0].pose);
     let at = below * child.centre;
     let frame = above * joint.in_parent;
     // Columns: linear velocity at the child's centre of mass, and angular, of each free axis.
-    let free = (0..6).filter(|&i| matches!(axes[i], JointAxis::Sprung(_)));
+    let free = (0..6).filter(|&i| axes[i].is_some());
     let column = |i: usize| {
         let axis = frame.rotation * Vector3::ith(i % 3, 1.0);
         let arm = at.coords - frame.translation.vector;

@@ -18,7 +18,8 @@ mod contact;
 mod xml;
 
 use super::lacking;
-use crate::scene::{Body, Joint, JointAxis, Motion, Scene, Spring, Springs};
+use crate::direct::Direct;
+use crate::scene::{Body, Joint, Motion, Scene, Spring, Springs};
 use xml::Element;
 
 /// Step and stiffness of the simulation in MuJoCo.
@@ -46,11 +47,12 @@ pub struct MjcfSettings {
 
 impl Default for MjcfSettings {
     fn default() -> Self {
+        let Direct { contact_stiffness, contact_damping, stick_damping, .. } = Direct::default();
         MjcfSettings {
             step_s: 5e-5,
-            contact_stiffness: 5.5e5,
-            contact_damping: 1500.0,
-            stick_damping: 2e6,
+            contact_stiffness,
+            contact_damping,
+            stick_damping,
             contact_mass: 0.1,
             friction_rate: 3000.0,
             tolerance: 1e-10,
@@ -129,9 +131,8 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         contact::pairs(scene, settings),
         actuators(scene),
     ]);
-    let mut text = "<!-- Lengths in m, masses in kg, forces in N, angles in rad. -->\n".to_owned();
-    model.write(0, &mut text);
-    Ok(text)
+    let units = "<!-- Lengths in m, masses in kg, forces in N, angles in rad. -->\n";
+    Ok(units.to_owned() + &model.text(0))
 }
 
 /// Actuators of the driven bodies and of the servos.
@@ -140,15 +141,12 @@ fn actuators(scene: &Scene) -> Element {
     let stiffness = HEAVY * VIEWER_FREQUENCY * VIEWER_FREQUENCY;
     let damping = 2.0 * HEAVY * VIEWER_FREQUENCY;
     let follows = Spring::new(stiffness, damping);
-    let command = |(body, axis)| {
-        // As far as the sliders of a viewer reach: 0.1 m, 0.5 rad.
-        actuator(&driven_axis_name(body, axis), &follows, if axis < 3 { 0.1 } else { 0.5 })
-    };
-    let commands = driven.flat_map(|body| (0..6).map(move |axis| (body, axis))).map(command);
-    let axes = scene.joints.iter().flat_map(|joint| (0..6).map(move |axis| (joint, axis)));
-    let servos = axes.filter_map(|(joint, axis)| {
-        Some(actuator(&axis_name(joint, axis), servo(joint, axis)?, 0.02))
-    });
+    // As far as the sliders of a viewer reach: 0.1 m, 0.5 rad.
+    let command =
+        |body, i| actuator(&driven_axis_name(body, i), &follows, if i < 3 { 0.1 } else { 0.5 });
+    let commands = driven.flat_map(|body| (0..6).map(move |axis| command(body, axis)));
+    let servo = |joint, i| Some(actuator(&axis_name(joint, i), servo(joint, i)?, 0.02));
+    let servos = scene.joints.iter().flat_map(|joint| (0..6).filter_map(move |i| servo(joint, i)));
     Element::new("actuator").holding(commands).holding(servos)
 }
 
@@ -165,8 +163,7 @@ fn actuator(joint: &str, spring: &Spring, reach: f64) -> Element {
 /// Spring of an axis that is a servo: one with a limit.
 pub(crate) fn servo(joint: &Joint, axis: usize) -> Option<&Spring> {
     let Springs::Axes(axes) = &joint.springs else { return None };
-    let JointAxis::Sprung(spring) = &axes[axis] else { return None };
-    spring.limit.is_finite().then_some(spring)
+    axes[axis].as_ref().filter(|spring| spring.limit.is_finite())
 }
 
 const AXES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
@@ -187,9 +184,9 @@ pub fn geom_names(scene: &Scene) -> Vec<Vec<String>> {
         let mut names: Vec<String> = Vec::new();
         for geom in &body.geoms {
             let name = format!("{}: {}", body.name, geom.name);
-            let unique = (1..).map(|n| if n == 1 { name.clone() } else { format!("{name} {n}") });
-            let free = unique.into_iter().find(|name| !names.contains(name));
-            names.extend(free);
+            let unique = (2..).map(|n| format!("{name} {n}"));
+            let mut unique = std::iter::once(name.clone()).chain(unique);
+            names.extend(unique.find(|name| !names.contains(name)));
         }
         names
     };

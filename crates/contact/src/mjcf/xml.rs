@@ -1,24 +1,26 @@
 //! XML of a model: elements with attributes, indented.
 
-use std::fmt::{Display, Write};
+use std::fmt::Display;
 
 /// Element with its attributes and children.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Element {
     name: &'static str,
-    attributes: Vec<(&'static str, String)>,
+    attributes: String,
     children: Vec<Element>,
 }
 
 impl Element {
     /// Element without attributes and children.
     pub fn new(name: &'static str) -> Self {
-        Element { name, attributes: Vec::new(), children: Vec::new() }
+        Element { name, attributes: String::new(), children: Vec::new() }
     }
 
     /// Adds an attribute.
     pub fn with(mut self, name: &'static str, value: impl Display) -> Self {
-        self.attributes.push((name, value.to_string()));
+        let value = value.to_string().replace('&', "&amp;").replace('"', "&quot;");
+        let value = value.replace('<', "&lt;").replace('>', "&gt;");
+        self.attributes += &format!(" {name}=\"{value}\"");
         self
     }
 
@@ -34,29 +36,15 @@ impl Element {
         self
     }
 
-    /// Appends the element as text, indented by `depth` levels.
-    pub fn write(&self, depth: usize, out: &mut String) {
-        let indent = "  ".repeat(depth);
-        // Writing to a string cannot fail.
-        let _ = write!(out, "{indent}<{}", self.name);
-        for (name, value) in &self.attributes {
-            let _ = write!(out, " {name}=\"{}\"", escape(value));
+    /// Text, indented by `depth` levels.
+    pub fn text(&self, depth: usize) -> String {
+        let (Element { name, attributes, children }, indent) = (self, "  ".repeat(depth));
+        if children.is_empty() {
+            return format!("{indent}<{name}{attributes}/>\n");
         }
-        if self.children.is_empty() {
-            out.push_str("/>\n");
-            return;
-        }
-        out.push_str(">\n");
-        for child in &self.children {
-            child.write(depth + 1, out);
-        }
-        let _ = writeln!(out, "{indent}</{}>", self.name);
+        let inside: String = children.iter().map(|child| child.text(depth + 1)).collect();
+        format!("{indent}<{name}{attributes}>\n{inside}{indent}</{name}>\n")
     }
-}
-
-fn escape(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    text.replace('"', "&quot;")
 }
 
 #[cfg(test)]
@@ -67,10 +55,8 @@ mod tests {
     fn elements_nest_and_values_are_escaped() {
         let inner = Element::new("b").numbers("pos", [0.5, -1e-3, 0.0]);
         let outer = Element::new("a").with("name", "x<\"&\">").holding([inner]);
-        let mut text = String::new();
-        outer.write(0, &mut text);
         let expected =
             "<a name=\"x&lt;&quot;&amp;&quot;&gt;\">\n  <b pos=\"0.5 -0.001 0\"/>\n</a>\n";
-        assert_eq!(text, expected);
+        assert_eq!(outer.text(0), expected);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::mjcf::{HEAVY, axis_name, driven_axis_name, geom_names, servo};
 use crate::scene::{
-    Body, BodyId, ContactPair, Joint, JointAxis, JointId, Motion, Pose, Scene, Spring, Springs,
+    Body, BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Springs,
 };
 use crate::{ContactForce, Diverged, World};
 use mujoco_rs::prelude::{MjData, MjModel, MjtObjBase};
@@ -250,7 +250,9 @@ fn body_places(model: &MjModel, body: &Body) -> BodyPlaces {
 
 fn axis_place(model: &MjModel, joint: &Joint, axis: usize) -> AxisPlace {
     let Springs::Axes(axes) = &joint.springs else { return AxisPlace::Locked };
-    let JointAxis::Sprung(_) = axes[axis] else { return AxisPlace::Locked };
+    if axes[axis].is_none() {
+        return AxisPlace::Locked;
+    }
     let name = axis_name(joint, axis);
     if let Some(&spring) = servo(joint, axis) {
         let actuator = id(model, MjtObjBase::mjOBJ_ACTUATOR, &name);

@@ -1,7 +1,6 @@
 //! rapier3d in double precision, to compare `direct` with: a general engine for games and robots,
 //! slower and less exact here (`docs/notes/simulation.md`, "Engines").
 
-mod build;
 mod world;
 
 use super::{Engine, Unsupported, World, lacking};

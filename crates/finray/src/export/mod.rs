@@ -4,7 +4,6 @@
 //! Files are in millimetres: X from the tip to the base, Y from back (0) to front side, Z the
 //! depth, in which the profile is printed layer by layer.
 
-mod dimension;
 pub mod prism;
 pub mod profile;
 pub mod sheet;

@@ -2,7 +2,7 @@
 
 use super::rings;
 use crate::geometry::Geometry;
-use crate::mesh::{Mesh, MeshError};
+use crate::mesh::Mesh;
 use crate::polygon::{self, Ring};
 use input::units::MM;
 use maud::html;
@@ -23,23 +23,9 @@ pub struct Prism {
 }
 
 /// Reason why there is no closed surface.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum PrismError {
-    /// A profile that no triangles fill.
-    #[error("the profile cannot be divided into triangles: {0}")]
-    Profile(#[from] MeshError),
-    /// Triangles that do not close the surface.
-    #[error("{0} edges do not belong to exactly two triangles")]
-    Open(usize),
-    /// Another volume than that of the profile.
-    #[error("the volume is {found:.1} mm3; area times depth is {expected:.1} mm3")]
-    Volume {
-        /// Volume within the triangles, mm3.
-        found: f64,
-        /// Area of the profile times depth, mm3.
-        expected: f64,
-    },
-}
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct PrismError(String);
 
 /// Share by which a volume may differ from area times depth.
 const VOLUME_TOLERANCE: f64 = 1e-3;
@@ -89,7 +75,9 @@ impl Prism {
 
     /// Ring less holes (clockwise) from 0 to `depth`, mm.
     fn new(outer: &Ring, holes: &[Ring], depth: f64) -> Result<Self, PrismError> {
-        let mesh = Mesh::coarsest(outer, holes)?;
+        let mesh = Mesh::coarsest(outer, holes).map_err(|error| {
+            PrismError(format!("the profile cannot be divided into triangles: {error}"))
+        })?;
         let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
         let mut corners = Vec::new();
         let mut number = |node: u32| {
@@ -111,11 +99,14 @@ impl Prism {
         let area = polygon::area(outer) + holes.iter().map(|hole| polygon::area(hole)).sum::<f64>();
         let open = prism.open_edges();
         if open > 0 {
-            return Err(PrismError::Open(open));
+            let problem = format!("{open} edges do not belong to exactly two triangles");
+            return Err(PrismError(problem));
         }
         let (found, expected) = (prism.volume(), area * depth);
         if (found - expected).abs() > VOLUME_TOLERANCE * expected {
-            return Err(PrismError::Volume { found, expected });
+            let problem =
+                format!("the volume is {found:.1} mm3; area times depth is {expected:.1} mm3");
+            return Err(PrismError(problem));
         }
         Ok(prism)
     }

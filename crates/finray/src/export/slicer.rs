@@ -20,7 +20,8 @@ const CURA_SETTING_VERSION: &str = "20";
 /// design, an angle of 0 is along Y, and a positive one turns the lines' upper end to +X.
 pub fn cura(geometry: &Geometry) -> String {
     let (count, width) = walls(&geometry.finger);
-    let (notes, name) = (notes(geometry), name(geometry));
+    let name = title(geometry).replace(['%', '°', ','], "").replace("  ", " ");
+    let notes = notes(geometry);
     let (wall, line) = (mm(width), mm(geometry.finger.line_width));
     let (density, distance) = (geometry.design.density_percent, mm(geometry.lines.pitch));
     let angle = geometry.design.direction_deg;
@@ -63,7 +64,10 @@ pub fn prusaslicer(geometry: &Geometry) -> String {
     let (count, width) = walls(&geometry.finger);
     let (wall, line) = (mm(width), mm(geometry.finger.line_width));
     let notes = notes(geometry);
-    let density = prusaslicer_density(geometry) * 100.0;
+    // At the design's pitch: the spacing of lines that touch (their ends are half circles of the
+    // layer's height) over the pitch.
+    let touching = geometry.finger.line_width / MM - LAYER * (1.0 - PI / 4.0);
+    let density = touching / (geometry.lines.pitch / MM) * 100.0;
     // PrusaSlicer counts from X, counter-clockwise; the design from Y, clockwise.
     let angle = (90.0 - geometry.design.direction_deg).rem_euclid(180.0);
     format!(
@@ -89,21 +93,10 @@ infill_anchor_max = 0
     )
 }
 
-/// Density at which PrusaSlicer lays its lines at the design's pitch: the spacing of lines
-/// that touch (their ends are half circles of the layer's height) over the pitch.
-fn prusaslicer_density(geometry: &Geometry) -> f64 {
-    let touching = geometry.finger.line_width / MM - LAYER * (1.0 - PI / 4.0);
-    touching / (geometry.lines.pitch / MM)
-}
-
 /// Number and width, m, of the walls that make the skin: the fewest at most two lines wide.
 fn walls(finger: &PrintedFinger) -> (u32, f64) {
     let count = (finger.skin / (2.0 * finger.line_width) - 1e-9).ceil().max(1.0);
     (count as u32, finger.skin / count)
-}
-
-fn name(geometry: &Geometry) -> String {
-    title(geometry).replace(['%', '°', ','], "").replace("  ", " ")
 }
 
 fn notes(geometry: &Geometry) -> String {

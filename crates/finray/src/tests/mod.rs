@@ -1,10 +1,7 @@
-//! Mechanics against beams and solids; the lab's `analytic::finger` has the exact solutions.
+//! Mechanics against solids; the lab's `analytic::finger` has the exact solutions.
 
-mod beams;
-mod frame;
 mod geometry;
 mod solid;
-mod touch;
 
 use super::geometry::Geometry;
 use super::infill::Design;

@@ -8,7 +8,7 @@ use super::infill;
 use crate::condense::Element;
 use crate::elasticity::{Shape, Slab, area, shape};
 use crate::mechanics::{CROSS_SIZE, cross};
-use crate::meshed::{Body, Follow, held};
+use crate::meshed::{Body, held};
 use crate::plate::MindlinPlate;
 use crate::printed::Outline;
 use crate::stiffness::CrossStiffness;
@@ -85,9 +85,7 @@ impl Element for Solid {
         }
         matrix
     }
-}
 
-impl Follow for Solid {
     /// A turn moves X and Y in proportion to z (term 0, scaled by the half depth).
     fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]> {
         let [deflection, about_x, about_y] =

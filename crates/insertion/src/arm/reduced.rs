@@ -1,7 +1,7 @@
 //! The arm as its TCP feels it at one pose.
 
 use super::{Angles, Arm, ArmError};
-use contact::scene::{Coupled, Pose};
+use contact::scene::{Pose, Springs};
 use nalgebra::{Matrix3, Matrix6, SMatrix, UnitQuaternion, Vector3};
 
 /// Ratio of the Jacobian's singular values (m and rad alike) that counts as singular.
@@ -90,14 +90,14 @@ impl Arm {
 
 impl Reduced {
     /// Spring and damper between the command and the flange.
-    pub fn servo(&self) -> Coupled {
+    pub fn servo(&self) -> Springs {
         let damping = if self.feed_forward { self.damping } else { Matrix6::zeros() };
-        Coupled { stiffness: self.stiffness, damping }
+        Springs::Coupled { stiffness: self.stiffness, damping }
     }
 
     /// Damper between the flange and the world, if the flange's own speed is damped.
-    pub fn brake(&self) -> Option<Coupled> {
-        let brake = Coupled { stiffness: Matrix6::zeros(), damping: self.damping };
+    pub fn brake(&self) -> Option<Springs> {
+        let brake = Springs::Coupled { stiffness: Matrix6::zeros(), damping: self.damping };
         (!self.feed_forward).then_some(brake)
     }
 

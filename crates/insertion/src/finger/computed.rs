@@ -131,14 +131,14 @@ impl Computed<'_> {
         lever: f64,
         tilting: f64,
     ) -> Result<f64, FingerError> {
-        Err(FingerError::Springs {
-            file: self.printed.file.clone(),
-            axis,
-            at_pad: stiffness / N_PER_MM,
-            lever: lever / MM,
-            tilting,
-            turning: tilting / (lever * lever) / N_PER_MM,
-        })
+        let (at_pad, turning) = (stiffness / N_PER_MM, tilting / (lever * lever) / N_PER_MM);
+        let problem = format!(
+            "a finger of {at_pad:.2} N/mm in {axis} at its pad cannot turn about a centre {:.1} mm \
+             beside it at {tilting:.2} N m/rad: that alone gives way at {turning:.2} N/mm; bring \
+             finger.rcc_mm nearer to the pad, or use --finger-model paper",
+            lever / MM
+        );
+        Err(FingerError::Unfit { file: self.printed.file.clone(), problem })
     }
 }
 
@@ -185,7 +185,7 @@ mod tests {
         let plane = PlanarStiffness::new(to_centre.transpose() * springs * to_centre).unwrap();
         let across = Matrix3::new(6e4, -600.0, -200.0, -600.0, 9.0, 1.0, -200.0, 1.0, 5.0);
         let cross = CrossStiffness::new(across).unwrap();
-        FingerStiffness { pad: plane, pad_and_roof: plane, cross, area: 1e-4, mass: 5e-3 }
+        FingerStiffness { pad: plane, pad_and_roof: plane, cross }
     }
 
     fn finger(at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {

@@ -51,7 +51,7 @@ impl FingerFile {
         }
         let values = design.0.iter().map(|(key, &value)| (key.as_str(), value));
         let table = self.numbers.with(values.filter(|(key, _)| is_shape(key)), &[])?;
-        PrintedFinger::from_table(table, self.numbers.file())
+        PrintedFinger::from_table(table, &self.numbers.file)
     }
 }
 

@@ -8,8 +8,8 @@ use crate::finger::{self, Finger};
 use crate::robot::{Flange, Mounted, Servo};
 use crate::task::{Latch, PadTorsion, Part, Task, geometry};
 use contact::scene::{
-    Body, BodyId, Friction, Geom, Inertia, Joint, JointAxis, JointId, Motion, Pose, Scene, Shape,
-    Spring, Springs, Torsion,
+    Body, BodyId, Friction, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Shape, Spring,
+    Springs, Torsion,
 };
 use input::units::MM;
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
@@ -113,7 +113,7 @@ pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) 
     let (motion, springs) = match model {
         Flange::Ideal => return (command, command),
         Flange::Servo(servo) => servo_flange(servo),
-        Flange::Reduced(arm) => (Motion::Mechanism(arm.mass), Springs::Coupled(arm.servo())),
+        Flange::Reduced(arm) => (Motion::Mechanism(arm.mass), arm.servo()),
     };
     let flange = scene.body(body("flange", motion, tcp, Vec::new()));
     scene.joint(joint("servo", [command, flange], [Pose::identity(); 2], springs));
@@ -130,7 +130,7 @@ fn brake(scene: &mut Scene, arm: &Reduced, flange: BodyId, tcp: Pose) {
     let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
     let frames = [Pose::from_parts(Translation3::identity(), tilt), Pose::identity()];
-    scene.joint(joint("brake", [base, flange], frames, Springs::Coupled(damper)));
+    scene.joint(joint("brake", [base, flange], frames, damper));
 }
 
 fn servo_flange(servo: &Servo) -> (Motion, Springs) {
@@ -146,7 +146,7 @@ fn servo_flange(servo: &Servo) -> (Motion, Springs) {
         } else {
             (servo.rotational_stiffness[i - 3], servo.inertia)
         };
-        JointAxis::Sprung(Spring::new(k, critical(k, m)))
+        Some(Spring::new(k, critical(k, m)))
     };
     (Motion::Carried(inertia), Springs::Axes(std::array::from_fn(axis)))
 }
@@ -186,8 +186,8 @@ fn sprung(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId
     arm[latch.axis] = 0.0;
     let about_hinge = inertia.moments[latch.axis] + inertia.mass * arm.norm_squared();
     let damping = 2.0 * LATCH_DAMPING * (latch.stiffness * about_hinge).sqrt();
-    let mut axes = [JointAxis::Locked; 6];
-    axes[3 + latch.axis] = JointAxis::Sprung(Spring::new(latch.stiffness, damping));
+    let mut axes = [None; 6];
+    axes[3 + latch.axis] = Some(Spring::new(latch.stiffness, damping));
     let hinge = Pose::from_parts(Translation3::from(latch.hinge.coords), nalgebra::one());
     scene.joint(joint("hinge of the latch", [plug, body], [hinge; 2], Springs::Axes(axes)));
     body
@@ -225,9 +225,8 @@ fn hand(
         Inertia { mass: JAW_MASS, centre: Point3::origin(), moments: Vector3::repeat(1e-4) };
     let pose = tcp * in_flange;
     let jaw = scene.body(body(format!("jaw {label}"), Motion::Carried(inertia), pose, Vec::new()));
-    let mut axes = [JointAxis::Locked; 6];
-    axes[1] =
-        JointAxis::Sprung(Spring { limit: task.grip.force, ..Spring::new(JAW_GAIN, JAW_DAMPING) });
+    let mut axes = [None; 6];
+    axes[1] = Some(Spring { limit: task.grip.force, ..Spring::new(JAW_GAIN, JAW_DAMPING) });
     let frames = [in_flange, Pose::identity()];
     let slide =
         scene.joint(joint(format!("slide {label}"), [flange, jaw], frames, Springs::Axes(axes)));

@@ -142,7 +142,7 @@ impl Template {
         }
         let elsewhere = [&finger_keys()[..], &[DENSITY_KEY, DIRECTION_KEY]].concat();
         let table = self.numbers.with(of_task.iter().copied(), &elsewhere)?;
-        Task::from_table(table, self.numbers.file())
+        Task::from_table(table, &self.numbers.file)
     }
 }
 

@@ -114,7 +114,7 @@ impl Bench<'_> {
 impl At {
     /// Logarithm of the likelihood of what was measured.
     fn log_likelihood(&self) -> f64 {
-        let noise = self.conditioned.hyperparameters().noise;
+        let noise = self.conditioned.hyperparameters.noise;
         let bound = |(finger, bound): &(Finger, f64)| {
             let (mean, sd) = self.conditioned.predict(finger);
             log_normal_cdf((mean - bound) / sd.hypot(noise))

@@ -6,8 +6,8 @@ use super::simulation::Simulation;
 use ask_tell::SobolSequence;
 use ask_tell::gp::{FitEffort, Gp, fit};
 use insertion::evaluation::template::Impossible;
-use insertion::outcome::FailureClass;
-use insertion::space::{Design, Space};
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::space::{Design, Parameter, Space};
 use rayon::prelude::*;
 
 /// One simulation in this many is kept to measure the error.
@@ -76,9 +76,9 @@ impl Emulator {
             let (design, shares) = at.split_at(space.parameters().len());
             let evaluation = simulation.window(&design_at(space, design), Some(shares))?;
             let window = &evaluation.window;
-            let class = |end: Option<insertion::outcome::Outcome>| {
-                end.and_then(insertion::outcome::Outcome::failure)
-                    .and_then(|n| FailureClass::try_from(n).ok())
+            let class = |end: Option<Outcome>| match end {
+                Some(Outcome::Failed(class)) => Some(class),
+                _ => None,
             };
             Ok(Run {
                 range_mm: window.range_mm(),
@@ -144,17 +144,13 @@ impl Emulator {
 pub(super) fn most(classes: impl Iterator<Item = FailureClass>) -> Option<FailureClass> {
     let mut counts = [0_usize; 4];
     classes.for_each(|class| counts[usize::from(class.number()) - 1] += 1);
-    let best = *counts.iter().max()?;
-    FailureClass::ALL
-        .into_iter()
-        .zip(counts)
-        .find(|(_, count)| *count == best && best > 0)
-        .map(|(class, _)| class)
+    let met = FailureClass::ALL.into_iter().zip(counts).filter(|(_, count)| *count > 0);
+    met.rev().max_by_key(|(_, count)| *count).map(|(class, _)| class)
 }
 
 /// The design at shares of a space.
 fn design_at(space: &Space, shares: &[f64]) -> Design {
-    let value = |(parameter, share): (&insertion::space::Parameter, &f64)| {
+    let value = |(parameter, share): (&Parameter, &f64)| {
         (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
     };
     Design(space.parameters().iter().zip(shares).map(value).collect())

@@ -9,6 +9,7 @@ use super::bench::{Bench, Posterior};
 use super::predict::{INTERVAL, draws};
 use super::process::Place;
 use rand::Rng;
+use std::collections::BTreeSet;
 
 /// One finger to print.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,12 +60,9 @@ pub fn advise(
     question: &Question<'_>,
     random: &mut impl Rng,
 ) -> Advice {
-    let mut measured: Vec<usize> = bench.observations.iter().map(|one| one.finger).collect();
-    measured.sort_unstable();
-    measured.dedup();
-    let new: Vec<usize> =
-        question.among.iter().copied().filter(|finger| !measured.contains(finger)).collect();
-    let all = [measured.clone(), new.clone()].concat();
+    let measured: BTreeSet<usize> = bench.observations.iter().map(|one| one.finger).collect();
+    let new = question.among.iter().filter(|finger| !measured.contains(finger));
+    let all: Vec<usize> = measured.iter().chain(new).copied().collect();
     let drawn = draws(bench, posterior, &all, question.draws, random);
     let known = measured.len();
     let count = drawn.len().max(1) as f64;
@@ -120,16 +118,13 @@ struct Places<'a> {
 const FAR: f64 = 0.7;
 
 fn reason(places: &Places<'_>, expected_mm: f64, high_mm: f64, best_mm: Option<f64>) -> String {
-    let Some(best_mm) = best_mm.filter(|_| !places.tried.is_empty()) else {
-        return match places.tried.is_empty() {
-            true => "the widest that the simulation expects".to_owned(),
-            false => format!(
-                "wide as simulated, and {}",
-                places.news().unwrap_or_else(|| "near the first".to_owned())
-            ),
-        };
-    };
+    if places.tried.is_empty() {
+        return "the widest that the simulation expects".to_owned();
+    }
     let news = places.news();
+    let Some(best_mm) = best_mm else {
+        return format!("wide as simulated, and {}", news.as_deref().unwrap_or("near the first"));
+    };
     match (expected_mm - best_mm, news) {
         (gain, Some(news)) if gain > 0.0 => {
             format!("expected {gain:.1} mm wider than the best measured, and {news}")

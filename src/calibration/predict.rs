@@ -58,7 +58,7 @@ pub fn predict(
             let (mean, sd) = at.conditioned.predict(&finger);
             let noise = match of {
                 Of::Truth => 0.0,
-                Of::Measurement => at.conditioned.hyperparameters().noise,
+                Of::Measurement => at.conditioned.hyperparameters.noise,
             };
             [mean, sd.hypot(noise), finger.simulated].map(|value| value * bench.scale_mm)
         };
@@ -162,9 +162,8 @@ pub fn draws(
 
 /// One draw given the measurements: one of the prior, moved to them.
 fn draw(at: &At, fingers: &[Finger], random: &mut impl Rng) -> Vec<f64> {
-    let hyperparameters = at.conditioned.hyperparameters();
-    let prior = Departure::drawn(hyperparameters, random);
-    let measured = at.conditioned.fingers().iter().zip(at.conditioned.noises());
+    let prior = Departure::drawn(&at.conditioned.hyperparameters, random);
+    let measured = at.conditioned.fingers.iter().zip(&at.conditioned.noises);
     let known: Vec<f64> = measured
         .map(|(finger, noise)| {
             let normal: f64 = random.sample(StandardNormal);

@@ -64,15 +64,12 @@ impl Hyperparameters {
         }
     }
 
-    fn kernel(&self, a: &Place, b: &Place) -> f64 {
-        self.process.powi(2) * matern52(distance2(a, b) / self.length.powi(2))
-    }
-
     /// Prior covariance of two fingers.
     pub fn covariance(&self, a: &Finger, b: &Finger) -> f64 {
         let (x, y) = (a.terms(), b.terms());
         let linear: f64 = (0..TERMS).map(|i| self.terms[i].powi(2) * x[i] * y[i]).sum();
-        linear + self.kernel(&a.place, &b.place)
+        let distance2 = distance2(&a.place, &b.place) / self.length.powi(2);
+        linear + self.process.powi(2) * matern52(distance2)
     }
 }
 
@@ -95,12 +92,14 @@ impl Finger {
 /// The bench, conditioned on its measurements.
 #[derive(Debug, Clone)]
 pub struct Conditioned {
-    hyperparameters: Hyperparameters,
-    fingers: Vec<Finger>,
+    /// Standard deviations.
+    pub hyperparameters: Hyperparameters,
+    /// The measured fingers.
+    pub fingers: Vec<Finger>,
     /// Of what they departed from the simulation; the linear terms are in its kernel.
     process: Process<0>,
     /// Standard deviation of each measured value's noise.
-    noises: Vec<f64>,
+    pub noises: Vec<f64>,
 }
 
 impl Conditioned {
@@ -155,20 +154,5 @@ impl Conditioned {
             finger.simulated + prior + self.towards(finger).dot(&weights)
         };
         fingers.iter().zip(prior).map(value).collect()
-    }
-
-    /// The hyperparameters.
-    pub fn hyperparameters(&self) -> &Hyperparameters {
-        &self.hyperparameters
-    }
-
-    /// Standard deviation of the noise of each measured finger.
-    pub fn noises(&self) -> &[f64] {
-        &self.noises
-    }
-
-    /// The measured fingers.
-    pub fn fingers(&self) -> &[Finger] {
-        &self.fingers
     }
 }

@@ -10,6 +10,7 @@ use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::Template;
 use insertion::outcome::FailureClass;
 use insertion::space::{Design, Parameter, Space};
+use std::collections::BTreeSet;
 
 /// Most fingers of a space that are predicted; of a larger space it is a designed set.
 const MOST_FINGERS: u64 = 4000;
@@ -100,9 +101,9 @@ impl Subject {
             let design = whole(space, template, experiment)?;
             measured.push((numbered(design), experiment.clone()));
         }
-        more.iter().for_each(|design| {
+        for design in more {
             numbered(design.clone());
-        });
+        }
         let stiffness = |design: &Design| {
             let predicted = evaluator.predict(design).map_err(EmulatorError::from)?;
             Ok([1.0 / predicted.compliance.mean, predicted.assembly.mean])
@@ -118,12 +119,9 @@ impl Subject {
         self.designs.iter().position(|known| known == design)
     }
 
-    /// Measured fingers, each once, in order.
-    pub fn measured(&self) -> Vec<usize> {
-        let mut numbers: Vec<usize> = self.experiments.iter().map(|(number, _)| *number).collect();
-        numbers.sort_unstable();
-        numbers.dedup();
-        numbers
+    /// Measured fingers.
+    pub fn measured(&self) -> BTreeSet<usize> {
+        self.experiments.iter().map(|(number, _)| *number).collect()
     }
 
     /// What the measurements say of ranges.
@@ -150,11 +148,6 @@ impl Subject {
             parameters,
             first,
         }
-    }
-
-    /// Standardised stiffness of a finger: `1 / ky` and `kz`.
-    pub fn place(&self, finger: usize) -> Place {
-        self.places[finger]
     }
 
     /// How a finger fails at either end: as most of the nearest measured ones do, or the

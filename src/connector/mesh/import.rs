@@ -9,7 +9,7 @@ use crate::connector::body::{ConvexBody, clipped, extent};
 use crate::connector::seat::{Seating, section};
 use crate::connector::{draft, hold, plan};
 use input::units::MM;
-use insertion::task::{Part, Plug, Solid, Task, geometry};
+use insertion::task::{Part, Plug, Solid, Task};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// Depth at which the opening is measured, m: as in the check of the walls.
@@ -228,11 +228,5 @@ impl Imported {
     /// Number of parts of plug and of socket.
     pub fn parts(&self) -> [usize; 2] {
         [self.task.plug.parts.len(), self.task.socket.len()]
-    }
-
-    /// Volume of the parts of plug and of socket, m3.
-    pub fn volumes(&self) -> [f64; 2] {
-        [&self.task.plug.parts, &self.task.socket]
-            .map(|parts| parts.iter().map(|part| geometry::volume(&part.solid)).sum())
     }
 }

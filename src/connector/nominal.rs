@@ -101,12 +101,12 @@ fn lost_late(task: &Task, trial: &Trial) -> String {
 fn searched(task: &Task, trial: &Trial) -> Vec<(String, [f64; 3])> {
     let plug = ConvexBody::plug(&task.plug);
     let commanded = path::waypoints(task, &plug);
-    let in_search =
-        |name: &str| commanded.iter().any(|p| p.name == name && p.stage == Stage::Search);
+    let in_search = |phase: &&PhaseEnd| {
+        commanded.iter().any(|p| p.name == phase.name && p.stage == Stage::Search)
+    };
     let lowest = |phase: &PhaseEnd| {
-        let corners = plug.corners().map(|p| phase.poses.plug * p);
-        let edge = corners.min_by(|a, b| a.z.total_cmp(&b.z))?;
+        let edge = plug.lowest(&phase.poses.plug)?;
         Some((phase.name.clone(), (edge.coords / MM).into()))
     };
-    trial.phases.iter().filter(|phase| in_search(&phase.name)).filter_map(lowest).collect()
+    trial.phases.iter().filter(in_search).filter_map(lowest).collect()
 }

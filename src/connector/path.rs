@@ -29,8 +29,7 @@ pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
 /// Start, and end of every phase.
 pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     let start = Vector3::from(task.strategy.start);
-    let pose = plug_pose(task, start);
-    let lowest = plug.corners().map(|p| pose * p).min_by(|a, b| a.z.total_cmp(&b.z));
+    let lowest = plug.lowest(&plug_pose(task, start));
     let edge = lowest.unwrap_or_else(Point3::origin) - start;
     let mut at = Waypoint {
         name: "start".to_owned(),

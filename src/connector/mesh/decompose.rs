@@ -1,6 +1,6 @@
 //! Decomposition of a surface into convex solids: an exact cut, else VHACD.
 
-use super::surface::Surface;
+use super::surface::{Surface, longest_side};
 use super::{Fault, cut, intrusion, merge};
 use contact::shapes;
 use input::units::MM;
@@ -28,17 +28,8 @@ pub const COARSEST: u32 = 8;
 /// clearance.
 const CONCAVITY: f64 = 0.001;
 
-/// Convex solids of a surface.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Decomposed {
-    /// Solids in the frame of the surface, m.
-    pub solids: Vec<Solid>,
-    /// Whether the solids equal the surface, not approximate it.
-    pub exact: bool,
-}
-
-/// Decomposes a surface, approximately with `resolution` voxels along the longest side if no exact
-/// cut is found; `say` gets progress messages.
+/// Convex solids of a surface, m, and whether they equal it: if no exact cut is found, it is
+/// approximated with `resolution` voxels along the longest side. `say` gets progress messages.
 ///
 /// # Errors
 /// If the approximation would take minutes or has more parts than a task may have.
@@ -46,13 +37,13 @@ pub fn decompose(
     surface: &Surface,
     resolution: u32,
     say: &dyn Fn(&str),
-) -> Result<Decomposed, Fault> {
+) -> Result<(Vec<Solid>, bool), Fault> {
     say(&format!("cutting {} faces into convex pieces", surface.faces.len()));
     let exact = (0..3).filter_map(|turns| cut_along(surface, turns));
     let whole = exact.filter(|solids| is_whole(surface, solids));
     // The cut of fewest parts; of equals the first, across z.
     if let Some(solids) = whole.min_by_key(Vec::len) {
-        return Ok(Decomposed { solids, exact: true });
+        return Ok((solids, true));
     }
     let most = |finest: &u32| voxels(surface, *finest) * f64::from(*finest) <= MOST_WORK;
     if !most(&resolution) {
@@ -64,13 +55,13 @@ pub fn decompose(
     let solids = approximate(surface, resolution);
     match solids.len() {
         parts if parts > MOST_PARTS => Err(Fault::Many(parts)),
-        _ => Ok(Decomposed { solids, exact: false }),
+        _ => Ok((solids, false)),
     }
 }
 
 /// Approximate number of voxels in a surface and on it.
 fn voxels(surface: &Surface, resolution: u32) -> f64 {
-    let side = surface.longest_side() / f64::from(resolution);
+    let side = longest_side(&surface.points) / f64::from(resolution);
     surface.volume() / side.powi(3) + surface.area() / side.powi(2)
 }
 
@@ -103,8 +94,7 @@ fn is_whole(surface: &Surface, solids: &[Solid]) -> bool {
 /// Volumetric hierarchical approximate convex decomposition (Mamou 2016), of voxels, each part
 /// the hull of the surface within it.
 fn approximate(surface: &Surface, resolution: u32) -> Vec<Solid> {
-    let points: Vec<_> = surface.points.iter().map(|p| shapes::vector(&(p.coords / MM))).collect();
-    let faces: Vec<_> = surface.faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
+    let (points, faces) = surface.in_millimetres();
     let parameters = VHACDParameters {
         resolution,
         concavity: CONCAVITY,

@@ -1,7 +1,7 @@
 //! Task from a mesh of a plug and one of its socket.
 
+use super::decompose::decompose;
 pub use super::decompose::{COARSEST, MOST_PARTS};
-use super::decompose::{Decomposed, decompose};
 use super::intrusion::{self, Intrusion};
 use super::surface::Surface;
 use super::{Fault, MeshError, cut};
@@ -9,7 +9,7 @@ use crate::connector::body::{ConvexBody, clipped, extent};
 use crate::connector::seat::{Seating, section};
 use crate::connector::{draft, hold, plan};
 use input::units::MM;
-use insertion::task::{Part, Plug, Solid, Task};
+use insertion::task::{Part, Plug, Task};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// Depth at which the opening is measured, m: as in the check of the walls.
@@ -110,15 +110,17 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
         open(turned(socket.surface), middles[1], &socket.file, request.along)?;
     let convex = |surface: &Surface, file: &str, body: &str| {
         let say = |what: &str| (request.say)(&format!("{body}: {what}"));
-        decompose(surface, request.resolution, &say).map_err(|fault| fault.of(file))
+        let found = decompose(surface, request.resolution, &say);
+        let (solids, exact) = found.map_err(|fault| fault.of(file))?;
+        let part = |(i, solid)| Part { name: format!("{body} {i}"), solid, friction: None };
+        Ok::<_, MeshError>(((1..).zip(solids).map(part).collect(), exact))
     };
-    let inner = convex(&plug_surface, &plug.file, "plug")?;
-    let outer = convex(&socket_surface, &socket.file, "socket")?;
+    let (plug_parts, plug_exact) = convex(&plug_surface, &plug.file, "plug")?;
+    let (socket_parts, socket_exact) = convex(&socket_surface, &socket.file, "socket")?;
     let mut task = draft::blank(request.name, request.like);
     task.description = format!("from {} and {}", file_name(&plug.file), file_name(&socket.file));
     task.plug.mass = draft::DENSITY * plug_surface.volume();
-    task.plug.parts = parts("plug", &inner);
-    task.socket = parts("socket", &outer);
+    (task.plug.parts, task.socket) = (plug_parts, socket_parts);
     task.opening = opening;
     let task = match request.like {
         Some(like) => Task {
@@ -128,11 +130,16 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
             success: like.success,
             ..task
         },
-        None => planned(task, &plug.file)?,
+        None => {
+            let found = hold::find(&ConvexBody::plug(&task.plug), LEAST_COVER);
+            let found = found.ok_or_else(|| Fault::NoGrip.of(&plug.file))?;
+            (task.grip.shoulder_z, task.grip.faces_y) = found;
+            plan::complete(task)?
+        }
     };
     let clearance = clearance(&task);
     let intrusion = intrude(&task, [&plug_surface, &socket_surface]);
-    Ok(Imported { exact: [inner.exact, outer.exact], clearance, intrusion, task })
+    Ok(Imported { exact: [plug_exact, socket_exact], clearance, intrusion, task })
 }
 
 /// Smaller play of x and y at the success depth, m.
@@ -148,22 +155,6 @@ fn clearance(task: &Task) -> f64 {
 fn file_name(path: &str) -> String {
     let name = std::path::Path::new(path).file_name();
     name.map_or(path.to_owned(), |name| name.to_string_lossy().into_owned())
-}
-
-fn parts(body: &str, decomposed: &Decomposed) -> Vec<Part> {
-    let part = |(i, solid): (usize, &Solid)| Part {
-        name: format!("{body} {}", i + 1),
-        solid: solid.clone(),
-        friction: None,
-    };
-    decomposed.solids.iter().enumerate().map(part).collect()
-}
-
-/// Task with grip, strategy and success derived from the shapes.
-fn planned(mut task: Task, file: &str) -> Result<Task, MeshError> {
-    let found = hold::find(&ConvexBody::plug(&task.plug), LEAST_COVER);
-    (task.grip.shoulder_z, task.grip.faces_y) = found.ok_or_else(|| Fault::NoGrip.of(file))?;
-    Ok(plan::complete(task)?)
 }
 
 /// Middle of a task's tip in the plug frame, and of its opening in the task frame, m.

@@ -29,8 +29,7 @@ pub fn largest(
     parts: &[Part],
     counts: impl Fn(&Point3<f64>) -> bool,
 ) -> Option<Intrusion> {
-    let points: Vec<_> = surface.points.iter().map(|p| shapes::vector(&(p.coords / MM))).collect();
-    let faces: Vec<_> = surface.faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
+    let (points, faces) = surface.in_millimetres();
     let mesh = TriMesh::with_flags(points, faces, TriMeshFlags::ORIENTED).ok()?;
     let outside = |at: Point3<f64>| {
         let point = shapes::vector(&(at.coords / MM));

@@ -3,9 +3,11 @@
 use super::read::Triangle;
 use super::{Fault, MeshError};
 use crate::connector::body::{extent, width};
+use contact::shapes;
 use input::units::MM;
 use insertion::task::geometry::surface_moments;
 use nalgebra::{Matrix3, Point3, Vector3};
+use rapier3d_f64::parry::math::Vector;
 use std::collections::BTreeMap;
 
 /// Grid on which corners are welded, m: files have 32-bit numbers.
@@ -51,9 +53,11 @@ impl Surface {
         self
     }
 
-    /// Longest side of the bounding box, m.
-    pub fn longest_side(&self) -> f64 {
-        longest_side(&self.points)
+    /// Points, mm, and faces as parry takes them.
+    pub fn in_millimetres(&self) -> (Vec<Vector>, Vec<[u32; 3]>) {
+        let points = self.points.iter().map(|p| shapes::vector(&(p.coords / MM)));
+        let faces = self.faces.iter().map(|face| face.map(|corner| corner as u32));
+        (points.collect(), faces.collect())
     }
 
     /// Surface area, m2.
@@ -114,7 +118,8 @@ fn without_films(faces: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
     kept.map(|([a, b, c], count)| if count > 0 { [a, b, c] } else { [a, c, b] }).collect()
 }
 
-fn longest_side(points: &[Point3<f64>]) -> f64 {
+/// Longest side of the bounding box, m.
+pub fn longest_side(points: &[Point3<f64>]) -> f64 {
     (0..3).map(|axis| width(extent(points, axis))).fold(0.0, f64::max)
 }
 

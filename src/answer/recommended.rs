@@ -148,20 +148,18 @@ fn as_good<'a>(record: &StudyRecord, equivalent: &[&'a Recorded]) -> AsGood<'a> 
     let designs = equivalent.len();
     let force = |r: &Recorded| record.measure(r, Measure::PeakForce).unwrap_or(f64::INFINITY);
     let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
-    let valued = |of: &dyn Fn(&Recorded) -> f64| -> Vec<(&'a Recorded, f64)> {
-        // Without a second there is nothing to choose.
-        let equivalent = if designs < 2 { &[] } else { equivalent };
-        equivalent.iter().map(|&design| (design, of(design))).collect()
-    };
-    let (forces, stiffnesses) = (valued(&force), valued(&stiffness));
-    let value = |a: &&(&Recorded, f64), b: &&(&Recorded, f64)| a.1.total_cmp(&b.1);
+    // Without a second there is nothing to choose.
+    let among = if designs < 2 { &[] } else { equivalent };
+    let forces = among.iter().map(|&design| (design, force(design)));
+    let stiffnesses = || among.iter().map(|&design| (design, stiffness(design)));
+    let value = |a: &(&Recorded, f64), b: &(&Recorded, f64)| a.1.total_cmp(&b.1);
     let named = [
-        ("least force", forces.iter().min_by(value), "N"),
-        ("softest", stiffnesses.iter().min_by(value), "N/mm"),
-        ("stiffest", stiffnesses.iter().max_by(value), "N/mm"),
+        ("least force", forces.min_by(value), "N"),
+        ("softest", stiffnesses().min_by(value), "N/mm"),
+        ("stiffest", stiffnesses().max_by(value), "N/mm"),
     ];
     let known = named.into_iter().filter_map(|(reason, found, unit)| {
-        let &(design, value) = found.filter(|(_, value)| value.is_finite())?;
+        let (design, value) = found.filter(|(_, value)| value.is_finite())?;
         Some(Alternative { reason, design, value, unit })
     });
     AsGood { designs, alternatives: known.collect() }

@@ -40,20 +40,18 @@ pub struct Emulator {
     pub error_mm: f64,
 }
 
-/// Why there is no emulator.
+/// Error of what a calibration starts from.
 #[derive(Debug, thiserror::Error)]
-pub enum EmulatorError {
+pub enum CalibrationError {
     /// A design or a value of a parameter cannot be simulated.
     #[error(transparent)]
     Impossible(#[from] Impossible),
-    /// No process goes through the simulations.
-    #[error("{task}: no process goes through the {simulations} simulations; ask for more")]
-    NoFit {
-        /// The task.
-        task: String,
-        /// How many there are.
-        simulations: usize,
-    },
+    /// No process goes through so many simulations of a task.
+    #[error("{0}: no process goes through the {1} simulations; ask for more")]
+    NoFit(String, usize),
+    /// The measured finger of a line does not lie in the space.
+    #[error("line {0}: {1}")]
+    Measured(u64, String),
 }
 
 impl Emulator {
@@ -68,7 +66,7 @@ impl Emulator {
         task: &str,
         count: usize,
         seed: u64,
-    ) -> Result<Self, EmulatorError> {
+    ) -> Result<Self, CalibrationError> {
         let dimension = space.parameters().len() + simulation.parameters().len();
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
@@ -89,7 +87,7 @@ impl Emulator {
         let runs = points.into_par_iter().map(run).collect::<Result<Vec<Run>, Impossible>>()?;
         let simulations = count - count / FRESH;
         Emulator::fitted(runs, simulations)
-            .ok_or_else(|| EmulatorError::NoFit { task: task.to_owned(), simulations })
+            .ok_or_else(|| CalibrationError::NoFit(task.to_owned(), simulations))
     }
 
     fn fitted(runs: Vec<Run>, simulations: usize) -> Option<Self> {

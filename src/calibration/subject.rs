@@ -1,7 +1,7 @@
 //! One task: its fingers, their simulated ranges, and what was measured of them.
 
 use super::bench::{Bench, Observation, Simulator};
-use super::emulator::{Emulator, EmulatorError, most};
+use super::emulator::{CalibrationError, Emulator, most};
 use super::process::Place;
 use crate::calibration::experiments::{Experiment, Extent};
 use ask_tell::GridPoint;
@@ -34,44 +34,6 @@ pub struct Subject {
     shares: Vec<Vec<f64>>,
 }
 
-/// A measured finger that cannot be compared with the simulation.
-#[derive(Debug, thiserror::Error)]
-pub enum SubjectError {
-    /// A column that the space does not have.
-    #[error(
-        "line {line}: {key}: the space `{space}` has no such parameter; give --space FILE with it"
-    )]
-    NotInSpace {
-        /// Line of the measurement file.
-        line: u64,
-        /// The column.
-        key: String,
-        /// Name of the space.
-        space: String,
-    },
-    /// A value beyond the bounds of the space.
-    #[error(
-        "line {line}: {key}: {value} lies outside {low} .. {high} of the space `{space}`; give a wider --space FILE"
-    )]
-    Outside {
-        /// Line of the measurement file.
-        line: u64,
-        /// The column.
-        key: String,
-        /// The value.
-        value: f64,
-        /// Lower bound.
-        low: f64,
-        /// Upper bound.
-        high: f64,
-        /// Name of the space.
-        space: String,
-    },
-    /// The simulations failed.
-    #[error(transparent)]
-    Emulator(#[from] EmulatorError),
-}
-
 impl Subject {
     /// The fingers of a space on a task, those of `more` and those measured.
     ///
@@ -84,7 +46,7 @@ impl Subject {
         emulator: Emulator,
         experiments: &[Experiment],
         more: &[Design],
-    ) -> Result<Self, SubjectError> {
+    ) -> Result<Self, CalibrationError> {
         let task = template.task().name.clone();
         let mut designs = fingers(space);
         let of_space = designs.len();
@@ -105,10 +67,11 @@ impl Subject {
             numbered(design.clone());
         }
         let stiffness = |design: &Design| {
-            let predicted = evaluator.predict(design).map_err(EmulatorError::from)?;
+            let predicted = evaluator.predict(design)?;
             Ok([1.0 / predicted.compliance.mean, predicted.assembly.mean])
         };
-        let stiffness = designs.iter().map(stiffness).collect::<Result<Vec<_>, SubjectError>>()?;
+        let stiffness =
+            designs.iter().map(stiffness).collect::<Result<Vec<_>, CalibrationError>>()?;
         let shares = designs.iter().map(|design| shares(space, design)).collect();
         let places = standardised(&stiffness, of_space);
         Ok(Subject { task, designs, of_space, emulator, experiments: measured, places, shares })
@@ -212,19 +175,24 @@ pub fn whole(
     space: &Space,
     template: &Template,
     line: &Experiment,
-) -> Result<Design, SubjectError> {
-    let name = || space.name().to_owned();
+) -> Result<Design, CalibrationError> {
+    let name = space.name();
+    let fault = |words: String| Err(CalibrationError::Measured(line.line, words));
     let known = |key: &String| space.parameters().iter().any(|parameter| parameter.key == *key);
     if let Some(key) = line.design.0.keys().find(|key| !known(key)) {
-        return Err(SubjectError::NotInSpace { line: line.line, key: key.clone(), space: name() });
+        return fault(format!(
+            "{key}: the space `{name}` has no such parameter; give --space FILE with it"
+        ));
     }
     let mut design = Design::default();
     for Parameter { key, low, high, .. } in space.parameters() {
         let value =
             line.design.get(key).or_else(|| template.number(key)).unwrap_or((low + high) / 2.0);
         if !(*low..=*high).contains(&value) {
-            let (line, key, low, high) = (line.line, key.clone(), *low, *high);
-            return Err(SubjectError::Outside { line, key, value, low, high, space: name() });
+            return fault(format!(
+                "{key}: {value} lies outside {low} .. {high} of the space `{name}`; give a wider \
+                 --space FILE"
+            ));
         }
         design.0.insert(key.clone(), value);
     }

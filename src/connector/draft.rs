@@ -91,20 +91,13 @@ pub struct Dimensions {
 /// Error of a draft.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum DraftError {
-    /// Plug or body too short for the pads.
+    /// Plug or body too short for the pads: its option, its length and the least, mm.
     #[error(
-        "{option}: is {length_mm} mm long; the pads are {} mm high and must stay outside of \
-         the socket, so at least {least_mm:.1} mm are needed",
-        Pad::PAPER.height / MM
+        "{0}: is {1} mm long; the pads are {height} mm high and must stay outside of the socket, so \
+         at least {2:.1} mm are needed",
+        height = Pad::PAPER.height / MM
     )]
-    TooShort {
-        /// Option of the length: "--body", "--plug" or "--round".
-        option: &'static str,
-        /// Length given, mm.
-        length_mm: f64,
-        /// Least length, mm.
-        least_mm: f64,
-    },
+    TooShort(&'static str, f64, f64),
     /// No strategy can be derived.
     #[error(transparent)]
     Plan(#[from] PlanError),
@@ -172,7 +165,7 @@ fn long_enough(size: &Dimensions) -> Result<(), DraftError> {
     if length >= least {
         return Ok(());
     }
-    Err(DraftError::TooShort { option, length_mm: length / MM, least_mm: least / MM })
+    Err(DraftError::TooShort(option, length / MM, least / MM))
 }
 
 fn upright(name: &str, size: Size, from: f64) -> Part {

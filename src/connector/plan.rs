@@ -49,19 +49,12 @@ const LEAST_DEPTH: f64 = 1.0 * MM;
 /// Error of a plan.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum PlanError {
-    /// The plug does not enter.
+    /// The plug does not enter: depth, mm, and the parts of plug and socket that meet there.
     #[error(
-        "the plug does not go into the socket: upright it stops {depth_mm:.2} mm below the top, \
-         where `{plug}` meets `{socket}`; make the opening wider or the plug smaller"
+        "the plug does not go into the socket: upright it stops {0:.2} mm below the top, \
+         where `{1}` meets `{2}`; make the opening wider or the plug smaller"
     )]
-    NoEntry {
-        /// Depth it reaches, mm.
-        depth_mm: f64,
-        /// Plug part that is stopped.
-        plug: String,
-        /// Socket part that stops it.
-        socket: String,
-    },
+    NoEntry(f64, String, String),
     /// Nothing stops the plug.
     #[error("the plug falls through its socket: give the socket a floor, or the plug a shoulder")]
     NoFloor,
@@ -78,11 +71,8 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     let seat = Seating::new(&task, &plug, &socket).deepest();
     let Some([by, on]) = seat.stopped_by else { return Err(PlanError::NoFloor) };
     if seat.depth < LEAST_DEPTH {
-        return Err(PlanError::NoEntry {
-            depth_mm: seat.depth / MM,
-            plug: plug_parts[by].name.clone(),
-            socket: socket_parts[on].name.clone(),
-        });
+        let names = (plug_parts[by].name.clone(), socket_parts[on].name.clone());
+        return Err(PlanError::NoEntry(seat.depth / MM, names.0, names.1));
     }
     let [bottom, _] = plug.extent(2);
     let tip = section(&plug, bottom + LEAST_DEPTH);

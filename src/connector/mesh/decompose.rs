@@ -1,7 +1,7 @@
 //! Decomposition of a surface into convex solids: an exact cut, else VHACD.
 
 use super::surface::{Surface, longest_side};
-use super::{Fault, cut, intrusion, merge};
+use super::{cut, intrusion, merge};
 use contact::shapes;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
@@ -28,6 +28,10 @@ pub const COARSEST: u32 = 8;
 /// clearance.
 const CONCAVITY: f64 = 0.001;
 
+/// Advice on a mesh that is not cut exactly.
+const OTHERWISE: &str = "export the mesh with fewer flats (a circle of 32 is exact), begin with \
+                         `optimize task new --round`, or write its parts by hand (docs/guide/tasks.md)";
+
 /// Convex solids of a surface, m, and whether they equal it: if no exact cut is found, it is
 /// approximated with `resolution` voxels along the longest side. `say` gets progress messages.
 ///
@@ -37,7 +41,7 @@ pub fn decompose(
     surface: &Surface,
     resolution: u32,
     say: &dyn Fn(&str),
-) -> Result<(Vec<Solid>, bool), Fault> {
+) -> Result<(Vec<Solid>, bool), String> {
     say(&format!("cutting {} faces into convex pieces", surface.faces.len()));
     let exact = (0..3).filter_map(|turns| cut_along(surface, turns));
     let whole = exact.filter(|solids| is_whole(surface, solids));
@@ -48,13 +52,19 @@ pub fn decompose(
     let most = |finest: &u32| voxels(surface, *finest) * f64::from(*finest) <= MOST_WORK;
     if !most(&resolution) {
         let finest = (COARSEST..resolution).rev().find(most).unwrap_or(COARSEST);
-        return Err(Fault::Long { resolution, finest });
+        return Err(format!(
+            "is no solid of flat sides that up to {MOST_PARTS} convex pieces make, and approximating it \
+             with --resolution {resolution} would take minutes: give --resolution {finest} or less, \
+             {OTHERWISE}"
+        ));
     }
     let thousands = voxels(surface, resolution) / 1e3;
     say(&format!("approximating {thousands:.0} thousand voxels by convex hulls"));
     let solids = approximate(surface, resolution);
     match solids.len() {
-        parts if parts > MOST_PARTS => Err(Fault::Many(parts)),
+        parts if parts > MOST_PARTS => {
+            Err(format!("comes to {parts} convex hulls; a task may have {MOST_PARTS}: {OTHERWISE}"))
+        }
         _ => Ok((solids, false)),
     }
 }

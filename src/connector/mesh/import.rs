@@ -4,7 +4,7 @@ use super::decompose::decompose;
 pub use super::decompose::{COARSEST, MOST_PARTS};
 use super::intrusion::{self, Intrusion};
 use super::surface::Surface;
-use super::{Fault, MeshError, cut};
+use super::{MeshError, cut};
 use crate::connector::body::{ConvexBody, clipped, extent};
 use crate::connector::seat::{Seating, section};
 use crate::connector::{draft, hold, plan};
@@ -22,6 +22,10 @@ const LEAST_COVER: f64 = 2.0 * MM;
 const ABOUT: f64 = 0.5 * MM;
 /// Largest share of the clearance that intrusion may fill.
 pub const ALLOWED: f64 = 0.1;
+
+/// Fault of a plug that no pads hold.
+const NO_GRIP: &str = "no place to hold the plug was found: two faces across y, with a shoulder above \
+                       them for the fingers' roofs; give --like T, whose grip fits, or write [grip] by hand";
 
 /// Direction of insertion in the axes of the files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -111,7 +115,7 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     let convex = |surface: &Surface, file: &str, body: &str| {
         let say = |what: &str| (request.say)(&format!("{body}: {what}"));
         let found = decompose(surface, request.resolution, &say);
-        let (solids, exact) = found.map_err(|fault| fault.of(file))?;
+        let (solids, exact) = found.map_err(|fault| MeshError::File(file.to_owned(), fault))?;
         let part = |(i, solid)| Part { name: format!("{body} {i}"), solid, friction: None };
         Ok::<_, MeshError>(((1..).zip(solids).map(part).collect(), exact))
     };
@@ -132,7 +136,7 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
         },
         None => {
             let found = hold::find(&ConvexBody::plug(&task.plug), LEAST_COVER);
-            let found = found.ok_or_else(|| Fault::NoGrip.of(&plug.file))?;
+            let found = found.ok_or_else(|| MeshError::File(plug.file, NO_GRIP.to_owned()))?;
             (task.grip.shoulder_z, task.grip.faces_y) = found;
             plan::complete(task)?
         }
@@ -193,7 +197,10 @@ fn open(
     let Some(opening) = largest else {
         let value = clap::ValueEnum::to_possible_value(&along);
         let value = value.as_ref().map_or("", |value| value.get_name());
-        return Err(Fault::NoOpening(format!("--insert-along {value}")).of(file));
+        let fault = format!(
+            "has no opening on its top (--insert-along {value}): no closed hole goes in from there"
+        );
+        return Err(MeshError::File(file.to_owned(), fault));
     };
     let [_, top] = extent(&surface.points, 2);
     let middle = opening.map(middle);

@@ -1,7 +1,7 @@
 //! A closed surface of triangles that look outward.
 
+use super::MeshError;
 use super::read::Triangle;
-use super::{Fault, MeshError};
 use crate::connector::body::{extent, width};
 use contact::shapes;
 use input::units::MM;
@@ -33,10 +33,11 @@ impl Surface {
     /// If the triangles are not watertight, differ in orientation, or have no connector's size.
     pub fn new(triangles: &[Triangle], unit: f64, file: &str) -> Result<Self, MeshError> {
         let (points, mut faces) = weld(triangles, unit);
-        size(&points).and_then(|()| closed(&points, &faces)).map_err(|fault| fault.of(file))?;
+        let fail = |fault: String| MeshError::File(file.to_owned(), fault);
+        size(&points).and_then(|()| closed(&points, &faces)).map_err(fail)?;
         let volume = surface_moments(&points, &faces).0;
         if volume.abs() < GRID * GRID * GRID {
-            return Err(Fault::Flat.of(file));
+            return Err(fail("holds no volume".to_owned()));
         }
         let was_inward = volume < 0.0;
         if was_inward {
@@ -123,7 +124,7 @@ pub fn longest_side(points: &[Point3<f64>]) -> f64 {
     (0..3).map(|axis| width(extent(points, axis))).fold(0.0, f64::max)
 }
 
-fn size(points: &[Point3<f64>]) -> Result<(), Fault> {
+fn size(points: &[Point3<f64>]) -> Result<(), String> {
     let largest = longest_side(points);
     let [low, high] = SIZES;
     let hint = match () {
@@ -131,11 +132,11 @@ fn size(points: &[Point3<f64>]) -> Result<(), Fault> {
         () if largest < low => "too small; is it in metres (--unit m) or inches (--unit in)?",
         () => return Ok(()),
     };
-    Err(Fault::Size(largest / MM, hint))
+    Err(format!("is {:.3} mm long; connectors are 3 to 300 mm: {hint}", largest / MM))
 }
 
 /// Checks that every edge runs as often in one direction as in the other.
-fn closed(points: &[Point3<f64>], faces: &[[usize; 3]]) -> Result<(), Fault> {
+fn closed(points: &[Point3<f64>], faces: &[[usize; 3]]) -> Result<(), String> {
     let mut ways: BTreeMap<[usize; 2], [u32; 2]> = BTreeMap::new();
     for face in faces {
         for i in 0..3 {
@@ -148,11 +149,20 @@ fn closed(points: &[Point3<f64>], faces: &[[usize; 3]]) -> Result<(), Fault> {
         let middle = nalgebra::center(&points[*a], &points[*b]) / MM;
         [middle.x, middle.y, middle.z].map(|v| (v * 1e3).round() / 1e3)
     };
-    let none_of = |wrong: fn(&[u32; 2]) -> bool, fault: fn(usize, [f64; 3]) -> Fault| {
+    let first_of = |wrong: fn(&[u32; 2]) -> bool| {
         let mut edges = ways.iter().filter(|(_, ways)| wrong(ways)).map(|(edge, _)| edge);
-        let first = edges.next().map(middle);
-        first.map_or(Ok(()), |first| Err(fault(1 + edges.count(), first)))
+        edges.next().map(middle).map(|first| (1 + edges.count(), first))
     };
-    none_of(|[forth, back]| (forth + back) % 2 == 1, Fault::Open)?;
-    none_of(|[forth, back]| forth != back, Fault::Orientation)
+    if let Some((count, first)) = first_of(|[forth, back]| (forth + back) % 2 == 1) {
+        return Err(format!(
+            "is not watertight: {count} edges have a face on one side only, the first at {first:?} mm \
+             (as in the file, scaled); close the surface in your CAD or with a mesh repair"
+        ));
+    }
+    first_of(|[forth, back]| forth != back).map_or(Ok(()), |(count, first)| {
+        Err(format!(
+            "{count} edges lie between faces that look to opposite sides, the first at {first:?} mm; \
+             let all normals point outward"
+        ))
+    })
 }

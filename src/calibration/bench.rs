@@ -66,15 +66,12 @@ impl Bench<'_> {
 
     /// Fingers as simulated at a sample.
     pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {
-        self.simulated(numbers, self.simulator.ranges_mm(numbers, &self.shares(state)))
+        let ranges_mm = self.simulator.ranges_mm(numbers, &self.shares(state));
+        numbers.iter().zip(ranges_mm).map(|(&number, range)| self.finger(number, range)).collect()
     }
 
-    fn simulated(&self, numbers: &[usize], ranges_mm: Vec<f64>) -> Vec<Finger> {
-        let finger = |(&number, range): (&usize, f64)| Finger {
-            place: self.places[number],
-            simulated: range / self.scale_mm,
-        };
-        numbers.iter().zip(ranges_mm).map(finger).collect()
+    fn finger(&self, number: usize, range_mm: f64) -> Finger {
+        Finger { place: self.places[number], simulated: range_mm / self.scale_mm }
     }
 
     /// The process's standard deviations in a sample.
@@ -89,14 +86,16 @@ impl Bench<'_> {
 
     /// The bench at a sample; `None` where the process cannot be computed.
     pub fn at(&self, state: &[f64]) -> Option<At> {
-        self.conditioned(state, self.fingers(&self.measured(), state))
+        let ranges_mm = self.simulator.ranges_mm(&self.measured(), &self.shares(state));
+        self.conditioned(state, &ranges_mm)
     }
 
-    fn conditioned(&self, state: &[f64], fingers: Vec<Finger>) -> Option<At> {
-        let hyperparameters = self.hyperparameters(state);
+    /// The same with the measured fingers' simulated ranges.
+    fn conditioned(&self, state: &[f64], ranges_mm: &[f64]) -> Option<At> {
         let (mut known, mut bounds) = (Vec::new(), Vec::new());
         let (mut values, mut repeats) = (Vec::new(), Vec::new());
-        for (observation, finger) in self.observations.iter().zip(fingers) {
+        for (observation, &simulated) in self.observations.iter().zip(ranges_mm) {
+            let finger = self.finger(observation.finger, simulated);
             let value = observation.range_mm / self.scale_mm;
             if observation.at_least {
                 bounds.push((finger, value));
@@ -106,6 +105,7 @@ impl Bench<'_> {
                 repeats.push(f64::from(observation.repeats));
             }
         }
+        let hyperparameters = self.hyperparameters(state);
         let conditioned = Conditioned::new(hyperparameters, known, &values, &repeats)?;
         Some(At { conditioned, bounds })
     }
@@ -148,15 +148,13 @@ impl Posterior {
             benches.iter().map(|_| RefCell::default()).collect();
         let log_likelihood = |part: usize, state: &[f64]| {
             let bench = &benches[part];
-            let numbers = bench.measured();
             let shares = bench.shares(state);
             let mut known = known[part].borrow_mut();
-            if known.0 != shares || known.1.len() != numbers.len() {
-                let ranges = bench.simulator.ranges_mm(&numbers, &shares);
+            if known.0 != shares || known.1.len() != bench.observations.len() {
+                let ranges = bench.simulator.ranges_mm(&bench.measured(), &shares);
                 *known = (shares, ranges);
             }
-            let fingers = bench.simulated(&numbers, known.1.clone());
-            bench.conditioned(state, fingers).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
+            bench.conditioned(state, &known.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
         };
         Posterior { samples: sample(&parts, &log_likelihood, effort, random) }
     }

@@ -100,21 +100,19 @@ impl Calibration {
         let dimension = layout.dimension();
         let mut random = stream(settings.seed, 0, "calibrate");
         let posterior = Posterior::sampled(&benches, dimension, settings.effort, &mut random);
-        let task =
-            |(i, subject): (usize, &Subject)| {
-                let mut random = stream(settings.seed, i as u64, "draws");
-                let fingers: Vec<usize> = (0..subject.of_space).collect();
-                let ranges = predict(&benches[i], &posterior, &fingers, Of::Truth);
-                let drawn = draws(&benches[i], &posterior, &fingers, DRAWS, &mut random);
-                let best = shares_best(&drawn, fingers.len());
-                let prediction = |((&finger, range), &best): ((&usize, &Predicted), &f64)| {
-                    Prediction { finger, range: *range, best }
-                };
-                TaskResult {
-                    predictions: fingers.iter().zip(&ranges).zip(&best).map(prediction).collect(),
-                    left_out: leave_one_out(&benches, i, dimension, settings),
-                }
-            };
+        let task = |(i, subject): (usize, &Subject)| {
+            let mut random = stream(settings.seed, i as u64, "draws");
+            let fingers: Vec<usize> = (0..subject.of_space).collect();
+            let ranges = predict(&benches[i], &posterior, &fingers, Of::Truth);
+            let drawn = draws(&benches[i], &posterior, &fingers, DRAWS, &mut random);
+            let each = ranges.into_iter().zip(shares_best(&drawn, fingers.len())).enumerate();
+            TaskResult {
+                predictions: each
+                    .map(|(finger, (range, best))| Prediction { finger, range, best })
+                    .collect(),
+                left_out: leave_one_out(&benches, i, dimension, settings),
+            }
+        };
         let tasks = subjects.iter().enumerate().map(task).collect();
         Calibration { layout, posterior, tasks }
     }

@@ -67,12 +67,12 @@ impl Emulator {
         count: usize,
         seed: u64,
     ) -> Result<Self, CalibrationError> {
-        let dimension = space.parameters().len() + simulation.parameters().len();
+        let dimension = space.parameters().len() + simulation.parameters.len();
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
         let run = |at: Vec<f64>| {
             let (design, shares) = at.split_at(space.parameters().len());
-            let evaluation = simulation.window(&design_at(space, design), Some(shares))?;
+            let evaluation = simulation.window(&design_at(space, design), shares)?;
             let window = &evaluation.window;
             let class = |end: Option<Outcome>| match end {
                 Some(Outcome::Failed(class)) => Some(class),

@@ -25,7 +25,8 @@ const TAUGHT_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 pub struct Simulation<'a> {
     evaluator: &'a Evaluator,
     template: &'a Template,
-    parameters: Vec<&'a Parameter>,
+    /// The parameters that the task and the robot have, in order.
+    pub parameters: Vec<&'a Parameter>,
     /// Where windows are kept, if they are.
     cache: Option<PathBuf>,
     stop: &'a AtomicBool,
@@ -51,21 +52,12 @@ impl<'a> Simulation<'a> {
         Simulation { evaluator, template, parameters, cache, stop }
     }
 
-    /// The parameters that the task and the robot have, in order.
-    pub fn parameters(&self) -> &[&'a Parameter] {
-        &self.parameters
-    }
-
-    /// The window of a design with each parameter at this share of its prior; `None` for the
-    /// parameters leaves everything as in the files.
+    /// The window of a design with each parameter at this share of its prior; without shares
+    /// everything is as in the files.
     ///
     /// # Errors
     /// If the design cannot be simulated.
-    pub fn window(
-        &self,
-        design: &Design,
-        shares: Option<&[f64]>,
-    ) -> Result<Evaluation, Impossible> {
+    pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
         let (specimen, robot) = self.specimen(design, shares)?;
         let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;
         let own = self.measure(&specimen, &robot)?;
@@ -103,12 +95,7 @@ impl<'a> Simulation<'a> {
         Ok(evaluation)
     }
 
-    fn specimen(
-        &self,
-        design: &Design,
-        shares: Option<&[f64]>,
-    ) -> Result<(Specimen, Robot), Impossible> {
-        let shares = shares.unwrap_or_default();
+    fn specimen(&self, design: &Design, shares: &[f64]) -> Result<(Specimen, Robot), Impossible> {
         let values = || self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
         let mut set = design.clone();
         for (parameter, value) in values() {

@@ -149,23 +149,18 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     task.grip.shoulder_z = top;
     task.grip.faces_y = [-held.width / 2.0, held.width / 2.0];
     let floor = body.map_or(SHARE * plug.length, |_| plug.length + BELOW_TIP);
-    long_enough(size)?;
+    // The pads stay outside of the socket.
+    let pads = Pad::PAPER.height + BELOW_PADS;
+    let (option, least) = match body {
+        Some(_) => ("--body", pads),
+        None if size.round => ("--round", pads / (1.0 - SHARE)),
+        None => ("--plug", pads / (1.0 - SHARE)),
+    };
+    if held.length < least {
+        return Err(DraftError::TooShort(option, held.length / MM, least / MM));
+    }
     (task.opening, task.socket) = housing(size, floor);
     Ok(plan::complete(task)?)
-}
-
-/// Checks that the pads stay outside of the socket.
-fn long_enough(size: &Dimensions) -> Result<(), DraftError> {
-    let pads = Pad::PAPER.height + BELOW_PADS;
-    let (option, length, least) = match size.body {
-        Some(body) => ("--body", body.length, pads),
-        None if size.round => ("--round", size.plug.length, pads / (1.0 - SHARE)),
-        None => ("--plug", size.plug.length, pads / (1.0 - SHARE)),
-    };
-    if length >= least {
-        return Ok(());
-    }
-    Err(DraftError::TooShort(option, length / MM, least / MM))
 }
 
 fn upright(name: &str, size: Size, from: f64) -> Part {
@@ -188,8 +183,8 @@ fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     });
     let outer = [0, 1].map(|axis| {
         let half = opening[axis][1];
-        let body = size.body.map(|body| [body.height, body.width][axis]);
-        let below_body = body.map_or(0.0, |body| body / 2.0 - half + BEYOND_BODY);
+        let body = |body: Size| [body.height, body.width][axis] / 2.0 - half + BEYOND_BODY;
+        let below_body = size.body.map_or(0.0, body);
         let edge = half + WALL.max(below_body);
         [-edge, edge]
     });

@@ -9,6 +9,7 @@ use insertion::trial::{PhaseEnd, Trial};
 
 /// Outcome of a trial in plain words, with advice.
 pub fn explain(task: &Task, trial: &Trial) -> String {
+    let slip = format!("slip {:.1} mm, allowed {:.1}", trial.slip_mm, task.grip.slip_limit / MM);
     match trial.outcome {
         Outcome::Inserted => format!(
             "inserted {:.1} mm deep, {:.1} degrees off; {:.1} mm and {:.1} degrees were asked for",
@@ -22,21 +23,21 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
                               that lie in one another at the start, or for extreme masses"
                 .to_owned()
         }
-        Outcome::Failed(FailureClass::ContactLossBeforeSearch) => lost_early(task, trial),
+        Outcome::Failed(FailureClass::ContactLossBeforeSearch) => format!(
+            "the fingers lost the plug before it came to the socket ({slip}): raise grip.force_n ({} N) \
+             or friction.finger_plug, and look at grip.faces_y_mm and plug.mass_g",
+            task.grip.force
+        ),
         Outcome::Failed(FailureClass::PlugMissed) => missed(task, trial),
         Outcome::Failed(FailureClass::Jammed) => jammed(task, trial),
-        Outcome::Failed(FailureClass::ContactLossInInsertion) => lost_late(task, trial),
+        Outcome::Failed(FailureClass::ContactLossInInsertion) => {
+            let phase = trial.phases.last().map_or("the search", |phase| &*phase.name);
+            format!(
+                "the plug left the grasp during `{phase}` ({slip}): shorter moves or less preload_mm, \
+                 more grip.force_n, or hold it at a larger face"
+            )
+        }
     }
-}
-
-fn lost_early(task: &Task, trial: &Trial) -> String {
-    format!(
-        "the fingers lost the plug before it came to the socket (slip {:.1} mm, allowed {:.1}): \
-         raise grip.force_n ({} N) or friction.finger_plug, and look at grip.faces_y_mm and plug.mass_g",
-        trial.slip_mm,
-        task.grip.slip_limit / MM,
-        task.grip.force
-    )
 }
 
 fn missed(task: &Task, trial: &Trial) -> String {
@@ -85,16 +86,6 @@ fn jammed(task: &Task, trial: &Trial) -> String {
              friction.plug_socket, or a slower push"
         ),
     }
-}
-
-fn lost_late(task: &Task, trial: &Trial) -> String {
-    let phase = trial.phases.last().map_or("the search", |phase| &*phase.name);
-    format!(
-        "the plug left the grasp during `{phase}` (slip {:.1} mm, allowed {:.1}): shorter moves or less \
-         preload_mm, more grip.force_n, or hold it at a larger face",
-        trial.slip_mm,
-        task.grip.slip_limit / MM
-    )
 }
 
 /// Lowest point of the tip at the end of each search phase, mm, with the phase's name.

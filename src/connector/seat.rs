@@ -108,7 +108,12 @@ impl<'a> Seating<'a> {
         if best.0 <= TOLERANCE {
             return Ok(at);
         }
-        let range = self.room(depth);
+        // Range of the plug's axis with all below the top inside the opening.
+        let section = section(self.plug, depth);
+        let range = [0, 1].map(|axis| {
+            let ([low, high], [from, to]) = (self.opening[axis], section[axis]);
+            [low - from, high - to]
+        });
         let mut middle = range.map(|[low, high]| (low + high) / 2.0);
         let mut half = range.map(|[low, high]| (high - low).abs() / 2.0);
         for _ in 0..REFINEMENTS {
@@ -128,15 +133,6 @@ impl<'a> Seating<'a> {
             (middle, half) = (at, half.map(|half| half * 2.0 / f64::from(GRID)));
         }
         Err(best.1)
-    }
-
-    /// Range of the plug's axis with all below the top inside the opening.
-    fn room(&self, depth: f64) -> [[f64; 2]; 2] {
-        let section = section(self.plug, depth);
-        [0, 1].map(|axis| {
-            let ([low, high], [from, to]) = (self.opening[axis], section[axis]);
-            [low - from, high - to]
-        })
     }
 
     fn overlap(&self, depth: f64, [x, y]: [f64; 2]) -> (f64, [usize; 2]) {

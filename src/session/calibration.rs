@@ -122,7 +122,7 @@ impl Prepared {
         let template = &evaluator.templates[task];
         let simulation = Simulation::new(evaluator, template, &[], self.cache.clone(), &NEVER);
         let range = |&finger: &usize| {
-            Ok(simulation.window(&subject.designs[finger], None)?.window.range_mm())
+            Ok(simulation.window(&subject.designs[finger], &[])?.window.range_mm())
         };
         let ranges = fingers.par_iter().map(range).collect::<Result<_, Impossible>>();
         ranges.map_err(Failure::input)
@@ -169,7 +169,7 @@ impl<'a> Ground<'a> {
             CalibrationError::Measured(..) => Failure::usage(format!("{measurements}: {error}")),
         })?;
         let of_task = |template: &'a Template| {
-            (template.task().name.clone(), self.simulation(template).parameters().to_vec())
+            (template.task().name.clone(), self.simulation(template).parameters)
         };
         let of_tasks: Vec<_> = templates.iter().map(of_task).collect();
         Ok((subjects, Layout::new(&of_tasks)))

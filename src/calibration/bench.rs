@@ -3,7 +3,6 @@
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
 use super::sampler::{Effort, sample};
-use ask_tell::gp::log_normal_cdf;
 use rand::Rng;
 use std::cell::RefCell;
 
@@ -45,14 +44,6 @@ pub struct Bench<'a> {
     pub first: usize,
 }
 
-/// A bench at one sample of the posterior.
-pub struct At {
-    /// Conditioned on the ranges that are known.
-    pub conditioned: Conditioned,
-    /// Fingers whose range is this or more.
-    pub bounds: Vec<(Finger, f64)>,
-}
-
 /// The share of the prior below a standard normal coordinate.
 pub fn share(coordinate: f64) -> f64 {
     0.5 * libm::erfc(-coordinate * std::f64::consts::FRAC_1_SQRT_2)
@@ -85,41 +76,23 @@ impl Bench<'_> {
     }
 
     /// The bench at a sample; `None` where the process cannot be computed.
-    pub fn at(&self, state: &[f64]) -> Option<At> {
+    pub fn at(&self, state: &[f64]) -> Option<Conditioned> {
         let ranges_mm = self.simulator.ranges_mm(&self.measured(), &self.shares(state));
         self.conditioned(state, &ranges_mm)
     }
 
     /// The same with the measured fingers' simulated ranges.
-    fn conditioned(&self, state: &[f64], ranges_mm: &[f64]) -> Option<At> {
+    fn conditioned(&self, state: &[f64], ranges_mm: &[f64]) -> Option<Conditioned> {
         let (mut known, mut bounds) = (Vec::new(), Vec::new());
-        let (mut values, mut repeats) = (Vec::new(), Vec::new());
         for (observation, &simulated) in self.observations.iter().zip(ranges_mm) {
             let finger = self.finger(observation.finger, simulated);
             let value = observation.range_mm / self.scale_mm;
-            if observation.at_least {
-                bounds.push((finger, value));
-            } else {
-                known.push(finger);
-                values.push(value);
-                repeats.push(f64::from(observation.repeats));
+            match observation.at_least {
+                true => bounds.push((finger, value)),
+                false => known.push((finger, value, f64::from(observation.repeats))),
             }
         }
-        let hyperparameters = self.hyperparameters(state);
-        let conditioned = Conditioned::new(hyperparameters, known, &values, &repeats)?;
-        Some(At { conditioned, bounds })
-    }
-}
-
-impl At {
-    /// Logarithm of the likelihood of what was measured.
-    fn log_likelihood(&self) -> f64 {
-        let noise = self.conditioned.hyperparameters.noise;
-        let bound = |(finger, bound): &(Finger, f64)| {
-            let (mean, sd) = self.conditioned.predict(finger);
-            log_normal_cdf((mean - bound) / sd.hypot(noise))
-        };
-        self.conditioned.log_likelihood() + self.bounds.iter().map(bound).sum::<f64>()
+        Conditioned::new(self.hyperparameters(state), &known, bounds)
     }
 }
 

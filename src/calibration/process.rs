@@ -14,6 +14,7 @@
 //! in `kz`. Offset, `r`, `b1` and `b2` are normal about 0 and integrated out; `d` is a Matern 5/2
 //! process.
 
+use ask_tell::gp::log_normal_cdf;
 use ask_tell::process::{Process, distance2, matern52};
 use nalgebra::{DMatrix, DVector};
 
@@ -96,6 +97,8 @@ pub struct Conditioned {
     pub hyperparameters: Hyperparameters,
     /// The measured fingers.
     pub fingers: Vec<Finger>,
+    /// Fingers whose range is this or more.
+    pub bounds: Vec<(Finger, f64)>,
     /// Of what they departed from the simulation; the linear terms are in its kernel.
     process: Process<0>,
     /// Standard deviation of each measured value's noise.
@@ -103,16 +106,17 @@ pub struct Conditioned {
 }
 
 impl Conditioned {
-    /// On the `measured` values of `fingers`, each the mean of `repeats`; `None` if their
-    /// covariance is not positive definite.
+    /// On fingers with their measured values and the number of measurements of each, and on fingers
+    /// with lower bounds; `None` if their covariance is not positive definite.
     pub fn new(
         hyperparameters: Hyperparameters,
-        fingers: Vec<Finger>,
-        measured: &[f64],
-        repeats: &[f64],
+        known: &[(Finger, f64, f64)],
+        bounds: Vec<(Finger, f64)>,
     ) -> Option<Self> {
-        let n = fingers.len();
-        let noises: Vec<f64> = repeats.iter().map(|n| hyperparameters.noise / n.sqrt()).collect();
+        let n = known.len();
+        let fingers: Vec<Finger> = known.iter().map(|(finger, ..)| *finger).collect();
+        let noises: Vec<f64> =
+            known.iter().map(|(.., repeats)| hyperparameters.noise / repeats.sqrt()).collect();
         let mut covariance = DMatrix::zeros(n, n);
         for j in 0..n {
             for i in j..n {
@@ -120,15 +124,18 @@ impl Conditioned {
             }
             covariance[(j, j)] += noises[j].powi(2);
         }
-        let departures: Vec<f64> =
-            measured.iter().zip(&fingers).map(|(y, f)| y - f.simulated).collect();
+        let departures: Vec<f64> = known.iter().map(|(f, y, _)| y - f.simulated).collect();
         let process = Process::new(covariance, &vec![[]; n], &departures)?;
-        Some(Conditioned { hyperparameters, fingers, process, noises })
+        Some(Conditioned { hyperparameters, fingers, bounds, process, noises })
     }
 
-    /// Logarithm of the marginal likelihood, less a constant.
+    /// Logarithm of the likelihood of what was measured, less a constant.
     pub fn log_likelihood(&self) -> f64 {
-        self.process.log_likelihood()
+        let bound = |(finger, bound): &(Finger, f64)| {
+            let (mean, sd) = self.predict(finger);
+            log_normal_cdf((mean - bound) / sd.hypot(self.hyperparameters.noise))
+        };
+        self.process.log_likelihood() + self.bounds.iter().map(bound).sum::<f64>()
     }
 
     fn towards(&self, finger: &Finger) -> DVector<f64> {

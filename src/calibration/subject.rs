@@ -3,7 +3,7 @@
 use super::bench::{Bench, Observation, Simulator};
 use super::emulator::{CalibrationError, Emulator, most};
 use super::process::Place;
-use crate::calibration::experiments::{Experiment, Extent};
+use crate::calibration::experiments::Experiment;
 use ask_tell::GridPoint;
 use ask_tell::SobolSequence;
 use insertion::evaluation::evaluator::Evaluator;
@@ -90,11 +90,7 @@ impl Subject {
     /// What the measurements say of ranges.
     pub fn observations(&self) -> Vec<Observation> {
         let observation = |(finger, line): &(usize, Experiment)| {
-            let (range_mm, at_least) = match line.extent() {
-                Extent::Range(range) => (range, false),
-                Extent::AtLeast(range) => (range, true),
-                Extent::Unknown => return None,
-            };
+            let (range_mm, at_least) = line.extent()?;
             Some(Observation { finger: *finger, range_mm, at_least, repeats: line.repeats })
         };
         self.experiments.iter().filter_map(observation).collect()

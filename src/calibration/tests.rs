@@ -194,7 +194,7 @@ fn draws_agree_with_the_formulas() {
     let drawn = draws(&bench, &posterior, &fingers, 4000, &mut stream(5, 0, "draws"));
     let at = bench.at(&state).unwrap();
     for (i, finger) in bench.fingers(&fingers, &state).iter().enumerate() {
-        let (mean, sd) = at.conditioned.predict(finger);
+        let (mean, sd) = at.predict(finger);
         let (drawn_mean, drawn_sd) = moments(drawn.iter().map(|draw| draw[i] / SCALE_MM));
         assert!((drawn_mean - mean).abs() < 0.08 * sd, "{i}: {drawn_mean} {mean} ± {sd}");
         assert!((drawn_sd / sd - 1.0).abs() < 0.06, "{i}: {drawn_sd} {sd}");

@@ -1,7 +1,7 @@
 //! Task from a few dimensions: plug, clearance and the body that the fingers hold.
 
 use super::plan::{self, PlanError};
-use super::round::{self, Hole};
+use super::round::Hole;
 use input::units::MM;
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
@@ -139,7 +139,10 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     task.description = format!("{shape}, {clearance} mm clearance");
     let top = plug.length + body.map_or(0.0, |body| body.length);
     let mut parts = match size.round {
-        true => vec![round::peg("plug", plug.width / 2.0, plug.length)],
+        true => {
+            let (radius, z) = (plug.width / 2.0, [0.0, plug.length]);
+            vec![part("plug", Solid::Cylinder { centre: [0.0; 2], radius, z })]
+        }
         false => vec![upright("plug", plug, 0.0)],
     };
     parts.extend(body.map(|body| upright("body", body, plug.length)));
@@ -169,8 +172,11 @@ fn upright(name: &str, size: Size, from: f64) -> Part {
 }
 
 fn block(name: &str, [x, y, z]: [[f64; 2]; 3]) -> Part {
-    let solid =
-        Solid::Box { min: Vector3::new(x[0], y[0], z[0]), max: Vector3::new(x[1], y[1], z[1]) };
+    let [min, max] = [0, 1].map(|end| Vector3::new(x[end], y[end], z[end]));
+    part(name, Solid::Box { min, max })
+}
+
+fn part(name: &str, solid: Solid) -> Part {
     Part { name: name.to_owned(), solid, friction: None }
 }
 

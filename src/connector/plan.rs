@@ -9,11 +9,10 @@
 use super::body::{ConvexBody, extent, width};
 use super::hold::held;
 use super::path;
-use super::round::stands_on_cylinder;
 use super::seat::{Seat, Seating, section};
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
-use insertion::task::{Ending, Phase, Sensed, Stage, Success, Task};
+use insertion::task::{Ending, Part, Phase, Sensed, Solid, Stage, Success, Task};
 
 /// Distance of the TCP below the shoulder, m, as in the shipped tasks.
 const BELOW_SHOULDER: f64 = 3.5 * MM;
@@ -76,17 +75,26 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     }
     let [bottom, _] = plug.extent(2);
     let tip = section(&plug, bottom + LEAST_DEPTH);
-    grasp(&mut task, &plug);
+    let held = held(&plug, task.grip.shoulder_z, Some(task.grip.faces_y));
+    let cover = held.cover[0].min(held.cover[1]);
+    task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
+    task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
     let play = Seating::new(&task, &plug, &socket).play(WITHIN * seat.depth, seat.at, 1);
     success(&mut task, &plug, &seat, play);
     let rise = (RISE / width(tip[1])).min(1.0);
     let [least, most] = TILT_DEG;
     task.strategy.tilt = round(libm::asin(rise) / DEG, 0.1).clamp(least, most) * DEG;
-    let search = match stands_on_cylinder(&plug_parts) {
-        true => Moves::of_point(&task, tip),
-        false => Moves::of_edge(&task, tip),
+    let height = |part: &&Part| extent(part.solid.corners(), 2)[0];
+    let lowest = plug_parts.iter().min_by(|a, b| height(a).total_cmp(&height(b)));
+    let search = match lowest.map(|part| &part.solid) {
+        Some(Solid::Cylinder { .. }) => Moves::of_point(&task, tip),
+        _ => Moves::of_edge(&task, tip),
     };
-    place_start(&mut task, &plug, &search);
+    task.strategy.start = [0.0; 3];
+    task.strategy.phases = Vec::new();
+    let edge = path::waypoints(&task, &plug)[0].edge;
+    task.strategy.start =
+        [round_mm(search.x), round_mm(search.edge_y - edge.y), round_mm(AIR[0] - edge.z)];
     task.strategy.phases = phases(&task, &search, seat.depth);
     Ok(task)
 }
@@ -139,13 +147,6 @@ impl Moves {
     }
 }
 
-fn grasp(task: &mut Task, plug: &ConvexBody) {
-    let held = held(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
-    let cover = held.cover[0].min(held.cover[1]);
-    task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
-    task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
-}
-
 /// Depth and tilt of success, from the play in y, m.
 fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
@@ -158,14 +159,6 @@ fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let depth = seat.depth * (1.0 - share) - half * libm::sin(tilt) - length;
     let depth = (depth.max(seat.depth / 2.0) / (0.1 * MM)).floor() * 0.1 * MM;
     task.success = Success { depth, tilt };
-}
-
-fn place_start(task: &mut Task, plug: &ConvexBody, search: &Moves) {
-    task.strategy.start = [0.0; 3];
-    task.strategy.phases = Vec::new();
-    let edge = path::waypoints(task, plug)[0].edge;
-    task.strategy.start =
-        [round_mm(search.x), round_mm(search.edge_y - edge.y), round_mm(AIR[0] - edge.z)];
 }
 
 fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {

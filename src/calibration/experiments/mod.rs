@@ -80,37 +80,23 @@ pub struct Experiment {
     pub note: String,
 }
 
-/// What is known of a tolerable range, mm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Extent {
-    /// It is this.
-    Range(f64),
-    /// It is this or more: only one side was looked for.
-    AtLeast(f64),
-    /// Nothing.
-    Unknown,
-}
-
 impl Experiment {
-    /// What the line says of the tolerable range.
+    /// The tolerable range that the line tells, mm, and whether it is this or more.
     ///
     /// A window holds the start from which it is measured, so that one of its ends bounds the
     /// range from below: "inserts at +1.5 mm" is a range of 1.5 mm or more.
-    pub fn extent(&self) -> Extent {
+    pub fn extent(&self) -> Option<(f64, bool)> {
         match (self.range_mm, self.negative_mm, self.positive_mm) {
-            (Some(range), ..) => Extent::Range(range),
-            (None, Some(negative), Some(positive)) => Extent::Range(positive - negative),
-            (None, Some(end), None) | (None, None, Some(end)) => Extent::AtLeast(end.abs()),
-            (None, None, None) => Extent::Unknown,
+            (Some(range), ..) => Some((range, false)),
+            (None, Some(negative), Some(positive)) => Some((positive - negative, false)),
+            (None, Some(end), None) | (None, None, Some(end)) => Some((end.abs(), true)),
+            (None, None, None) => None,
         }
     }
 
     /// The range, if it was measured whole, mm.
     pub fn range_mm(&self) -> Option<f64> {
-        match self.extent() {
-            Extent::Range(range) => Some(range),
-            Extent::AtLeast(_) | Extent::Unknown => None,
-        }
+        self.extent().filter(|(_, at_least)| !at_least).map(|(range, _)| range)
     }
 }
 

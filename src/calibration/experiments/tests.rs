@@ -24,17 +24,9 @@ fn partial_data_are_data() {
                     ket8,10,30,,,not measurable,,,,the pad tore\n\
                     ket8,15,0,-2.0,,4.0,,,,")
     .unwrap();
-    let extents: Vec<Extent> = found.iter().map(Experiment::extent).collect();
-    assert_eq!(
-        extents,
-        [
-            Extent::Range(7.6),
-            Extent::Range(5.5),
-            Extent::AtLeast(1.5),
-            Extent::Unknown,
-            Extent::Range(4.0)
-        ]
-    );
+    let extents: Vec<_> = found.iter().map(Experiment::extent).collect();
+    let range = |mm: f64| Some((mm, false));
+    assert_eq!(extents, [range(7.6), range(5.5), Some((1.5, true)), None, range(4.0)]);
     assert_eq!((found[1].repeats, found[3].note.as_str(), found[0].line), (2, "the pad tore", 2));
     assert_eq!(parse("", "m.csv"), Ok(vec![]));
     assert_eq!(of("").map(|found| found.len()), Ok(0));

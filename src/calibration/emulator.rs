@@ -71,8 +71,12 @@ impl Emulator {
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
         let run = |at: Vec<f64>| {
-            let (design, shares) = at.split_at(space.parameters().len());
-            let evaluation = simulation.window(&design_at(space, design), shares)?;
+            let (of_space, shares) = at.split_at(space.parameters().len());
+            let value = |(parameter, share): (&Parameter, &f64)| {
+                (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
+            };
+            let design = Design(space.parameters().iter().zip(of_space).map(value).collect());
+            let evaluation = simulation.window(&design, shares)?;
             let window = &evaluation.window;
             let class = |end: Option<Outcome>| match end {
                 Some(Outcome::Failed(class)) => Some(class),
@@ -144,14 +148,6 @@ pub(super) fn most(classes: impl Iterator<Item = FailureClass>) -> Option<Failur
     classes.for_each(|class| counts[usize::from(class.number()) - 1] += 1);
     let met = FailureClass::ALL.into_iter().zip(counts).filter(|(_, count)| *count > 0);
     met.rev().max_by_key(|(_, count)| *count).map(|(class, _)| class)
-}
-
-/// The design at shares of a space.
-fn design_at(space: &Space, shares: &[f64]) -> Design {
-    let value = |(parameter, share): (&Parameter, &f64)| {
-        (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
-    };
-    Design(space.parameters().iter().zip(shares).map(value).collect())
 }
 
 #[cfg(test)]

@@ -50,13 +50,11 @@ impl Subject {
         let task = template.task().name.clone();
         let mut designs = fingers(space);
         let of_space = designs.len();
-        let mut numbered = |design: Design| match designs.iter().position(|known| *known == design)
-        {
-            Some(number) => number,
-            None => {
+        let mut numbered = |design: Design| {
+            designs.iter().position(|known| *known == design).unwrap_or_else(|| {
                 designs.push(design);
                 designs.len() - 1
-            }
+            })
         };
         let mut measured = Vec::new();
         for experiment in experiments.iter().filter(|line| line.task == task) {

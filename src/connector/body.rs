@@ -143,6 +143,11 @@ pub fn extent<P: Borrow<Point3<f64>>>(
     span(points.into_iter().map(|p| p.borrow()[axis]))
 }
 
+/// Longest side of the bounding box of points.
+pub fn longest_side(points: &[Point3<f64>]) -> f64 {
+    (0..3).map(|axis| width(extent(points, axis))).fold(0.0, f64::max)
+}
+
 /// Width of an interval.
 pub fn width([low, high]: [f64; 2]) -> f64 {
     high - low

@@ -103,14 +103,10 @@ impl Drawing<'_> {
         };
         let plug = [self.start, self.seated()].map(|pose| corners(&self.task.plug.parts, pose));
         let [low, high] = span(plug.into_iter().flatten());
-        let [from, to] =
-            extent(self.task.socket.iter().flat_map(|part| part.solid.corners()), axis);
-        let (low, high) = match self.task.opening.get(axis) {
-            Some([a, b]) => (low.min(a - AROUND), high.max(b + AROUND)),
-            None => (low.min(from), high),
-        };
-        let edge = if axis == 2 { low.max(from) } else { low };
-        [edge.max(from.min(low)), high.min(to.max(high))]
+        match self.task.opening.get(axis) {
+            Some([a, b]) => [low.min(a - AROUND), high.max(b + AROUND)],
+            None => [corners(&self.task.socket, Pose::identity())[0], high],
+        }
     }
 
     fn panel(&self, out: &mut String, view: &View, x: f64, y: f64) {

@@ -1,4 +1,4 @@
-//! Round peg and hole: a cylinder, and a ring of flat-sided prisms.
+//! Round hole: a ring of flat-sided prisms.
 
 use insertion::task::{Part, Solid};
 use std::f64::consts::PI;

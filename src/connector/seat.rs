@@ -159,9 +159,9 @@ mod tests {
         Task::parse(&file.text.replace(from, to), file.file).unwrap()
     }
 
-    fn on_seating<T>(task: &Task, of: impl Fn(&Seating) -> T) -> T {
+    fn deepest(task: &Task) -> Seat {
         let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-        of(&Seating::new(task, &plug, &socket))
+        Seating::new(task, &plug, &socket).deepest()
     }
 
     /// usb: the body's shoulder on the housing; ket12: the floor; rj45: the floor beside its step
@@ -174,7 +174,7 @@ mod tests {
             ("rj45", 12.0, ["", ""]),
         ] {
             let task = changed(name, "", "");
-            let seat = on_seating(&task, |seating| seating.deepest());
+            let seat = deepest(&task);
             let [plug, socket] = seat.stopped_by.unwrap();
             let names = [&task.plug.parts[plug].name, &task.socket[socket].name];
             assert!((seat.depth / MM - depth_mm).abs() < 0.04, "{name}: {seat:?}");
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn a_plug_wider_than_its_opening_stays_outside() {
         let key = ["[-6.0, 6.0]", "[-6.2, 6.2]"].map(|y| y.to_owned() + "\nz_mm = [0.0, 50.0]");
-        let seat = on_seating(&changed("ket12", &key[0], &key[1]), |seating| seating.deepest());
+        let seat = deepest(&changed("ket12", &key[0], &key[1]));
         assert!(seat.depth < 0.1 * MM, "{seat:?}");
     }
 }

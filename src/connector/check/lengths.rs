@@ -1,7 +1,7 @@
 //! Lengths given in another unit than millimetres.
 
 use super::{Case, Problem, mm, part_key};
-use crate::connector::body::{extent, width};
+use crate::connector::body::{longest_side, width};
 use crate::connector::seat::section;
 use input::units::MM;
 use insertion::task::Ending;
@@ -32,9 +32,7 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
     .collect();
     for (body, parts) in [("plug", &task.plug.parts), ("socket", &task.socket)] {
         found.extend(parts.iter().filter_map(|part| {
-            let corners = part.solid.corners();
-            let along = |axis: usize| width(extent(&corners, axis));
-            let largest = (0..3).map(along).fold(0.0, f64::max);
+            let largest = longest_side(&part.solid.corners());
             problem(&part_key(body, &part.name, ""), largest, [0.3, 1000.0])
         }));
     }

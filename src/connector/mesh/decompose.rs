@@ -1,7 +1,8 @@
 //! Decomposition of a surface into convex solids: an exact cut, else VHACD.
 
-use super::surface::{Surface, longest_side};
+use super::surface::Surface;
 use super::{cut, intrusion, merge};
+use crate::connector::body::longest_side;
 use contact::shapes;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};

@@ -2,7 +2,7 @@
 
 use super::MeshError;
 use super::read::Triangle;
-use crate::connector::body::{extent, width};
+use crate::connector::body::longest_side;
 use contact::shapes;
 use input::units::MM;
 use insertion::task::geometry::surface_moments;
@@ -117,11 +117,6 @@ fn without_films(faces: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
     }
     let kept = seen.into_iter().filter(|(_, count)| *count != 0);
     kept.map(|([a, b, c], count)| if count > 0 { [a, b, c] } else { [a, c, b] }).collect()
-}
-
-/// Longest side of the bounding box, m.
-pub fn longest_side(points: &[Point3<f64>]) -> f64 {
-    (0..3).map(|axis| width(extent(points, axis))).fold(0.0, f64::max)
 }
 
 fn size(points: &[Point3<f64>]) -> Result<(), String> {

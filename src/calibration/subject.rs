@@ -85,21 +85,16 @@ impl Subject {
         self.experiments.iter().map(|(number, _)| *number).collect()
     }
 
-    /// What the measurements say of ranges.
-    pub fn observations(&self) -> Vec<Observation> {
-        let observation = |(finger, line): &(usize, Experiment)| {
-            let (range_mm, at_least) = line.extent()?;
-            Some(Observation { finger: *finger, range_mm, at_least, repeats: line.repeats })
-        };
-        self.experiments.iter().filter_map(observation).collect()
-    }
-
     /// Its bench, with the coordinates of its parameters and hyperparameters.
     pub fn bench(&self, parameters: Vec<usize>, first: usize) -> Bench<'_> {
+        let observation = |&(finger, ref line): &(usize, Experiment)| {
+            let (range_mm, at_least) = line.extent()?;
+            Some(Observation { finger, range_mm, at_least, repeats: line.repeats })
+        };
         Bench {
             simulator: self,
             places: &self.places,
-            observations: self.observations(),
+            observations: self.experiments.iter().filter_map(observation).collect(),
             scale_mm: self.emulator.mean_mm().max(1.0),
             error_mm: self.emulator.error_mm,
             parameters,

@@ -41,14 +41,24 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
 }
 
 fn missed(task: &Task, trial: &Trial) -> String {
-    let edges = searched(task, trial);
+    let plug = ConvexBody::plug(&task.plug);
+    let commanded = path::waypoints(task, &plug);
+    let in_search = |phase: &&PhaseEnd| {
+        commanded.iter().any(|p| p.name == phase.name && p.stage == Stage::Search)
+    };
+    // Lowest point of the tip at the end of each search phase, mm.
+    let lowest = |phase: &PhaseEnd| {
+        let edge = plug.lowest(&phase.poses.plug)?;
+        Some((phase.name.clone(), edge.coords / MM))
+    };
+    let edges: Vec<_> = trial.phases.iter().filter(in_search).filter_map(lowest).collect();
     let [low, high] = task.opening[1].map(|y| y / MM);
     let Some((name, edge)) = edges.last() else {
         return "the plug never entered the opening".to_owned();
     };
-    let below = edges.iter().map(|(_, edge)| -edge[2]).fold(f64::NEG_INFINITY, f64::max);
-    let [_, y, _] = edge;
-    if (low..=high).contains(y) {
+    let below = edges.iter().map(|(_, edge)| -edge.z).fold(f64::NEG_INFINITY, f64::max);
+    let y = edge.y;
+    if (low..=high).contains(&y) {
         return format!(
             "the tip's lower edge was over the opening (y = {y:.1} mm at the end of `{name}`) but came \
              only {below:.2} mm below the top: raise preload_mm of the touch, or let the moves along x \
@@ -86,18 +96,4 @@ fn jammed(task: &Task, trial: &Trial) -> String {
              friction.plug_socket, or a slower push"
         ),
     }
-}
-
-/// Lowest point of the tip at the end of each search phase, mm, with the phase's name.
-fn searched(task: &Task, trial: &Trial) -> Vec<(String, [f64; 3])> {
-    let plug = ConvexBody::plug(&task.plug);
-    let commanded = path::waypoints(task, &plug);
-    let in_search = |phase: &&PhaseEnd| {
-        commanded.iter().any(|p| p.name == phase.name && p.stage == Stage::Search)
-    };
-    let lowest = |phase: &PhaseEnd| {
-        let edge = plug.lowest(&phase.poses.plug)?;
-        Some((phase.name.clone(), (edge.coords / MM).into()))
-    };
-    trial.phases.iter().filter(in_search).filter_map(lowest).collect()
 }

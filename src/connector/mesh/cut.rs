@@ -139,16 +139,26 @@ fn riser(surface: &Surface, [a, b]: [usize; 2], layer: [f64; 2]) -> Riser {
 
 /// Outline without the corners at which it goes straight on at every height. (At an end the
 /// diagonal of a flat side meets a corner, so the middle counts, too.)
-fn straightened(mut outline: Outline) -> Outline {
+fn straightened(outline: Outline) -> Outline {
+    let straight = |three: &[Riser; 3]| {
+        [0.0, 0.5, 1.0].into_iter().all(|share| turn(three, share).abs() < STRAIGHT)
+    };
+    without(outline, 2, straight)
+}
+
+/// A closed line without the corners that are straight with their neighbours, as long as it has
+/// more than `least`.
+pub fn without<T: Copy>(
+    mut line: Vec<T>,
+    least: usize,
+    straight: impl Fn(&[T; 3]) -> bool,
+) -> Vec<T> {
     loop {
-        let count = outline.len();
-        let straight = |i: usize| {
-            let three = [(i + count - 1) % count, i, (i + 1) % count].map(|i| outline[i]);
-            [0.0, 0.5, 1.0].into_iter().all(|share| turn(&three, share).abs() < STRAIGHT)
-        };
-        match (0..count).find(|&i| count > 2 && straight(i)) {
-            Some(i) => outline.remove(i),
-            None => return outline,
+        let count = line.len();
+        let three = |i: usize| [(i + count - 1) % count, i, (i + 1) % count].map(|i| line[i]);
+        match (0..count).find(|&i| count > least && straight(&three(i))) {
+            Some(i) => line.remove(i),
+            None => return line,
         };
     }
 }

@@ -98,7 +98,7 @@ fn is_whole(surface: &Surface, solids: &[Solid]) -> bool {
         let part =
             |solid: &Solid| Part { name: String::new(), solid: solid.clone(), friction: None };
         let parts: Vec<_> = solids.iter().map(part).collect();
-        intrusion::largest(surface, &parts, |_| true).is_some_and(|found| found.depth < NEAR)
+        intrusion::largest(surface, &parts, |_| true).is_some_and(|(depth, _)| depth < NEAR)
     }
 }
 

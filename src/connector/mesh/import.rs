@@ -2,7 +2,7 @@
 
 use super::decompose::decompose;
 pub use super::decompose::{COARSEST, MOST_PARTS};
-use super::intrusion::{self, Intrusion};
+use super::intrusion;
 use super::surface::Surface;
 use super::{MeshError, cut};
 use crate::connector::body::{ConvexBody, clipped, extent};
@@ -97,8 +97,8 @@ pub struct Imported {
     pub exact: [bool; 2],
     /// Play of the plug in its socket, the smaller of x and y, m.
     pub clearance: f64,
-    /// Largest intrusion of a part into the clearance, and its body.
-    pub intrusion: Option<(Intrusion, &'static str)>,
+    /// Largest intrusion of a part into the clearance, m, its point, m, and its body.
+    pub intrusion: Option<(f64, Point3<f64>, &'static str)>,
 }
 
 /// Imports a plug and its socket.
@@ -141,19 +141,14 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
             plan::complete(task)?
         }
     };
-    let clearance = clearance(&task);
-    let intrusion = intrude(&task, [&plug_surface, &socket_surface]);
-    Ok(Imported { exact: [plug_exact, socket_exact], clearance, intrusion, task })
-}
-
-/// Smaller play of x and y at the success depth, m.
-fn clearance(task: &Task) -> f64 {
-    let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-    let seating = Seating::new(task, &plug, &socket);
+    let (plug_body, socket_body) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
+    let seating = Seating::new(&task, &plug_body, &socket_body);
     let seat = seating.deepest();
     let depth = task.success.depth.min(seat.depth);
     let play = |axis| seating.play(depth, seat.at, axis);
-    play(0).min(play(1))
+    let clearance = play(0).min(play(1));
+    let intrusion = intrude(&task, [&plug_surface, &socket_surface]);
+    Ok(Imported { exact: [plug_exact, socket_exact], clearance, intrusion, task })
 }
 
 fn file_name(path: &str) -> String {
@@ -210,7 +205,7 @@ fn open(
 }
 
 /// Largest intrusion of plug or socket where they meet, and its body.
-fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(Intrusion, &'static str)> {
+fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(f64, Point3<f64>, &'static str)> {
     let deep = task.success.depth + ABOUT;
     let [x, y] = task.opening;
     let about = |v: f64, [low, high]: [f64; 2]| low - ABOUT < v && v < high + ABOUT;
@@ -218,8 +213,9 @@ fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(Intrusion, &'static 
     let socket = intrusion::largest(surfaces[1], &task.socket, |p| {
         p.z > -deep - ABOUT && about(p.x, x) && about(p.y, y)
     });
-    let both = [plug.map(|found| (found, "plug")), socket.map(|found| (found, "socket"))];
-    both.into_iter().flatten().max_by(|a, b| a.0.depth.total_cmp(&b.0.depth))
+    let plug = plug.map(|(depth, at)| (depth, at, "plug"));
+    let socket = socket.map(|(depth, at)| (depth, at, "socket"));
+    plug.into_iter().chain(socket).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 impl Imported {

@@ -27,9 +27,9 @@ pub struct Recommended<'a> {
     pub firm_window_mm: Option<[f64; 2]>,
     /// Largest force between plug and socket over the inserted trials, N.
     pub peak_force_n: Option<f64>,
-    /// What was measured on each task.
+    /// Measurements on each task.
     pub tasks: Vec<OnTask<'a>>,
-    /// What it does with springs computed from its ribs, if that was measured.
+    /// Measurements with springs computed from its ribs, if there are any.
     pub by_ribs: Option<&'a ByRibs>,
     /// Its range with those, mm.
     pub by_ribs_range_mm: Option<f64>,
@@ -38,7 +38,7 @@ pub struct Recommended<'a> {
     /// The widest range of the search, mm, where that is another design's, less firm when measured
     /// again.
     pub wider_mm: Option<f64>,
-    /// What is as good; `None` of a front.
+    /// Designs that are as good; `None` of a front.
     pub as_good: Option<AsGood<'a>>,
 }
 
@@ -47,20 +47,20 @@ pub struct Recommended<'a> {
 pub struct OnTask<'a> {
     /// Name of the task.
     pub name: &'a str,
-    /// What was measured: window and what ends it, errors drawn.
+    /// Window, its ends, errors drawn.
     pub measured: &'a Evaluation,
     /// Largest force between plug and socket over the inserted trials, N.
     pub peak_force_n: Option<f64>,
-    /// What is firm of the window, if its ends were repeated.
+    /// Firm part of the window, if its ends were repeated.
     pub firm: Option<&'a Firm>,
 }
 
 /// The designs that are as good as the recommended one.
 #[derive(Debug, Clone)]
 pub struct AsGood<'a> {
-    /// How many there are, with the recommended one.
+    /// Their number, with the recommended one.
     pub designs: usize,
-    /// Which to take for other reasons; none if there is no other.
+    /// Those to take for other reasons; none if there is no other.
     pub alternatives: Vec<Alternative<'a>>,
 }
 
@@ -71,7 +71,7 @@ pub struct Alternative<'a> {
     pub reason: &'static str,
     /// The design.
     pub design: &'a Recorded,
-    /// What is least or most of it.
+    /// Its least or largest quantity.
     pub value: f64,
     /// The unit of that.
     pub unit: &'static str,
@@ -119,7 +119,7 @@ impl<'a> Recommended<'a> {
     }
 }
 
-/// What all windows have in common.
+/// Common part of all windows.
 fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     windows
         .fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])

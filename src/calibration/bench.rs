@@ -12,7 +12,7 @@ pub trait Simulator: Sync {
     fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64>;
 }
 
-/// What is known of one finger's range.
+/// Measurement of one finger's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
     /// Number of the finger.
@@ -28,11 +28,11 @@ pub struct Observation {
 /// The bench of one task.
 #[derive(Clone)]
 pub struct Bench<'a> {
-    /// What simulates its fingers.
+    /// Simulator of its fingers.
     pub simulator: &'a dyn Simulator,
     /// Standardised stiffness of each finger.
     pub places: &'a [Place],
-    /// What was measured.
+    /// Measurements.
     pub observations: Vec<Observation>,
     /// mm to one unit of the process.
     pub scale_mm: f64,

@@ -15,13 +15,13 @@ const DRAWS: usize = 3;
 /// One coordinate that is a parameter.
 #[derive(Debug, Clone)]
 pub struct Coordinate {
-    /// What it is.
+    /// The parameter.
     pub parameter: Parameter,
     /// The task it belongs to; `None` if they share it.
     pub task: Option<String>,
 }
 
-/// Which coordinate of a sample is what: the parameters, then each task's hyperparameters.
+/// Meaning of a sample's coordinates: the parameters, then each task's hyperparameters.
 #[derive(Debug, Clone)]
 pub struct Layout {
     /// The parameters.
@@ -63,7 +63,7 @@ impl Layout {
     }
 }
 
-/// What a calibration found on one task.
+/// Result of a calibration on one task.
 #[derive(Debug, Clone)]
 pub struct TaskResult {
     /// Each finger of the space, in the subject's order.
@@ -85,7 +85,7 @@ pub struct Prediction {
 
 /// A finished calibration.
 pub struct Calibration {
-    /// Which coordinate is what.
+    /// Meaning of the coordinates.
     pub layout: Layout,
     /// Samples of all coordinates.
     pub posterior: Posterior,
@@ -118,7 +118,7 @@ impl Calibration {
     }
 }
 
-/// How often each finger is the best of a draw, 0 to 1.
+/// Share of the draws in which each finger is the best, 0 to 1.
 fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     let mut counts = vec![0_u32; fingers];
     for draw in drawn {

@@ -19,7 +19,7 @@ pub struct LeftOut {
     pub predicted: Predicted,
 }
 
-/// How well left-out fingers were predicted.
+/// Accuracy of the predictions of left-out fingers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
     /// Fingers.

@@ -22,14 +22,13 @@ pub struct Print {
     pub low_mm: f64,
     /// Upper end.
     pub high_mm: f64,
-    /// How much the best known range is expected to gain by this print and those before it, less
-    /// what those gain.
+    /// Expected gain of the best known range by this print and those before it, less theirs.
     pub expected_gain_mm: f64,
     /// Why, in one line.
     pub reason: String,
 }
 
-/// What to do next.
+/// Advice on the next prints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
     /// The prints, best first.
@@ -40,12 +39,12 @@ pub struct Advice {
     pub stop: bool,
 }
 
-/// What is asked.
+/// Question to [`advise`].
 #[derive(Debug, Clone, Copy)]
 pub struct Question<'a> {
     /// Fingers that may be printed.
     pub among: &'a [usize],
-    /// How many at a time.
+    /// Prints at a time.
     pub count: usize,
     /// Gain that a print must promise to be worth its cost, mm.
     pub cost_mm: f64,
@@ -107,7 +106,7 @@ pub fn advise(
     Advice { next, best_known_mm, stop }
 }
 
-/// Where a finger lies among those tried before.
+/// Place of a finger among those tried before.
 struct Places<'a> {
     own: Place,
     tried: &'a [usize],
@@ -139,7 +138,7 @@ fn reason(places: &Places<'_>, expected_mm: f64, high_mm: f64, best_mm: Option<f
 }
 
 impl Places<'_> {
-    /// What no finger tried before tells.
+    /// News that no finger tried before tells.
     fn news(&self) -> Option<String> {
         let difference = |axis: usize| {
             let by = self.tried.iter().map(|&finger| self.own[axis] - self.all[finger][axis]);

@@ -1,4 +1,4 @@
-//! What a posterior says of fingers: means, intervals, joint draws.
+//! Predictions of a posterior for fingers: means, intervals, joint draws.
 
 use super::bench::{Bench, Posterior};
 use super::process::{Conditioned, Finger, Hyperparameters, TERMS};
@@ -29,11 +29,11 @@ pub struct Predicted {
     pub low_mm: f64,
     /// Upper end of the interval.
     pub high_mm: f64,
-    /// What the simulation alone gives, averaged over the posterior.
+    /// Range by simulation alone, averaged over the posterior.
     pub simulated_mm: f64,
 }
 
-/// What an interval is of.
+/// Quantity that an interval is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Of {
     /// The range that many measurements would give on average.

@@ -1,4 +1,4 @@
-//! What nobody measured in a cell, and within which bounds it lies: `priors/bench.toml`.
+//! Unmeasured numbers of a cell, and their bounds: `priors/bench.toml`.
 
 use input::{Check, InputError, read};
 use serde::Deserialize;
@@ -20,14 +20,14 @@ pub struct Priors {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// What it changes.
+    /// Quantity that it changes.
     pub sets: Target,
-    /// How.
+    /// Way in which it changes it.
     #[serde(rename = "as")]
     pub way: Way,
-    /// Of what it is drawn evenly.
+    /// Scale on which it is drawn evenly.
     pub scale: Scale,
     /// Lower bound.
     pub low: f64,
@@ -35,11 +35,11 @@ pub struct Parameter {
     pub high: f64,
     /// Whether all tasks share one value.
     pub shared: bool,
-    /// Where the bounds come from.
+    /// Source of the bounds.
     pub source: String,
 }
 
-/// What a parameter changes.
+/// Quantity that a parameter changes.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum Target {
@@ -69,7 +69,7 @@ const NAMED: [(&str, Target); 6] = [
     ("robot.stiffness_n_per_mm", Target::Flange),
 ];
 
-/// How a parameter changes a number.
+/// Way in which a parameter changes a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Way {
@@ -79,7 +79,7 @@ pub enum Way {
     Shift,
 }
 
-/// What is drawn evenly.
+/// Quantity that is drawn evenly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scale {

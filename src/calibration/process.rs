@@ -84,7 +84,7 @@ pub struct Finger {
 }
 
 impl Finger {
-    /// What each linear term multiplies.
+    /// Factors of the linear terms.
     pub fn terms(&self) -> [f64; TERMS] {
         [1.0, self.simulated - 1.0, self.place[0], self.place[1]]
     }

@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 const SIMULATION: &str = include_str!("../../data/published_simulation.csv");
 
-/// Where a published range comes from.
+/// Source of a published range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
     /// The publication's MuJoCo simulation.
@@ -25,9 +25,9 @@ pub struct Published {
     pub task: String,
     /// Number of the design, as in [`designs`].
     pub design: u32,
-    /// What stopped the shift in the negative direction.
+    /// Failure class that stopped the shift in the negative direction.
     pub failure_negative_offset: Option<FailureClass>,
-    /// What stopped the shift in the positive direction.
+    /// Failure class that stopped the shift in the positive direction.
     pub failure_positive_offset: Option<FailureClass>,
     /// Tolerable range, mm; `None` if the publication gives none.
     pub tolerable_range_mm: Option<f64>,

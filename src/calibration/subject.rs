@@ -1,4 +1,4 @@
-//! One task: its fingers, their simulated ranges, and what was measured of them.
+//! One task: its fingers, their simulated ranges and their measurements.
 
 use super::bench::{Bench, Observation, Simulator};
 use super::emulator::{CalibrationError, Emulator, most};
@@ -23,11 +23,11 @@ pub struct Subject {
     pub task: String,
     /// The fingers: first those of the space, then other measured or published ones.
     pub designs: Vec<Design>,
-    /// How many of them are the space's.
+    /// Number of fingers of the space.
     pub of_space: usize,
     /// The simulator's stand-in.
     pub emulator: Emulator,
-    /// What was measured on this task, with the number of the finger.
+    /// Measurements on this task, with the number of the finger.
     pub experiments: Vec<(usize, Experiment)>,
     places: Vec<Place>,
     /// Shares of the space, as the emulator takes them.
@@ -102,7 +102,7 @@ impl Subject {
         }
     }
 
-    /// How a finger fails at either end: as most of the nearest measured ones do, or the
+    /// Failure of a finger at either end: as most of the nearest measured ones do, or the
     /// nearest simulated ones where nothing was measured.
     pub fn failures(&self, finger: usize) -> [Option<FailureClass>; 2] {
         let here = self.places[finger];

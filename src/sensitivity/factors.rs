@@ -23,7 +23,7 @@ pub struct Factor {
     pub low: f64,
     /// Upper bound.
     pub high: f64,
-    /// How it sets conditions and errors of stiffness; `None` for a key of the space.
+    /// Setter of conditions and errors of stiffness; `None` for a key of the space.
     sets: Option<Sets>,
 }
 

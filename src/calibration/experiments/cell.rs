@@ -73,7 +73,7 @@ pub(super) fn failure(text: &str) -> Result<FailureClass, String> {
     class.ok_or_else(|| format!("`{text}` is no failure class; there are {}", known.join(", ")))
 }
 
-/// How many measurements the values are the mean of.
+/// Number of measurements that the values are the mean of.
 pub(super) fn repeats(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(count @ 1..=10_000) => Ok(count),

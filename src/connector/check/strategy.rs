@@ -101,7 +101,8 @@ fn short(point: &Waypoint) -> Option<Problem> {
 
 /// Fault of moves that end above the success depth.
 fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
-    let depth = path::commanded_depth(case.task, way);
+    // Of the upright tip at the end of the path.
+    let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z);
     let missing = case.task.success.depth - depth;
     let last = case.task.strategy.phases.last().filter(|_| missing > 0.0)?;
     let z = mm(last.displacement[2] - missing - PRESS);

@@ -325,7 +325,7 @@ fn imported(pair: &str, like: Option<&Task>) -> Imported {
 fn an_extruded_pair_is_imported_exactly() {
     let found = imported("keyed", None);
     assert_eq!(found.exact, [true; 2], "{:?} parts", found.parts());
-    assert!(found.intrusion.unwrap().0.depth < 2e-3 * MM, "{:?}", found.intrusion);
+    assert!(found.intrusion.unwrap().0 < 2e-3 * MM, "{:?}", found.intrusion);
     assert!((found.clearance - 0.2 * MM).abs() < 0.005 * MM, "{}", found.clearance);
     assert_eq!(problems(&found.task), []);
 }
@@ -397,7 +397,7 @@ fn a_chamfered_bore_is_imported_exactly() {
     let bore = [&bore[..], &[[0.0, -10.0]]].concat();
     let found = over(turned(&bore, 64), 64).unwrap();
     assert_eq!(found.exact, [true; 2]);
-    assert!(found.intrusion.unwrap().0.depth < 2e-3 * MM, "{:?}", found.intrusion);
+    assert!(found.intrusion.unwrap().0 < 2e-3 * MM, "{:?}", found.intrusion);
 }
 
 /// A spherical hollow of 130 rings has more layers than are cut exactly: hulls, whose intrusion is
@@ -417,9 +417,9 @@ fn a_hollow_curved_socket_is_approximated_and_measured() {
     let depth = |resolution: u32| {
         let found = over(bowl(), resolution).unwrap();
         assert_eq!(found.exact, [true, false]);
-        let (intrusion, of) = found.intrusion.unwrap();
+        let (depth, _, of) = found.intrusion.unwrap();
         assert_eq!(of, "socket");
-        intrusion.depth
+        depth
     };
     let [coarse, fine] = [16, 32].map(depth);
     assert!(fine > 0.1 * coarse && coarse > 0.1 * MM, "{coarse} {fine}");

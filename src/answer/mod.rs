@@ -18,7 +18,7 @@ pub struct Answer<'a> {
     pub record: &'a StudyRecord,
     /// Designs that count: the evaluations of the present model.
     pub designs: usize,
-    /// How many of them keep all constraints and have a value.
+    /// Number of them that keep all constraints and have a value.
     pub feasible: usize,
     /// The recommended design, or of a front its first; `None` if none has a value and keeps all
     /// constraints.
@@ -29,7 +29,7 @@ pub struct Answer<'a> {
     pub nearest: Option<Nearest<'a>>,
     /// The designs that were walked, best first; empty if none were.
     pub walked: Vec<WalkedDesign<'a>>,
-    /// What several objectives leave to choose from; `None` for a single one.
+    /// Front of several objectives; `None` for a single one.
     pub front: Option<Front<'a>>,
     /// The smallest and the largest range of the designs, mm; `None` if none has a range.
     pub spread_mm: Option<[f64; 2]>,
@@ -69,7 +69,7 @@ pub struct WalkedDesign<'a> {
 pub struct Front<'a> {
     /// The designs, best in the first objective first.
     pub designs: Vec<&'a Recorded>,
-    /// What they dominate.
+    /// Volume that they dominate.
     pub volume: Volume,
 }
 

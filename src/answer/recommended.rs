@@ -27,9 +27,9 @@ pub struct Recommended<'a> {
     pub firm_window_mm: Option<[f64; 2]>,
     /// Largest force between plug and socket over the inserted trials, N.
     pub peak_force_n: Option<f64>,
-    /// What was measured on each task.
+    /// Measurements on each task.
     pub tasks: Vec<OnTask<'a>>,
-    /// What it does with springs computed from its ribs, if that was measured.
+    /// Measurements with springs computed from its ribs, if there are any.
     pub by_ribs: Option<&'a ByRibs>,
     /// Its range with those, mm.
     pub by_ribs_range_mm: Option<f64>,
@@ -38,7 +38,7 @@ pub struct Recommended<'a> {
     /// The widest range of the search, mm, where that is another design's, less firm when measured
     /// again.
     pub wider_mm: Option<f64>,
-    /// What is as good; `None` of a front.
+    /// Designs that are as good; `None` of a front.
     pub as_good: Option<AsGood<'a>>,
 }
 
@@ -47,20 +47,20 @@ pub struct Recommended<'a> {
 pub struct OnTask<'a> {
     /// Name of the task.
     pub name: &'a str,
-    /// What was measured: window and what ends it, errors drawn.
+    /// Window, its ends, errors drawn.
     pub measured: &'a Evaluation,
     /// Largest force between plug and socket over the inserted trials, N.
     pub peak_force_n: Option<f64>,
-    /// What is firm of the window, if its ends were repeated.
+    /// Firm part of the window, if its ends were repeated.
     pub firm: Option<&'a Firm>,
 }
 
 /// The designs that are as good as the recommended one.
 #[derive(Debug, Clone)]
 pub struct AsGood<'a> {
-    /// How many there are, with the recommended one.
+    /// Their number, with the recommended one.
     pub designs: usize,
-    /// Which to take for other reasons; none if there is no other.
+    /// Those to take for other reasons; none if there is no other.
     pub alternatives: Vec<Alternative<'a>>,
 }
 
@@ -71,7 +71,7 @@ pub struct Alternative<'a> {
     pub reason: &'static str,
     /// The design.
     pub design: &'a Recorded,
-    /// What is least or most of it.
+    /// Its least or largest quantity.
     pub value: f64,
     /// The unit of that.
     pub unit: &'static str,
@@ -119,7 +119,7 @@ impl<'a> Recommended<'a> {
     }
 }
 
-/// What all windows have in common.
+/// Common part of all windows.
 fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     windows
         .fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])
@@ -148,20 +148,18 @@ fn as_good<'a>(record: &StudyRecord, equivalent: &[&'a Recorded]) -> AsGood<'a> 
     let designs = equivalent.len();
     let force = |r: &Recorded| record.measure(r, Measure::PeakForce).unwrap_or(f64::INFINITY);
     let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
-    let valued = |of: &dyn Fn(&Recorded) -> f64| -> Vec<(&'a Recorded, f64)> {
-        // Without a second there is nothing to choose.
-        let equivalent = if designs < 2 { &[] } else { equivalent };
-        equivalent.iter().map(|&design| (design, of(design))).collect()
-    };
-    let (forces, stiffnesses) = (valued(&force), valued(&stiffness));
-    let value = |a: &&(&Recorded, f64), b: &&(&Recorded, f64)| a.1.total_cmp(&b.1);
+    // Without a second there is nothing to choose.
+    let among = if designs < 2 { &[] } else { equivalent };
+    let forces = among.iter().map(|&design| (design, force(design)));
+    let stiffnesses = || among.iter().map(|&design| (design, stiffness(design)));
+    let value = |a: &(&Recorded, f64), b: &(&Recorded, f64)| a.1.total_cmp(&b.1);
     let named = [
-        ("least force", forces.iter().min_by(value), "N"),
-        ("softest", stiffnesses.iter().min_by(value), "N/mm"),
-        ("stiffest", stiffnesses.iter().max_by(value), "N/mm"),
+        ("least force", forces.min_by(value), "N"),
+        ("softest", stiffnesses().min_by(value), "N/mm"),
+        ("stiffest", stiffnesses().max_by(value), "N/mm"),
     ];
     let known = named.into_iter().filter_map(|(reason, found, unit)| {
-        let &(design, value) = found.filter(|(_, value)| value.is_finite())?;
+        let (design, value) = found.filter(|(_, value)| value.is_finite())?;
         Some(Alternative { reason, design, value, unit })
     });
     AsGood { designs, alternatives: known.collect() }

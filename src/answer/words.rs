@@ -56,12 +56,12 @@ pub fn outcome(outcome: Outcome) -> String {
     format!("{}{class}", outcome.label())
 }
 
-/// What ended a window at one side.
+/// End of a window at one side.
 pub fn end(end: Option<Outcome>) -> String {
     end.map_or("no failure".to_owned(), outcome)
 }
 
-/// How often a design inserts under drawn errors, and how it fails.
+/// Share of insertions of a design under drawn errors, and its failures.
 pub fn success(success: &SuccessRate) -> [String; 2] {
     let rate = success.rate().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
     let [low, high] = success.interval();

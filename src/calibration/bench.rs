@@ -3,7 +3,6 @@
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
 use super::sampler::{Effort, sample};
-use ask_tell::gp::log_normal_cdf;
 use rand::Rng;
 use std::cell::RefCell;
 
@@ -13,7 +12,7 @@ pub trait Simulator: Sync {
     fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64>;
 }
 
-/// What is known of one finger's range.
+/// Measurement of one finger's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
     /// Number of the finger.
@@ -29,11 +28,11 @@ pub struct Observation {
 /// The bench of one task.
 #[derive(Clone)]
 pub struct Bench<'a> {
-    /// What simulates its fingers.
+    /// Simulator of its fingers.
     pub simulator: &'a dyn Simulator,
     /// Standardised stiffness of each finger.
     pub places: &'a [Place],
-    /// What was measured.
+    /// Measurements.
     pub observations: Vec<Observation>,
     /// mm to one unit of the process.
     pub scale_mm: f64,
@@ -43,14 +42,6 @@ pub struct Bench<'a> {
     pub parameters: Vec<usize>,
     /// Its first coordinate of the hyperparameters.
     pub first: usize,
-}
-
-/// A bench at one sample of the posterior.
-pub struct At {
-    /// Conditioned on the ranges that are known.
-    pub conditioned: Conditioned,
-    /// Fingers whose range is this or more.
-    pub bounds: Vec<(Finger, f64)>,
 }
 
 /// The share of the prior below a standard normal coordinate.
@@ -66,15 +57,12 @@ impl Bench<'_> {
 
     /// Fingers as simulated at a sample.
     pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {
-        self.simulated(numbers, self.simulator.ranges_mm(numbers, &self.shares(state)))
+        let ranges_mm = self.simulator.ranges_mm(numbers, &self.shares(state));
+        numbers.iter().zip(ranges_mm).map(|(&number, range)| self.finger(number, range)).collect()
     }
 
-    fn simulated(&self, numbers: &[usize], ranges_mm: Vec<f64>) -> Vec<Finger> {
-        let finger = |(&number, range): (&usize, f64)| Finger {
-            place: self.places[number],
-            simulated: range / self.scale_mm,
-        };
-        numbers.iter().zip(ranges_mm).map(finger).collect()
+    fn finger(&self, number: usize, range_mm: f64) -> Finger {
+        Finger { place: self.places[number], simulated: range_mm / self.scale_mm }
     }
 
     /// The process's standard deviations in a sample.
@@ -88,38 +76,23 @@ impl Bench<'_> {
     }
 
     /// The bench at a sample; `None` where the process cannot be computed.
-    pub fn at(&self, state: &[f64]) -> Option<At> {
-        self.conditioned(state, self.fingers(&self.measured(), state))
+    pub fn at(&self, state: &[f64]) -> Option<Conditioned> {
+        let ranges_mm = self.simulator.ranges_mm(&self.measured(), &self.shares(state));
+        self.conditioned(state, &ranges_mm)
     }
 
-    fn conditioned(&self, state: &[f64], fingers: Vec<Finger>) -> Option<At> {
-        let hyperparameters = self.hyperparameters(state);
+    /// The same with the measured fingers' simulated ranges.
+    fn conditioned(&self, state: &[f64], ranges_mm: &[f64]) -> Option<Conditioned> {
         let (mut known, mut bounds) = (Vec::new(), Vec::new());
-        let (mut values, mut repeats) = (Vec::new(), Vec::new());
-        for (observation, finger) in self.observations.iter().zip(fingers) {
+        for (observation, &simulated) in self.observations.iter().zip(ranges_mm) {
+            let finger = self.finger(observation.finger, simulated);
             let value = observation.range_mm / self.scale_mm;
-            if observation.at_least {
-                bounds.push((finger, value));
-            } else {
-                known.push(finger);
-                values.push(value);
-                repeats.push(f64::from(observation.repeats));
+            match observation.at_least {
+                true => bounds.push((finger, value)),
+                false => known.push((finger, value, f64::from(observation.repeats))),
             }
         }
-        let conditioned = Conditioned::new(hyperparameters, known, &values, &repeats)?;
-        Some(At { conditioned, bounds })
-    }
-}
-
-impl At {
-    /// Logarithm of the likelihood of what was measured.
-    fn log_likelihood(&self) -> f64 {
-        let noise = self.conditioned.hyperparameters().noise;
-        let bound = |(finger, bound): &(Finger, f64)| {
-            let (mean, sd) = self.conditioned.predict(finger);
-            log_normal_cdf((mean - bound) / sd.hypot(noise))
-        };
-        self.conditioned.log_likelihood() + self.bounds.iter().map(bound).sum::<f64>()
+        Conditioned::new(self.hyperparameters(state), &known, bounds)
     }
 }
 
@@ -148,15 +121,13 @@ impl Posterior {
             benches.iter().map(|_| RefCell::default()).collect();
         let log_likelihood = |part: usize, state: &[f64]| {
             let bench = &benches[part];
-            let numbers = bench.measured();
             let shares = bench.shares(state);
             let mut known = known[part].borrow_mut();
-            if known.0 != shares || known.1.len() != numbers.len() {
-                let ranges = bench.simulator.ranges_mm(&numbers, &shares);
+            if known.0 != shares || known.1.len() != bench.observations.len() {
+                let ranges = bench.simulator.ranges_mm(&bench.measured(), &shares);
                 *known = (shares, ranges);
             }
-            let fingers = bench.simulated(&numbers, known.1.clone());
-            bench.conditioned(state, fingers).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
+            bench.conditioned(state, &known.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
         };
         Posterior { samples: sample(&parts, &log_likelihood, effort, random) }
     }

@@ -15,13 +15,13 @@ const DRAWS: usize = 3;
 /// One coordinate that is a parameter.
 #[derive(Debug, Clone)]
 pub struct Coordinate {
-    /// What it is.
+    /// The parameter.
     pub parameter: Parameter,
     /// The task it belongs to; `None` if they share it.
     pub task: Option<String>,
 }
 
-/// Which coordinate of a sample is what: the parameters, then each task's hyperparameters.
+/// Meaning of a sample's coordinates: the parameters, then each task's hyperparameters.
 #[derive(Debug, Clone)]
 pub struct Layout {
     /// The parameters.
@@ -63,7 +63,7 @@ impl Layout {
     }
 }
 
-/// What a calibration found on one task.
+/// Result of a calibration on one task.
 #[derive(Debug, Clone)]
 pub struct TaskResult {
     /// Each finger of the space, in the subject's order.
@@ -85,7 +85,7 @@ pub struct Prediction {
 
 /// A finished calibration.
 pub struct Calibration {
-    /// Which coordinate is what.
+    /// Meaning of the coordinates.
     pub layout: Layout,
     /// Samples of all coordinates.
     pub posterior: Posterior,
@@ -100,27 +100,25 @@ impl Calibration {
         let dimension = layout.dimension();
         let mut random = stream(settings.seed, 0, "calibrate");
         let posterior = Posterior::sampled(&benches, dimension, settings.effort, &mut random);
-        let task =
-            |(i, subject): (usize, &Subject)| {
-                let mut random = stream(settings.seed, i as u64, "draws");
-                let fingers: Vec<usize> = (0..subject.of_space).collect();
-                let ranges = predict(&benches[i], &posterior, &fingers, Of::Truth);
-                let drawn = draws(&benches[i], &posterior, &fingers, DRAWS, &mut random);
-                let best = shares_best(&drawn, fingers.len());
-                let prediction = |((&finger, range), &best): ((&usize, &Predicted), &f64)| {
-                    Prediction { finger, range: *range, best }
-                };
-                TaskResult {
-                    predictions: fingers.iter().zip(&ranges).zip(&best).map(prediction).collect(),
-                    left_out: leave_one_out(&benches, i, dimension, settings),
-                }
-            };
+        let task = |(i, subject): (usize, &Subject)| {
+            let mut random = stream(settings.seed, i as u64, "draws");
+            let fingers: Vec<usize> = (0..subject.of_space).collect();
+            let ranges = predict(&benches[i], &posterior, &fingers, Of::Truth);
+            let drawn = draws(&benches[i], &posterior, &fingers, DRAWS, &mut random);
+            let each = ranges.into_iter().zip(shares_best(&drawn, fingers.len())).enumerate();
+            TaskResult {
+                predictions: each
+                    .map(|(finger, (range, best))| Prediction { finger, range, best })
+                    .collect(),
+                left_out: leave_one_out(&benches, i, dimension, settings),
+            }
+        };
         let tasks = subjects.iter().enumerate().map(task).collect();
         Calibration { layout, posterior, tasks }
     }
 }
 
-/// How often each finger is the best of a draw, 0 to 1.
+/// Share of the draws in which each finger is the best, 0 to 1.
 fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     let mut counts = vec![0_u32; fingers];
     for draw in drawn {

@@ -6,8 +6,8 @@ use super::simulation::Simulation;
 use ask_tell::SobolSequence;
 use ask_tell::gp::{FitEffort, Gp, fit};
 use insertion::evaluation::template::Impossible;
-use insertion::outcome::FailureClass;
-use insertion::space::{Design, Space};
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::space::{Design, Parameter, Space};
 use rayon::prelude::*;
 
 /// One simulation in this many is kept to measure the error.
@@ -40,20 +40,18 @@ pub struct Emulator {
     pub error_mm: f64,
 }
 
-/// Why there is no emulator.
+/// Error of what a calibration starts from.
 #[derive(Debug, thiserror::Error)]
-pub enum EmulatorError {
+pub enum CalibrationError {
     /// A design or a value of a parameter cannot be simulated.
     #[error(transparent)]
     Impossible(#[from] Impossible),
-    /// No process goes through the simulations.
-    #[error("{task}: no process goes through the {simulations} simulations; ask for more")]
-    NoFit {
-        /// The task.
-        task: String,
-        /// How many there are.
-        simulations: usize,
-    },
+    /// No process goes through so many simulations of a task.
+    #[error("{0}: no process goes through the {1} simulations; ask for more")]
+    NoFit(String, usize),
+    /// The measured finger of a line does not lie in the space.
+    #[error("line {0}: {1}")]
+    Measured(u64, String),
 }
 
 impl Emulator {
@@ -68,17 +66,21 @@ impl Emulator {
         task: &str,
         count: usize,
         seed: u64,
-    ) -> Result<Self, EmulatorError> {
-        let dimension = space.parameters().len() + simulation.parameters().len();
+    ) -> Result<Self, CalibrationError> {
+        let dimension = space.parameters().len() + simulation.parameters.len();
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
         let run = |at: Vec<f64>| {
-            let (design, shares) = at.split_at(space.parameters().len());
-            let evaluation = simulation.window(&design_at(space, design), Some(shares))?;
+            let (of_space, shares) = at.split_at(space.parameters().len());
+            let value = |(parameter, share): (&Parameter, &f64)| {
+                (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
+            };
+            let design = Design(space.parameters().iter().zip(of_space).map(value).collect());
+            let evaluation = simulation.window(&design, shares)?;
             let window = &evaluation.window;
-            let class = |end: Option<insertion::outcome::Outcome>| {
-                end.and_then(insertion::outcome::Outcome::failure)
-                    .and_then(|n| FailureClass::try_from(n).ok())
+            let class = |end: Option<Outcome>| match end {
+                Some(Outcome::Failed(class)) => Some(class),
+                _ => None,
             };
             Ok(Run {
                 range_mm: window.range_mm(),
@@ -89,7 +91,7 @@ impl Emulator {
         let runs = points.into_par_iter().map(run).collect::<Result<Vec<Run>, Impossible>>()?;
         let simulations = count - count / FRESH;
         Emulator::fitted(runs, simulations)
-            .ok_or_else(|| EmulatorError::NoFit { task: task.to_owned(), simulations })
+            .ok_or_else(|| CalibrationError::NoFit(task.to_owned(), simulations))
     }
 
     fn fitted(runs: Vec<Run>, simulations: usize) -> Option<Self> {
@@ -144,20 +146,8 @@ impl Emulator {
 pub(super) fn most(classes: impl Iterator<Item = FailureClass>) -> Option<FailureClass> {
     let mut counts = [0_usize; 4];
     classes.for_each(|class| counts[usize::from(class.number()) - 1] += 1);
-    let best = *counts.iter().max()?;
-    FailureClass::ALL
-        .into_iter()
-        .zip(counts)
-        .find(|(_, count)| *count == best && best > 0)
-        .map(|(class, _)| class)
-}
-
-/// The design at shares of a space.
-fn design_at(space: &Space, shares: &[f64]) -> Design {
-    let value = |(parameter, share): (&insertion::space::Parameter, &f64)| {
-        (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
-    };
-    Design(space.parameters().iter().zip(shares).map(value).collect())
+    let met = FailureClass::ALL.into_iter().zip(counts).filter(|(_, count)| *count > 0);
+    met.rev().max_by_key(|(_, count)| *count).map(|(class, _)| class)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use super::sampler::Settings;
 use crate::calibration::statistics::{mean, spearman};
 use ask_tell::stream::stream;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// A measured finger, predicted without it.
 #[derive(Debug, Clone, Copy)]
@@ -18,7 +19,7 @@ pub struct LeftOut {
     pub predicted: Predicted,
 }
 
-/// How well left-out fingers were predicted.
+/// Accuracy of the predictions of left-out fingers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
     /// Fingers.
@@ -32,10 +33,6 @@ pub struct Accuracy {
 }
 
 impl LeftOut {
-    fn deviation_percent(&self) -> f64 {
-        100.0 * (self.predicted.mean_mm - self.measured_mm).abs() / self.measured_mm
-    }
-
     /// Whether the interval holds what was measured.
     pub fn inside(&self) -> bool {
         (self.predicted.low_mm..=self.predicted.high_mm).contains(&self.measured_mm)
@@ -46,7 +43,10 @@ impl Accuracy {
     /// Of these fingers. One that does not insert at all has no deviation in percent.
     pub fn of(left_out: &[LeftOut]) -> Self {
         let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
-        let deviations: Vec<f64> = wide.map(LeftOut::deviation_percent).collect();
+        let percent = |one: &LeftOut| {
+            100.0 * (one.predicted.mean_mm - one.measured_mm).abs() / one.measured_mm
+        };
+        let deviations: Vec<f64> = wide.map(percent).collect();
         let pairs: Vec<(f64, f64)> =
             left_out.iter().map(|one| (one.predicted.mean_mm, one.measured_mm)).collect();
         Accuracy {
@@ -71,9 +71,7 @@ pub fn leave_one_out(
     settings: &Settings,
 ) -> Vec<LeftOut> {
     let known = || benches[task].observations.iter().filter(|one| !one.at_least);
-    let mut fingers: Vec<usize> = known().map(|one| one.finger).collect();
-    fingers.sort_unstable();
-    fingers.dedup();
+    let fingers: BTreeSet<usize> = known().map(|one| one.finger).collect();
     let one = |finger: usize| {
         let of_finger: Vec<f64> =
             known().filter(|one| one.finger == finger).map(|one| one.range_mm).collect();

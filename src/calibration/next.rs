@@ -9,6 +9,7 @@ use super::bench::{Bench, Posterior};
 use super::predict::{INTERVAL, draws};
 use super::process::Place;
 use rand::Rng;
+use std::collections::BTreeSet;
 
 /// One finger to print.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,14 +22,13 @@ pub struct Print {
     pub low_mm: f64,
     /// Upper end.
     pub high_mm: f64,
-    /// How much the best known range is expected to gain by this print and those before it, less
-    /// what those gain.
+    /// Expected gain of the best known range by this print and those before it, less theirs.
     pub expected_gain_mm: f64,
     /// Why, in one line.
     pub reason: String,
 }
 
-/// What to do next.
+/// Advice on the next prints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
     /// The prints, best first.
@@ -39,12 +39,12 @@ pub struct Advice {
     pub stop: bool,
 }
 
-/// What is asked.
+/// Question to [`advise`].
 #[derive(Debug, Clone, Copy)]
 pub struct Question<'a> {
     /// Fingers that may be printed.
     pub among: &'a [usize],
-    /// How many at a time.
+    /// Prints at a time.
     pub count: usize,
     /// Gain that a print must promise to be worth its cost, mm.
     pub cost_mm: f64,
@@ -59,12 +59,9 @@ pub fn advise(
     question: &Question<'_>,
     random: &mut impl Rng,
 ) -> Advice {
-    let mut measured: Vec<usize> = bench.observations.iter().map(|one| one.finger).collect();
-    measured.sort_unstable();
-    measured.dedup();
-    let new: Vec<usize> =
-        question.among.iter().copied().filter(|finger| !measured.contains(finger)).collect();
-    let all = [measured.clone(), new.clone()].concat();
+    let measured: BTreeSet<usize> = bench.observations.iter().map(|one| one.finger).collect();
+    let new = question.among.iter().filter(|finger| !measured.contains(finger));
+    let all: Vec<usize> = measured.iter().chain(new).copied().collect();
     let drawn = draws(bench, posterior, &all, question.draws, random);
     let known = measured.len();
     let count = drawn.len().max(1) as f64;
@@ -109,7 +106,7 @@ pub fn advise(
     Advice { next, best_known_mm, stop }
 }
 
-/// Where a finger lies among those tried before.
+/// Place of a finger among those tried before.
 struct Places<'a> {
     own: Place,
     tried: &'a [usize],
@@ -120,16 +117,13 @@ struct Places<'a> {
 const FAR: f64 = 0.7;
 
 fn reason(places: &Places<'_>, expected_mm: f64, high_mm: f64, best_mm: Option<f64>) -> String {
-    let Some(best_mm) = best_mm.filter(|_| !places.tried.is_empty()) else {
-        return match places.tried.is_empty() {
-            true => "the widest that the simulation expects".to_owned(),
-            false => format!(
-                "wide as simulated, and {}",
-                places.news().unwrap_or_else(|| "near the first".to_owned())
-            ),
-        };
-    };
+    if places.tried.is_empty() {
+        return "the widest that the simulation expects".to_owned();
+    }
     let news = places.news();
+    let Some(best_mm) = best_mm else {
+        return format!("wide as simulated, and {}", news.as_deref().unwrap_or("near the first"));
+    };
     match (expected_mm - best_mm, news) {
         (gain, Some(news)) if gain > 0.0 => {
             format!("expected {gain:.1} mm wider than the best measured, and {news}")
@@ -144,7 +138,7 @@ fn reason(places: &Places<'_>, expected_mm: f64, high_mm: f64, best_mm: Option<f
 }
 
 impl Places<'_> {
-    /// What no finger tried before tells.
+    /// News that no finger tried before tells.
     fn news(&self) -> Option<String> {
         let difference = |axis: usize| {
             let by = self.tried.iter().map(|&finger| self.own[axis] - self.all[finger][axis]);

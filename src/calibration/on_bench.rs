@@ -17,7 +17,7 @@ pub fn by_range(result: &TaskResult) -> Vec<&Prediction> {
     order
 }
 
-/// What a calibration says of a study's one task; `simulated` is the best finger's evaluation.
+/// Prediction of a calibration for a study's one task; `simulated` is the best finger's evaluation.
 pub fn on_bench(
     subject: &Subject,
     result: &TaskResult,

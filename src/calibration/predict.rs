@@ -1,7 +1,7 @@
-//! What a posterior says of fingers: means, intervals, joint draws.
+//! Predictions of a posterior for fingers: means, intervals, joint draws.
 
-use super::bench::{At, Bench, Posterior};
-use super::process::{Finger, Hyperparameters, TERMS};
+use super::bench::{Bench, Posterior};
+use super::process::{Conditioned, Finger, Hyperparameters, TERMS};
 use ask_tell::stream::stream;
 use rand::{Rng, RngExt};
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
@@ -9,6 +9,8 @@ use rayon::prelude::*;
 
 /// Share of the truths that an interval is to hold.
 pub const INTERVAL: f64 = 0.8;
+/// Share beyond either end.
+const TAIL: f64 = (1.0 - INTERVAL) / 2.0;
 /// Waves that make up a draw of the process.
 const WAVES: usize = 64;
 /// Draws tried until one keeps to the ranges that are known from below.
@@ -27,11 +29,11 @@ pub struct Predicted {
     pub low_mm: f64,
     /// Upper end of the interval.
     pub high_mm: f64,
-    /// What the simulation alone gives, averaged over the posterior.
+    /// Range by simulation alone, averaged over the posterior.
     pub simulated_mm: f64,
 }
 
-/// What an interval is of.
+/// Quantity that an interval is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Of {
     /// The range that many measurements would give on average.
@@ -50,26 +52,25 @@ pub fn predict(
     if bench.observations.iter().any(|observation| observation.at_least) {
         return from_draws(bench, posterior, numbers, of);
     }
-    let states: Vec<(&Vec<f64>, At)> =
+    let states: Vec<(&Vec<f64>, Conditioned)> =
         posterior.samples.iter().filter_map(|state| Some((state, bench.at(state)?))).collect();
     let one = |number: &usize| {
-        let part = |(state, at): &(&Vec<f64>, At)| {
+        let part = |(state, at): &(&Vec<f64>, Conditioned)| {
             let finger = bench.fingers(&[*number], state)[0];
-            let (mean, sd) = at.conditioned.predict(&finger);
+            let (mean, sd) = at.predict(&finger);
             let noise = match of {
                 Of::Truth => 0.0,
-                Of::Measurement => at.conditioned.hyperparameters().noise,
+                Of::Measurement => at.hyperparameters.noise,
             };
             [mean, sd.hypot(noise), finger.simulated].map(|value| value * bench.scale_mm)
         };
         let parts: Vec<[f64; 3]> = states.iter().map(part).collect();
         let mean =
             |i: usize| parts.iter().map(|part| part[i]).sum::<f64>() / parts.len().max(1) as f64;
-        let tail = (1.0 - INTERVAL) / 2.0;
         Predicted {
             mean_mm: mean(0).max(0.0),
-            low_mm: quantile(&parts, tail).max(0.0),
-            high_mm: quantile(&parts, 1.0 - tail).max(0.0),
+            low_mm: quantile(&parts, TAIL).max(0.0),
+            high_mm: quantile(&parts, 1.0 - TAIL).max(0.0),
             simulated_mm: mean(2),
         }
     };
@@ -104,11 +105,10 @@ fn from_draws(
         values.sort_by(f64::total_cmp);
         let at =
             |share: f64| values.get((share * values.len() as f64) as usize).copied().unwrap_or(0.0);
-        let tail = (1.0 - INTERVAL) / 2.0;
         Predicted {
             mean_mm: values.iter().sum::<f64>() / values.len().max(1) as f64,
-            low_mm: at(tail).max(0.0),
-            high_mm: at(1.0 - tail).max(0.0),
+            low_mm: at(TAIL).max(0.0),
+            high_mm: at(1.0 - TAIL).max(0.0),
             simulated_mm: simulated(number),
         }
     };
@@ -161,10 +161,9 @@ pub fn draws(
 }
 
 /// One draw given the measurements: one of the prior, moved to them.
-fn draw(at: &At, fingers: &[Finger], random: &mut impl Rng) -> Vec<f64> {
-    let hyperparameters = at.conditioned.hyperparameters();
-    let prior = Departure::drawn(hyperparameters, random);
-    let measured = at.conditioned.fingers().iter().zip(at.conditioned.noises());
+fn draw(at: &Conditioned, fingers: &[Finger], random: &mut impl Rng) -> Vec<f64> {
+    let prior = Departure::drawn(&at.hyperparameters, random);
+    let measured = at.fingers.iter().zip(&at.noises);
     let known: Vec<f64> = measured
         .map(|(finger, noise)| {
             let normal: f64 = random.sample(StandardNormal);
@@ -172,7 +171,7 @@ fn draw(at: &At, fingers: &[Finger], random: &mut impl Rng) -> Vec<f64> {
         })
         .collect();
     let prior: Vec<f64> = fingers.iter().map(|finger| prior.at(finger)).collect();
-    at.conditioned.update(fingers, &prior, &known)
+    at.update(fingers, &prior, &known)
 }
 
 /// A draw of the departure from the simulation: trends, and waves whose numbers are drawn from

@@ -1,31 +1,33 @@
-//! What nobody measured in a cell, and within which bounds it lies: `priors/bench.toml`.
+//! Unmeasured numbers of a cell, and their bounds: `priors/bench.toml`.
 
 use input::{Check, InputError, read};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 /// A checked file of priors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Priors {
     /// Name, as used on the command line.
     pub name: String,
     /// One line for lists.
     pub description: String,
     /// The uncertain numbers.
+    #[serde(rename = "parameter")]
     pub parameters: Vec<Parameter>,
 }
 
 /// One uncertain number, drawn evenly between its bounds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// What it changes.
+    /// Quantity that it changes.
     pub sets: Target,
-    /// How.
+    /// Way in which it changes it.
     #[serde(rename = "as")]
     pub way: Way,
-    /// Of what it is drawn evenly.
+    /// Scale on which it is drawn evenly.
     pub scale: Scale,
     /// Lower bound.
     pub low: f64,
@@ -33,13 +35,13 @@ pub struct Parameter {
     pub high: f64,
     /// Whether all tasks share one value.
     pub shared: bool,
-    /// Where the bounds come from.
+    /// Source of the bounds.
     pub source: String,
 }
 
-/// What a parameter changes.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+/// Quantity that a parameter changes.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
 pub enum Target {
     /// A number of the task file, by its path.
     Task(String),
@@ -67,8 +69,8 @@ const NAMED: [(&str, Target); 6] = [
     ("robot.stiffness_n_per_mm", Target::Flange),
 ];
 
-/// How a parameter changes a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// Way in which a parameter changes a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Way {
     /// It multiplies it.
@@ -77,8 +79,8 @@ pub enum Way {
     Shift,
 }
 
-/// What is drawn evenly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// Quantity that is drawn evenly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scale {
     /// The parameter.
@@ -104,19 +106,6 @@ impl TryFrom<String> for Target {
     }
 }
 
-impl From<Target> for String {
-    fn from(target: Target) -> String {
-        match target {
-            Target::Task(path) => path,
-            other => NAMED
-                .iter()
-                .find(|(_, named)| *named == other)
-                .map_or("", |(name, _)| name)
-                .to_owned(),
-        }
-    }
-}
-
 impl Parameter {
     /// The value that this share of the prior lies below; `share` in 0 to 1.
     pub fn at(&self, share: f64) -> f64 {
@@ -135,20 +124,13 @@ impl Parameter {
     }
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawPriors {
-    name: String,
-    description: String,
-    parameter: Vec<Parameter>,
-}
-
 impl Priors {
     /// Reads and checks priors; `file` is named in errors.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let raw: RawPriors = read(text, file)?;
+        let priors: Priors = read(text, file)?;
+        let all = &priors.parameters;
         let check = Check { file };
-        for (i, parameter) in raw.parameter.iter().enumerate() {
+        for (i, parameter) in all.iter().enumerate() {
             let Parameter { name, low, high, scale, way, .. } = parameter;
             check.finite(name, *low)?;
             check.finite(name, *high)?;
@@ -165,15 +147,12 @@ impl Priors {
             if parameter.source.trim().is_empty() {
                 return check.fail(name, "source is empty; say where the bounds come from");
             }
-            if raw.parameter[..i]
-                .iter()
-                .any(|other| other.name == *name || other.sets == parameter.sets)
-            {
+            if all[..i].iter().any(|other| other.name == *name || other.sets == parameter.sets) {
                 return check
                     .fail(name, "is given twice; each name and each number may stand once");
             }
         }
-        Ok(Priors { name: raw.name, description: raw.description, parameters: raw.parameter })
+        Ok(priors)
     }
 }
 

@@ -14,6 +14,7 @@
 //! in `kz`. Offset, `r`, `b1` and `b2` are normal about 0 and integrated out; `d` is a Matern 5/2
 //! process.
 
+use ask_tell::gp::log_normal_cdf;
 use ask_tell::process::{Process, distance2, matern52};
 use nalgebra::{DMatrix, DVector};
 
@@ -64,15 +65,12 @@ impl Hyperparameters {
         }
     }
 
-    fn kernel(&self, a: &Place, b: &Place) -> f64 {
-        self.process.powi(2) * matern52(distance2(a, b) / self.length.powi(2))
-    }
-
     /// Prior covariance of two fingers.
     pub fn covariance(&self, a: &Finger, b: &Finger) -> f64 {
         let (x, y) = (a.terms(), b.terms());
         let linear: f64 = (0..TERMS).map(|i| self.terms[i].powi(2) * x[i] * y[i]).sum();
-        linear + self.kernel(&a.place, &b.place)
+        let distance2 = distance2(&a.place, &b.place) / self.length.powi(2);
+        linear + self.process.powi(2) * matern52(distance2)
     }
 }
 
@@ -86,7 +84,7 @@ pub struct Finger {
 }
 
 impl Finger {
-    /// What each linear term multiplies.
+    /// Factors of the linear terms.
     pub fn terms(&self) -> [f64; TERMS] {
         [1.0, self.simulated - 1.0, self.place[0], self.place[1]]
     }
@@ -95,25 +93,30 @@ impl Finger {
 /// The bench, conditioned on its measurements.
 #[derive(Debug, Clone)]
 pub struct Conditioned {
-    hyperparameters: Hyperparameters,
-    fingers: Vec<Finger>,
+    /// Standard deviations.
+    pub hyperparameters: Hyperparameters,
+    /// The measured fingers.
+    pub fingers: Vec<Finger>,
+    /// Fingers whose range is this or more.
+    pub bounds: Vec<(Finger, f64)>,
     /// Of what they departed from the simulation; the linear terms are in its kernel.
     process: Process<0>,
     /// Standard deviation of each measured value's noise.
-    noises: Vec<f64>,
+    pub noises: Vec<f64>,
 }
 
 impl Conditioned {
-    /// On the `measured` values of `fingers`, each the mean of `repeats`; `None` if their
-    /// covariance is not positive definite.
+    /// On fingers with their measured values and the number of measurements of each, and on fingers
+    /// with lower bounds; `None` if their covariance is not positive definite.
     pub fn new(
         hyperparameters: Hyperparameters,
-        fingers: Vec<Finger>,
-        measured: &[f64],
-        repeats: &[f64],
+        known: &[(Finger, f64, f64)],
+        bounds: Vec<(Finger, f64)>,
     ) -> Option<Self> {
-        let n = fingers.len();
-        let noises: Vec<f64> = repeats.iter().map(|n| hyperparameters.noise / n.sqrt()).collect();
+        let n = known.len();
+        let fingers: Vec<Finger> = known.iter().map(|(finger, ..)| *finger).collect();
+        let noises: Vec<f64> =
+            known.iter().map(|(.., repeats)| hyperparameters.noise / repeats.sqrt()).collect();
         let mut covariance = DMatrix::zeros(n, n);
         for j in 0..n {
             for i in j..n {
@@ -121,15 +124,18 @@ impl Conditioned {
             }
             covariance[(j, j)] += noises[j].powi(2);
         }
-        let departures: Vec<f64> =
-            measured.iter().zip(&fingers).map(|(y, f)| y - f.simulated).collect();
+        let departures: Vec<f64> = known.iter().map(|(f, y, _)| y - f.simulated).collect();
         let process = Process::new(covariance, &vec![[]; n], &departures)?;
-        Some(Conditioned { hyperparameters, fingers, process, noises })
+        Some(Conditioned { hyperparameters, fingers, bounds, process, noises })
     }
 
-    /// Logarithm of the marginal likelihood, less a constant.
+    /// Logarithm of the likelihood of what was measured, less a constant.
     pub fn log_likelihood(&self) -> f64 {
-        self.process.log_likelihood()
+        let bound = |(finger, bound): &(Finger, f64)| {
+            let (mean, sd) = self.predict(finger);
+            log_normal_cdf((mean - bound) / sd.hypot(self.hyperparameters.noise))
+        };
+        self.process.log_likelihood() + self.bounds.iter().map(bound).sum::<f64>()
     }
 
     fn towards(&self, finger: &Finger) -> DVector<f64> {
@@ -155,20 +161,5 @@ impl Conditioned {
             finger.simulated + prior + self.towards(finger).dot(&weights)
         };
         fingers.iter().zip(prior).map(value).collect()
-    }
-
-    /// The hyperparameters.
-    pub fn hyperparameters(&self) -> &Hyperparameters {
-        &self.hyperparameters
-    }
-
-    /// Standard deviation of the noise of each measured finger.
-    pub fn noises(&self) -> &[f64] {
-        &self.noises
-    }
-
-    /// The measured fingers.
-    pub fn fingers(&self) -> &[Finger] {
-        &self.fingers
     }
 }

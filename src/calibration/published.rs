@@ -1,7 +1,7 @@
 //! The published ranges: simulation and bench, 11 designs, four tasks.
 
 use crate::calibration::experiments::{self, Experiment};
-use input::shipped::MEASUREMENTS;
+use input::shipped::{MEASUREMENTS, Shipped};
 use insertion::outcome::FailureClass;
 use insertion::space::Design;
 use insertion::stiffness::{Measurement, SHIPPED_CSV, SHIPPED_FILE, parse};
@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 const SIMULATION: &str = include_str!("../../data/published_simulation.csv");
 
-/// Where a published range comes from.
+/// Source of a published range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
     /// The publication's MuJoCo simulation.
@@ -25,9 +25,9 @@ pub struct Published {
     pub task: String,
     /// Number of the design, as in [`designs`].
     pub design: u32,
-    /// What stopped the shift in the negative direction.
+    /// Failure class that stopped the shift in the negative direction.
     pub failure_negative_offset: Option<FailureClass>,
-    /// What stopped the shift in the positive direction.
+    /// Failure class that stopped the shift in the positive direction.
     pub failure_positive_offset: Option<FailureClass>,
     /// Tolerable range, mm; `None` if the publication gives none.
     pub tolerable_range_mm: Option<f64>,
@@ -51,14 +51,12 @@ pub fn of_task(task: &str, origin: Origin) -> Vec<Published> {
             let rows = csv::Reader::from_reader(SIMULATION.as_bytes()).into_deserialize();
             rows.flatten().filter(|row: &Published| row.task == task).collect()
         }
-        Origin::Bench => bench().iter().filter(|row| row.task == task).filter_map(row).collect(),
+        Origin::Bench => {
+            let read = |file: &Shipped| experiments::parse(file.text, file.file);
+            let lines = MEASUREMENTS.iter().flat_map(read).flatten();
+            lines.filter(|line| line.task == task).filter_map(|line| row(&line)).collect()
+        }
     }
-}
-
-/// The published experiments.
-pub fn bench() -> Vec<Experiment> {
-    let read = |file: &input::shipped::Shipped| experiments::parse(file.text, file.file);
-    MEASUREMENTS.iter().flat_map(read).flatten().collect()
 }
 
 /// An experiment with the number of its design.

@@ -4,7 +4,7 @@
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-/// How long to sample.
+/// Length of the sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
     /// Sweeps over all coordinates before the first sample is kept.
@@ -15,10 +15,10 @@ pub struct Effort {
     pub thin: usize,
 }
 
-/// How a calibration is computed.
+/// Settings of a calibration.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings {
-    /// How long is sampled.
+    /// Length of the sampling.
     pub effort: Effort,
     /// Names the random streams.
     pub seed: u64,

@@ -19,13 +19,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Starts that are tried in turn where the task's own does not insert, mm from it: a person
 /// teaches the start where it inserts.
-const TAUGHT_MM: [f64; 5] = [0.0, 1.0, -1.0, 2.0, -2.0];
+const TAUGHT_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 
 /// Simulates fingers on one task.
 pub struct Simulation<'a> {
     evaluator: &'a Evaluator,
     template: &'a Template,
-    parameters: Vec<&'a Parameter>,
+    /// The parameters that the task and the robot have, in order.
+    pub parameters: Vec<&'a Parameter>,
     /// Where windows are kept, if they are.
     cache: Option<PathBuf>,
     stop: &'a AtomicBool,
@@ -45,48 +46,33 @@ impl<'a> Simulation<'a> {
         let has = |parameter: &&Parameter| match &parameter.sets {
             Target::Task(path) => template.number(path).is_some(),
             Target::Flange => soft,
-            Target::Clearance
-            | Target::Edges
-            | Target::Stiffness
-            | Target::Tilting
-            | Target::Centre => true,
+            _ => true,
         };
         let parameters = parameters.iter().filter(has).collect();
         Simulation { evaluator, template, parameters, cache, stop }
     }
 
-    /// The parameters that the task and the robot have, in order.
-    pub fn parameters(&self) -> &[&'a Parameter] {
-        &self.parameters
-    }
-
-    /// The window of a design with each parameter at this share of its prior; `None` for the
-    /// parameters leaves everything as in the files.
+    /// The window of a design with each parameter at this share of its prior; without shares
+    /// everything is as in the files.
     ///
     /// # Errors
     /// If the design cannot be simulated.
-    pub fn window(
-        &self,
-        design: &Design,
-        shares: Option<&[f64]>,
-    ) -> Result<Evaluation, Impossible> {
+    pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
         let (specimen, robot) = self.specimen(design, shares)?;
-        let mut last = None;
+        let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;
+        let own = self.measure(&specimen, &robot)?;
+        if inserts(&own) {
+            return Ok(own);
+        }
         for shift in TAUGHT_MM {
             let mut specimen = specimen.clone();
             specimen.task.strategy.start[1] += shift * MM;
             let evaluation = self.measure(&specimen, &robot)?;
-            let inserts = evaluation.window.nominal == Outcome::Inserted;
-            last = last.filter(|_| !inserts).or(Some(evaluation));
-            if inserts {
-                break;
+            if inserts(&evaluation) {
+                return Ok(evaluation);
             }
         }
-        // There is one: the first start is always tried.
-        match last {
-            Some(evaluation) => Ok(evaluation),
-            None => self.measure(&specimen, &robot),
-        }
+        Ok(own)
     }
 
     fn measure(&self, specimen: &Specimen, robot: &Robot) -> Result<Evaluation, Impossible> {
@@ -109,12 +95,7 @@ impl<'a> Simulation<'a> {
         Ok(evaluation)
     }
 
-    fn specimen(
-        &self,
-        design: &Design,
-        shares: Option<&[f64]>,
-    ) -> Result<(Specimen, Robot), Impossible> {
-        let shares = shares.unwrap_or_default();
+    fn specimen(&self, design: &Design, shares: &[f64]) -> Result<(Specimen, Robot), Impossible> {
         let values = || self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
         let mut set = design.clone();
         for (parameter, value) in values() {

@@ -5,15 +5,6 @@ pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// Median; `None` without values.
-pub fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let half = sorted.len() / 2;
-    let upper = *sorted.get(half)?;
-    Some(if sorted.len() % 2 == 1 { upper } else { (sorted[half - 1] + upper) / 2.0 })
-}
-
 /// Spearman's rank correlation of pairs: Pearson's, of ranks of which equals
 /// share the mean. `None` below 3 pairs or if one side does not vary.
 pub fn spearman(pairs: &[(f64, f64)]) -> Option<f64> {
@@ -44,13 +35,6 @@ mod tests {
     #[test]
     fn equal_values_share_their_rank() {
         assert_eq!(ranks(&[3.0, 1.0, 3.0]), vec![1.5, 0.0, 1.5]);
-    }
-
-    #[test]
-    fn medians_by_hand() {
-        assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
-        assert_eq!(median(&[4.0, 1.0, 2.0, 9.0]), Some(3.0));
-        assert_eq!(median(&[]), None);
     }
 
     #[test]

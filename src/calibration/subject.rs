@@ -1,15 +1,16 @@
-//! One task: its fingers, their simulated ranges, and what was measured of them.
+//! One task: its fingers, their simulated ranges and their measurements.
 
 use super::bench::{Bench, Observation, Simulator};
-use super::emulator::{Emulator, EmulatorError, most};
+use super::emulator::{CalibrationError, Emulator, most};
 use super::process::Place;
-use crate::calibration::experiments::{Experiment, Extent};
+use crate::calibration::experiments::Experiment;
 use ask_tell::GridPoint;
 use ask_tell::SobolSequence;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::Template;
 use insertion::outcome::FailureClass;
 use insertion::space::{Design, Parameter, Space};
+use std::collections::BTreeSet;
 
 /// Most fingers of a space that are predicted; of a larger space it is a designed set.
 const MOST_FINGERS: u64 = 4000;
@@ -22,53 +23,15 @@ pub struct Subject {
     pub task: String,
     /// The fingers: first those of the space, then other measured or published ones.
     pub designs: Vec<Design>,
-    /// How many of them are the space's.
+    /// Number of fingers of the space.
     pub of_space: usize,
     /// The simulator's stand-in.
     pub emulator: Emulator,
-    /// What was measured on this task, with the number of the finger.
+    /// Measurements on this task, with the number of the finger.
     pub experiments: Vec<(usize, Experiment)>,
     places: Vec<Place>,
     /// Shares of the space, as the emulator takes them.
     shares: Vec<Vec<f64>>,
-}
-
-/// A measured finger that cannot be compared with the simulation.
-#[derive(Debug, thiserror::Error)]
-pub enum SubjectError {
-    /// A column that the space does not have.
-    #[error(
-        "line {line}: {key}: the space `{space}` has no such parameter; give --space FILE with it"
-    )]
-    NotInSpace {
-        /// Line of the measurement file.
-        line: u64,
-        /// The column.
-        key: String,
-        /// Name of the space.
-        space: String,
-    },
-    /// A value beyond the bounds of the space.
-    #[error(
-        "line {line}: {key}: {value} lies outside {low} .. {high} of the space `{space}`; give a wider --space FILE"
-    )]
-    Outside {
-        /// Line of the measurement file.
-        line: u64,
-        /// The column.
-        key: String,
-        /// The value.
-        value: f64,
-        /// Lower bound.
-        low: f64,
-        /// Upper bound.
-        high: f64,
-        /// Name of the space.
-        space: String,
-    },
-    /// The simulations failed.
-    #[error(transparent)]
-    Emulator(#[from] EmulatorError),
 }
 
 impl Subject {
@@ -83,31 +46,30 @@ impl Subject {
         emulator: Emulator,
         experiments: &[Experiment],
         more: &[Design],
-    ) -> Result<Self, SubjectError> {
+    ) -> Result<Self, CalibrationError> {
         let task = template.task().name.clone();
         let mut designs = fingers(space);
         let of_space = designs.len();
-        let mut numbered = |design: Design| match designs.iter().position(|known| *known == design)
-        {
-            Some(number) => number,
-            None => {
+        let mut numbered = |design: Design| {
+            designs.iter().position(|known| *known == design).unwrap_or_else(|| {
                 designs.push(design);
                 designs.len() - 1
-            }
+            })
         };
         let mut measured = Vec::new();
         for experiment in experiments.iter().filter(|line| line.task == task) {
             let design = whole(space, template, experiment)?;
             measured.push((numbered(design), experiment.clone()));
         }
-        more.iter().for_each(|design| {
+        for design in more {
             numbered(design.clone());
-        });
+        }
         let stiffness = |design: &Design| {
-            let predicted = evaluator.predict(design).map_err(EmulatorError::from)?;
+            let predicted = evaluator.predict(design)?;
             Ok([1.0 / predicted.compliance.mean, predicted.assembly.mean])
         };
-        let stiffness = designs.iter().map(stiffness).collect::<Result<Vec<_>, SubjectError>>()?;
+        let stiffness =
+            designs.iter().map(stiffness).collect::<Result<Vec<_>, CalibrationError>>()?;
         let shares = designs.iter().map(|design| shares(space, design)).collect();
         let places = standardised(&stiffness, of_space);
         Ok(Subject { task, designs, of_space, emulator, experiments: measured, places, shares })
@@ -118,33 +80,21 @@ impl Subject {
         self.designs.iter().position(|known| known == design)
     }
 
-    /// Measured fingers, each once, in order.
-    pub fn measured(&self) -> Vec<usize> {
-        let mut numbers: Vec<usize> = self.experiments.iter().map(|(number, _)| *number).collect();
-        numbers.sort_unstable();
-        numbers.dedup();
-        numbers
-    }
-
-    /// What the measurements say of ranges.
-    pub fn observations(&self) -> Vec<Observation> {
-        let observation = |(finger, line): &(usize, Experiment)| {
-            let (range_mm, at_least) = match line.extent() {
-                Extent::Range(range) => (range, false),
-                Extent::AtLeast(range) => (range, true),
-                Extent::Unknown => return None,
-            };
-            Some(Observation { finger: *finger, range_mm, at_least, repeats: line.repeats })
-        };
-        self.experiments.iter().filter_map(observation).collect()
+    /// Measured fingers.
+    pub fn measured(&self) -> BTreeSet<usize> {
+        self.experiments.iter().map(|(number, _)| *number).collect()
     }
 
     /// Its bench, with the coordinates of its parameters and hyperparameters.
     pub fn bench(&self, parameters: Vec<usize>, first: usize) -> Bench<'_> {
+        let observation = |&(finger, ref line): &(usize, Experiment)| {
+            let (range_mm, at_least) = line.extent()?;
+            Some(Observation { finger, range_mm, at_least, repeats: line.repeats })
+        };
         Bench {
             simulator: self,
             places: &self.places,
-            observations: self.observations(),
+            observations: self.experiments.iter().filter_map(observation).collect(),
             scale_mm: self.emulator.mean_mm().max(1.0),
             error_mm: self.emulator.error_mm,
             parameters,
@@ -152,12 +102,7 @@ impl Subject {
         }
     }
 
-    /// Standardised stiffness of a finger: `1 / ky` and `kz`.
-    pub fn place(&self, finger: usize) -> Place {
-        self.places[finger]
-    }
-
-    /// How a finger fails at either end: as most of the nearest measured ones do, or the
+    /// Failure of a finger at either end: as most of the nearest measured ones do, or the
     /// nearest simulated ones where nothing was measured.
     pub fn failures(&self, finger: usize) -> [Option<FailureClass>; 2] {
         let here = self.places[finger];
@@ -219,19 +164,24 @@ pub fn whole(
     space: &Space,
     template: &Template,
     line: &Experiment,
-) -> Result<Design, SubjectError> {
-    let name = || space.name().to_owned();
+) -> Result<Design, CalibrationError> {
+    let name = space.name();
+    let fault = |words: String| Err(CalibrationError::Measured(line.line, words));
     let known = |key: &String| space.parameters().iter().any(|parameter| parameter.key == *key);
     if let Some(key) = line.design.0.keys().find(|key| !known(key)) {
-        return Err(SubjectError::NotInSpace { line: line.line, key: key.clone(), space: name() });
+        return fault(format!(
+            "{key}: the space `{name}` has no such parameter; give --space FILE with it"
+        ));
     }
     let mut design = Design::default();
     for Parameter { key, low, high, .. } in space.parameters() {
         let value =
             line.design.get(key).or_else(|| template.number(key)).unwrap_or((low + high) / 2.0);
         if !(*low..=*high).contains(&value) {
-            let (line, key, low, high) = (line.line, key.clone(), *low, *high);
-            return Err(SubjectError::Outside { line, key, value, low, high, space: name() });
+            return fault(format!(
+                "{key}: {value} lies outside {low} .. {high} of the space `{name}`; give a wider \
+                 --space FILE"
+            ));
         }
         design.0.insert(key.clone(), value);
     }

@@ -5,7 +5,7 @@ use super::predict::{Of, Predicted, draws, predict};
 use super::process::{COORDINATES, Place};
 use super::sampler::Effort;
 use ask_tell::stream::stream;
-use rand::RngExt;
+use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 const FINGERS: usize = 20;
@@ -47,6 +47,10 @@ impl MadeUp {
     }
 }
 
+fn posterior(bench: &Bench<'_>, random: &mut impl Rng) -> Posterior {
+    Posterior::sampled(std::slice::from_ref(bench), 2 + COORDINATES, EFFORT, random)
+}
+
 /// One made-up bench after its calibration.
 struct Outcome {
     hidden: [f64; 2],
@@ -79,12 +83,7 @@ fn calibrated(number: u64, discrepancy: f64, noise: f64) -> Outcome {
     };
     let observations = all.iter().copied().filter(measured).map(&mut observation).collect();
     let bench = simulator.bench(observations);
-    let posterior = Posterior::sampled(
-        std::slice::from_ref(&bench),
-        2 + COORDINATES,
-        EFFORT,
-        &mut stream(number, 1, "posterior"),
-    );
+    let posterior = posterior(&bench, &mut stream(number, 1, "posterior"));
     let rest: Vec<usize> = all.into_iter().filter(|i| !measured(i)).collect();
     let predicted = predict(&bench, &posterior, &rest, Of::Truth);
     let predicted = rest.into_iter().zip(predicted).collect();
@@ -152,12 +151,7 @@ fn pure_noise_narrows_nothing() {
             Observation { finger, range_mm, at_least: false, repeats: 1 }
         };
         let bench = simulator.bench((0..FINGERS).step_by(2).map(&mut observation).collect());
-        let posterior = Posterior::sampled(
-            std::slice::from_ref(&bench),
-            2 + COORDINATES,
-            EFFORT,
-            &mut stream(number, 3, "posterior"),
-        );
+        let posterior = posterior(&bench, &mut stream(number, 3, "posterior"));
         spreads.extend((0..2).map(|i| moments(posterior.samples.iter().map(|s| s[i])).1));
         let (_, scatter) = moments(bench.observations.iter().map(|one| one.range_mm));
         let interval = predict(&bench, &posterior, &[7], Of::Truth)[0];
@@ -177,9 +171,7 @@ fn a_range_known_from_below_lifts_its_finger_and_draws_keep_to_it() {
     for (mean, more) in mean.iter_mut().zip([vec![], vec![known(12, 6.5, true)]]) {
         let bench =
             simulator.bench([vec![known(0, 5.0, false), known(4, 5.2, false)], more].concat());
-        let one = std::slice::from_ref(&bench);
-        let posterior =
-            Posterior::sampled(one, 2 + COORDINATES, EFFORT, &mut stream(0, 0, "bound"));
+        let posterior = posterior(&bench, &mut stream(0, 0, "bound"));
         *mean = predict(&bench, &posterior, &[12], Of::Truth)[0].mean_mm;
         let drawn = draws(&bench, &posterior, &[12], 1, &mut stream(0, 1, "bound"));
         let (average, _) = moments(drawn.iter().map(|draw| draw[0]));
@@ -202,7 +194,7 @@ fn draws_agree_with_the_formulas() {
     let drawn = draws(&bench, &posterior, &fingers, 4000, &mut stream(5, 0, "draws"));
     let at = bench.at(&state).unwrap();
     for (i, finger) in bench.fingers(&fingers, &state).iter().enumerate() {
-        let (mean, sd) = at.conditioned.predict(finger);
+        let (mean, sd) = at.predict(finger);
         let (drawn_mean, drawn_sd) = moments(drawn.iter().map(|draw| draw[i] / SCALE_MM));
         assert!((drawn_mean - mean).abs() < 0.08 * sd, "{i}: {drawn_mean} {mean} ± {sd}");
         assert!((drawn_sd / sd - 1.0).abs() < 0.06, "{i}: {drawn_sd} {sd}");

@@ -30,15 +30,6 @@ struct Placed {
     radius: f64,
 }
 
-/// Overlap of two parts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Overlap {
-    /// Penetration depth, m.
-    pub depth: f64,
-    /// Index of each part in its own body.
-    pub parts: [usize; 2],
-}
-
 impl<'a> ConvexBody<'a> {
     /// Body of rigid parts.
     pub fn new(parts: &'a [Part]) -> Self {
@@ -61,24 +52,23 @@ impl<'a> ConvexBody<'a> {
         ConvexBody { yielding, ..ConvexBody::new(&plug.parts) }
     }
 
-    /// The deepest overlap with another body, if there is one.
-    pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<Overlap> {
+    /// Depth of the deepest overlap with another body, m, if there is one, and the index of each
+    /// part in its own body.
+    pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<(f64, [usize; 2])> {
         let stiff = (0..self.shapes.len()).filter(|i| !self.yielding.contains(i));
         let pairs = stiff.flat_map(|i| (0..other.shapes.len()).map(move |j| [i, j]));
-        let depth = |[i, j]: [usize; 2]| {
-            let depth = self.shapes[i].overlap(own, &other.shapes[j], at)?;
-            Some(Overlap { depth, parts: [i, j] })
-        };
-        pairs.filter_map(depth).max_by(|a, b| a.depth.total_cmp(&b.depth))
+        let deep = pairs.filter_map(|[i, j]| {
+            Some((self.shapes[i].overlap(own, &other.shapes[j], at)?, [i, j]))
+        });
+        deep.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Overlaps among its own parts.
-    pub fn own_overlaps(&self) -> Vec<Overlap> {
+    /// Overlaps among its own parts: depth, m, and indices.
+    pub fn own_overlaps(&self) -> Vec<(f64, [usize; 2])> {
         let (here, count) = (Pose::identity(), self.shapes.len());
         let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| [i, j]));
-        let overlap = |parts: [usize; 2]| {
-            let [first, second] = parts.map(|i| &self.shapes[i]);
-            Some(Overlap { depth: first.overlap(&here, second, &here)?, parts })
+        let overlap = |[i, j]: [usize; 2]| {
+            Some((self.shapes[i].overlap(&here, &self.shapes[j], &here)?, [i, j]))
         };
         pairs.filter_map(overlap).collect()
     }
@@ -115,6 +105,11 @@ impl<'a> ConvexBody<'a> {
         self.parts.iter().enumerate().filter(|(i, _)| !self.yielding.contains(i))
     }
 
+    /// The lowest corner, its body at a pose; `None` without parts.
+    pub fn lowest(&self, at: &Pose) -> Option<Point3<f64>> {
+        self.corners().map(|p| at * p).min_by(|a, b| a.z.total_cmp(&b.z))
+    }
+
     /// Corners of all parts, body frame, m.
     pub fn corners(&self) -> impl Iterator<Item = Point3<f64>> + '_ {
         self.parts.iter().flat_map(|part| part.solid.corners())
@@ -146,6 +141,11 @@ pub fn extent<P: Borrow<Point3<f64>>>(
     axis: usize,
 ) -> [f64; 2] {
     span(points.into_iter().map(|p| p.borrow()[axis]))
+}
+
+/// Longest side of the bounding box of points.
+pub fn longest_side(points: &[Point3<f64>]) -> f64 {
+    (0..3).map(|axis| width(extent(points, axis))).fold(0.0, f64::max)
 }
 
 /// Width of an interval.
@@ -226,7 +226,7 @@ mod tests {
         let body = ConvexBody::new(&parts);
         let found = body.own_overlaps();
         assert_eq!(found.len(), 1);
-        assert!((found[0].depth - 0.5 * MM).abs() < 1e-9, "{found:?}");
+        assert!((found[0].0 - 0.5 * MM).abs() < 1e-9, "{found:?}");
         assert!((body.own_gap(1, 2) - 0.3 * MM).abs() < 1e-9);
         assert_eq!(body.part_at(&Point3::new(5.0 * MM, 5.0 * MM, 4.7 * MM)), Some(0));
         assert_eq!(body.part_at(&Point3::new(5.0 * MM, 5.0 * MM, 9.1 * MM)), None);
@@ -240,8 +240,7 @@ mod tests {
             outline: vec![[0.0, 0.0], [0.01, 0.01], [0.0, 0.01]],
             span: [0.0, 0.01],
         };
-        let cut = clipped(&wedge.corners(), 2, [0.0, 0.004]);
-        let [low, high] = extent(&cut, 0);
+        let [low, high] = extent(clipped(&wedge.corners(), 2, [0.0, 0.004]), 0);
         assert!(low.abs() < 1e-12 && (high - 0.004).abs() < 1e-12, "{low} {high}");
     }
 

@@ -1,7 +1,7 @@
 //! Task from a few dimensions: plug, clearance and the body that the fingers hold.
 
 use super::plan::{self, PlanError};
-use super::round::{self, Hole};
+use super::round::Hole;
 use input::units::MM;
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
@@ -91,20 +91,13 @@ pub struct Dimensions {
 /// Error of a draft.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum DraftError {
-    /// Plug or body too short for the pads.
+    /// Plug or body too short for the pads: its option, its length and the least, mm.
     #[error(
-        "{option}: is {length_mm} mm long; the pads are {} mm high and must stay outside of \
-         the socket, so at least {least_mm:.1} mm are needed",
-        Pad::PAPER.height / MM
+        "{0}: is {1} mm long; the pads are {height} mm high and must stay outside of the socket, so \
+         at least {2:.1} mm are needed",
+        height = Pad::PAPER.height / MM
     )]
-    TooShort {
-        /// Option of the length: "--body", "--plug" or "--round".
-        option: &'static str,
-        /// Length given, mm.
-        length_mm: f64,
-        /// Least length, mm.
-        least_mm: f64,
-    },
+    TooShort(&'static str, f64, f64),
     /// No strategy can be derived.
     #[error(transparent)]
     Plan(#[from] PlanError),
@@ -146,7 +139,10 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     task.description = format!("{shape}, {clearance} mm clearance");
     let top = plug.length + body.map_or(0.0, |body| body.length);
     let mut parts = match size.round {
-        true => vec![round::peg("plug", plug.width / 2.0, plug.length)],
+        true => {
+            let (radius, z) = (plug.width / 2.0, [0.0, plug.length]);
+            vec![part("plug", Solid::Cylinder { centre: [0.0; 2], radius, z })]
+        }
         false => vec![upright("plug", plug, 0.0)],
     };
     parts.extend(body.map(|body| upright("body", body, plug.length)));
@@ -156,23 +152,18 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     task.grip.shoulder_z = top;
     task.grip.faces_y = [-held.width / 2.0, held.width / 2.0];
     let floor = body.map_or(SHARE * plug.length, |_| plug.length + BELOW_TIP);
-    long_enough(size)?;
+    // The pads stay outside of the socket.
+    let pads = Pad::PAPER.height + BELOW_PADS;
+    let (option, least) = match body {
+        Some(_) => ("--body", pads),
+        None if size.round => ("--round", pads / (1.0 - SHARE)),
+        None => ("--plug", pads / (1.0 - SHARE)),
+    };
+    if held.length < least {
+        return Err(DraftError::TooShort(option, held.length / MM, least / MM));
+    }
     (task.opening, task.socket) = housing(size, floor);
     Ok(plan::complete(task)?)
-}
-
-/// Checks that the pads stay outside of the socket.
-fn long_enough(size: &Dimensions) -> Result<(), DraftError> {
-    let pads = Pad::PAPER.height + BELOW_PADS;
-    let (option, length, least) = match size.body {
-        Some(body) => ("--body", body.length, pads),
-        None if size.round => ("--round", size.plug.length, pads / (1.0 - SHARE)),
-        None => ("--plug", size.plug.length, pads / (1.0 - SHARE)),
-    };
-    if length >= least {
-        return Ok(());
-    }
-    Err(DraftError::TooShort { option, length_mm: length / MM, least_mm: least / MM })
 }
 
 fn upright(name: &str, size: Size, from: f64) -> Part {
@@ -181,8 +172,11 @@ fn upright(name: &str, size: Size, from: f64) -> Part {
 }
 
 fn block(name: &str, [x, y, z]: [[f64; 2]; 3]) -> Part {
-    let solid =
-        Solid::Box { min: Vector3::new(x[0], y[0], z[0]), max: Vector3::new(x[1], y[1], z[1]) };
+    let [min, max] = [0, 1].map(|end| Vector3::new(x[end], y[end], z[end]));
+    part(name, Solid::Box { min, max })
+}
+
+fn part(name: &str, solid: Solid) -> Part {
     Part { name: name.to_owned(), solid, friction: None }
 }
 
@@ -195,8 +189,8 @@ fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     });
     let outer = [0, 1].map(|axis| {
         let half = opening[axis][1];
-        let body = size.body.map(|body| [body.height, body.width][axis]);
-        let below_body = body.map_or(0.0, |body| body / 2.0 - half + BEYOND_BODY);
+        let body = |body: Size| [body.height, body.width][axis] / 2.0 - half + BEYOND_BODY;
+        let below_body = size.body.map_or(0.0, body);
         let edge = half + WALL.max(below_body);
         [-edge, edge]
     });

@@ -36,7 +36,11 @@ pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held
     let pad_z = pad_z(shoulder);
     let mut pieces: Vec<Vec<Point3<f64>>> = vec![Vec::new(); plug.parts.len()];
     for (i, part) in plug.stiff() {
-        pieces[i] = before_pad(part, pad_z);
+        let within = clipped(&part.solid.corners(), 2, pad_z);
+        // What only touches the pads' edge from above or below is not between them.
+        if width(extent(&within, 2)) >= SEAM {
+            pieces[i] = clipped(&within, 0, PAD_X);
+        }
     }
     let faces = widest(&pieces);
     let at = faces_y.or(faces.map(|faces| faces.map(|(y, _)| y)));
@@ -44,16 +48,6 @@ pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held
     let under_roof =
         [0, 1].map(|side| at.and_then(|faces| under_roof(plug, shoulder, faces[side], side)));
     Held { pad_z, faces, cover, under_roof }
-}
-
-/// Corners of a part clipped to the space between the pads.
-fn before_pad(part: &Part, pad_z: [f64; 2]) -> Vec<Point3<f64>> {
-    let within = clipped(&part.solid.corners(), 2, pad_z);
-    // What only touches the pads' edge from above or below is not between them.
-    match width(extent(&within, 2)) < SEAM {
-        true => Vec::new(),
-        false => clipped(&within, 0, PAD_X),
-    }
 }
 
 fn widest(pieces: &[Vec<Point3<f64>>]) -> Option<[(f64, usize); 2]> {

@@ -9,6 +9,7 @@ use insertion::trial::{PhaseEnd, Trial};
 
 /// Outcome of a trial in plain words, with advice.
 pub fn explain(task: &Task, trial: &Trial) -> String {
+    let slip = format!("slip {:.1} mm, allowed {:.1}", trial.slip_mm, task.grip.slip_limit / MM);
     match trial.outcome {
         Outcome::Inserted => format!(
             "inserted {:.1} mm deep, {:.1} degrees off; {:.1} mm and {:.1} degrees were asked for",
@@ -22,32 +23,42 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
                               that lie in one another at the start, or for extreme masses"
                 .to_owned()
         }
-        Outcome::Failed(FailureClass::ContactLossBeforeSearch) => lost_early(task, trial),
+        Outcome::Failed(FailureClass::ContactLossBeforeSearch) => format!(
+            "the fingers lost the plug before it came to the socket ({slip}): raise grip.force_n ({} N) \
+             or friction.finger_plug, and look at grip.faces_y_mm and plug.mass_g",
+            task.grip.force
+        ),
         Outcome::Failed(FailureClass::PlugMissed) => missed(task, trial),
         Outcome::Failed(FailureClass::Jammed) => jammed(task, trial),
-        Outcome::Failed(FailureClass::ContactLossInInsertion) => lost_late(task, trial),
+        Outcome::Failed(FailureClass::ContactLossInInsertion) => {
+            let phase = trial.phases.last().map_or("the search", |phase| &*phase.name);
+            format!(
+                "the plug left the grasp during `{phase}` ({slip}): shorter moves or less preload_mm, \
+                 more grip.force_n, or hold it at a larger face"
+            )
+        }
     }
 }
 
-fn lost_early(task: &Task, trial: &Trial) -> String {
-    format!(
-        "the fingers lost the plug before it came to the socket (slip {:.1} mm, allowed {:.1}): \
-         raise grip.force_n ({} N) or friction.finger_plug, and look at grip.faces_y_mm and plug.mass_g",
-        trial.slip_mm,
-        task.grip.slip_limit / MM,
-        task.grip.force
-    )
-}
-
 fn missed(task: &Task, trial: &Trial) -> String {
-    let edges = searched(task, trial);
+    let plug = ConvexBody::plug(&task.plug);
+    let commanded = path::waypoints(task, &plug);
+    let in_search = |phase: &&PhaseEnd| {
+        commanded.iter().any(|p| p.name == phase.name && p.stage == Stage::Search)
+    };
+    // Lowest point of the tip at the end of each search phase, mm.
+    let lowest = |phase: &PhaseEnd| {
+        let edge = plug.lowest(&phase.poses.plug)?;
+        Some((phase.name.clone(), edge.coords / MM))
+    };
+    let edges: Vec<_> = trial.phases.iter().filter(in_search).filter_map(lowest).collect();
     let [low, high] = task.opening[1].map(|y| y / MM);
     let Some((name, edge)) = edges.last() else {
         return "the plug never entered the opening".to_owned();
     };
-    let below = edges.iter().map(|(_, edge)| -edge[2]).fold(f64::NEG_INFINITY, f64::max);
-    let [_, y, _] = edge;
-    if (low..=high).contains(y) {
+    let below = edges.iter().map(|(_, edge)| -edge.z).fold(f64::NEG_INFINITY, f64::max);
+    let y = edge.y;
+    if (low..=high).contains(&y) {
         return format!(
             "the tip's lower edge was over the opening (y = {y:.1} mm at the end of `{name}`) but came \
              only {below:.2} mm below the top: raise preload_mm of the touch, or let the moves along x \
@@ -85,28 +96,4 @@ fn jammed(task: &Task, trial: &Trial) -> String {
              friction.plug_socket, or a slower push"
         ),
     }
-}
-
-fn lost_late(task: &Task, trial: &Trial) -> String {
-    let phase = trial.phases.last().map_or("the search", |phase| &*phase.name);
-    format!(
-        "the plug left the grasp during `{phase}` (slip {:.1} mm, allowed {:.1}): shorter moves or less \
-         preload_mm, more grip.force_n, or hold it at a larger face",
-        trial.slip_mm,
-        task.grip.slip_limit / MM
-    )
-}
-
-/// Lowest point of the tip at the end of each search phase, mm, with the phase's name.
-fn searched(task: &Task, trial: &Trial) -> Vec<(String, [f64; 3])> {
-    let plug = ConvexBody::plug(&task.plug);
-    let commanded = path::waypoints(task, &plug);
-    let in_search =
-        |name: &str| commanded.iter().any(|p| p.name == name && p.stage == Stage::Search);
-    let lowest = |phase: &PhaseEnd| {
-        let corners = plug.corners().map(|p| phase.poses.plug * p);
-        let edge = corners.min_by(|a, b| a.z.total_cmp(&b.z))?;
-        Some((phase.name.clone(), (edge.coords / MM).into()))
-    };
-    trial.phases.iter().filter(|phase| in_search(&phase.name)).filter_map(lowest).collect()
 }

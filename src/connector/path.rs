@@ -29,8 +29,7 @@ pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
 /// Start, and end of every phase.
 pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     let start = Vector3::from(task.strategy.start);
-    let pose = plug_pose(task, start);
-    let lowest = plug.corners().map(|p| pose * p).min_by(|a, b| a.z.total_cmp(&b.z));
+    let lowest = plug.lowest(&plug_pose(task, start));
     let edge = lowest.unwrap_or_else(Point3::origin) - start;
     let mut at = Waypoint {
         name: "start".to_owned(),
@@ -64,11 +63,6 @@ pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     found
 }
 
-/// Depth of the upright tip at the end of the path, m.
-pub fn commanded_depth(task: &Task, waypoints: &[Waypoint]) -> f64 {
-    waypoints.last().map_or(0.0, |last| task.grip.tcp_z - last.tcp.z)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,6 +79,6 @@ mod tests {
         assert!(way[0].edge.y.abs() < 0.1 * MM, "{way:?}");
         let touch = way.iter().find(|point| point.name == "touch").unwrap();
         assert!((touch.edge.z + 0.3 * MM).abs() < 1e-12 && touch.short_by.is_none());
-        assert!(commanded_depth(&task, &way) > task.success.depth);
+        assert!(task.grip.tcp_z - way.last().unwrap().tcp.z > task.success.depth);
     }
 }

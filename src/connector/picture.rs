@@ -103,14 +103,10 @@ impl Drawing<'_> {
         };
         let plug = [self.start, self.seated()].map(|pose| corners(&self.task.plug.parts, pose));
         let [low, high] = span(plug.into_iter().flatten());
-        let [from, to] =
-            extent(self.task.socket.iter().flat_map(|part| part.solid.corners()), axis);
-        let (low, high) = match self.task.opening.get(axis) {
-            Some([a, b]) => (low.min(a - AROUND), high.max(b + AROUND)),
-            None => (low.min(from), high),
-        };
-        let edge = if axis == 2 { low.max(from) } else { low };
-        [edge.max(from.min(low)), high.min(to.max(high))]
+        match self.task.opening.get(axis) {
+            Some([a, b]) => [low.min(a - AROUND), high.max(b + AROUND)],
+            None => [corners(&self.task.socket, Pose::identity())[0], high],
+        }
     }
 
     fn panel(&self, out: &mut String, view: &View, x: f64, y: f64) {
@@ -130,7 +126,9 @@ impl Drawing<'_> {
             polygon(out, &frame, &part.geom(), &Pose::identity(), SOCKET);
         }
         let seated = self.seated();
-        for part in self.shown(view) {
+        // From above only the parts that enter the opening, which the rest would hide.
+        let enters = |part: &Part| extent(part.solid.corners(), 2)[0] < self.task.success.depth;
+        for part in self.task.plug.parts.iter().filter(|part| view.up == 2 || enters(part)) {
             polygon(out, &frame, &part.geom(), &self.start, PLUG);
             polygon(out, &frame, &part.geom(), &seated, SEATED);
         }
@@ -141,12 +139,6 @@ impl Drawing<'_> {
         self.path(out, &frame);
         scale_bar(out, &frame);
         out.push_str("</svg>\n");
-    }
-
-    /// Plug parts of a view: from above only those that enter the opening, which the rest would hide.
-    fn shown(&self, view: &View) -> Vec<&Part> {
-        let enters = |part: &Part| extent(part.solid.corners(), 2)[0] < self.task.success.depth;
-        self.task.plug.parts.iter().filter(|part| view.up == 2 || enters(part)).collect()
     }
 
     fn fingers(&self, out: &mut String, frame: &Frame) {

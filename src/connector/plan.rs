@@ -9,11 +9,10 @@
 use super::body::{ConvexBody, extent, width};
 use super::hold::held;
 use super::path;
-use super::round::stands_on_cylinder;
 use super::seat::{Seat, Seating, section};
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
-use insertion::task::{Ending, Phase, Sensed, Stage, Success, Task};
+use insertion::task::{Ending, Part, Phase, Sensed, Solid, Stage, Success, Task};
 
 /// Distance of the TCP below the shoulder, m, as in the shipped tasks.
 const BELOW_SHOULDER: f64 = 3.5 * MM;
@@ -49,19 +48,12 @@ const LEAST_DEPTH: f64 = 1.0 * MM;
 /// Error of a plan.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum PlanError {
-    /// The plug does not enter.
+    /// The plug does not enter: depth, mm, and the parts of plug and socket that meet there.
     #[error(
-        "the plug does not go into the socket: upright it stops {depth_mm:.2} mm below the top, \
-         where `{plug}` meets `{socket}`; make the opening wider or the plug smaller"
+        "the plug does not go into the socket: upright it stops {0:.2} mm below the top, \
+         where `{1}` meets `{2}`; make the opening wider or the plug smaller"
     )]
-    NoEntry {
-        /// Depth it reaches, mm.
-        depth_mm: f64,
-        /// Plug part that is stopped.
-        plug: String,
-        /// Socket part that stops it.
-        socket: String,
-    },
+    NoEntry(f64, String, String),
     /// Nothing stops the plug.
     #[error("the plug falls through its socket: give the socket a floor, or the plug a shoulder")]
     NoFloor,
@@ -78,25 +70,31 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     let seat = Seating::new(&task, &plug, &socket).deepest();
     let Some([by, on]) = seat.stopped_by else { return Err(PlanError::NoFloor) };
     if seat.depth < LEAST_DEPTH {
-        return Err(PlanError::NoEntry {
-            depth_mm: seat.depth / MM,
-            plug: plug_parts[by].name.clone(),
-            socket: socket_parts[on].name.clone(),
-        });
+        let names = (plug_parts[by].name.clone(), socket_parts[on].name.clone());
+        return Err(PlanError::NoEntry(seat.depth / MM, names.0, names.1));
     }
     let [bottom, _] = plug.extent(2);
     let tip = section(&plug, bottom + LEAST_DEPTH);
-    grasp(&mut task, &plug);
+    let held = held(&plug, task.grip.shoulder_z, Some(task.grip.faces_y));
+    let cover = held.cover[0].min(held.cover[1]);
+    task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
+    task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
     let play = Seating::new(&task, &plug, &socket).play(WITHIN * seat.depth, seat.at, 1);
     success(&mut task, &plug, &seat, play);
     let rise = (RISE / width(tip[1])).min(1.0);
     let [least, most] = TILT_DEG;
     task.strategy.tilt = round(libm::asin(rise) / DEG, 0.1).clamp(least, most) * DEG;
-    let search = match stands_on_cylinder(&plug_parts) {
-        true => Moves::of_point(&task, tip),
-        false => Moves::of_edge(&task, tip),
+    let height = |part: &&Part| extent(part.solid.corners(), 2)[0];
+    let lowest = plug_parts.iter().min_by(|a, b| height(a).total_cmp(&height(b)));
+    let search = match lowest.map(|part| &part.solid) {
+        Some(Solid::Cylinder { .. }) => Moves::of_point(&task, tip),
+        _ => Moves::of_edge(&task, tip),
     };
-    place_start(&mut task, &plug, &search);
+    task.strategy.start = [0.0; 3];
+    task.strategy.phases = Vec::new();
+    let edge = path::waypoints(&task, &plug)[0].edge;
+    task.strategy.start =
+        [round_mm(search.x), round_mm(search.edge_y - edge.y), round_mm(AIR[0] - edge.z)];
     task.strategy.phases = phases(&task, &search, seat.depth);
     Ok(task)
 }
@@ -149,13 +147,6 @@ impl Moves {
     }
 }
 
-fn grasp(task: &mut Task, plug: &ConvexBody) {
-    let held = held(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
-    let cover = held.cover[0].min(held.cover[1]);
-    task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
-    task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
-}
-
 /// Depth and tilt of success, from the play in y, m.
 fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
@@ -168,14 +159,6 @@ fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let depth = seat.depth * (1.0 - share) - half * libm::sin(tilt) - length;
     let depth = (depth.max(seat.depth / 2.0) / (0.1 * MM)).floor() * 0.1 * MM;
     task.success = Success { depth, tilt };
-}
-
-fn place_start(task: &mut Task, plug: &ConvexBody, search: &Moves) {
-    task.strategy.start = [0.0; 3];
-    task.strategy.phases = Vec::new();
-    let edge = path::waypoints(task, plug)[0].edge;
-    task.strategy.start =
-        [round_mm(search.x), round_mm(search.edge_y - edge.y), round_mm(AIR[0] - edge.z)];
 }
 
 fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {

@@ -1,6 +1,5 @@
-//! Round peg and hole: a cylinder, and a ring of flat-sided prisms.
+//! Round hole: a ring of flat-sided prisms.
 
-use super::body::extent;
 use insertion::task::{Part, Solid};
 use std::f64::consts::PI;
 
@@ -48,19 +47,6 @@ impl Hole {
         };
         (0..self.flats).map(wall).collect()
     }
-}
-
-/// Cylinder that stands on z = 0, m.
-pub fn peg(name: &str, radius: f64, length: f64) -> Part {
-    let solid = Solid::Cylinder { centre: [0.0; 2], radius, z: [0.0, length] };
-    Part { name: name.to_owned(), solid, friction: None }
-}
-
-/// Whether the lowest of the parts is a cylinder.
-pub fn stands_on_cylinder(parts: &[Part]) -> bool {
-    let bottom = |part: &Part| extent(part.solid.corners(), 2)[0];
-    let lowest = parts.iter().min_by(|a, b| bottom(a).total_cmp(&bottom(b)));
-    lowest.is_some_and(|part| matches!(part.solid, Solid::Cylinder { .. }))
 }
 
 #[cfg(test)]

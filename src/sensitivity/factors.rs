@@ -23,17 +23,11 @@ pub struct Factor {
     pub low: f64,
     /// Upper bound.
     pub high: f64,
-    sets: Sets,
+    /// Setter of conditions and errors of stiffness; `None` for a key of the space.
+    sets: Option<Sets>,
 }
 
-/// Quantity that a factor sets.
-#[derive(Debug, Clone, Copy)]
-enum Sets {
-    Design,
-    Compliance,
-    Assembly,
-    Condition(fn(&mut Conditions, f64)),
-}
+type Sets = fn(&mut Conditions, &mut [f64; 2], f64);
 
 /// Inputs that are varied together, in the order of the cube's axes.
 #[derive(Debug, Clone)]
@@ -54,7 +48,7 @@ impl Factors {
             key: parameter.key.clone(),
             low: parameter.low,
             high: parameter.high,
-            sets: Sets::Design,
+            sets: None,
         });
         let of_cell = errors.map(cell).unwrap_or_default();
         Ok(Factors(of_space.chain(of_cell).filter(|factor| factor.low < factor.high).collect()))
@@ -77,10 +71,8 @@ impl Factors {
         for (factor, unit) in self.0.iter().zip(unit) {
             let value = factor.low + unit.clamp(0.0, 1.0) * (factor.high - factor.low);
             match factor.sets {
-                Sets::Design => drop(design.0.insert(factor.key.clone(), value)),
-                Sets::Compliance => stiffness[0] = value,
-                Sets::Assembly => stiffness[1] = value,
-                Sets::Condition(set) => set(&mut conditions, value),
+                None => drop(design.0.insert(factor.key.clone(), value)),
+                Some(set) => set(&mut conditions, &mut stiffness, value),
             }
         }
         let predicted = evaluator.predict(&design)?;
@@ -94,31 +86,34 @@ impl Factors {
 
 /// Errors of a cell, measured from nominal.
 fn cell(errors: &Errors) -> Vec<Factor> {
-    let factor = |key: &str, low, high, sets| Factor { key: key.to_owned(), low, high, sets };
+    let factor = |key: &str, low, high, sets: Sets| Factor {
+        key: key.to_owned(),
+        low,
+        high,
+        sets: Some(sets),
+    };
     let both = |key, half_width: f64, sets| factor(key, -half_width, half_width, sets);
     let percent = 100.0 * errors.friction_half_width;
+    let yaw_deg = NORMAL_WIDTH_SD * errors.yaw_sd / DEG;
+    let across_mm = NORMAL_WIDTH_SD * errors.grasp_across_sd / MM;
     let sd = NORMAL_WIDTH_SD * errors.stiffness_sd_factor;
     vec![
-        both("cell.socket_yaw_deg", NORMAL_WIDTH_SD * errors.yaw_sd / DEG, {
-            Sets::Condition(|conditions, value| conditions.yaw = value * DEG)
+        both("cell.socket_yaw_deg", yaw_deg, |c, _, value| c.yaw = value * DEG),
+        both("cell.friction_finger_percent", percent, |c, _, value| {
+            c.friction_finger = 1.0 + value / 100.0
         }),
-        both("cell.friction_finger_percent", percent, {
-            Sets::Condition(|conditions, value| conditions.friction_finger = 1.0 + value / 100.0)
+        both("cell.friction_socket_percent", percent, |c, _, value| {
+            c.friction_socket = 1.0 + value / 100.0
         }),
-        both("cell.friction_socket_percent", percent, {
-            Sets::Condition(|conditions, value| conditions.friction_socket = 1.0 + value / 100.0)
+        both("cell.clearance_mm", errors.clearance_half_width / MM, |c, _, value| {
+            c.clearance = value * MM
         }),
-        both("cell.clearance_mm", errors.clearance_half_width / MM, {
-            Sets::Condition(|conditions, value| conditions.clearance = value * MM)
+        both("cell.grasp_across_mm", across_mm, |c, _, value| c.grasp_across = value * MM),
+        factor("cell.grasp_low_mm", 0.0, errors.grasp_low_max / MM, |c, _, value| {
+            c.grasp_low = value * MM
         }),
-        both("cell.grasp_across_mm", NORMAL_WIDTH_SD * errors.grasp_across_sd / MM, {
-            Sets::Condition(|conditions, value| conditions.grasp_across = value * MM)
-        }),
-        factor("cell.grasp_low_mm", 0.0, errors.grasp_low_max / MM, {
-            Sets::Condition(|conditions, value| conditions.grasp_low = value * MM)
-        }),
-        both("cell.compliance_error_sd", sd, Sets::Compliance),
-        both("cell.assembly_error_sd", sd, Sets::Assembly),
+        both("cell.compliance_error_sd", sd, |_, stiffness, value| stiffness[0] = value),
+        both("cell.assembly_error_sd", sd, |_, stiffness, value| stiffness[1] = value),
     ]
 }
 

@@ -6,12 +6,12 @@ use super::how::{CacheRequest, EffortRequest, settings};
 use super::request::SetupRequest;
 use super::{Event, Failure, Setup, Watch, measured};
 use crate::calibration::calibrate::{Calibration, Layout};
-use crate::calibration::emulator::{Emulator, EmulatorError};
+use crate::calibration::emulator::{CalibrationError, Emulator};
 use crate::calibration::experiments::Experiment;
 use crate::calibration::prior::Parameter;
 use crate::calibration::sampler::Settings;
 use crate::calibration::simulation::Simulation;
-use crate::calibration::subject::{Subject, SubjectError};
+use crate::calibration::subject::Subject;
 use input::shipped::PRIORS;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::space::Design;
@@ -122,7 +122,7 @@ impl Prepared {
         let template = &evaluator.templates[task];
         let simulation = Simulation::new(evaluator, template, &[], self.cache.clone(), &NEVER);
         let range = |&finger: &usize| {
-            Ok(simulation.window(&subject.designs[finger], None)?.window.range_mm())
+            Ok(simulation.window(&subject.designs[finger], &[])?.window.range_mm())
         };
         let ranges = fingers.par_iter().map(range).collect::<Result<_, Impossible>>();
         ranges.map_err(Failure::input)
@@ -164,14 +164,12 @@ impl<'a> Ground<'a> {
         let subjects = templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
         not_stopped(self.stop)?;
         let subjects = subjects.map_err(|error| match error {
-            SubjectError::Emulator(EmulatorError::NoFit { .. }) => {
-                Failure::running(error.to_string())
-            }
-            SubjectError::Emulator(_) => Failure::input(error),
-            _ => Failure::usage(format!("{measurements}: {error}")),
+            CalibrationError::NoFit(..) => Failure::running(error.to_string()),
+            CalibrationError::Impossible(_) => Failure::input(error),
+            CalibrationError::Measured(..) => Failure::usage(format!("{measurements}: {error}")),
         })?;
         let of_task = |template: &'a Template| {
-            (template.task().name.clone(), self.simulation(template).parameters().to_vec())
+            (template.task().name.clone(), self.simulation(template).parameters)
         };
         let of_tasks: Vec<_> = templates.iter().map(of_task).collect();
         Ok((subjects, Layout::new(&of_tasks)))
@@ -183,7 +181,7 @@ impl<'a> Ground<'a> {
         experiments: &[Experiment],
         more: &[Design],
         watch: &mut Watch<'_>,
-    ) -> Result<Subject, SubjectError> {
+    ) -> Result<Subject, CalibrationError> {
         let (evaluator, space) = (&self.setup.evaluator, &self.setup.space);
         let (task, count) = (&template.task().name, self.simulations);
         if evaluator.engine.simulates() {

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::files::find;
-use crate::calibration::experiments::{self, Experiment, Extent};
+use crate::calibration::experiments::{self, Experiment};
 use crate::calibration::prior::Priors;
 use crate::calibration::subject::whole;
 use input::files::{LARGEST_INPUT, read_named};
@@ -74,7 +74,7 @@ pub fn check(
 ) -> Result<(), Failure> {
     let task = &template.task().name;
     let own = || lines.iter().filter(|line| line.task == *task);
-    if !own().any(|line| line.extent() != Extent::Unknown) {
+    if !own().any(|line| line.extent().is_some()) {
         return Err(Failure::usage(format!(
             "{file}: no line has a range of the task `{task}`; measure one finger at least \
              (`optimize next` says which), or leave out --measurements"

@@ -77,7 +77,7 @@ fn all(
     let Ground { setup, cache, stop, .. } = ground;
     let task = setup.only_task()?;
     let simulation = Simulation::new(&setup.evaluator, task, &[], cache.clone(), stop);
-    let simulated = simulation.window(&subject.designs[best], None).map_err(Failure::input)?;
+    let simulated = simulation.window(&subject.designs[best], &[]).map_err(Failure::input)?;
     not_stopped(stop)?;
     let found = on_bench(subject, result, simulated, provenance, effort);
     Ok((found, table::predictions_csv(subject, result)))

@@ -1,4 +1,4 @@
-//! The value of one cell, checked by itself: units that look wrong are told here.
+//! The value of one cell that is not empty, checked by itself: units that look wrong are told here.
 
 use super::NOT_MEASURABLE;
 use insertion::outcome::FailureClass;
@@ -11,16 +11,12 @@ const LEAST_MM: f64 = 0.02;
 /// Largest force that is taken for newtons.
 const MOST_N: f64 = 5000.0;
 
-fn number(text: &str) -> Result<f64, String> {
+/// A number, in the unit of its column.
+pub(super) fn number(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!("`{text}` is not a number")),
     }
-}
-
-/// A further design parameter, in the unit of its key.
-pub(super) fn set(text: &str) -> Result<Option<f64>, String> {
-    if text.is_empty() { Ok(None) } else { number(text).map(Some) }
 }
 
 /// Infill density, percent.
@@ -46,11 +42,8 @@ pub(super) fn direction(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A length, mm; an empty cell is not known.
-pub(super) fn length(text: &str) -> Result<Option<f64>, String> {
-    if text.is_empty() {
-        return Ok(None);
-    }
+/// A length, mm.
+pub(super) fn length(text: &str) -> Result<f64, String> {
     match number(text)? {
         long if long.abs() > MOST_MM => {
             Err(format!("{long} looks like micrometres; give millimetres, as in {}", long / 1e3))
@@ -58,7 +51,7 @@ pub(super) fn length(text: &str) -> Result<Option<f64>, String> {
         short if short != 0.0 && short.abs() < LEAST_MM => {
             Err(format!("{short} looks like metres; give millimetres, as in {}", short * 1e3))
         }
-        length => Ok(Some(length)),
+        length => Ok(length),
     }
 }
 
@@ -68,53 +61,41 @@ pub(super) fn range(text: &str) -> Result<Option<f64>, String> {
         return Ok(None);
     }
     match length(text)? {
-        Some(below) if below < 0.0 => Err(format!("is {below}; a range is 0 or above")),
-        range => Ok(range),
+        below if below < 0.0 => Err(format!("is {below}; a range is 0 or above")),
+        range => Ok(Some(range)),
     }
 }
 
 /// A failure class, 1 to 4.
-pub(super) fn failure(text: &str) -> Result<Option<FailureClass>, String> {
-    if text.is_empty() {
-        return Ok(None);
-    }
+pub(super) fn failure(text: &str) -> Result<FailureClass, String> {
     let class = text.parse::<u8>().ok().and_then(|number| FailureClass::try_from(number).ok());
     let known = FailureClass::ALL.map(|class| format!("{} ({})", class.number(), class.label()));
-    class
-        .map(Some)
-        .ok_or_else(|| format!("`{text}` is no failure class; there are {}", known.join(", ")))
+    class.ok_or_else(|| format!("`{text}` is no failure class; there are {}", known.join(", ")))
 }
 
-/// How many measurements the values are the mean of; 1 if the cell is empty.
+/// Number of measurements that the values are the mean of.
 pub(super) fn repeats(text: &str) -> Result<u32, String> {
     match text.parse() {
-        _ if text.is_empty() => Ok(1),
         Ok(count @ 1..=10_000) => Ok(count),
         _ => Err(format!("`{text}` is not a whole number from 1 to 10000")),
     }
 }
 
 /// A force, N.
-pub(super) fn force(text: &str) -> Result<Option<f64>, String> {
-    if text.is_empty() {
-        return Ok(None);
-    }
+pub(super) fn force(text: &str) -> Result<f64, String> {
     match number(text)? {
         large if large > MOST_N => {
             Err(format!("{large} looks like millinewtons; give newtons, as in {}", large / 1e3))
         }
         below if below < 0.0 => Err(format!("is {below}; a largest force is 0 or above")),
-        force => Ok(Some(force)),
+        force => Ok(force),
     }
 }
 
 /// A day.
-pub(super) fn date(text: &str) -> Result<Option<String>, String> {
-    if text.is_empty() {
-        return Ok(None);
-    }
+pub(super) fn date(text: &str) -> Result<String, String> {
     match text.parse::<Date>() {
-        Ok(day) => Ok(Some(day.to_string())),
+        Ok(day) => Ok(day.to_string()),
         Err(_) => Err(format!("`{text}` is no day; write it as in 2026-03-31")),
     }
 }

@@ -4,23 +4,55 @@
 //! out, and further design parameters are further columns, named as in a space file.
 
 mod cell;
-mod column;
 mod line;
-mod problem;
 #[cfg(test)]
 mod tests;
 mod write;
 
-pub use column::{COLUMNS, Column};
-pub use problem::{Problem, Problems};
 pub use write::appended;
 
+use csv::StringRecord;
+use input::shipped::nearest;
 use insertion::outcome::FailureClass;
-use insertion::space::Design;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use std::cmp::Ordering;
 
 /// The cell of `range_mm` that says: the finger was tried, and no range could be measured.
 pub const NOT_MEASURABLE: &str = "not measurable";
+
+/// The documented columns, in the order in which a new file has them; further ones are keys of a
+/// space file.
+pub const COLUMNS: [&str; 12] = [
+    "task",
+    DENSITY_KEY,
+    DIRECTION_KEY,
+    "negative_mm",
+    "positive_mm",
+    "range_mm",
+    "failure_negative",
+    "failure_positive",
+    "repeats",
+    "peak_force_n",
+    "date",
+    "note",
+];
+
+/// All that is wrong with one file, a line each.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", self.0.join("\n"))]
+pub struct Problems(Vec<String>);
+
+impl Problems {
+    fn of(file: &str, problems: Vec<String>) -> Self {
+        Problems(problems.into_iter().map(|problem| format!("{file}: {problem}")).collect())
+    }
+}
+
+/// A fault of a line, in a column unless its name is empty.
+fn problem(line: u64, column: &str, words: &str) -> String {
+    let column = if column.is_empty() { String::new() } else { format!("{column}: ") };
+    format!("line {line}: {column}{words}")
+}
 
 /// One line of a measurement file: one finger on one task.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,28 +81,17 @@ pub struct Experiment {
     pub note: String,
 }
 
-/// What is known of a tolerable range, mm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Extent {
-    /// It is this.
-    Range(f64),
-    /// It is this or more: only one side was looked for.
-    AtLeast(f64),
-    /// Nothing.
-    Unknown,
-}
-
 impl Experiment {
-    /// What the line says of the tolerable range.
+    /// The tolerable range that the line tells, mm, and whether it is this or more.
     ///
     /// A window holds the start from which it is measured, so that one of its ends bounds the
     /// range from below: "inserts at +1.5 mm" is a range of 1.5 mm or more.
-    pub fn extent(&self) -> Extent {
+    pub fn extent(&self) -> Option<(f64, bool)> {
         match (self.range_mm, self.negative_mm, self.positive_mm) {
-            (Some(range), ..) => Extent::Range(range),
-            (None, Some(negative), Some(positive)) => Extent::Range(positive - negative),
-            (None, Some(end), None) | (None, None, Some(end)) => Extent::AtLeast(end.abs()),
-            (None, None, None) => Extent::Unknown,
+            (Some(range), ..) => Some((range, false)),
+            (None, Some(negative), Some(positive)) => Some((positive - negative, false)),
+            (None, Some(end), None) | (None, None, Some(end)) => Some((end.abs(), true)),
+            (None, None, None) => None,
         }
     }
 
@@ -104,10 +125,7 @@ impl Experiment {
 
     /// The range, if it was measured whole, mm.
     pub fn range_mm(&self) -> Option<f64> {
-        match self.extent() {
-            Extent::Range(range) => Some(range),
-            Extent::AtLeast(_) | Extent::Unknown => None,
-        }
+        self.extent().filter(|(_, at_least)| !at_least).map(|(range, _)| range)
     }
 }
 
@@ -122,14 +140,14 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
         return Ok(Vec::new());
     }
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let syntax = |error: csv::Error| Problems::syntax(file, &error);
-    let columns = column::columns(reader.headers().map_err(syntax)?)
-        .map_err(|problem| Problems::one(file, problem))?;
+    let one = |problem: String| Problems::of(file, vec![problem]);
+    let header = reader.headers().map_err(|error| one(syntax(&error)))?.clone();
+    check_header(&header).map_err(one)?;
     let (mut found, mut problems) = (Vec::new(), Vec::new());
     for record in reader.records() {
-        let record = record.map_err(syntax)?;
+        let record = record.map_err(|error| one(syntax(&error)))?;
         let at = record.position().map_or(0, csv::Position::line);
-        match line::experiment(&columns, &record, at) {
+        match line::experiment(&header, &record, at) {
             Ok(experiment) => {
                 problems.extend(line::twice(&experiment, &found));
                 found.push(experiment);
@@ -137,7 +155,47 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
             Err(more) => problems.extend(more),
         }
     }
-    if problems.is_empty() { Ok(found) } else { Err(Problems::new(file, problems)) }
+    if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
+}
+
+/// Fault of a text that is no table.
+fn syntax(error: &csv::Error) -> String {
+    let words = match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("has {len} cells where the header has {expected_len}")
+        }
+        _ => error.to_string(),
+    };
+    problem(error.position().map_or(1, csv::Position::line), "", &words)
+}
+
+/// Checks that the columns are known, stand once, and say which finger was tried.
+fn check_header(header: &StringRecord) -> Result<(), String> {
+    for (i, name) in header.iter().enumerate() {
+        let of_space = name.starts_with("task.") || name.starts_with("finger.");
+        if !of_space && !COLUMNS.contains(&name) {
+            let words = format!(
+                "is no column{}; there are {}, and keys of a space file (task. or finger.)",
+                hint(name, &COLUMNS),
+                COLUMNS.join(", ")
+            );
+            return Err(problem(1, name, &words));
+        }
+        if header.iter().take(i).any(|other| other == name) {
+            return Err(problem(1, name, "is given twice; each column may stand once"));
+        }
+    }
+    match COLUMNS[..3].iter().find(|needed| header.iter().all(|name| name != **needed)) {
+        None => Ok(()),
+        Some(missing) => {
+            let words = "is missing; a line says which finger was tried on which task";
+            Err(problem(1, missing, words))
+        }
+    }
+}
+
+fn hint(name: &str, known: &[&str]) -> String {
+    nearest(name, known).map_or(String::new(), |near| format!(" (did you mean `{near}`?)"))
 }
 
 /// Checks that each line's task is one of `known`.
@@ -146,6 +204,14 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
 /// The lines whose task is not, with the name most like it.
 pub fn check_tasks(experiments: &[Experiment], known: &[&str], file: &str) -> Result<(), Problems> {
     let unknown = experiments.iter().filter(|line| !known.contains(&&*line.task));
-    let problems: Vec<Problem> = unknown.map(|line| problem::unknown_task(line, known)).collect();
-    if problems.is_empty() { Ok(()) } else { Err(Problems::new(file, problems)) }
+    let words = |Experiment { line, task, .. }: &Experiment| {
+        let words = format!(
+            "no task is called `{task}`{}; there are {}, or name your own by --task FILE.toml",
+            hint(task, known),
+            known.join(", ")
+        );
+        problem(*line, "task", &words)
+    };
+    let problems: Vec<String> = unknown.map(words).collect();
+    if problems.is_empty() { Ok(()) } else { Err(Problems::of(file, problems)) }
 }

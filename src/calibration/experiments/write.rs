@@ -1,26 +1,26 @@
 //! A line more in a measurement file.
 
-use super::{COLUMNS, Column};
+use super::COLUMNS;
 
 /// The file's text with one line more; `cells` are the columns that are not empty. Columns that
 /// the file does not have yet are added at its end; a new file has all the documented ones.
 ///
 /// # Errors
 /// If the text is not a table.
-pub fn appended(text: &str, cells: &[(Column, String)]) -> Result<String, csv::Error> {
+pub fn appended(text: &str, cells: &[(&str, String)]) -> Result<String, csv::Error> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let mut header: Vec<String> = match text.trim().is_empty() {
-        true => COLUMNS.iter().map(|(name, _)| (*name).to_owned()).collect(),
+        true => COLUMNS.map(str::to_owned).to_vec(),
         false => reader.headers()?.iter().map(|name| name.trim().to_owned()).collect(),
     };
     let had = header.len();
     for (column, _) in cells {
-        if !header.iter().any(|name| name == column.name()) {
-            header.push(column.name().to_owned());
+        if !header.iter().any(|name| name == column) {
+            header.push((*column).to_owned());
         }
     }
     let new = header.iter().map(|name| {
-        let cell = cells.iter().find(|(column, _)| column.name() == name);
+        let cell = cells.iter().find(|(column, _)| column == name);
         cell.map_or("", |(_, text)| text.as_str())
     });
     let line = |cells: &mut dyn Iterator<Item = &str>| {

@@ -1,6 +1,6 @@
 //! `optimize measure add`.
 
-use crate::calibration::experiments::{COLUMNS, Column, NOT_MEASURABLE, appended, parse};
+use crate::calibration::experiments::{COLUMNS, NOT_MEASURABLE, appended, parse};
 use crate::cli::{Failure, print, say};
 use crate::session::read_task;
 use clap::Args;
@@ -83,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if cells.is_empty() {
         cells = asked(&mut io::stdin().lock())?;
     }
-    if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == Column::Task) {
+    if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
         *name = read_task(name)?.task.name;
     }
     // Read only now: others may have added lines meanwhile.
@@ -99,36 +99,36 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 impl Arguments {
     /// The columns that were given.
-    fn cells(&self) -> Vec<(Column, String)> {
+    fn cells(&self) -> Vec<(&str, String)> {
         let range = self.not_measurable.then(|| NOT_MEASURABLE.to_owned());
         let range = range.or_else(|| self.range_mm.clone());
         let given = [
-            (Column::Task, &self.task),
-            (Column::Density, &self.density),
-            (Column::Direction, &self.direction),
-            (Column::Negative, &self.negative_mm),
-            (Column::Positive, &self.positive_mm),
-            (Column::Range, &range),
-            (Column::FailureNegative, &self.failure_negative),
-            (Column::FailurePositive, &self.failure_positive),
-            (Column::Repeats, &self.repeats),
-            (Column::PeakForce, &self.peak_force_n),
-            (Column::Date, &self.date),
-            (Column::Note, &self.note),
+            &self.task,
+            &self.density,
+            &self.direction,
+            &self.negative_mm,
+            &self.positive_mm,
+            &range,
+            &self.failure_negative,
+            &self.failure_positive,
+            &self.repeats,
+            &self.peak_force_n,
+            &self.date,
+            &self.note,
         ];
-        let given = given.into_iter().filter_map(|(column, value)| Some((column, value.clone()?)));
-        let set = self.set.iter().map(|(key, value)| (Column::Set(key.clone()), value.clone()));
-        given.chain(set).collect()
+        let given = COLUMNS.into_iter().zip(given);
+        let given = given.filter_map(|(column, value)| Some((column, value.clone()?)));
+        given.chain(self.set.iter().map(|(key, value)| (key.as_str(), value.clone()))).collect()
     }
 }
 
 /// Asks for each column; an empty answer is not known, and the end of the input ends it.
-fn asked(answers: &mut impl BufRead) -> Result<Vec<(Column, String)>, Failure> {
+fn asked(answers: &mut impl BufRead) -> Result<Vec<(&'static str, String)>, Failure> {
     let failed = |error: io::Error| Failure::running(format!("cannot ask: {error}"));
     let mut cells = Vec::new();
     say(&format!("an empty answer is: not known; `{NOT_MEASURABLE}` may stand as range_mm"));
-    for (name, column) in COLUMNS {
-        say(name);
+    for column in COLUMNS {
+        say(column);
         let mut answer = String::new();
         if answers.read_line(&mut answer).map_err(failed)? == 0 {
             break;

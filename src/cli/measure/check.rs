@@ -1,6 +1,6 @@
 //! `optimize measure check`.
 
-use crate::calibration::experiments::{Experiment, Extent};
+use crate::calibration::experiments::Experiment;
 use crate::cli::{Failure, print, print_json};
 use crate::session::{read_measurements, read_task};
 use clap::Args;
@@ -41,9 +41,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let known = tasks.entry(&line.task).or_default();
         known.lines += 1;
         match line.extent() {
-            Extent::Range(_) => known.ranges += 1,
-            Extent::AtLeast(_) => known.bounds += 1,
-            Extent::Unknown => (),
+            Some((_, false)) => known.ranges += 1,
+            Some((_, true)) => known.bounds += 1,
+            None => (),
         }
     }
     if arguments.json {

@@ -152,7 +152,7 @@ fn report(
 ) -> Result<(), Failure> {
     let [plug, socket] = imported.parts();
     let (depth, at, of) = match imported.intrusion {
-        Some((found, of)) => (found.depth / MM, found.at.coords / MM, of),
+        Some((depth, at, of)) => (depth / MM, at.coords / MM, of),
         None => (0.0, nalgebra::Vector3::zeros(), "plug"),
     };
     let clearance_mm = imported.clearance / MM;

@@ -93,14 +93,15 @@ fn roof(case: &Case, held: &Held) -> Option<Problem> {
     let shoulder = case.task.grip.shoulder_z;
     let wrong = |top: &Option<f64>| top.is_none_or(|z| (z - shoulder).abs() > SEAM);
     let top = held.under_roof.iter().find(|top| wrong(top))?;
-    let (at, top_mm) = (mm(shoulder), top.map_or(String::new(), mm));
-    let problem = match top {
-        Some(z) if *z > shoulder => format!(
-            "the roofs are to rest at {at} mm, but there the plug goes on to {top_mm} mm: they would lie in it"
-        ),
-        Some(_) => format!(
-            "the roofs are to rest at {at} mm, but the plug's shoulder is at {top_mm} mm: nothing carries the push"
-        ),
+    let at = mm(shoulder);
+    let rest = format!("the roofs are to rest at {at} mm, but");
+    let problem = match top.map(|z| (z > shoulder, mm(z))) {
+        Some((true, top)) => {
+            format!("{rest} there the plug goes on to {top} mm: they would lie in it")
+        }
+        Some((false, top)) => {
+            format!("{rest} the plug's shoulder is at {top} mm: nothing carries the push")
+        }
         None => format!("at {at} mm there is nothing under the roofs that could carry the push"),
     };
     Some(Problem::new("grip.shoulder_z_mm", problem, better(case)))

@@ -1,7 +1,7 @@
 //! Lengths given in another unit than millimetres.
 
 use super::{Case, Problem, mm, part_key};
-use crate::connector::body::{extent, width};
+use crate::connector::body::{longest_side, width};
 use crate::connector::seat::section;
 use input::units::MM;
 use insertion::task::Ending;
@@ -14,78 +14,64 @@ const UNITS: [(&str, f64); 4] =
 /// Ratio of plug and opening beyond which one of them is in another unit.
 const OTHER_UNIT: f64 = 8.0;
 
-/// Length of a task, m, and the range it should lie in, mm.
-struct Length {
-    key: String,
-    value: f64,
-    range_mm: [f64; 2],
-}
-
 pub(super) fn problems(case: &Case) -> Vec<Problem> {
-    let mut found: Vec<_> = lengths(case).iter().filter_map(Length::problem).collect();
+    let (task, grip) = (case.task, &case.task.grip);
+    let mut found: Vec<Problem> = [
+        ("plug.part", width(case.plug.extent(2)), [8.0, 300.0]),
+        ("socket.opening_x_mm", width(task.opening[0]), [0.5, 100.0]),
+        ("socket.opening_y_mm", width(task.opening[1]), [0.5, 100.0]),
+        ("grip.tcp_z_mm", grip.tcp_z, [3.0, 300.0]),
+        ("grip.shoulder_z_mm", grip.shoulder_z, [3.0, 300.0]),
+        ("grip.faces_y_mm", width(grip.faces_y), [1.0, 100.0]),
+        ("grip.slip_limit_mm", grip.slip_limit, [0.2, 30.0]),
+        ("strategy.start_mm", Vector3::from(task.strategy.start).norm(), [3.0, 500.0]),
+        ("success.depth_mm", task.success.depth, [0.5, 150.0]),
+    ]
+    .into_iter()
+    .filter_map(|(key, length, range_mm)| problem(key, length, range_mm))
+    .collect();
+    for (body, parts) in [("plug", &task.plug.parts), ("socket", &task.socket)] {
+        found.extend(parts.iter().filter_map(|part| {
+            let largest = longest_side(&part.solid.corners());
+            problem(&part_key(body, &part.name, ""), largest, [0.3, 1000.0])
+        }));
+    }
+    for phase in &task.strategy.phases {
+        let of_phase = |field: &str, length: f64, range_mm: [f64; 2]| {
+            problem(&format!("strategy.phase \"{}\" {field}", phase.name), length, range_mm)
+        };
+        let by = Vector3::from(phase.displacement).norm();
+        found.extend(of_phase("move_mm", by, [0.05, 200.0]));
+        found.extend(of_phase("speed_mm_per_s", phase.speed, [0.5, 2000.0]));
+        found.extend(match phase.ending {
+            Ending::Tolerance(value) => of_phase("tolerance_mm", value, [0.005, 10.0]),
+            Ending::Touch { preload, .. } => of_phase("preload_mm", preload, [0.01, 10.0]),
+            Ending::Duration(_) => None,
+        });
+    }
     if found.is_empty() {
         found.extend(against_opening(case));
     }
     found
 }
 
-fn lengths(case: &Case) -> Vec<Length> {
-    let (task, grip) = (case.task, &case.task.grip);
-    let length = |key: &str, value, range_mm| Length { key: key.to_owned(), value, range_mm };
-    let mut all = vec![
-        length("plug.part", width(case.plug.extent(2)), [8.0, 300.0]),
-        length("socket.opening_x_mm", width(task.opening[0]), [0.5, 100.0]),
-        length("socket.opening_y_mm", width(task.opening[1]), [0.5, 100.0]),
-        length("grip.tcp_z_mm", grip.tcp_z, [3.0, 300.0]),
-        length("grip.shoulder_z_mm", grip.shoulder_z, [3.0, 300.0]),
-        length("grip.faces_y_mm", width(grip.faces_y), [1.0, 100.0]),
-        length("grip.slip_limit_mm", grip.slip_limit, [0.2, 30.0]),
-        length("strategy.start_mm", Vector3::from(task.strategy.start).norm(), [3.0, 500.0]),
-        length("success.depth_mm", task.success.depth, [0.5, 150.0]),
-    ];
-    for (body, parts) in [("plug", &task.plug.parts), ("socket", &task.socket)] {
-        all.extend(parts.iter().map(|part| {
-            let corners = part.solid.corners();
-            let along = |axis: usize| width(extent(&corners, axis));
-            let largest = (0..3).map(along).fold(0.0, f64::max);
-            length(&part_key(body, &part.name, ""), largest, [0.3, 1000.0])
-        }));
+/// Fault of a length, m, that does not lie in its range, mm.
+fn problem(key: &str, length: f64, [low, high]: [f64; 2]) -> Option<Problem> {
+    let value_mm = length / MM;
+    if (low..=high).contains(&value_mm) {
+        return None;
     }
-    for phase in &task.strategy.phases {
-        let key = |field: &str| format!("strategy.phase \"{}\" {field}", phase.name);
-        let by = Vector3::from(phase.displacement).norm();
-        all.push(length(&key("move_mm"), by, [0.05, 200.0]));
-        all.push(length(&key("speed_mm_per_s"), phase.speed, [0.5, 2000.0]));
-        all.extend(match phase.ending {
-            Ending::Tolerance(value) => Some(length(&key("tolerance_mm"), value, [0.005, 10.0])),
-            Ending::Touch { preload, .. } => {
-                Some(length(&key("preload_mm"), preload, [0.01, 10.0]))
-            }
-            Ending::Duration(_) => None,
-        });
-    }
-    all
-}
-
-impl Length {
-    fn problem(&self) -> Option<Problem> {
-        let value_mm = self.value / MM;
-        let [low, high] = self.range_mm;
-        if (low..=high).contains(&value_mm) {
-            return None;
-        }
-        let (size, limit) = if value_mm < low { ("less", low) } else { ("more", high) };
-        let problem = format!("{value_mm:.4} mm are {size} than such a length can be ({limit} mm)");
-        let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value_mm * factor));
-        let remedy = match UNITS.iter().find(within) {
-            Some((unit, factor)) => format!(
-                "lengths are in mm; if these were {unit}, multiply by {factor}: {:.2} mm",
-                value_mm * factor
-            ),
-            None => format!("between {low} and {high} mm"),
-        };
-        Some(Problem::new(&self.key, problem, remedy))
-    }
+    let (size, limit) = if value_mm < low { ("less", low) } else { ("more", high) };
+    let problem = format!("{value_mm:.4} mm are {size} than such a length can be ({limit} mm)");
+    let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value_mm * factor));
+    let remedy = match UNITS.iter().find(within) {
+        Some((unit, factor)) => format!(
+            "lengths are in mm; if these were {unit}, multiply by {factor}: {:.2} mm",
+            value_mm * factor
+        ),
+        None => format!("between {low} and {high} mm"),
+    };
+    Some(Problem::new(key, problem, remedy))
 }
 
 /// Plug and opening in different units.

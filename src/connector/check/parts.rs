@@ -39,13 +39,13 @@ fn thin(body: &str, part: &Part) -> Option<Problem> {
 }
 
 fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
-    let deep = body.own_overlaps().into_iter().filter(|overlap| overlap.depth > OVERLAP);
-    deep.map(|overlap| {
-        let [i, j] = overlap.parts.map(|i| &body.parts[i]);
+    let deep = body.own_overlaps().into_iter().filter(|(depth, _)| *depth > OVERLAP);
+    deep.map(|(depth, parts)| {
+        let [i, j] = parts.map(|i| &body.parts[i]);
         let counted = if name == "plug" { ": its mass is counted twice there" } else { "" };
         Problem::new(
             part_key(name, &i.name, ""),
-            format!("lies {} mm deep in `{}`{counted}", mm(overlap.depth), j.name),
+            format!("lies {} mm deep in `{}`{counted}", mm(depth), j.name),
             "let the two end where they meet; a common face is enough",
         )
     })

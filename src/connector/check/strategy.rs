@@ -58,10 +58,9 @@ fn upward(phase: &Phase) -> Option<Problem> {
 fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let collision = |tcp: Vector3<f64>| {
         let pose = path::plug_pose(case.task, tcp);
-        let found = case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
-        let [plug, socket] = found.parts;
+        let (depth, [plug, socket]) = case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
         let names = [&case.plug.parts[plug].name, &case.socket.parts[socket].name];
-        (found.depth > ROUNDING).then_some((found.depth, names))
+        (depth > ROUNDING).then_some((depth, names))
     };
     if let Some((depth, [plug, socket])) = collision(way[0].tcp) {
         let right = way[0].tcp.z + 5.0 * MM - way[0].edge.z;
@@ -102,7 +101,8 @@ fn short(point: &Waypoint) -> Option<Problem> {
 
 /// Fault of moves that end above the success depth.
 fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
-    let depth = path::commanded_depth(case.task, way);
+    // Of the upright tip at the end of the path.
+    let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z);
     let missing = case.task.success.depth - depth;
     let last = case.task.strategy.phases.last().filter(|_| missing > 0.0)?;
     let z = mm(last.displacement[2] - missing - PRESS);

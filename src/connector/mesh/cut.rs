@@ -26,9 +26,6 @@ struct Riser([Point3<f64>; 2]);
 /// Closed line of risers, counter-clockwise about solid, clockwise about holes.
 type Outline = Vec<Riser>;
 
-/// Outlines of a layer.
-struct Layer(Vec<Outline>);
-
 impl Riser {
     /// Place at a share of the layer's height.
     fn at(&self, share: f64) -> Point2<f64> {
@@ -47,13 +44,13 @@ pub type Piece = Vec<Point3<f64>>;
 
 /// Pieces of the surface; `None` if it cannot be cut into few layers.
 pub fn pieces(surface: &Surface) -> Option<Vec<Piece>> {
-    let heights = heights(surface);
+    let heights = levels(surface.points.iter().map(|p| p.z));
     if heights.len() > MOST_LAYERS {
         return None;
     }
     let mut found = Vec::new();
     for pair in heights.windows(2) {
-        found.extend(layer(surface, [pair[0], pair[1]])?.pieces()?);
+        found.extend(layer_pieces(&layer(surface, [pair[0], pair[1]])?)?);
         if found.len() > MOST_PIECES {
             return None;
         }
@@ -63,17 +60,13 @@ pub fn pieces(surface: &Surface) -> Option<Vec<Piece>> {
 
 /// Bounding boxes in x and y of the highest layer's holes, `below` the top, m.
 pub fn openings(surface: &Surface, below: f64) -> Vec<[[f64; 2]; 2]> {
-    let heights = heights(surface);
+    let heights = levels(surface.points.iter().map(|p| p.z));
     let Some(&[low, high]) = heights.last_chunk::<2>() else { return Vec::new() };
     let Some(top) = layer(surface, [low, high]) else { return Vec::new() };
     let share = (1.0 - below / (high - low)).max(0.0);
-    let holes = top.0.iter().filter(|outline| area(outline, share) < 0.0);
+    let holes = top.iter().filter(|outline| area(outline, share) < 0.0);
     let along = |hole: &Outline, axis: usize| span(hole.iter().map(|riser| riser.at(share)[axis]));
     holes.map(|hole| [0, 1].map(|axis| along(hole, axis))).collect()
-}
-
-fn heights(surface: &Surface) -> Vec<f64> {
-    levels(surface.points.iter().map(|p| p.z))
 }
 
 /// Numbers in order, without those that are near to the one before.
@@ -84,8 +77,8 @@ fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
     levels
 }
 
-/// Layer between two neighbouring heights; `None` if the surface touches itself.
-fn layer(surface: &Surface, [low, high]: [f64; 2]) -> Option<Layer> {
+/// Outlines of the layer between two neighbouring heights; `None` if the surface touches itself.
+fn layer(surface: &Surface, [low, high]: [f64; 2]) -> Option<Vec<Outline>> {
     let mut next: BTreeMap<[usize; 2], [usize; 2]> = BTreeMap::new();
     for face in &surface.faces {
         let Some((from, to)) = crossing(surface, face, [low, high]) else { continue };
@@ -108,7 +101,7 @@ fn layer(surface: &Surface, [low, high]: [f64; 2]) -> Option<Layer> {
             outlines.push(outline);
         }
     }
-    Some(Layer(outlines))
+    Some(outlines)
 }
 
 /// Edges of a face that cross the layer, in the order that keeps the solid to the left, seen from
@@ -122,7 +115,11 @@ fn crossing(
         let (a, b) = (face[i], face[(i + 1) % 3]);
         [a.min(b), a.max(b)]
     });
-    let crossing: Vec<_> = edges.filter(|edge| crosses(surface, edge, layer)).collect();
+    let crosses = |&[a, b]: &[usize; 2]| {
+        let (a, b) = (surface.points[a].z, surface.points[b].z);
+        a.min(b) < layer[0] + NEAR && a.max(b) > layer[1] - NEAR
+    };
+    let crossing: Vec<_> = edges.filter(crosses).collect();
     let &[first, second] = crossing.as_slice() else { return None };
     let [a, b, c] = face.map(|corner| surface.points[corner]);
     let normal = (b - a).cross(&(c - a));
@@ -135,11 +132,6 @@ fn crossing(
     }
 }
 
-fn crosses(surface: &Surface, &[a, b]: &[usize; 2], [low, high]: [f64; 2]) -> bool {
-    let (a, b) = (surface.points[a].z, surface.points[b].z);
-    a.min(b) < low + NEAR && a.max(b) > high - NEAR
-}
-
 fn riser(surface: &Surface, [a, b]: [usize; 2], layer: [f64; 2]) -> Riser {
     let (a, b) = (surface.points[a], surface.points[b]);
     Riser(layer.map(|z| a + (b - a) * ((z - a.z) / (b.z - a.z))))
@@ -147,16 +139,26 @@ fn riser(surface: &Surface, [a, b]: [usize; 2], layer: [f64; 2]) -> Riser {
 
 /// Outline without the corners at which it goes straight on at every height. (At an end the
 /// diagonal of a flat side meets a corner, so the middle counts, too.)
-fn straightened(mut outline: Outline) -> Outline {
+fn straightened(outline: Outline) -> Outline {
+    let straight = |three: &[Riser; 3]| {
+        [0.0, 0.5, 1.0].into_iter().all(|share| turn(three, share).abs() < STRAIGHT)
+    };
+    without(outline, 2, straight)
+}
+
+/// A closed line without the corners that are straight with their neighbours, as long as it has
+/// more than `least`.
+pub fn without<T: Copy>(
+    mut line: Vec<T>,
+    least: usize,
+    straight: impl Fn(&[T; 3]) -> bool,
+) -> Vec<T> {
     loop {
-        let count = outline.len();
-        let straight = |i: usize| {
-            let three = [(i + count - 1) % count, i, (i + 1) % count].map(|i| outline[i]);
-            [0.0, 0.5, 1.0].into_iter().all(|share| turn(&three, share).abs() < STRAIGHT)
-        };
-        match (0..count).find(|&i| count > 2 && straight(i)) {
-            Some(i) => outline.remove(i),
-            None => return outline,
+        let count = line.len();
+        let three = |i: usize| [(i + count - 1) % count, i, (i + 1) % count].map(|i| line[i]);
+        match (0..count).find(|&i| count > least && straight(&three(i))) {
+            Some(i) => line.remove(i),
+            None => return line,
         };
     }
 }
@@ -171,99 +173,96 @@ fn area(outline: &[Riser], share: f64) -> f64 {
     edges(outline).map(|(a, b)| a.at(share).coords.perp(&b.at(share).coords) / 2.0).sum()
 }
 
-impl Layer {
-    /// Convex pieces of the layer; `None` if its outline cannot be meshed.
-    fn pieces(&self) -> Option<Vec<Piece>> {
-        if let [outline] = self.0.as_slice()
-            && convex(outline)
-        {
-            return Some(vec![piece(outline)]);
-        }
-        let parts = self.strips().or_else(|| self.triangles())?;
-        Some(merged(parts).iter().map(|outline| piece(outline)).collect())
+/// Convex pieces of the layer; `None` if its outline cannot be meshed.
+fn layer_pieces(layer: &[Outline]) -> Option<Vec<Piece>> {
+    if let [outline] = layer
+        && convex(outline)
+    {
+        return Some(vec![piece(outline)]);
     }
-
-    /// Trapezoids of an upright layer, cut along x at its corners. Seams then run along walls, as in
-    /// a file written by hand, and none ends askew in a corner of the opening, where plugs catch.
-    fn strips(&self) -> Option<Vec<Outline>> {
-        let risers = || self.0.iter().flatten();
-        if risers().any(|riser| (riser.at(1.0) - riser.at(0.0)).norm() > NEAR) {
-            return None;
-        }
-        let levels = levels(risers().map(|riser| riser.at(0.5).y));
-        let strips = levels.windows(2).flat_map(|pair| self.strip([pair[0], pair[1]]));
-        (levels.len() <= MOST_STRIPS).then(|| strips.collect())
-    }
-
-    /// Solid trapezoids between two neighbouring levels of y.
-    fn strip(&self, [low, high]: [f64; 2]) -> Vec<Outline> {
-        let middle = (low + high) / 2.0;
-        let mut sides: Vec<[Riser; 2]> = Vec::new();
-        for (a, b) in self.0.iter().flat_map(|outline| edges(outline)) {
-            let (from, to) = (a.at(0.5).y, b.at(0.5).y);
-            if (from > middle) != (to > middle) {
-                sides.push([low, high].map(|y| a.towards(b, (y - from) / (to - from))));
-            }
-        }
-        let x = |side: &[Riser; 2]| side[0].at(0.5).x + side[1].at(0.5).x;
-        sides.sort_by(|a, b| x(a).total_cmp(&x(b)));
-        // From outside the first side enters what is solid, the second leaves it.
-        let between = |pair: &[[Riser; 2]]| {
-            let mut corners = vec![pair[0][0], pair[1][0], pair[1][1], pair[0][1]];
-            // A trapezoid may be a triangle.
-            corners.dedup_by(|b, a| same(b, a));
-            straightened(corners)
-        };
-        sides.chunks_exact(2).map(between).filter(|outline| outline.len() > 2).collect()
-    }
-
-    /// Triangles of risers, counter-clockwise.
-    fn triangles(&self) -> Option<Vec<Outline>> {
-        let mut mesh = ConstrainedDelaunayTriangulation::<Place<f64>>::new();
-        let mut risers: BTreeMap<usize, Riser> = BTreeMap::new();
-        for outline in &self.0 {
-            let mut ring = Vec::new();
-            for riser in outline {
-                // In millimetres: of the size for which the mesher's tolerances are made.
-                let place = riser.at(0.5) / MM;
-                let handle = mesh.insert(Place::new(place.x, place.y)).ok()?;
-                risers.insert(handle.index(), *riser);
-                ring.push(handle);
-            }
-            for i in 0..ring.len() {
-                let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                if !mesh.can_add_constraint(a, b) {
-                    return None;
-                }
-                mesh.add_constraint(a, b);
-            }
-        }
-        // Merging them takes the third power of their number.
-        if mesh.num_inner_faces() > MOST_PIECES {
-            return None;
-        }
-        let mut found = Vec::new();
-        for face in mesh.inner_faces() {
-            let corners = face.vertices().map(|vertex| risers.get(&vertex.fix().index()).copied());
-            let &[Some(a), Some(b), Some(c)] = &corners else { return None };
-            let middle = (a.at(0.5).coords + b.at(0.5).coords + c.at(0.5).coords) / 3.0;
-            if self.solid_at(&Point2::from(middle)) {
-                found.push(vec![a, b, c]);
-            }
-        }
-        Some(found)
-    }
-
-    /// Whether a point lies inside, by the even-odd rule.
-    fn solid_at(&self, p: &Point2<f64>) -> bool {
-        let crossed = |(a, b): &(&Riser, &Riser)| {
-            let (a, b) = (a.at(0.5), b.at(0.5));
-            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
-        };
-        self.0.iter().flat_map(|outline| edges(outline)).filter(crossed).count() % 2 == 1
-    }
+    let parts = strips(layer).or_else(|| triangles(layer))?;
+    Some(merged(parts).iter().map(piece).collect())
 }
 
+/// Trapezoids of an upright layer, cut along x at its corners. Seams then run along walls, as in
+/// a file written by hand, and none ends askew in a corner of the opening, where plugs catch.
+fn strips(layer: &[Outline]) -> Option<Vec<Outline>> {
+    let risers = || layer.iter().flatten();
+    if risers().any(|riser| (riser.at(1.0) - riser.at(0.0)).norm() > NEAR) {
+        return None;
+    }
+    let levels = levels(risers().map(|riser| riser.at(0.5).y));
+    let strips = levels.windows(2).flat_map(|pair| strip(layer, [pair[0], pair[1]]));
+    (levels.len() <= MOST_STRIPS).then(|| strips.collect())
+}
+
+/// Solid trapezoids between two neighbouring levels of y.
+fn strip(layer: &[Outline], [low, high]: [f64; 2]) -> Vec<Outline> {
+    let middle = (low + high) / 2.0;
+    let mut sides: Vec<[Riser; 2]> = Vec::new();
+    for (a, b) in layer.iter().flat_map(|outline| edges(outline)) {
+        let (from, to) = (a.at(0.5).y, b.at(0.5).y);
+        if (from > middle) != (to > middle) {
+            sides.push([low, high].map(|y| a.towards(b, (y - from) / (to - from))));
+        }
+    }
+    let x = |side: &[Riser; 2]| side[0].at(0.5).x + side[1].at(0.5).x;
+    sides.sort_by(|a, b| x(a).total_cmp(&x(b)));
+    // From outside the first side enters what is solid, the second leaves it.
+    let between = |pair: &[[Riser; 2]]| {
+        let mut corners = vec![pair[0][0], pair[1][0], pair[1][1], pair[0][1]];
+        // A trapezoid may be a triangle.
+        corners.dedup_by(|b, a| same(b, a));
+        straightened(corners)
+    };
+    sides.chunks_exact(2).map(between).filter(|outline| outline.len() > 2).collect()
+}
+
+/// Triangles of risers, counter-clockwise.
+fn triangles(layer: &[Outline]) -> Option<Vec<Outline>> {
+    let mut mesh = ConstrainedDelaunayTriangulation::<Place<f64>>::new();
+    let mut risers: BTreeMap<usize, Riser> = BTreeMap::new();
+    for outline in layer {
+        let mut ring = Vec::new();
+        for riser in outline {
+            // In millimetres: of the size for which the mesher's tolerances are made.
+            let place = riser.at(0.5) / MM;
+            let handle = mesh.insert(Place::new(place.x, place.y)).ok()?;
+            risers.insert(handle.index(), *riser);
+            ring.push(handle);
+        }
+        for i in 0..ring.len() {
+            let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
+            if !mesh.can_add_constraint(a, b) {
+                return None;
+            }
+            mesh.add_constraint(a, b);
+        }
+    }
+    // Merging them takes the third power of their number.
+    if mesh.num_inner_faces() > MOST_PIECES {
+        return None;
+    }
+    let mut found = Vec::new();
+    for face in mesh.inner_faces() {
+        let corners = face.vertices().map(|vertex| risers.get(&vertex.fix().index()).copied());
+        let &[Some(a), Some(b), Some(c)] = &corners else { return None };
+        let middle = (a.at(0.5).coords + b.at(0.5).coords + c.at(0.5).coords) / 3.0;
+        if solid_at(layer, &Point2::from(middle)) {
+            found.push(vec![a, b, c]);
+        }
+    }
+    Some(found)
+}
+
+/// Whether a point lies inside, by the even-odd rule.
+fn solid_at(layer: &[Outline], p: &Point2<f64>) -> bool {
+    let crossed = |(a, b): &(&Riser, &Riser)| {
+        let (a, b) = (a.at(0.5), b.at(0.5));
+        (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
+    };
+    layer.iter().flat_map(|outline| edges(outline)).filter(crossed).count() % 2 == 1
+}
 /// Neighbouring risers, the last with the first.
 fn edges(outline: &[Riser]) -> impl Iterator<Item = (&Riser, &Riser)> {
     outline.iter().zip(outline.iter().cycle().skip(1))
@@ -312,6 +311,6 @@ fn merged(mut outlines: Vec<Outline>) -> Vec<Outline> {
     }
 }
 
-fn piece(outline: &[Riser]) -> Piece {
+fn piece(outline: &Outline) -> Piece {
     outline.iter().flat_map(|riser| riser.0).collect()
 }

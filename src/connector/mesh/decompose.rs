@@ -1,7 +1,8 @@
 //! Decomposition of a surface into convex solids: an exact cut, else VHACD.
 
 use super::surface::Surface;
-use super::{Fault, cut, intrusion, merge};
+use super::{cut, intrusion, merge};
+use crate::connector::body::longest_side;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
 use nalgebra::{Point3, Vector3};
@@ -27,17 +28,12 @@ pub const COARSEST: u32 = 8;
 /// clearance.
 const CONCAVITY: f64 = 0.001;
 
-/// Convex solids of a surface.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Decomposed {
-    /// Solids in the frame of the surface, m.
-    pub solids: Vec<Solid>,
-    /// Whether the solids equal the surface, not approximate it.
-    pub exact: bool,
-}
+/// Advice on a mesh that is not cut exactly.
+const OTHERWISE: &str = "export the mesh with fewer flats (a circle of 32 is exact), begin with \
+                         `optimize task new --round`, or write its parts by hand (docs/guide/tasks.md)";
 
-/// Decomposes a surface, approximately with `resolution` voxels along the longest side if no exact
-/// cut is found; `say` gets progress messages.
+/// Convex solids of a surface, m, and whether they equal it: if no exact cut is found, it is
+/// approximated with `resolution` voxels along the longest side. `say` gets progress messages.
 ///
 /// # Errors
 /// If the approximation would take minutes or has more parts than a task may have.
@@ -45,31 +41,37 @@ pub fn decompose(
     surface: &Surface,
     resolution: u32,
     say: &dyn Fn(&str),
-) -> Result<Decomposed, Fault> {
+) -> Result<(Vec<Solid>, bool), String> {
     say(&format!("cutting {} faces into convex pieces", surface.faces.len()));
     let exact = (0..3).filter_map(|turns| cut_along(surface, turns));
     let whole = exact.filter(|solids| is_whole(surface, solids));
     // The cut of fewest parts; of equals the first, across z.
     if let Some(solids) = whole.min_by_key(Vec::len) {
-        return Ok(Decomposed { solids, exact: true });
+        return Ok((solids, true));
     }
     let most = |finest: &u32| voxels(surface, *finest) * f64::from(*finest) <= MOST_WORK;
     if !most(&resolution) {
         let finest = (COARSEST..resolution).rev().find(most).unwrap_or(COARSEST);
-        return Err(Fault::Long { resolution, finest });
+        return Err(format!(
+            "is no solid of flat sides that up to {MOST_PARTS} convex pieces make, and approximating it \
+             with --resolution {resolution} would take minutes: give --resolution {finest} or less, \
+             {OTHERWISE}"
+        ));
     }
     let thousands = voxels(surface, resolution) / 1e3;
     say(&format!("approximating {thousands:.0} thousand voxels by convex hulls"));
     let solids = approximate(surface, resolution);
     match solids.len() {
-        parts if parts > MOST_PARTS => Err(Fault::Many(parts)),
-        _ => Ok(Decomposed { solids, exact: false }),
+        parts if parts > MOST_PARTS => {
+            Err(format!("comes to {parts} convex hulls; a task may have {MOST_PARTS}: {OTHERWISE}"))
+        }
+        _ => Ok((solids, false)),
     }
 }
 
 /// Approximate number of voxels in a surface and on it.
 fn voxels(surface: &Surface, resolution: u32) -> f64 {
-    let side = surface.longest_side() / f64::from(resolution);
+    let side = longest_side(&surface.points) / f64::from(resolution);
     surface.volume() / side.powi(3) + surface.area() / side.powi(2)
 }
 
@@ -95,15 +97,14 @@ fn is_whole(surface: &Surface, solids: &[Solid]) -> bool {
         let part =
             |solid: &Solid| Part { name: String::new(), solid: solid.clone(), friction: None };
         let parts: Vec<_> = solids.iter().map(part).collect();
-        intrusion::largest(surface, &parts, |_| true).is_some_and(|found| found.depth < NEAR)
+        intrusion::largest(surface, &parts, |_| true).is_some_and(|(depth, _)| depth < NEAR)
     }
 }
 
 /// Volumetric hierarchical approximate convex decomposition (Mamou 2016), of voxels, each part
 /// the hull of the surface within it.
 fn approximate(surface: &Surface, resolution: u32) -> Vec<Solid> {
-    let points: Vec<_> = surface.points.iter().map(|p| (p.coords / MM).into()).collect();
-    let faces: Vec<_> = surface.faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
+    let (points, faces) = surface.in_millimetres();
     let parameters = VHACDParameters {
         resolution,
         concavity: CONCAVITY,

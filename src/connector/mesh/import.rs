@@ -1,16 +1,16 @@
 //! Task from a mesh of a plug and one of its socket.
 
+use super::decompose::decompose;
 pub use super::decompose::{COARSEST, MOST_PARTS};
-use super::decompose::{Decomposed, decompose};
-use super::intrusion::{self, Intrusion};
+use super::intrusion;
 use super::reduce::{TOLERANCE, reduced};
 use super::surface::Surface;
-use super::{Fault, MeshError, cut};
+use super::{MeshError, cut};
 use crate::connector::body::{ConvexBody, clipped, extent};
 use crate::connector::seat::{Seating, section};
 use crate::connector::{draft, hold, plan};
 use input::units::MM;
-use insertion::task::{Part, Plug, Solid, Task, geometry};
+use insertion::task::{Part, Plug, Task};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// Depth at which the opening is measured, m: as in the check of the walls.
@@ -24,9 +24,13 @@ const ABOUT: f64 = 0.5 * MM;
 /// Faces from which on a mesh is reduced.
 const MANY_FACES: usize = 2000;
 /// Most faces that are cut into convex parts: more take minutes.
-pub const MOST_FACES: usize = 8000;
+const MOST_FACES: usize = 8000;
 /// Largest share of the clearance that intrusion may fill.
 pub const ALLOWED: f64 = 0.1;
+
+/// Fault of a plug that no pads hold.
+const NO_GRIP: &str = "no place to hold the plug was found: two faces across y, with a shoulder above \
+                       them for the fingers' roofs; give --like T, whose grip fits, or write [grip] by hand";
 
 /// Direction of insertion in the axes of the files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -98,8 +102,28 @@ pub struct Imported {
     pub exact: [bool; 2],
     /// Play of the plug in its socket, the smaller of x and y, m.
     pub clearance: f64,
-    /// Largest intrusion of a part into the clearance, and its body.
-    pub intrusion: Option<(Intrusion, &'static str)>,
+    /// Largest intrusion of a part into the clearance, m, its point, m, and its body.
+    pub intrusion: Option<(f64, Point3<f64>, &'static str)>,
+}
+
+/// The mesh with faces that can be cut, few enough to be cut in seconds.
+fn few_faces(mesh: Mesh, say: &dyn Fn(&str)) -> Result<Mesh, MeshError> {
+    let Mesh { file, surface } = mesh;
+    let before = surface.faces.len();
+    if before <= MANY_FACES {
+        return Ok(Mesh { file, surface });
+    }
+    let surface = reduced(surface);
+    let (after, tolerance) = (surface.faces.len(), TOLERANCE / MM);
+    if after > MOST_FACES {
+        let problem = format!(
+            "has {before} faces, and {after} where all within {tolerance} mm is made flat; at most \
+             {MOST_FACES} are taken: leave out threads, text and knurls, or export the mesh more coarsely"
+        );
+        return Err(MeshError::File(file, problem));
+    }
+    say(&format!("{file}: {before} faces reduced to {after}, within {tolerance} mm"));
+    Ok(Mesh { file, surface })
 }
 
 /// Imports a plug and its socket.
@@ -117,15 +141,17 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
         open(turned(socket.surface), middles[1], &socket.file, request.along)?;
     let convex = |surface: &Surface, file: &str, body: &str| {
         let say = |what: &str| (request.say)(&format!("{body}: {what}"));
-        decompose(surface, request.resolution, &say).map_err(|fault| fault.of(file))
+        let found = decompose(surface, request.resolution, &say);
+        let (solids, exact) = found.map_err(|fault| MeshError::File(file.to_owned(), fault))?;
+        let part = |(i, solid)| Part { name: format!("{body} {i}"), solid, friction: None };
+        Ok::<_, MeshError>(((1..).zip(solids).map(part).collect(), exact))
     };
-    let inner = convex(&plug_surface, &plug.file, "plug")?;
-    let outer = convex(&socket_surface, &socket.file, "socket")?;
+    let (plug_parts, plug_exact) = convex(&plug_surface, &plug.file, "plug")?;
+    let (socket_parts, socket_exact) = convex(&socket_surface, &socket.file, "socket")?;
     let mut task = draft::blank(request.name, request.like);
     task.description = format!("from {} and {}", file_name(&plug.file), file_name(&socket.file));
     task.plug.mass = draft::DENSITY * plug_surface.volume();
-    task.plug.parts = parts("plug", &inner);
-    task.socket = parts("socket", &outer);
+    (task.plug.parts, task.socket) = (plug_parts, socket_parts);
     task.opening = opening;
     let task = match request.like {
         Some(like) => Task {
@@ -135,58 +161,26 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
             success: like.success,
             ..task
         },
-        None => planned(task, &plug.file)?,
+        None => {
+            let found = hold::find(&ConvexBody::plug(&task.plug), LEAST_COVER);
+            let found = found.ok_or_else(|| MeshError::File(plug.file, NO_GRIP.to_owned()))?;
+            (task.grip.shoulder_z, task.grip.faces_y) = found;
+            plan::complete(task)?
+        }
     };
-    let clearance = clearance(&task);
-    let intrusion = intrude(&task, [&plug_surface, &socket_surface]);
-    Ok(Imported { exact: [inner.exact, outer.exact], clearance, intrusion, task })
-}
-
-/// The mesh with faces that can be cut, few enough to be cut in seconds.
-fn few_faces(mesh: Mesh, say: &dyn Fn(&str)) -> Result<Mesh, MeshError> {
-    let Mesh { file, surface } = mesh;
-    let before = surface.faces.len();
-    if before <= MANY_FACES {
-        return Ok(Mesh { file, surface });
-    }
-    let surface = reduced(surface);
-    let (after, tolerance) = (surface.faces.len(), TOLERANCE / MM);
-    if after > MOST_FACES {
-        return Err(Fault::Faces(before, after).of(&file));
-    }
-    say(&format!("{file}: {before} faces reduced to {after}, within {tolerance} mm"));
-    Ok(Mesh { file, surface })
-}
-
-/// Smaller play of x and y at the success depth, m.
-fn clearance(task: &Task) -> f64 {
-    let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-    let seating = Seating::new(task, &plug, &socket);
+    let (plug_body, socket_body) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
+    let seating = Seating::new(&task, &plug_body, &socket_body);
     let seat = seating.deepest();
     let depth = task.success.depth.min(seat.depth);
     let play = |axis| seating.play(depth, seat.at, axis);
-    play(0).min(play(1))
+    let clearance = play(0).min(play(1));
+    let intrusion = intrude(&task, [&plug_surface, &socket_surface]);
+    Ok(Imported { exact: [plug_exact, socket_exact], clearance, intrusion, task })
 }
 
 fn file_name(path: &str) -> String {
     let name = std::path::Path::new(path).file_name();
     name.map_or(path.to_owned(), |name| name.to_string_lossy().into_owned())
-}
-
-fn parts(body: &str, decomposed: &Decomposed) -> Vec<Part> {
-    let part = |(i, solid): (usize, &Solid)| Part {
-        name: format!("{body} {}", i + 1),
-        solid: solid.clone(),
-        friction: None,
-    };
-    decomposed.solids.iter().enumerate().map(part).collect()
-}
-
-/// Task with grip, strategy and success derived from the shapes.
-fn planned(mut task: Task, file: &str) -> Result<Task, MeshError> {
-    let found = hold::find(&ConvexBody::plug(&task.plug), LEAST_COVER);
-    (task.grip.shoulder_z, task.grip.faces_y) = found.ok_or_else(|| Fault::NoGrip.of(file))?;
-    Ok(plan::complete(task)?)
 }
 
 /// Middle of a task's tip in the plug frame, and of its opening in the task frame, m.
@@ -225,7 +219,10 @@ fn open(
     let Some(opening) = largest else {
         let value = clap::ValueEnum::to_possible_value(&along);
         let value = value.as_ref().map_or("", |value| value.get_name());
-        return Err(Fault::NoOpening(format!("--insert-along {value}")).of(file));
+        let fault = format!(
+            "has no opening on its top (--insert-along {value}): no closed hole goes in from there"
+        );
+        return Err(MeshError::File(file.to_owned(), fault));
     };
     let [_, top] = extent(&surface.points, 2);
     let middle = opening.map(middle);
@@ -235,7 +232,7 @@ fn open(
 }
 
 /// Largest intrusion of plug or socket where they meet, and its body.
-fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(Intrusion, &'static str)> {
+fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(f64, Point3<f64>, &'static str)> {
     let deep = task.success.depth + ABOUT;
     let [x, y] = task.opening;
     let about = |v: f64, [low, high]: [f64; 2]| low - ABOUT < v && v < high + ABOUT;
@@ -243,19 +240,14 @@ fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(Intrusion, &'static 
     let socket = intrusion::largest(surfaces[1], &task.socket, |p| {
         p.z > -deep - ABOUT && about(p.x, x) && about(p.y, y)
     });
-    let both = [plug.map(|found| (found, "plug")), socket.map(|found| (found, "socket"))];
-    both.into_iter().flatten().max_by(|a, b| a.0.depth.total_cmp(&b.0.depth))
+    let plug = plug.map(|(depth, at)| (depth, at, "plug"));
+    let socket = socket.map(|(depth, at)| (depth, at, "socket"));
+    plug.into_iter().chain(socket).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 impl Imported {
     /// Number of parts of plug and of socket.
     pub fn parts(&self) -> [usize; 2] {
         [self.task.plug.parts.len(), self.task.socket.len()]
-    }
-
-    /// Volume of the parts of plug and of socket, m3.
-    pub fn volumes(&self) -> [f64; 2] {
-        [&self.task.plug.parts, &self.task.socket]
-            .map(|parts| parts.iter().map(|part| geometry::volume(&part.solid)).sum())
     }
 }

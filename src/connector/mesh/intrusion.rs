@@ -14,32 +14,22 @@ const SPACING: f64 = 0.2 * MM;
 /// Most sample points along a side of a triangle.
 const MOST: usize = 60;
 
-/// Farthest point of a part outside the surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Intrusion {
-    /// Distance from the surface, m.
-    pub depth: f64,
-    /// Point, m.
-    pub at: Point3<f64>,
-}
-
-/// Largest intrusion among the sample points that `counts` accepts; `None` without such points.
+/// Largest intrusion, m, and its point, m, among the sample points that `counts` accepts; `None`
+/// without such points.
 pub fn largest(
     surface: &Surface,
     parts: &[Part],
     counts: impl Fn(&Point3<f64>) -> bool,
-) -> Option<Intrusion> {
-    let points: Vec<_> = surface.points.iter().map(|p| (p.coords / MM).into()).collect();
-    let faces: Vec<_> = surface.faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
+) -> Option<(f64, Point3<f64>)> {
+    let (points, faces) = surface.in_millimetres();
     let mesh = TriMesh::with_flags(points, faces, TriMeshFlags::ORIENTED).ok()?;
     let outside = |at: Point3<f64>| {
         let point: Vector = (at.coords / MM).into();
         let found = mesh.project_local_point(point, true);
-        let depth = if found.is_inside { 0.0 } else { (found.point - point).length() * MM };
-        Intrusion { depth, at }
+        (if found.is_inside { 0.0 } else { (found.point - point).length() * MM }, at)
     };
     let samples = parts.iter().flat_map(samples).filter(|p| counts(p));
-    samples.map(outside).max_by(|a, b| a.depth.total_cmp(&b.depth))
+    samples.map(outside).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// Sample points on the faces of a part.

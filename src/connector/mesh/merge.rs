@@ -1,6 +1,6 @@
 //! Merging of convex pieces into convex solids: boxes, prisms, hulls.
 
-use super::cut::Piece;
+use super::cut::{self, Piece};
 use crate::connector::body::extent;
 use input::units::MM;
 use insertion::task::{Solid, geometry};
@@ -118,16 +118,7 @@ fn outline(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let middle = [0, 1].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / count);
     let angle = |p: &[f64; 2]| libm::atan2(p[1] - middle[1], p[0] - middle[0]);
     corners.sort_by(|p, q| angle(p).total_cmp(&angle(q)));
-    loop {
-        let n = corners.len();
-        let straight = |i: usize| {
-            let [p, q, r] = [(i + n - 1) % n, i, (i + 1) % n].map(|i| corners[i]);
-            let turn = (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]);
-            turn < 1e-4 * MM * MM
-        };
-        match (0..n).find(|&i| n > 3 && straight(i)) {
-            Some(i) => corners.remove(i),
-            None => return corners,
-        };
-    }
+    cut::without(corners, 3, |[p, q, r]| {
+        (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]) < 1e-4 * MM * MM
+    })
 }

@@ -1,6 +1,6 @@
 //! Triangles of STL (binary and text) and OBJ files.
 
-use super::{Fault, MeshError};
+use super::MeshError;
 use nalgebra::Point3;
 
 /// Corners of a triangle, in the unit of the file.
@@ -15,7 +15,9 @@ const RECORD: usize = 50;
 /// # Errors
 /// If the bytes are neither STL nor OBJ, or name no finite triangles.
 pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Triangle>, MeshError> {
-    let fail = |problem: &str| Fault::Format(problem.to_owned()).of(file);
+    let fail = |problem: &str| {
+        MeshError::File(file.to_owned(), format!("is neither an STL nor an OBJ file: {problem}"))
+    };
     // A binary STL may begin with "solid", too: its length tells.
     let triangles = match binary_count(bytes) {
         Some(count) => binary(&bytes[HEADER..], count),

@@ -1,11 +1,12 @@
 //! A closed surface of triangles that look outward.
 
+use super::MeshError;
 use super::read::Triangle;
-use super::{Fault, MeshError};
-use crate::connector::body::{extent, width};
+use crate::connector::body::longest_side;
 use input::units::MM;
 use insertion::task::geometry::surface_moments;
 use nalgebra::{Matrix3, Point3, Vector3};
+use rapier3d_f64::parry::math::Vector;
 use std::collections::BTreeMap;
 
 /// Grid on which corners are welded, m: files have 32-bit numbers.
@@ -31,10 +32,11 @@ impl Surface {
     /// If the triangles are not watertight, differ in orientation, or have no connector's size.
     pub fn new(triangles: &[Triangle], unit: f64, file: &str) -> Result<Self, MeshError> {
         let (points, mut faces) = weld(triangles, unit);
-        size(&points).and_then(|()| closed(&points, &faces)).map_err(|fault| fault.of(file))?;
+        let fail = |fault: String| MeshError::File(file.to_owned(), fault);
+        size(&points).and_then(|()| closed(&points, &faces)).map_err(fail)?;
         let volume = surface_moments(&points, &faces).0;
         if volume.abs() < GRID * GRID * GRID {
-            return Err(Fault::Flat.of(file));
+            return Err(fail("holds no volume".to_owned()));
         }
         let was_inward = volume < 0.0;
         if was_inward {
@@ -51,9 +53,11 @@ impl Surface {
         self
     }
 
-    /// Longest side of the bounding box, m.
-    pub fn longest_side(&self) -> f64 {
-        longest_side(&self.points)
+    /// Points, mm, and faces as parry takes them.
+    pub fn in_millimetres(&self) -> (Vec<Vector>, Vec<[u32; 3]>) {
+        let points = self.points.iter().map(|p| (p.coords / MM).into());
+        let faces = self.faces.iter().map(|face| face.map(|corner| corner as u32));
+        (points.collect(), faces.collect())
     }
 
     /// Surface area, m2.
@@ -114,11 +118,7 @@ fn without_films(faces: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
     kept.map(|([a, b, c], count)| if count > 0 { [a, b, c] } else { [a, c, b] }).collect()
 }
 
-fn longest_side(points: &[Point3<f64>]) -> f64 {
-    (0..3).map(|axis| width(extent(points, axis))).fold(0.0, f64::max)
-}
-
-fn size(points: &[Point3<f64>]) -> Result<(), Fault> {
+fn size(points: &[Point3<f64>]) -> Result<(), String> {
     let largest = longest_side(points);
     let [low, high] = SIZES;
     let hint = match () {
@@ -126,11 +126,11 @@ fn size(points: &[Point3<f64>]) -> Result<(), Fault> {
         () if largest < low => "too small; is it in metres (--unit m) or inches (--unit in)?",
         () => return Ok(()),
     };
-    Err(Fault::Size(largest / MM, hint))
+    Err(format!("is {:.3} mm long; connectors are 3 to 300 mm: {hint}", largest / MM))
 }
 
 /// Checks that every edge runs as often in one direction as in the other.
-fn closed(points: &[Point3<f64>], faces: &[[usize; 3]]) -> Result<(), Fault> {
+fn closed(points: &[Point3<f64>], faces: &[[usize; 3]]) -> Result<(), String> {
     let mut ways: BTreeMap<[usize; 2], [u32; 2]> = BTreeMap::new();
     for face in faces {
         for i in 0..3 {
@@ -143,11 +143,20 @@ fn closed(points: &[Point3<f64>], faces: &[[usize; 3]]) -> Result<(), Fault> {
         let middle = nalgebra::center(&points[*a], &points[*b]) / MM;
         [middle.x, middle.y, middle.z].map(|v| (v * 1e3).round() / 1e3)
     };
-    let none_of = |wrong: fn(&[u32; 2]) -> bool, fault: fn(usize, [f64; 3]) -> Fault| {
+    let first_of = |wrong: fn(&[u32; 2]) -> bool| {
         let mut edges = ways.iter().filter(|(_, ways)| wrong(ways)).map(|(edge, _)| edge);
-        let first = edges.next().map(middle);
-        first.map_or(Ok(()), |first| Err(fault(1 + edges.count(), first)))
+        edges.next().map(middle).map(|first| (1 + edges.count(), first))
     };
-    none_of(|[forth, back]| (forth + back) % 2 == 1, Fault::Open)?;
-    none_of(|[forth, back]| forth != back, Fault::Orientation)
+    if let Some((count, first)) = first_of(|[forth, back]| (forth + back) % 2 == 1) {
+        return Err(format!(
+            "is not watertight: {count} edges have a face on one side only, the first at {first:?} mm \
+             (as in the file, scaled); close the surface in your CAD or with a mesh repair"
+        ));
+    }
+    first_of(|[forth, back]| forth != back).map_or(Ok(()), |(count, first)| {
+        Err(format!(
+            "{count} edges lie between faces that look to opposite sides, the first at {first:?} mm; \
+             let all normals point outward"
+        ))
+    })
 }

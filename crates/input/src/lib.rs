@@ -92,7 +92,10 @@ pub struct Check<'a> {
 }
 
 impl Check<'_> {
-    /// The error of a field.
+    /// Refuses a field.
+    ///
+    /// # Errors
+    /// Always: with this problem of the field.
     pub fn fail<T>(&self, key: &str, problem: impl Into<String>) -> Result<T, InputError> {
         Err(InputError::Value {
             file: self.file.to_owned(),
@@ -116,39 +119,45 @@ impl Check<'_> {
     }
 
     /// The value, if it is finite and not beyond 1e9.
+    ///
+    /// # Errors
+    /// If it is not.
     pub fn finite(&self, key: &str, value: f64) -> Result<f64, InputError> {
         // Written so that a NaN is outside.
-        if value.abs() <= LARGEST {
-            return Ok(value);
-        }
-        let value = shown(value);
-        self.fail(key, format!("is {value}; it must be a finite number of size 1e9 or less"))
+        self.good(key, value, value.abs() <= LARGEST, "be a finite number of size 1e9 or less")
     }
 
     /// The value, if it is above 0: from 1e-9 to 1e9.
+    ///
+    /// # Errors
+    /// If it is not.
     pub fn positive(&self, key: &str, value: f64) -> Result<f64, InputError> {
-        if (SMALLEST..=LARGEST).contains(&value) {
-            return Ok(value);
-        }
-        let value = shown(value);
-        self.fail(key, format!("is {value}; it must be a finite number above 0, 1e-9 to 1e9"))
+        let good = (SMALLEST..=LARGEST).contains(&value);
+        self.good(key, value, good, "be a finite number above 0, 1e-9 to 1e9")
     }
 
     /// The value, if it is not below 0 and not beyond 1e9.
+    ///
+    /// # Errors
+    /// If it is not.
     pub fn not_negative(&self, key: &str, value: f64) -> Result<f64, InputError> {
-        if (0.0..=LARGEST).contains(&value) {
-            return Ok(value);
-        }
-        let value = shown(value);
-        self.fail(key, format!("is {value}; it must be a finite number, 0 or above, 1e9 at most"))
+        let good = (0.0..=LARGEST).contains(&value);
+        self.good(key, value, good, "be a finite number, 0 or above, 1e9 at most")
     }
 
-    /// A coordinate or a difference of two, mm.
+    /// The value, if it can be a coordinate or a difference of two, mm.
+    ///
+    /// # Errors
+    /// If it is not finite, or longer than 1 m.
     pub fn distance(&self, key: &str, mm: f64) -> Result<f64, InputError> {
-        if self.finite(key, mm)?.abs() <= LONGEST_MM {
-            return Ok(mm);
+        let good = self.finite(key, mm)?.abs() <= LONGEST_MM;
+        self.good(key, mm, good, &format!("lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))
+    }
+
+    fn good(&self, key: &str, value: f64, good: bool, must: &str) -> Result<f64, InputError> {
+        match good {
+            true => Ok(value),
+            false => self.fail(key, format!("is {}; it must {must}", shown(value))),
         }
-        let mm = shown(mm);
-        self.fail(key, format!("is {mm}; it must lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))
     }
 }

@@ -75,21 +75,9 @@ pub struct Source {
 /// Error of a name or path that gives no text.
 #[derive(Debug, thiserror::Error)]
 pub enum ShippedError {
-    /// Not a shipped name.
-    #[error(
-        "no {kind} is called `{name}`{}; there are {names}, or give the path of a file",
-        hint(nearest)
-    )]
-    Unknown {
-        /// Kind of file: "task", "space", ...
-        kind: &'static str,
-        /// Name as given.
-        name: String,
-        /// The shipped name most like it.
-        nearest: Option<&'static str>,
-        /// All shipped names, comma-separated.
-        names: String,
-    },
+    /// Not a shipped name; the message names the nearest and all.
+    #[error("{0}")]
+    Unknown(String),
     /// A path that cannot be read.
     #[error("{file}: cannot read the {kind}: {source}")]
     Unreadable {
@@ -102,12 +90,11 @@ pub enum ShippedError {
     },
 }
 
-fn hint(nearest: &Option<&str>) -> String {
-    nearest.map_or(String::new(), |name| format!(" (did you mean `{name}`?)"))
-}
-
 /// The shipped file of that name or, if `name` looks like a path (it has a
 /// separator or an extension), the file there.
+///
+/// # Errors
+/// If the name is not shipped, or the file cannot be read.
 pub fn resolve(
     kind: &'static str,
     shipped: &[Shipped],
@@ -123,12 +110,11 @@ pub fn resolve(
         };
     }
     let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
-    Err(ShippedError::Unknown {
-        kind,
-        name: name.to_owned(),
-        nearest: nearest(name, &names),
-        names: names.join(", "),
-    })
+    let hint = nearest(name, &names).map(|other| format!(" (did you mean `{other}`?)"));
+    let (hint, names) = (hint.unwrap_or_default(), names.join(", "));
+    Err(ShippedError::Unknown(format!(
+        "no {kind} is called `{name}`{hint}; there are {names}, or give the path of a file"
+    )))
 }
 
 /// The name that differs least from `name`, if less than half of it differs.

@@ -53,6 +53,31 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// The first problem of bounds and step, if any.
+    fn problem(&self) -> Option<String> {
+        let Parameter { low, high, step, .. } = *self;
+        let [least, most] = bounds(&self.key);
+        let (linear, levels) = (self.scale.is_linear(), self.steps());
+        let wide = linear && high > low && step > (high - low) * (1.0 + 1e-9);
+        let uneven = (levels - levels.round()).abs() > 1e-6 || levels > 1e6;
+        let within = format!("must lie in {} .. {}", shown(least), shown(most));
+        let log = "on a log scale step must be above 1 and low above 0";
+        let problems = [
+            (
+                ![low, high, step].iter().all(|v| v.is_finite()),
+                "low, high and step must be finite numbers",
+            ),
+            (low > high, "low must not be above high"),
+            (linear && step <= 0.0, "step must be above 0"),
+            (!linear && (step <= 1.0 || low <= 0.0), log),
+            (low < least || high > most, &within),
+            (step < FINEST_STEP, "step must be 1e-6 or more"),
+            (wide, "step must not be larger than high - low"),
+            (uneven, "high - low must be a whole number of steps, at most 1e6"),
+        ];
+        problems.into_iter().find(|(wrong, _)| *wrong).map(|(_, problem)| problem.to_owned())
+    }
+
     /// Number of distinct values.
     pub fn levels(&self) -> u32 {
         self.steps().round() as u32 + 1
@@ -216,9 +241,11 @@ impl TryFrom<RawSpace> for Space {
 
 impl Space {
     /// Reads and checks a space; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not such a file, or a value cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let raw: RawSpace = read(text, file)?;
-        Self::check(raw, file)
+        Self::check(read(text, file)?, file)
     }
 
     fn check(raw: RawSpace, file: &str) -> Result<Self, InputError> {
@@ -227,37 +254,13 @@ impl Space {
             let problem = format!("a space needs one [[parameter]] to {MOST_PARAMETERS} of them");
             return fail("parameter", &problem);
         }
-        for (i, p) in raw.parameter.iter().enumerate() {
-            if raw.parameter[..i].iter().any(|other| other.key == p.key) {
-                return fail(&p.key, "is given twice; each key may stand once");
+        for (i, parameter) in raw.parameter.iter().enumerate() {
+            let key = &parameter.key;
+            if raw.parameter[..i].iter().any(|other| other.key == *key) {
+                return fail(key, "is given twice; each key may stand once");
             }
-            if ![p.low, p.high, p.step].iter().all(|v| v.is_finite()) {
-                return fail(&p.key, "low, high and step must be finite numbers");
-            }
-            if p.low > p.high {
-                return fail(&p.key, "low must not be above high");
-            }
-            match p.scale {
-                Scale::Linear if p.step <= 0.0 => return fail(&p.key, "step must be above 0"),
-                Scale::Log if p.step <= 1.0 || p.low <= 0.0 => {
-                    return fail(&p.key, "on a log scale step must be above 1 and low above 0");
-                }
-                _ => {}
-            }
-            let [least, most] = bounds(&p.key);
-            if p.low < least || p.high > most {
-                let [least, most] = [least, most].map(shown);
-                return fail(&p.key, &format!("must lie in {least} .. {most}"));
-            }
-            if p.step < FINEST_STEP {
-                return fail(&p.key, "step must be 1e-6 or more");
-            }
-            if p.scale.is_linear() && p.high > p.low && p.step > (p.high - p.low) * (1.0 + 1e-9) {
-                return fail(&p.key, "step must not be larger than high - low");
-            }
-            let levels = p.steps();
-            if (levels - levels.round()).abs() > 1e-6 || levels > 1e6 {
-                return fail(&p.key, "high - low must be a whole number of steps, at most 1e6");
+            if let Some(problem) = parameter.problem() {
+                return fail(key, &problem);
             }
         }
         Ok(Space { name: raw.name, description: raw.description, parameters: raw.parameter })

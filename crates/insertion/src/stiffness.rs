@@ -134,6 +134,9 @@ pub enum SurrogateError {
 }
 
 /// Reads and checks a measurement file; `file` is named in errors.
+///
+/// # Errors
+/// If it is no such table, a value cannot be used, or a column seems to be in another unit.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     unit(rows(text, file)?, file)
 }

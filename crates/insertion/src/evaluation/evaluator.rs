@@ -29,7 +29,29 @@ use std::sync::atomic::AtomicBool;
 /// Stiffest finger, N/mm: a thousand times that of a solid one.
 const STIFFEST_N_PER_MM: f64 = 1e6;
 
-/// Stiffness model, tasks, robot and engine: all that decides what a design measures.
+/// Stiffness model, tasks, robot and engine: all that decides the evaluation of a design.
+///
+/// ```
+/// use finray::printed::PrintedFinger;
+/// use input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS};
+/// use insertion::evaluation::{evaluator::Evaluator, template::Template};
+/// use insertion::finger::model::FingerSource;
+/// use insertion::{robot::Robot, space::Design, stiffness, surrogate, trial::engine::EngineKind};
+/// let measured = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file)?;
+/// let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file)?;
+/// let evaluator = Evaluator {
+///     surrogate: surrogate::fit(&measured, &printed)?.into(),
+///     fingers: FingerSource::Paper,
+///     templates: vec![Template::parse(TASKS[0].text, TASKS[0].file)?],
+///     robot: Robot::parse(ROBOTS[0].text, ROBOTS[0].file)?,
+///     engine: EngineKind::Direct,
+/// };
+/// let design = Design::infill(20.0, 10.0);
+/// let stiffness = evaluator.predict(&design)?;
+/// let specimen = evaluator.specimen(&evaluator.templates[0], &design, stiffness)?;
+/// assert!(specimen.finger.assembly > 10.0 * specimen.finger.compliance);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Evaluator {
     /// Predicts a finger's stiffness from its infill.
     pub surrogate: Arc<Model>,

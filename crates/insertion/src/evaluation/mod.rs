@@ -1,4 +1,4 @@
-//! What a trial, a window search and an evaluation report.
+//! Results of window searches and evaluations.
 
 pub mod evaluator;
 mod leaving;
@@ -27,6 +27,14 @@ pub const OFFSET_STEP_MM: f64 = 0.1;
 /// Invariant of a window with `nominal == Inserted`: `negative_steps <= 0 <=
 /// positive_steps`, and both were found to insert. By the step-by-step walk every grid
 /// offset between them was; by strides a gap between the offsets tried stays unseen.
+///
+/// ```
+/// use insertion::{evaluation::Window, outcome::Outcome};
+/// let nominal = Outcome::Inserted;
+/// let (end_negative, end_positive) = (Some(Outcome::Diverged), None);
+/// let window = Window { nominal, negative_steps: -33, positive_steps: 14, end_negative, end_positive };
+/// assert_eq!(window.range_mm(), 4.7);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Window {
     /// Outcome at the nominal start; anything but inserted makes the range 0.
@@ -151,16 +159,20 @@ fn normal_quantile(probability: f64) -> f64 {
 }
 
 /// Ranges of one design under sampled errors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RobustRange {
     /// Range under each sample, mm; a sample whose nominal start diverged has none.
+    #[serde(rename = "robust_ranges_mm")]
     pub ranges_mm: Vec<f64>,
     /// Samples whose nominal start diverged.
+    #[serde(rename = "robust_diverged")]
     pub diverged: u32,
-    /// The statistic the settings ask for, mm; `None` with fewer than two ranges.
-    pub value_mm: Option<f64>,
-    /// Trials run for all windows.
+    /// Trials of all windows.
+    #[serde(rename = "robust_trials")]
     pub trials: u32,
+    /// The statistic the settings ask for, mm; `None` with fewer than two ranges.
+    #[serde(skip)]
+    pub value_mm: Option<f64>,
 }
 
 impl RobustRange {

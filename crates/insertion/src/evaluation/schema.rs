@@ -65,9 +65,8 @@ struct RobustRow {
     robust_mean_mm: Option<f64>,
     robust_sd_mm: Option<f64>,
     robust_windows: usize,
-    robust_ranges_mm: Vec<f64>,
-    robust_diverged: u32,
-    robust_trials: u32,
+    #[serde(flatten)]
+    ranges: RobustRange,
 }
 
 /// JSON has no NaN: it is written as null.
@@ -162,7 +161,9 @@ impl TryFrom<EvaluationRow> for Evaluation {
             end_shares: row.end_shares,
             taught: row.taught_start_mm.map(steps),
             success: row.success.map(|row| row.counts),
-            robust: row.robust.map(RobustRange::from),
+            robust: row
+                .robust
+                .map(|row| RobustRange { value_mm: row.robust_range_mm, ..row.ranges }),
         })
     }
 }
@@ -182,20 +183,7 @@ impl From<RobustRange> for RobustRow {
             robust_mean_mm: finite(robust.mean_mm()),
             robust_sd_mm: finite(robust.sd_mm()),
             robust_windows: robust.ranges_mm.len(),
-            robust_diverged: robust.diverged,
-            robust_trials: robust.trials,
-            robust_ranges_mm: robust.ranges_mm,
-        }
-    }
-}
-
-impl From<RobustRow> for RobustRange {
-    fn from(row: RobustRow) -> Self {
-        RobustRange {
-            ranges_mm: row.robust_ranges_mm,
-            diverged: row.robust_diverged,
-            value_mm: row.robust_range_mm,
-            trials: row.robust_trials,
+            ranges: robust,
         }
     }
 }
@@ -205,24 +193,21 @@ mod tests {
     use super::*;
 
     fn evaluation() -> Evaluation {
+        let window = Window {
+            nominal: Outcome::Inserted,
+            negative_steps: -33,
+            positive_steps: 14,
+            end_negative: Some(Outcome::Diverged),
+            end_positive: Some(Outcome::Failed(FailureClass::PlugMissed)),
+        };
         Evaluation {
-            window: Window {
-                nominal: Outcome::Inserted,
-                negative_steps: -33,
-                positive_steps: 14,
-                end_negative: Some(Outcome::Diverged),
-                end_positive: Some(Outcome::Failed(FailureClass::PlugMissed)),
-            },
             failure_counts: [0, 1, 0, 0],
             diverged: 1,
             trials: 20,
             peak_force_n: 0.1 + 0.2,
             slip_mm: 0.3,
             simulated_s: 12.5,
-            end_shares: [0.25, 1.0 / 3.0],
-            taught: None,
-            success: None,
-            robust: None,
+            ..Evaluation::of(window, [0.25, 1.0 / 3.0])
         }
     }
 

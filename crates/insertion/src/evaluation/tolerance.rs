@@ -124,7 +124,7 @@ pub fn offset(step: OffsetStep) -> f64 {
 
 impl Evaluation {
     /// A window without the trials by which it was found.
-    fn of(window: Window, end_shares: [f64; 2]) -> Self {
+    pub(super) fn of(window: Window, end_shares: [f64; 2]) -> Self {
         Evaluation {
             window,
             failure_counts: [0; 4],

@@ -38,9 +38,8 @@ pub struct Finger {
     pub coupling: Option<Coupling>,
 }
 
-/// Rotational spring about x, N m/rad: the upper end of the range in the paper's
-/// Table "Simulation Inputs" (0.5 .. 2), of which the paper itself used 1; why is
-/// in `docs/notes/calibration.md`.
+/// Rotational spring about x, N m/rad: the upper end of the range in the paper's Table "Simulation
+/// Inputs" (0.5 .. 2), of which the paper itself used 1; why is in `docs/notes/calibration.md`.
 const TILTING: f64 = 2.0;
 
 impl Finger {
@@ -121,19 +120,11 @@ impl Finger {
     pub fn springs(&self) -> [Spring; 6] {
         let translation = |k: f64| Spring::new(k, self.damping);
         let rotation = |k: f64| Spring::new(k, self.rotational_damping);
-        let [rx, ry, rz] = self.rotation;
-        [
-            translation(self.depth),
-            translation(self.compliance),
-            translation(self.assembly),
-            rotation(rx),
-            rotation(ry),
-            rotation(rz),
-        ]
+        let [x, y, z] = [self.depth, self.compliance, self.assembly].map(translation);
+        let [rx, ry, rz] = self.rotation.map(rotation);
+        [x, y, z, rx, ry, rz]
     }
-}
 
-impl Finger {
     /// Place of the RCC in the finger frame, m; `side` as of [`Pad::geoms`].
     pub fn centre(&self, side: f64) -> Point3<f64> {
         Point3::new(0.0, -side * self.ahead, -self.rcc)

@@ -83,6 +83,9 @@ pub enum Uncut {
 }
 
 /// The solid that the cuts leave of a box.
+///
+/// # Errors
+/// If the cuts take more than a face has, or leave too thin a hull.
 pub fn cut(min: &Vector3<f64>, max: &Vector3<f64>, edges: &[(Edge, Cut)]) -> Result<Solid, Uncut> {
     if !fit(&(max - min), edges) {
         return Err(Uncut::Room);

@@ -18,6 +18,13 @@ use crate::task::finger::FingerModel;
 /// A checked task, in SI units, in the task frame: origin at the centre of the
 /// socket's opening on its top surface, z out of the socket, y the direction
 /// in which the jaws close and the start is shifted.
+///
+/// ```
+/// use input::shipped::TASKS;
+/// let task = insertion::task::Task::parse(TASKS[0].text, TASKS[0].file)?;
+/// assert_eq!((task.name.as_str(), task.strategy.phases.len()), ("ket8", 6));
+/// # Ok::<(), input::InputError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Task {
     /// Name in study folders.

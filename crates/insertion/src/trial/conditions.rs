@@ -5,6 +5,7 @@ use crate::finger::{Pad, ROOF_GAP};
 use crate::task::geometry::other_axes;
 use crate::task::{PadTorsion, Part, Solid, Task};
 use contact::scene::Pose;
+use nalgebra::Vector3;
 
 /// Deviations of the world from the task file; SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,20 +89,14 @@ fn side(part: &Part, axis: usize, middle: f64) -> f64 {
 impl Solid {
     /// Moves the solid by x and y, m.
     fn shift(&mut self, [x, y]: [f64; 2]) {
+        let moved = |corner: &mut Vector3<f64>| {
+            corner.x += x;
+            corner.y += y;
+        };
         match self {
-            Solid::Box { min, max } => {
-                for corner in [min, max] {
-                    corner.x += x;
-                    corner.y += y;
-                }
-            }
+            Solid::Box { min, max } => [min, max].into_iter().for_each(moved),
             Solid::Cylinder { centre, .. } => *centre = [centre[0] + x, centre[1] + y],
-            Solid::Hull { points } => {
-                for corner in points {
-                    corner.x += x;
-                    corner.y += y;
-                }
-            }
+            Solid::Hull { points } => points.iter_mut().map(|p| &mut p.coords).for_each(moved),
             Solid::Prism { axis, outline, span } => {
                 let by = [x, y, 0.0];
                 let (first, second) = other_axes(*axis);

@@ -19,13 +19,11 @@ pub mod motion;
 pub mod picture;
 pub mod record;
 pub mod run;
-mod trace;
 mod watch;
 
 pub use attempt::driven::{Driven, State};
 pub use conditions::Conditions;
-pub use record::Recording;
-pub use trace::Sample;
+pub use record::{Recording, Sample};
 
 /// State at the end of one phase of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -2,10 +2,8 @@
 
 use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
-use super::record::{Frame, Recorder};
-use super::trace::{Sample, Trace};
+use super::record::{Frame, Recorder, Sample, Trace};
 use super::{Grasp, Grasped, Recording, Rig, Trial, cell};
-use crate::arm::ArmError;
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::robot::{Mounted, Robot};
@@ -26,24 +24,14 @@ pub struct EngineRig {
 /// Error of task, robot and engine that do not go together.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
-    /// The robot cannot do the task.
-    #[error("the robot `{robot}` on the task `{task}`: {error}")]
+    /// The robot cannot do the task, or not in time.
+    #[error("the robot `{robot}` on the task `{task}`: {problem}")]
     Robot {
         /// Name of the robot.
         robot: String,
         /// Name of the task.
         task: String,
-        /// Cause in its arm.
-        error: ArmError,
-    },
-    /// A trial would not end in time.
-    #[error("the robot `{robot}` on the task `{task}`: {problem}")]
-    TooLong {
-        /// Name of the robot.
-        robot: String,
-        /// Name of the task.
-        task: String,
-        /// Which phase takes how long.
+        /// What its arm lacks, or which phase takes how long.
         problem: String,
     },
     /// The engine cannot simulate the two.
@@ -54,6 +42,9 @@ pub enum RigError {
 impl EngineRig {
     /// Puts the robot in place; for fingers as in the paper, whose springs are not coupled
     /// unless the task says so.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
     pub fn new(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<Self, RigError> {
         // What a scene needs does not depend on how stiff its fingers are.
         let any = Finger::new(N_PER_MM, N_PER_MM).shaped(&task.finger, 0.0);
@@ -61,22 +52,28 @@ impl EngineRig {
     }
 
     /// Puts the robot in place for such fingers.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
     pub fn with(
         task: Task,
         robot: &Robot,
         finger: &Finger,
         engine: Box<dyn Engine>,
     ) -> Result<Self, RigError> {
-        let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(|error| {
-            RigError::Robot { robot: robot.name.clone(), task: task.name.clone(), error }
-        })?;
+        let refused = |problem| RigError::Robot {
+            robot: robot.name.clone(),
+            task: task.name.clone(),
+            problem,
+        };
+        let mounted = robot.mount(task.turn, task.strategy.tilt);
+        let mounted = mounted.map_err(|error| refused(error.to_string()))?;
         let lead = |phase: &Phase| match Vector3::from(phase.displacement).try_normalize(0.0) {
             Some(along) if phase.stage == Stage::Assembly => mounted.lead(&along).abs(),
             _ => 0.0,
         };
         if let Some(problem) = task.strategy.too_long(lead, mounted.settling()) {
-            let (robot, task) = (robot.name.clone(), task.name.clone());
-            return Err(RigError::TooLong { robot, task, problem });
+            return Err(refused(problem));
         }
         engine.supports(&cell::build(&task, &mounted, finger).scene)?;
         Ok(EngineRig { task, robot: Arc::new(mounted), engine })

@@ -146,19 +146,7 @@ pub(super) mod tests {
             end_negative,
             end_positive: Some(end_positive),
         };
-        Evaluation {
-            window,
-            failure_counts: [0; 4],
-            diverged: 0,
-            trials: 49,
-            peak_force_n: 5.0,
-            slip_mm: 0.1,
-            simulated_s: 49.0,
-            end_shares: [0.0; 2],
-            taught: None,
-            success: None,
-            robust: None,
-        }
+        Evaluation { peak_force_n: 5.0, slip_mm: 0.1, ..Evaluation::of(window, [0.0; 2]) }
     }
 
     #[test]

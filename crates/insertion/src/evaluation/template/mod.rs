@@ -1,7 +1,6 @@
 //! Co-design: what a design may set beside the infill.
 //!
-//! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path
-//! to one number:
+//! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path to one number:
 //!
 //! - `task.`, then the path in the task file as of [`NumberFile`]
 //!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);

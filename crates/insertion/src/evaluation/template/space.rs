@@ -23,6 +23,9 @@ impl Template {
     /// The checks of a task bound single numbers and differences of two, so a space whose
     /// corners pass has no impossible design; moves may not be zero, so the level nearest to
     /// zero counts as extreme. With more than 4096 combinations only one value at a time is tried.
+    ///
+    /// # Errors
+    /// The first key or combination that is impossible.
     pub fn check(&self, space: &Space, file: &str, fits: &Fits<'_>) -> Result<(), InputError> {
         let check = Check { file };
         let has = |key: &&str| space.parameters().iter().any(|parameter| parameter.key == *key);

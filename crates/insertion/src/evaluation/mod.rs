@@ -13,6 +13,7 @@ pub mod tolerance;
 pub mod uncertainty;
 
 use crate::outcome::Outcome;
+use crate::surrogate::null_is_nan;
 use serde::{Deserialize, Serialize};
 
 /// A shift of the start position along y, as a number of 0.1 mm grid steps.
@@ -35,7 +36,8 @@ pub const OFFSET_STEP_MM: f64 = 0.1;
 /// let window = Window { nominal, negative_steps: -33, positive_steps: 14, end_negative, end_positive };
 /// assert_eq!(window.range_mm(), 4.7);
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "schema::WindowRow", try_from = "schema::WindowRow")]
 pub struct Window {
     /// Outcome at the nominal start; anything but inserted makes the range 0.
     pub nominal: Outcome,
@@ -78,31 +80,39 @@ pub fn grid_mm(steps: OffsetStep) -> f64 {
 /// Everything measured for one design on one task. The counts and times are those
 /// of the window search. Written in the one form of `schema.rs`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(into = "schema::EvaluationRow", try_from = "schema::EvaluationRow")]
 pub struct Evaluation {
     /// Tolerance window around the nominal start.
+    #[serde(flatten)]
     pub window: Window,
     /// Trials that failed with class 1 to 4, over all trials run.
     pub failure_counts: [u32; 4],
     /// Trials that diverged numerically.
     pub diverged: u32,
-    /// Trials of the window search.
-    pub trials: u32,
     /// Largest contact force between plug and socket over the inserted trials, N.
+    #[serde(deserialize_with = "null_is_nan")]
     pub peak_force_n: f64,
     /// Largest slip of the part in the grasp over the inserted trials, mm.
+    #[serde(deserialize_with = "null_is_nan")]
     pub slip_mm: f64,
+    /// Trials of the window search.
+    pub trials: u32,
     /// Simulated time over all trials, s.
+    #[serde(deserialize_with = "null_is_nan")]
     pub simulated_s: f64,
     /// Where the outcome turns within the grid step beyond each end (negative, positive), as
     /// a share of it, 0 to 1: interpolated over [`Trial::margin`](crate::trial::Trial::margin).
     /// If the nominal start fails, its margin, -1 to 0.
+    #[serde(serialize_with = "schema::finite")]
     pub end_shares: [f64; 2],
     /// Shift of a taught start from that of the task file, in grid steps.
+    #[serde(rename = "taught_start_mm", default, skip_serializing_if = "Option::is_none")]
+    #[serde(serialize_with = "schema::taught_mm", deserialize_with = "schema::taught_steps")]
     pub taught: Option<OffsetStep>,
     /// Success rate under sampled errors, if measured.
+    #[serde(flatten, serialize_with = "schema::with_rate")]
     pub success: Option<SuccessRate>,
     /// Range under sampled errors, if measured.
+    #[serde(flatten, serialize_with = "schema::with_spread")]
     pub robust: Option<RobustRange>,
 }
 
@@ -171,7 +181,7 @@ pub struct RobustRange {
     #[serde(rename = "robust_trials")]
     pub trials: u32,
     /// The statistic the settings ask for, mm; `None` with fewer than two ranges.
-    #[serde(skip)]
+    #[serde(rename = "robust_range_mm", skip_serializing)]
     pub value_mm: Option<f64>,
 }
 

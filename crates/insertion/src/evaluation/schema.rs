@@ -1,196 +1,152 @@
 //! The one form in which an evaluation leaves the program: JSON, journal and tables have
 //! these keys.
 
-use super::{Evaluation, RobustRange, SuccessRate, Window, grid_mm};
+use super::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
 use crate::outcome::{FailureClass, Outcome};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// An [`Evaluation`] as flat keys.
+/// A [`Window`] in mm.
 #[derive(Serialize, Deserialize)]
-pub(super) struct EvaluationRow {
+pub(super) struct WindowRow {
     range_mm: f64,
     negative_mm: f64,
     positive_mm: f64,
-    nominal: OutcomeWord,
-    failure_negative: Option<FailureWord>,
-    failure_positive: Option<FailureWord>,
-    failure_counts: [u32; 4],
-    diverged: u32,
-    #[serde(deserialize_with = "null_is_nan")]
-    peak_force_n: f64,
-    #[serde(deserialize_with = "null_is_nan")]
-    slip_mm: f64,
-    trials: u32,
-    #[serde(deserialize_with = "null_is_nan")]
-    simulated_s: f64,
-    end_shares: [f64; 2],
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    taught_start_mm: Option<f64>,
-    #[serde(flatten)]
-    success: Option<SuccessRow>,
-    #[serde(flatten)]
-    robust: Option<RobustRow>,
-}
-
-/// An outcome without its class.
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum OutcomeWord {
-    Inserted,
-    Failed,
-    Diverged,
+    /// Outcome without its class: that is at either end.
+    nominal: String,
+    failure_negative: Option<End>,
+    failure_positive: Option<End>,
 }
 
 /// Outcome that ended the search at one side: the failure class, 1 to 4, or `diverged`.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
-enum FailureWord {
+enum End {
     Class(FailureClass),
-    Other(OutcomeWord),
+    Other(Outcome),
+}
+
+impl From<Outcome> for End {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Failed(class) => End::Class(class),
+            other => End::Other(other),
+        }
+    }
+}
+
+impl From<End> for Outcome {
+    fn from(end: End) -> Self {
+        match end {
+            End::Class(class) => Outcome::Failed(class),
+            End::Other(outcome) => outcome,
+        }
+    }
+}
+
+impl From<Window> for WindowRow {
+    fn from(window: Window) -> Self {
+        WindowRow {
+            range_mm: window.range_mm(),
+            negative_mm: window.negative_mm(),
+            positive_mm: window.positive_mm(),
+            nominal: window.nominal.word().to_owned(),
+            failure_negative: window.end_negative.map(End::from),
+            failure_positive: window.end_positive.map(End::from),
+        }
+    }
+}
+
+impl TryFrom<WindowRow> for Window {
+    type Error = String;
+
+    fn try_from(row: WindowRow) -> Result<Self, String> {
+        let end_negative = row.failure_negative.map(Outcome::from);
+        let nominal = match &*row.nominal {
+            "inserted" => Outcome::Inserted,
+            "diverged" => Outcome::Diverged,
+            // A window that is empty ends as its nominal start does.
+            "failed" => end_negative.ok_or("a nominal failure without its class")?,
+            other => return Err(format!("`{other}` is not inserted, failed or diverged")),
+        };
+        Ok(Window {
+            nominal,
+            negative_steps: steps(row.negative_mm),
+            positive_steps: steps(row.positive_mm),
+            end_negative,
+            end_positive: row.failure_positive.map(Outcome::from),
+        })
+    }
+}
+
+fn steps(mm: f64) -> OffsetStep {
+    (mm / grid_mm(1)).round() as OffsetStep
+}
+
+pub(super) fn taught_mm<S: Serializer>(taught: &Option<OffsetStep>, to: S) -> Result<S::Ok, S::Error> {
+    taught.map(grid_mm).serialize(to)
+}
+
+pub(super) fn taught_steps<'de, D: Deserializer<'de>>(
+    from: D,
+) -> Result<Option<OffsetStep>, D::Error> {
+    Ok(Option::deserialize(from)?.map(steps))
+}
+
+/// A share that is no number would not be read again.
+pub(super) fn finite<S: Serializer>(shares: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
+    shares.map(|share| if share.is_finite() { share } else { 0.0 }).serialize(to)
 }
 
 /// Success rate with its interval, for readers outside, and the counts they follow from.
-#[derive(Serialize, Deserialize)]
-struct SuccessRow {
+#[derive(Serialize)]
+struct SuccessRow<'a> {
     success_rate: Option<f64>,
     success_low: f64,
     success_high: f64,
     #[serde(flatten)]
-    counts: SuccessRate,
+    counts: &'a SuccessRate,
 }
 
-#[derive(Serialize, Deserialize)]
-struct RobustRow {
+pub(super) fn with_rate<S: Serializer>(
+    success: &Option<SuccessRate>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    let row = success.as_ref().map(|counts| {
+        let [success_low, success_high] = counts.interval();
+        SuccessRow { success_rate: counts.rate(), success_low, success_high, counts }
+    });
+    row.serialize(to)
+}
+
+#[derive(Serialize)]
+struct RobustRow<'a> {
     robust_range_mm: Option<f64>,
     robust_mean_mm: Option<f64>,
     robust_sd_mm: Option<f64>,
     robust_windows: usize,
     #[serde(flatten)]
-    ranges: RobustRange,
+    ranges: &'a RobustRange,
 }
 
-/// JSON has no NaN: it is written as null.
-fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
-}
-
-impl From<Outcome> for OutcomeWord {
-    fn from(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Inserted => OutcomeWord::Inserted,
-            Outcome::Failed(_) => OutcomeWord::Failed,
-            Outcome::Diverged => OutcomeWord::Diverged,
-        }
-    }
-}
-
-impl From<Outcome> for FailureWord {
-    fn from(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Failed(class) => FailureWord::Class(class),
-            other => FailureWord::Other(other.into()),
-        }
-    }
-}
-
-impl FailureWord {
-    fn outcome(&self) -> Result<Outcome, String> {
-        match self {
-            FailureWord::Class(class) => Ok(Outcome::Failed(*class)),
-            FailureWord::Other(OutcomeWord::Inserted) => Ok(Outcome::Inserted),
-            FailureWord::Other(OutcomeWord::Diverged) => Ok(Outcome::Diverged),
-            FailureWord::Other(OutcomeWord::Failed) => Err("a failure without its class".into()),
-        }
-    }
-}
-
-impl From<Evaluation> for EvaluationRow {
-    fn from(evaluation: Evaluation) -> Self {
-        let window = &evaluation.window;
-        EvaluationRow {
-            range_mm: window.range_mm(),
-            negative_mm: window.negative_mm(),
-            positive_mm: window.positive_mm(),
-            nominal: window.nominal.into(),
-            failure_negative: window.end_negative.map(FailureWord::from),
-            failure_positive: window.end_positive.map(FailureWord::from),
-            failure_counts: evaluation.failure_counts,
-            diverged: evaluation.diverged,
-            peak_force_n: evaluation.peak_force_n,
-            slip_mm: evaluation.slip_mm,
-            trials: evaluation.trials,
-            simulated_s: evaluation.simulated_s,
-            // A share that is no number would not be read again.
-            end_shares: evaluation
-                .end_shares
-                .map(|share| if share.is_finite() { share } else { 0.0 }),
-            taught_start_mm: evaluation.taught.map(grid_mm),
-            success: evaluation.success.map(SuccessRow::from),
-            robust: evaluation.robust.map(RobustRow::from),
-        }
-    }
-}
-
-impl TryFrom<EvaluationRow> for Evaluation {
-    type Error = String;
-
-    fn try_from(row: EvaluationRow) -> Result<Self, String> {
-        let end = |failure: &Option<FailureWord>| failure.as_ref().map(FailureWord::outcome);
-        let end_negative = end(&row.failure_negative).transpose()?;
-        let nominal = match row.nominal {
-            OutcomeWord::Inserted => Outcome::Inserted,
-            OutcomeWord::Diverged => Outcome::Diverged,
-            // A window that is empty ends as its nominal start does.
-            OutcomeWord::Failed => end_negative.ok_or("a nominal failure without its class")?,
-        };
-        let steps = |mm: f64| (mm / grid_mm(1)).round() as i32;
-        Ok(Evaluation {
-            window: Window {
-                nominal,
-                negative_steps: steps(row.negative_mm),
-                positive_steps: steps(row.positive_mm),
-                end_negative,
-                end_positive: end(&row.failure_positive).transpose()?,
-            },
-            failure_counts: row.failure_counts,
-            diverged: row.diverged,
-            trials: row.trials,
-            peak_force_n: row.peak_force_n,
-            slip_mm: row.slip_mm,
-            simulated_s: row.simulated_s,
-            end_shares: row.end_shares,
-            taught: row.taught_start_mm.map(steps),
-            success: row.success.map(|row| row.counts),
-            robust: row
-                .robust
-                .map(|row| RobustRange { value_mm: row.robust_range_mm, ..row.ranges }),
-        })
-    }
-}
-
-impl From<SuccessRate> for SuccessRow {
-    fn from(counts: SuccessRate) -> Self {
-        let [success_low, success_high] = counts.interval();
-        SuccessRow { success_rate: counts.rate(), success_low, success_high, counts }
-    }
-}
-
-impl From<RobustRange> for RobustRow {
-    fn from(robust: RobustRange) -> Self {
-        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
-        RobustRow {
-            robust_range_mm: robust.value_mm,
-            robust_mean_mm: finite(robust.mean_mm()),
-            robust_sd_mm: finite(robust.sd_mm()),
-            robust_windows: robust.ranges_mm.len(),
-            ranges: robust,
-        }
-    }
+pub(super) fn with_spread<S: Serializer>(
+    robust: &Option<RobustRange>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+    let row = robust.as_ref().map(|ranges| RobustRow {
+        robust_range_mm: ranges.value_mm,
+        robust_mean_mm: finite(ranges.mean_mm()),
+        robust_sd_mm: finite(ranges.sd_mm()),
+        robust_windows: ranges.ranges_mm.len(),
+        ranges,
+    });
+    row.serialize(to)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluation::Evaluation;
 
     fn evaluation() -> Evaluation {
         let window = Window {

@@ -37,6 +37,7 @@ pub use computed::Computed;
 pub use kind::ModelKind;
 pub use loo::Loo;
 pub use model::{ENOUGH, FitError, Model, fit};
+pub(crate) use row::null_is_nan;
 
 /// A value with its standard deviation, both in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -69,11 +69,11 @@ impl Emulator {
         count: usize,
         seed: u64,
     ) -> Result<Self, EmulatorError> {
-        let dimension = space.parameters().len() + simulation.parameters().len();
+        let dimension = space.parameters.len() + simulation.parameters().len();
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
         let run = |at: Vec<f64>| {
-            let (design, shares) = at.split_at(space.parameters().len());
+            let (design, shares) = at.split_at(space.parameters.len());
             let evaluation = simulation.window(&design_at(space, design), Some(shares))?;
             let window = &evaluation.window;
             let class = |end: Option<insertion::outcome::Outcome>| {
@@ -157,7 +157,7 @@ fn design_at(space: &Space, shares: &[f64]) -> Design {
     let value = |(parameter, share): (&insertion::space::Parameter, &f64)| {
         (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
     };
-    Design(space.parameters().iter().zip(shares).map(value).collect())
+    Design(space.parameters.iter().zip(shares).map(value).collect())
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ impl<'a> Simulation<'a> {
     ) -> Self {
         let soft = matches!(evaluator.robot.drive, Drive::Servo(_));
         let has = |parameter: &&Parameter| match &parameter.sets {
-            Target::Task(path) => template.number(path).is_some(),
+            Target::Task(path) => template.numbers.number(path).is_some(),
             Target::Flange => soft,
             Target::Clearance
             | Target::Edges
@@ -119,7 +119,7 @@ impl<'a> Simulation<'a> {
         let mut set = design.clone();
         for (parameter, value) in values() {
             if let Target::Task(path) = &parameter.sets
-                && let Some(own) = design.get(path).or_else(|| self.template.number(path))
+                && let Some(own) = design.get(path).or_else(|| self.template.numbers.number(path))
             {
                 set.0.insert(path.clone(), parameter.applied(own, value));
             }

@@ -84,7 +84,7 @@ impl Subject {
         experiments: &[Experiment],
         more: &[Design],
     ) -> Result<Self, SubjectError> {
-        let task = template.task().name.clone();
+        let task = template.task.name.clone();
         let mut designs = fingers(space);
         let of_space = designs.len();
         let mut numbered = |design: Design| match designs.iter().position(|known| *known == design)
@@ -220,15 +220,15 @@ pub fn whole(
     template: &Template,
     line: &Experiment,
 ) -> Result<Design, SubjectError> {
-    let name = || space.name().to_owned();
-    let known = |key: &String| space.parameters().iter().any(|parameter| parameter.key == *key);
+    let name = || space.name.clone();
+    let known = |key: &String| space.parameters.iter().any(|parameter| parameter.key == *key);
     if let Some(key) = line.design.0.keys().find(|key| !known(key)) {
         return Err(SubjectError::NotInSpace { line: line.line, key: key.clone(), space: name() });
     }
     let mut design = Design::default();
-    for Parameter { key, low, high, .. } in space.parameters() {
-        let value =
-            line.design.get(key).or_else(|| template.number(key)).unwrap_or((low + high) / 2.0);
+    for Parameter { key, low, high, .. } in &space.parameters {
+        let value = line.design.get(key).or_else(|| template.numbers.number(key));
+        let value = value.unwrap_or((low + high) / 2.0);
         if !(*low..=*high).contains(&value) {
             let (line, key, low, high) = (line.line, key.clone(), *low, *high);
             return Err(SubjectError::Outside { line, key, value, low, high, space: name() });
@@ -245,7 +245,7 @@ fn shares(space: &Space, design: &Design) -> Vec<f64> {
         let width = parameter.high - parameter.low;
         if width > 0.0 { (value - parameter.low) / width } else { 0.5 }
     };
-    space.parameters().iter().map(share).collect()
+    space.parameters.iter().map(share).collect()
 }
 
 /// Less the mean, over the standard deviation, of the first `reference` rows.

@@ -46,11 +46,11 @@ impl Factors {
     /// If the space has no infill density or direction.
     pub fn new(space: &Space, errors: Option<&Errors>) -> Result<Self, String> {
         for key in [DENSITY_KEY, DIRECTION_KEY] {
-            if !space.parameters().iter().any(|parameter| parameter.key == key) {
-                return Err(format!("the space `{}` has no {key}", space.name()));
+            if !space.parameters.iter().any(|parameter| parameter.key == key) {
+                return Err(format!("the space `{}` has no {key}", space.name));
             }
         }
-        let of_space = space.parameters().iter().map(|parameter| Factor {
+        let of_space = space.parameters.iter().map(|parameter| Factor {
             key: parameter.key.clone(),
             low: parameter.low,
             high: parameter.high,

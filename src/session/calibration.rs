@@ -171,7 +171,7 @@ impl<'a> Ground<'a> {
             _ => Failure::usage(format!("{measurements}: {error}")),
         })?;
         let of_task = |template: &'a Template| {
-            (template.task().name.clone(), self.simulation(template).parameters().to_vec())
+            (template.task.name.clone(), self.simulation(template).parameters().to_vec())
         };
         let of_tasks: Vec<_> = templates.iter().map(of_task).collect();
         Ok((subjects, Layout::new(&of_tasks)))
@@ -185,7 +185,7 @@ impl<'a> Ground<'a> {
         watch: &mut Watch<'_>,
     ) -> Result<Subject, SubjectError> {
         let (evaluator, space) = (&self.setup.evaluator, &self.setup.space);
-        let (task, count) = (&template.task().name, self.simulations);
+        let (task, count) = (&template.task.name, self.simulations);
         if evaluator.engine.simulates() {
             watch(Event::Simulating { task, count });
         }

@@ -32,7 +32,7 @@ impl Fingers {
     /// The finger whose stiffness was measured: of the file; without one, the shipped finger.
     pub fn measured_finger(&self) -> Result<PrintedFinger, Failure> {
         match &self.file {
-            Some(file) => Ok(file.finger().clone()),
+            Some(file) => Ok(file.finger.clone()),
             None => printed_finger(DEFAULT_FINGER),
         }
     }

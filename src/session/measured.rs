@@ -56,7 +56,7 @@ pub fn check(
     template: &Template,
     space: &Space,
 ) -> Result<(), Failure> {
-    let task = &template.task().name;
+    let task = &template.task.name;
     let own = || lines.iter().filter(|line| line.task == *task);
     if !own().any(|line| line.extent() != Extent::Unknown) {
         return Err(Failure::usage(format!(

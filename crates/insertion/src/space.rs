@@ -121,10 +121,13 @@ impl Parameter {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "RawSpace")]
 pub struct Space {
-    name: String,
-    description: String,
+    /// Name in study folders.
+    pub name: String,
+    /// One-line description for lists.
+    pub description: String,
+    /// The parameters in file order: the order of the unit cube's axes.
     #[serde(rename = "parameter")]
-    parameters: Vec<Parameter>,
+    pub parameters: Vec<Parameter>,
 }
 
 /// A design: values by key, in the units the keys carry.
@@ -266,21 +269,6 @@ impl Space {
         Ok(Space { name: raw.name, description: raw.description, parameters: raw.parameter })
     }
 
-    /// Name, as used in study folders.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// One-line description for lists.
-    pub fn description(&self) -> &str {
-        &self.description
-    }
-
-    /// The parameters in file order: the order of the unit cube's axes.
-    pub fn parameters(&self) -> &[Parameter] {
-        &self.parameters
-    }
-
     /// Levels per axis: what an optimizer may know of the space.
     pub fn levels(&self) -> Vec<u32> {
         self.parameters.iter().map(Parameter::levels).collect()
@@ -313,7 +301,7 @@ source = "paper"
         let space = Space::parse(GOOD, "s.toml").unwrap();
         assert_eq!(space.levels(), vec![21]);
         assert_eq!(space.design(&GridPoint(vec![20])).get(DENSITY_KEY), Some(30.0));
-        let parameter = &space.parameters()[0];
+        let parameter = &space.parameters[0];
         assert_eq!([0.0, 12.4, 30.0].map(|value| parameter.nearest(value)), [0, 2, 20]);
     }
 
@@ -322,7 +310,7 @@ source = "paper"
         let text = GOOD.replace("low = 10.0", "low = 0.5").replace("high = 30.0", "high = 4.0");
         let text = text.replace("step = 1.0", "step = 1.189207115\nscale = 'log'");
         let space = Space::parse(&text, "s.toml").unwrap();
-        let parameter = &space.parameters()[0];
+        let parameter = &space.parameters[0];
         assert_eq!(parameter.levels(), 13);
         let values = [0, 1, 4, 8, 12].map(|level| parameter.value(level));
         assert_eq!(values, [0.5, 0.5946, 1.0, 2.0, 4.0]);

@@ -1,12 +1,7 @@
 //! Measured fingers: the CSV file and its checks.
 
+use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
-
-/// The measured designs shipped with the program (`data/measured_stiffness.csv`).
-pub const SHIPPED_CSV: &str = include_str!("../../../data/measured_stiffness.csv");
-
-/// Name of the shipped file, for messages.
-pub const SHIPPED_FILE: &str = "data/measured_stiffness.csv";
 
 /// A direction in which a finger yields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -171,7 +166,7 @@ const OTHER_UNIT: f64 = 100.0;
 /// Asks about columns that look as if they were in another unit: nobody prints a finger a hundred
 /// times as stiff or as soft as the measured ones.
 fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
-    let shipped = rows(SHIPPED_CSV, SHIPPED_FILE)?;
+    let shipped = rows(STIFFNESS[0].text, STIFFNESS[0].file)?;
     for (axis, column) in [(Axis::Assembly, HEADER[3]), (Axis::Compliance, HEADER[4])] {
         let [own, usual] = [&found, &shipped].map(|all| median(all, axis) / N_PER_MM);
         let question = match own / usual {

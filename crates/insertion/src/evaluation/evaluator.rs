@@ -120,7 +120,7 @@ impl Evaluator {
         match &self.fingers {
             FingerSource::Paper => Ok(plain),
             FingerSource::Computed(fingers) => {
-                let measured = self.surrogate.measurements();
+                let measured = &self.surrogate.measurements;
                 Ok(leaving::predict(fingers, measured, design, plain)?)
             }
         }

@@ -82,7 +82,10 @@ fn steps(mm: f64) -> OffsetStep {
     (mm / grid_mm(1)).round() as OffsetStep
 }
 
-pub(super) fn taught_mm<S: Serializer>(taught: &Option<OffsetStep>, to: S) -> Result<S::Ok, S::Error> {
+pub(super) fn taught_mm<S: Serializer>(
+    taught: &Option<OffsetStep>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
     taught.map(grid_mm).serialize(to)
 }
 

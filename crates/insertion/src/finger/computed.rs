@@ -39,14 +39,6 @@ impl Touching {
             Touching::PadAndRoof => &computed.pad_and_roof,
         }
     }
-
-    /// The computed stiffness in the finger's plane, to be corrected.
-    pub(super) fn of_mut(self, computed: &mut FingerStiffness) -> &mut PlanarStiffness {
-        match self {
-            Touching::Pad => &mut computed.pad,
-            Touching::PadAndRoof => &mut computed.pad_and_roof,
-        }
-    }
 }
 
 /// Values of a task file or a design in place of the computed ones.
@@ -84,8 +76,10 @@ impl Pad {
 /// A printed finger in a gripper, with what was computed of it.
 pub(super) struct Computed<'a> {
     pub printed: &'a PrintedFinger,
-    pub stiffness: &'a FingerStiffness,
-    pub touching: Touching,
+    /// Stiffness in its plane.
+    pub plane: PlanarStiffness,
+    /// Stiffness in x, ry and rz at the pad's middle.
+    pub across: Matrix3<f64>,
     /// Height of the part's shoulder above the TCP, m.
     pub shoulder: f64,
 }
@@ -96,7 +90,7 @@ impl Computed<'_> {
     /// # Errors
     /// If turning about the centre alone gives way by more than that.
     pub fn finger(&self, at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
-        let plane = self.touching.of(self.stiffness);
+        let plane = self.plane;
         let pad = Pad::of(&self.printed.outline);
         let middle = pad.middle(self.shoulder);
         let rcc = given.rcc.unwrap_or(plane.centre_below_pad() - middle);
@@ -105,11 +99,23 @@ impl Computed<'_> {
         // Compliances at the centre, m/N.
         let at_centre = |name, stiffness: f64, lever: f64| {
             let centre = 1.0 / stiffness - lever * lever / tilting;
-            if centre > 0.0 { Ok(centre) } else { self.refuse(name, stiffness, lever, tilting) }
+            if centre > 0.0 {
+                return Ok(centre);
+            }
+            Err(FingerError::Springs {
+                file: self.printed.file.clone(),
+                axis: name,
+                at_pad: stiffness / N_PER_MM,
+                lever: lever / MM,
+                tilting,
+                turning: tilting / (lever * lever) / N_PER_MM,
+            })
         };
         let in_y = at_centre("compliance", at_pad.compliance, below)?;
         let in_z = at_centre("assembly", at_pad.assembly, ahead)?;
-        let across = across_at_centre(self.stiffness, below, ahead);
+        // x at the pad = x at the centre + ry below + rz ahead.
+        let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+        let across = to_pad.transpose() * self.across * to_pad;
         let matrix = assembled([1.0 / in_y, 1.0 / in_z], tilting, across);
         Ok(Finger {
             compliance: matrix[(1, 1)],
@@ -121,23 +127,6 @@ impl Computed<'_> {
             pad,
             coupling: Coupling::of(&matrix),
             ..Finger::new(at_pad.compliance, at_pad.assembly)
-        })
-    }
-
-    fn refuse(
-        &self,
-        axis: &'static str,
-        stiffness: f64,
-        lever: f64,
-        tilting: f64,
-    ) -> Result<f64, FingerError> {
-        Err(FingerError::Springs {
-            file: self.printed.file.clone(),
-            axis,
-            at_pad: stiffness / N_PER_MM,
-            lever: lever / MM,
-            tilting,
-            turning: tilting / (lever * lever) / N_PER_MM,
         })
     }
 }
@@ -157,18 +146,9 @@ fn assembled([in_y, in_z]: [f64; 2], tilting: f64, across: Matrix3<f64>) -> Matr
     matrix
 }
 
-/// Stiffness in x, ry and rz at a point below and in front of the pad's middle, m.
-fn across_at_centre(computed: &FingerStiffness, below: f64, ahead: f64) -> Matrix3<f64> {
-    // x at the pad = x at the centre + ry below + rz ahead.
-    let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-    to_pad.transpose() * computed.cross.matrix * to_pad
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use finray::mechanics::FingerStiffness;
-    use finray::stiffness::CrossStiffness;
     use input::shipped::FINGERS;
     use nalgebra::Vector3;
 
@@ -179,20 +159,17 @@ mod tests {
     }
 
     /// Springs that sit so far below and in front of the pad, and a plate.
-    fn stiffness(below: f64, ahead: f64, tilting: f64) -> FingerStiffness {
+    fn stiffness(below: f64, ahead: f64, tilting: f64) -> (PlanarStiffness, Matrix3<f64>) {
         let to_centre = Matrix3::new(1.0, 0.0, below, 0.0, 1.0, ahead, 0.0, 0.0, 1.0);
         let springs = Matrix3::from_diagonal(&Vector3::new(9e3, 9e4, tilting));
         let plane = PlanarStiffness::new(to_centre.transpose() * springs * to_centre).unwrap();
         let across = Matrix3::new(6e4, -600.0, -200.0, -600.0, 9.0, 1.0, -200.0, 1.0, 5.0);
-        let cross = CrossStiffness::new(across).unwrap();
-        FingerStiffness { pad: plane, pad_and_roof: plane, cross, area: 1e-4, mass: 5e-3 }
+        (plane, across)
     }
 
     fn finger(at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
-        let (printed, stiffness) = (printed(), stiffness(8.0 * MM, -2.0 * MM, 2.5));
-        let (touching, shoulder) = (Touching::Pad, SHOULDER);
-        Computed { printed: &printed, stiffness: &stiffness, touching, shoulder }
-            .finger(at_pad, given)
+        let (plane, across) = stiffness(8.0 * MM, -2.0 * MM, 2.5);
+        Computed { printed: &printed(), plane, across, shoulder: SHOULDER }.finger(at_pad, given)
     }
 
     /// Compliance of a finger at the middle of its pad, the finger at -y.
@@ -218,7 +195,7 @@ mod tests {
         // The pad's middle lies 0.95 mm below the TCP of the keys.
         assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > at_pad.compliance);
         assert_eq!(finger.pad.height, 9.0 * MM);
-        let plate = stiffness(0.0, 0.0, 1.0).cross.matrix.try_inverse().unwrap();
+        let plate = stiffness(0.0, 0.0, 1.0).1.try_inverse().unwrap();
         for (i, row) in ACROSS.into_iter().enumerate() {
             for (j, column) in ACROSS.into_iter().enumerate() {
                 let error = compliance[(row, column)] - plate[(i, j)];

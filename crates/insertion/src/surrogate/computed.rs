@@ -22,11 +22,6 @@ impl Computed {
         Computed { finger: finger.clone(), known: Mutex::default() }
     }
 
-    /// The file.
-    pub fn finger(&self) -> &PrintedFinger {
-        &self.finger
-    }
-
     /// A finger's stiffness at every phase of its ribs.
     ///
     /// # Errors

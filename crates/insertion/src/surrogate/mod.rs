@@ -33,7 +33,7 @@ use linfa::prelude::Dataset;
 use ndarray::{Array1, Array2, Ix1};
 use rayon::prelude::*;
 
-pub use computed::Computed;
+use computed::Computed;
 pub use kind::ModelKind;
 pub use loo::Loo;
 pub use model::{ENOUGH, FitError, Model, fit};

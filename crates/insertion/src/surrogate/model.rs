@@ -17,15 +17,18 @@ const SEVERAL: usize = 4;
 /// Stiffness of a finger as a function of its infill, fitted to measurements.
 #[derive(Debug)]
 pub struct Model {
-    measurements: Vec<Measurement>,
+    /// The measurements it was fitted to.
+    pub measurements: Vec<Measurement>,
     hull: Hull,
     assembly: Chosen,
     compliance: Chosen,
-    loo: Vec<Loo>,
-    /// The fingers as their ribs have them.
+    /// Leave-one-out errors: one row per axis and model, assembly first.
+    pub loo: Vec<Loo>,
+    /// The fingers as their ribs have them, each computed once.
     computed: Computed,
-    /// Whether the models are of ratios to the computed stiffness.
-    ratios: bool,
+    /// Whether the models are of ratios to the computed stiffness, so that a prediction takes the
+    /// mechanics of a finger, some 0.2 s.
+    pub ratios: bool,
 }
 
 /// The model of one axis and the factor on its standard deviation.
@@ -141,21 +144,6 @@ impl Model {
         }
     }
 
-    /// Whether a prediction takes the mechanics of a finger, some 0.2 s.
-    pub fn computes(&self) -> bool {
-        self.ratios
-    }
-
-    /// The fingers as their ribs have them, each computed once.
-    pub fn computed(&self) -> &Computed {
-        &self.computed
-    }
-
-    /// Leave-one-out errors: one row per axis and model, assembly first.
-    pub fn loo(&self) -> &[Loo] {
-        &self.loo
-    }
-
     /// The row of the model used on an axis.
     pub fn chosen(&self, axis: Axis) -> Option<&Loo> {
         self.loo.iter().find(|row| row.axis == axis && row.chosen)
@@ -170,11 +158,6 @@ impl Model {
     /// so that the leave-one-out errors fit it; 1 if it fitted already.
     pub fn widening(&self, axis: Axis) -> f64 {
         self.of(axis).widen
-    }
-
-    /// The measurements it was fitted to.
-    pub fn measurements(&self) -> &[Measurement] {
-        &self.measurements
     }
 
     fn of(&self, axis: Axis) -> &Chosen {

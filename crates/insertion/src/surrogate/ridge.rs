@@ -118,13 +118,14 @@ impl Fitted for Ridge {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stiffness::{SHIPPED_CSV, SHIPPED_FILE, parse};
+    use crate::stiffness::parse;
+    use input::shipped::STIFFNESS;
 
     /// At the smallest penalised square error its gradient is 0: every term's product with the
     /// residuals is the penalty's pull on its coefficient.
     #[test]
     fn one_sweep_along_the_principal_axes_is_the_minimum() {
-        let shipped = parse(SHIPPED_CSV, SHIPPED_FILE).unwrap();
+        let shipped = parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
         let infills: Vec<Infill> = shipped.iter().map(|m| m.infill()).collect();
         let stiffness: Vec<f64> = shipped.iter().map(|m| m.compliance).collect();
         let n = stiffness.len() as f64;

@@ -2,7 +2,7 @@
 
 use contact::scene::{Geom, Inertia, Pose, Shape};
 use input::units::MM;
-use nalgebra::{Matrix3, Point3, Translation3, Vector3};
+use nalgebra::{Matrix3, Point2, Point3, Translation3, Vector3};
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::parry::transformation::try_convex_hull;
 
@@ -143,6 +143,37 @@ pub(crate) fn other_axes(axis: usize) -> (usize, usize) {
         1 => (0, 2),
         _ => (0, 1),
     }
+}
+
+/// Corners of the convex hull of points in a plane, counter-clockwise; two for a segment, one for
+/// a point (Andrew's monotone chain).
+pub fn convex_outline(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let half = |points: &mut dyn Iterator<Item = &Point2<f64>>| {
+        let mut corners: Vec<Point2<f64>> = Vec::new();
+        for &p in points {
+            while let [.., a, b] = corners[..]
+                && cross(a, b, p) <= 0.0
+            {
+                corners.pop();
+            }
+            corners.push(p);
+        }
+        corners.pop();
+        corners
+    };
+    let mut corners = half(&mut points.iter());
+    corners.extend(half(&mut points.iter().rev()));
+    corners
+}
+
+/// Twice the signed area of the triangle; positive if `p` is left of `a -> b`.
+pub(crate) fn cross(a: Point2<f64>, b: Point2<f64>, p: Point2<f64>) -> f64 {
+    (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)
 }
 
 /// Volume of a solid, m3.

@@ -41,7 +41,8 @@ impl From<Diverged> for Stop {
     }
 }
 
-/// An attempt as it goes on.
+/// An attempt as it goes on; a clone goes on bit for bit alike.
+#[derive(Clone)]
 pub(super) struct Attempt<'a> {
     robot: Arc<Mounted>,
     /// Set when it is to end at once.
@@ -101,25 +102,9 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// An independent copy that goes on bit for bit alike.
-    pub fn copy(&self) -> Attempt<'a> {
-        Attempt {
-            robot: Arc::clone(&self.robot),
-            stop: self.stop,
-            task: Arc::clone(&self.task),
-            cell: self.cell.clone(),
-            world: self.world.snapshot(),
-            edge: self.edge.clone(),
-            phases: self.phases.clone(),
-            trace: self.trace.clone(),
-            recorder: self.recorder.clone(),
-            ..*self
-        }
-    }
-
     /// A copy with the start shifted by `offset` metres along y.
     pub fn shifted(&self, offset: f64) -> Attempt<'a> {
-        let mut shifted = self.copy();
+        let mut shifted = self.clone();
         // Shifting the start by y is shifting the socket by -y: the part has
         // touched nothing of it yet. So all offsets share grasp and approach.
         let socket = Pose::translation(0.0, -offset, 0.0) * turned(self.yaw);

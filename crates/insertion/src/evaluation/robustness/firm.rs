@@ -21,13 +21,6 @@ pub struct FirmWindow {
     pub positive_steps: OffsetStep,
 }
 
-impl FirmWindow {
-    /// Width of the firm window, mm.
-    pub fn range_mm(&self) -> f64 {
-        grid_mm(self.positive_steps - self.negative_steps)
-    }
-}
-
 /// Result of the repeats at both ends of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Firm {
@@ -44,7 +37,7 @@ impl Firm {
 
     /// The firm range, mm; 0 without a firm window.
     pub fn range_mm(&self) -> f64 {
-        self.window.map_or(0.0, |window| window.range_mm())
+        self.window.map_or(0.0, |window| grid_mm(window.positive_steps - window.negative_steps))
     }
 
     /// The firm window, mm.

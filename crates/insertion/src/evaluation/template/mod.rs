@@ -27,8 +27,10 @@ use input::units::{GRAM, MM, N_PER_MM};
 /// A task file, the numbers of which a design may set.
 #[derive(Debug, Clone)]
 pub struct Template {
-    numbers: NumberFile,
-    task: Task,
+    /// Numbers of the file, by their keys.
+    pub numbers: NumberFile,
+    /// The task as the file has it.
+    pub task: Task,
 }
 
 /// Error of a design that cannot be simulated.
@@ -77,16 +79,6 @@ impl Template {
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let task = Task::parse(text, file)?;
         Ok(Template { numbers: NumberFile::parse("task", text, file)?, task })
-    }
-
-    /// The task as the file has it.
-    pub fn task(&self) -> &Task {
-        &self.task
-    }
-
-    /// The number that the task file has under a key, in the unit of the key.
-    pub fn number(&self, key: &str) -> Option<f64> {
-        self.numbers.number(key)
     }
 
     /// The task, and the finger of this stiffness at its pad, with the values that the design
@@ -183,7 +175,7 @@ mod tests {
             ("finger.rotation_x_nm_per_rad", 1.5),
         ])
         .unwrap();
-        let mut expected = usb().task().clone();
+        let mut expected = usb().task.clone();
         expected.strategy.tilt = 8.0 * DEG;
         expected.strategy.phases[1].ending =
             Ending::Touch { preload: 0.5 * MM, sensed: Sensed::FIRST };
@@ -203,11 +195,11 @@ mod tests {
         for file in TASKS {
             let template = Template::parse(file.text, file.file).unwrap();
             let keys = template.numbers.keys().into_iter();
-            let values = keys.map(|key| (key.clone(), template.number(&key).unwrap()));
+            let values = keys.map(|key| (key.clone(), template.numbers.number(&key).unwrap()));
             let design = Design(values.collect());
             assert!(design.0.len() > 50, "{}", file.name);
             let (task, _) = template.apply(&design, &FingerSource::Paper, AT_PAD).unwrap();
-            assert_eq!(&task, template.task());
+            assert_eq!(&task, &template.task);
         }
     }
 

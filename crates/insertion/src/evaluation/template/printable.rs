@@ -15,7 +15,7 @@ use input::{Check, InputError};
 pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), InputError> {
     let check = Check { file };
     let shape = |p: &&Parameter| is_shape(&p.key);
-    for parameter in space.parameters().iter().filter(shape) {
+    for parameter in space.parameters.iter().filter(shape) {
         for value in parameter.extremes() {
             let alone = Design([(parameter.key.clone(), value)].into());
             if let Err(error) = finger.with(&alone) {
@@ -24,7 +24,7 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
         }
     }
     let sets = |p: &&Parameter| shape(p) || super::is_infill(&p.key);
-    for design in corners(space.parameters().iter().filter(sets), usize::MAX) {
+    for design in corners(space.parameters.iter().filter(sets), usize::MAX) {
         let finger = finger.with(&design)?;
         if let Err(error) = Geometry::new(&finger, &design.printed(None)) {
             return check.fail("parameter", format!("{design} cannot be printed: {error}"));

@@ -28,13 +28,13 @@ impl Template {
     /// The first key or combination that is impossible.
     pub fn check(&self, space: &Space, file: &str, fits: &Fits<'_>) -> Result<(), InputError> {
         let check = Check { file };
-        let has = |key: &&str| space.parameters().iter().any(|parameter| parameter.key == *key);
+        let has = |key: &&str| space.parameters.iter().any(|parameter| parameter.key == *key);
         if let Some(missing) = [DENSITY_KEY, DIRECTION_KEY].into_iter().find(|key| !has(key)) {
             let problem = "is missing: a space must have it; to hold it fixed let low equal high";
             return check.fail(missing, problem);
         }
         let other = |p: &&Parameter| !is_infill(&p.key) && !is_shape(&p.key);
-        let parameters = || space.parameters().iter().filter(other);
+        let parameters = || space.parameters.iter().filter(other);
         for parameter in parameters() {
             for value in parameter.extremes() {
                 let design = Design([(parameter.key.clone(), value)].into());

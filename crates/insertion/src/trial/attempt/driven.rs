@@ -50,7 +50,7 @@ pub struct State {
 
 impl Driven {
     pub(in crate::trial) fn new(ready: Attempt<'static>, prepared: Result<(), Stop>) -> Self {
-        let attempt = ready.copy();
+        let attempt = ready.clone();
         let mut driven = Driven { ready, prepared, attempt, end: Ok(()), seated_s: 0.0 };
         driven.start(0.0);
         driven

@@ -4,7 +4,6 @@ use super::leaving;
 use super::robustness::firm::{self, Firm};
 use super::robustness::repeat::Repeats;
 use super::robustness::{self, Plan};
-use super::stoppable::Stoppable;
 use super::taught::{Moved, teach};
 use super::template::{Impossible, Template};
 use super::tolerance::Search;
@@ -17,9 +16,9 @@ use crate::robot::Robot;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::surrogate::{Model, Prediction};
 use crate::task::{StartRule, Task};
-use crate::trial::Rig;
 use crate::trial::engine::EngineKind;
 use crate::trial::run::RigError;
+use crate::trial::{Grasp, Rig};
 use input::numbers::DESIGN;
 use input::units::N_PER_MM;
 use input::{InputError, shown};
@@ -198,9 +197,8 @@ impl Evaluator {
     ) -> Result<Evaluation, RigError> {
         let taught = self.taught(specimen, stop)?;
         let rig = self.rig(specimen, taught, 1.0)?;
-        let rig = Stoppable { inner: &*rig, stop };
-        let Specimen { finger, stiffness, .. } = specimen;
-        let evaluation = robustness::evaluate(&rig, finger, stiffness, search, plan);
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let evaluation = robustness::evaluate(&*rig, grasp, &specimen.stiffness, search, plan);
         Ok(Evaluation { taught, ..evaluation })
     }
 
@@ -241,8 +239,8 @@ impl Evaluator {
         }
         let rig = |factor| self.rig(specimen, measured.taught, factor);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);
-        let [whole, half] = [&whole, &half].map(|rig| Stoppable { inner: &**rig, stop });
-        let repeats = Repeats::new([&whole, &half], &specimen.finger, seed, firm::REPEATS);
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let repeats = Repeats::new([&*whole, &*half], grasp, seed, firm::REPEATS);
         Ok(firm::measure(&repeats, &measured.window))
     }
 

@@ -6,7 +6,6 @@ pub mod objective;
 pub mod robustness;
 mod schema;
 pub mod sprung;
-pub mod stoppable;
 pub mod taught;
 pub mod template;
 pub mod tolerance;

@@ -3,7 +3,7 @@
 use crate::evaluation::{Evaluation, OFFSET_STEP_MM, OffsetStep, Window};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
-use crate::trial::{Conditions, Grasped, Rig, Trial};
+use crate::trial::{Grasp, Grasped, Rig, Trial};
 use input::units::MM;
 
 /// Farthest offset tried, in grid steps: well beyond any published window (9 mm).
@@ -37,17 +37,12 @@ impl Search {
 /// The start is shifted outward on the 0.1 mm grid in both directions until
 /// the first trial that does not insert (the paper, Sec. "Robot Movement").
 pub fn evaluate(rig: &dyn Rig, finger: &Finger, search: Search) -> Evaluation {
-    evaluate_in(rig, finger, &Conditions::NOMINAL, search)
+    evaluate_in(rig, Grasp::of(finger), search)
 }
 
-/// As [`evaluate`], under other conditions than those of the task file.
-pub fn evaluate_in(
-    rig: &dyn Rig,
-    finger: &Finger,
-    conditions: &Conditions,
-    search: Search,
-) -> Evaluation {
-    let grasped = rig.grasp_in(finger, conditions);
+/// As [`evaluate`], of any grasp; ends early, with a worthless result, once that is to stop.
+pub fn evaluate_in(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation {
+    let grasped = rig.hold(grasp);
     let nominal = [grasped.trial(0.0)];
     let Trial { outcome, margin, .. } = nominal[0];
     let ([negative, positive], sides) = if outcome == Outcome::Inserted {
@@ -162,7 +157,6 @@ mod tests {
     use super::*;
     use crate::fixtures::finger;
     use crate::outcome::FailureClass;
-    use crate::trial::Grasp;
     use crate::trial::fake::{Altered, FakeRig};
 
     #[test]

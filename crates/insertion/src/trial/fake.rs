@@ -10,6 +10,7 @@ use super::{Conditions, Grasp, Grasped, Rig, Trial};
 use crate::finger::Finger;
 use crate::outcome::{FailureClass, Outcome};
 use input::units::{DEG, MM, N_PER_MM};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The rig with the closed-form window.
 #[derive(Debug, Clone, Copy, Default)]
@@ -32,7 +33,7 @@ impl FakeRig {
 impl Rig for FakeRig {
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
         let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
-        Box::new(FakeGrasp { low, high, delay: self.delay })
+        Box::new(FakeGrasp { low, high, delay: self.delay, stop: grasp.stop })
     }
 }
 
@@ -53,18 +54,24 @@ pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     (nanometres(low + less), nanometres(high - less))
 }
 
-struct FakeGrasp {
+struct FakeGrasp<'a> {
     low: f64,
     high: f64,
     delay: std::time::Duration,
+    stop: &'a AtomicBool,
 }
 
-impl Grasped for FakeGrasp {
+impl Grasped for FakeGrasp<'_> {
     fn trial(&self, offset: f64) -> Trial {
-        std::thread::sleep(self.delay);
+        let stopped = self.stop.load(Ordering::Relaxed);
+        if !stopped {
+            std::thread::sleep(self.delay);
+        }
         // Whole nanometres: a shift of 14 steps is 1.4 mm, not 1.4000000000000001.
         let offset_mm = (offset / MM * 1e6).round() / 1e6;
-        let outcome = if offset_mm < self.low {
+        let outcome = if stopped {
+            Outcome::Diverged
+        } else if offset_mm < self.low {
             Outcome::Failed(FailureClass::Jammed)
         } else if offset_mm > self.high {
             Outcome::Failed(FailureClass::PlugMissed)

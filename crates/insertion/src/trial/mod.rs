@@ -107,13 +107,8 @@ impl Grasp<'static> {
 /// A place where trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
     /// Grasps the part; what follows does not depend on the offset until the approach, so it is
-    /// done once. Rigs whose trials take no time need not look at the stop flag.
+    /// done once.
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a>;
-
-    /// Grasps for trials that nobody stops.
-    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
-        self.hold(Grasp { conditions: *conditions, ..Grasp::of(finger) })
-    }
 
     /// Grasps for trials that nobody stops, in the world as the task file has it.
     fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {

@@ -92,6 +92,7 @@ mod tests {
     use super::*;
     use crate::evaluation::tolerance::{Search, evaluate, offset};
     use crate::fixtures::finger;
+    use crate::trial::Grasp;
     use crate::trial::fake::FakeRig;
 
     /// The lower end of the closed form, -3.33 mm, moves with friction to as near as -3.03 mm;
@@ -100,7 +101,7 @@ mod tests {
     fn the_firm_window_is_the_innermost_of_the_repeats() {
         let (rig, finger) = (FakeRig::default(), finger(3.0, 20.0));
         let window = evaluate(&rig, &finger, Search::Walk).window;
-        let repeats = Repeats::new([&rig, &rig], &finger, 0, 100);
+        let repeats = Repeats::new([&rig, &rig], Grasp::of(&finger), 0, 100);
         let found = measure(&repeats, &window);
         let firm = found.window.unwrap();
         assert!((-31..=-30).contains(&firm.negative_steps), "{firm:?}");
@@ -124,7 +125,7 @@ mod tests {
         let (rig, finger) = (FakeRig::default(), finger(3.0, 20.0));
         let mut window = evaluate(&rig, &finger, Search::Walk).window;
         window.nominal = Outcome::Diverged;
-        let found = measure(&Repeats::new([&rig, &rig], &finger, 0, 6), &window);
+        let found = measure(&Repeats::new([&rig, &rig], Grasp::of(&finger), 0, 6), &window);
         assert_eq!((found, found.range_mm()), (Firm::NONE, 0.0));
     }
 }

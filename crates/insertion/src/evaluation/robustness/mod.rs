@@ -9,10 +9,9 @@ use crate::evaluation::uncertainty::{
     Draw, RobustSettings, Statistic, SuccessSettings, Uncertainty, draws,
 };
 use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
-use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::surrogate::Prediction;
-use crate::trial::Rig;
+use crate::trial::{Grasp, Rig};
 use rayon::prelude::*;
 
 /// What is measured of a design beside its window, with the draws that all
@@ -39,37 +38,31 @@ impl Plan {
     }
 }
 
-/// Measures one finger, whose stiffness was predicted with an error: its window,
-/// and what the plan adds.
+/// Measures a grasp in the world as the task file has it, by fingers whose stiffness was predicted
+/// with an error: its window, and what the plan adds.
 pub fn evaluate(
     rig: &dyn Rig,
-    finger: &Finger,
+    grasp: Grasp,
     predicted: &Prediction,
     search: Search,
     plan: &Plan,
 ) -> Evaluation {
-    let mut evaluation = tolerance::evaluate(rig, finger, search);
-    let part = |draw: &Draw| (draw.finger(finger, predicted), *draw);
+    let mut evaluation = tolerance::evaluate_in(rig, grasp, search);
+    let drawn = |draws: &[Draw]| -> Vec<_> {
+        draws.iter().map(|draw| (draw.grasp(grasp, predicted), draw.offset)).collect()
+    };
     if let Some((draws, settings)) = &plan.success {
-        let drawn: Vec<_> = draws.iter().map(part).collect();
-        evaluation.success = Some(success_rate(rig, &drawn, settings));
+        evaluation.success = Some(success_rate(rig, &drawn(draws), settings));
     }
     if let Some((draws, settings)) = &plan.robust {
-        let drawn: Vec<_> = draws.iter().map(part).collect();
-        evaluation.robust = Some(robust_range(rig, &drawn, settings));
+        evaluation.robust = Some(robust_range(rig, &drawn(draws), settings));
     }
     evaluation
 }
 
-/// Runs one trial for each finger and draw.
-fn success_rate(
-    rig: &dyn Rig,
-    drawn: &[(Finger, Draw)],
-    settings: &SuccessSettings,
-) -> SuccessRate {
-    let trial = |(finger, draw): &(Finger, Draw)| {
-        rig.grasp_in(finger, &draw.conditions).trial(draw.offset).outcome
-    };
+/// Runs one trial for each grasp, from its offset.
+fn success_rate(rig: &dyn Rig, drawn: &[(Grasp, f64)], settings: &SuccessSettings) -> SuccessRate {
+    let trial = |&(grasp, offset): &(Grasp, f64)| rig.hold(grasp).trial(offset).outcome;
     let outcomes: Vec<Outcome> = drawn.par_iter().map(trial).collect();
     let mut success = SuccessRate {
         inserted: 0,
@@ -87,11 +80,10 @@ fn success_rate(
     success
 }
 
-/// Measures the window of each finger and draw. The draw's offset is left out:
-/// the window spans the offsets.
-fn robust_range(rig: &dyn Rig, drawn: &[(Finger, Draw)], settings: &RobustSettings) -> RobustRange {
-    let window = |(finger, draw): &(Finger, Draw)| {
-        let found = tolerance::evaluate_in(rig, finger, &draw.conditions, settings.search);
+/// Measures the window of each grasp. The offset is left out: the window spans the offsets.
+fn robust_range(rig: &dyn Rig, drawn: &[(Grasp, f64)], settings: &RobustSettings) -> RobustRange {
+    let window = |&(grasp, _): &(Grasp, f64)| {
+        let found = tolerance::evaluate_in(rig, grasp, settings.search);
         let diverged = found.window.nominal == Outcome::Diverged;
         ((!diverged).then(|| found.window.range_mm()), found.trials)
     };
@@ -134,12 +126,12 @@ mod tests {
     use input::units::MM;
 
     /// Fingers of 3 N/mm and this assembly stiffness (N/mm) drawn under the shipped errors.
-    fn drawn(assembly: f64, count: u32) -> (Uncertainty, Vec<(Finger, Draw)>) {
+    fn drawn(assembly: f64, count: u32) -> (Uncertainty, Vec<(Grasp<'static>, f64)>) {
         let typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
         let predicted = predicted([3.0, 1.0], [assembly, 2.0]);
-        let nominal = finger(3.0, assembly);
+        let nominal = Grasp::of(&finger(3.0, assembly));
         let drawn = draws(&typical.errors, 5, count).into_iter();
-        let drawn = drawn.map(|draw| (draw.finger(&nominal, &predicted), draw)).collect();
+        let drawn = drawn.map(|draw| (draw.grasp(nominal, &predicted), draw.offset)).collect();
         (typical, drawn)
     }
 
@@ -148,9 +140,9 @@ mod tests {
         let (typical, drawn) = drawn(20.0, 300);
         let found = success_rate(&FakeRig::default(), &drawn, &typical.success);
         let (mut below, mut above) = (0, 0);
-        for (finger, draw) in &drawn {
-            let (low, high) = window_in_mm(finger, &draw.conditions);
-            let offset = draw.offset / MM;
+        for (grasp, offset) in &drawn {
+            let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
+            let offset = offset / MM;
             // A window that errors closed jams on the whole of its lower side.
             below += u32::from(offset < low);
             above += u32::from(offset >= low && offset > high);
@@ -180,8 +172,8 @@ mod tests {
         let found = robust_range(&FakeRig::default(), &drawn, &settings);
         let expected: Vec<f64> = drawn
             .iter()
-            .map(|(finger, draw)| {
-                let (low, high) = window_in_mm(finger, &draw.conditions);
+            .map(|(grasp, _)| {
+                let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
                 if low > 0.0 || high < 0.0 {
                     return 0.0;
                 }

@@ -2,9 +2,8 @@
 
 use crate::evaluation::tolerance;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
-use crate::finger::Finger;
 use crate::outcome::Outcome;
-use crate::trial::{Conditions, Grasped, Rig};
+use crate::trial::{Conditions, Grasp, Grasped, Rig};
 use ask_tell::stream::stream;
 use input::units::MM;
 use rand::RngExt;
@@ -29,7 +28,7 @@ pub struct Repeats<'a> {
 impl<'a> Repeats<'a> {
     /// Grasps `count` times: friction within 10 %, start within 0.02 mm, both uniform; the
     /// rigs by turns, the first with the production step, the second with half of it.
-    pub fn new(rigs: [&'a dyn Rig; 2], finger: &Finger, seed: u64, count: u32) -> Self {
+    pub fn new(rigs: [&'a dyn Rig; 2], grasp: Grasp<'a>, seed: u64, count: u32) -> Self {
         let run = |index: u32| {
             let mut random = stream(seed, u64::from(index), PURPOSE);
             let mut around = |half_width: f64| half_width * random.random_range(-1.0..1.0);
@@ -39,7 +38,7 @@ impl<'a> Repeats<'a> {
                 ..Conditions::NOMINAL
             };
             let rig = rigs[index as usize % rigs.len()];
-            (rig.grasp_in(finger, &conditions), around(START))
+            (rig.hold(Grasp { conditions, ..grasp }), around(START))
         };
         Repeats { runs: (0..count).into_par_iter().map(run).collect() }
     }
@@ -144,7 +143,7 @@ mod tests {
     #[test]
     fn the_bands_are_as_wide_as_the_closed_form_says() {
         let rig = FakeRig::default();
-        let repeats = Repeats::new([&rig, &rig], &finger(3.0, 20.0), 7, 200);
+        let repeats = Repeats::new([&rig, &rig], Grasp::of(&finger(3.0, 20.0)), 7, 200);
         let window = tolerance::evaluate(&rig, &finger(3.0, 20.0), Search::Walk).window;
         let bands = repeats.bands(&window);
         let below = bands.negative.width_mm().unwrap();
@@ -158,8 +157,8 @@ mod tests {
     #[test]
     fn repeats_are_a_function_of_the_seed() {
         let rig = FakeRig::default();
-        let of =
-            |seed| Repeats::new([&rig, &rig], &finger(3.0, 20.0), seed, 60).outcomes(-3.33 * MM);
+        let grasp = Grasp::of(&finger(3.0, 20.0));
+        let of = |seed| Repeats::new([&rig, &rig], grasp, seed, 60).outcomes(-3.33 * MM);
         assert_eq!(of(1), of(1));
         assert_ne!(of(1), of(2));
         let inserted = of(1).iter().filter(|&&outcome| outcome == Outcome::Inserted).count();

@@ -3,7 +3,7 @@
 use super::Errors;
 use crate::finger::Finger;
 use crate::surrogate::{Estimate, Prediction};
-use crate::trial::Conditions;
+use crate::trial::{Conditions, Grasp};
 use ask_tell::stream::stream;
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -60,6 +60,12 @@ impl Draw {
     /// many standard deviations of the stiffness model above their medians.
     pub fn under(conditions: Conditions, stiffness: [f64; 2]) -> Self {
         Draw { offset: 0.0, conditions, stiffness, stiffness_sd_factor: 1.0 }
+    }
+
+    /// A grasp by fingers that were to have the predicted stiffness, as it turns out.
+    pub fn grasp<'a>(&self, nominal: Grasp<'a>, predicted: &Prediction) -> Grasp<'a> {
+        let finger = self.finger(&nominal.finger, predicted);
+        Grasp { finger, conditions: self.conditions, ..nominal }
     }
 
     /// A finger that was to have the predicted stiffness, as it came out.

@@ -98,8 +98,7 @@ impl Mounted {
         self.arm().map_or(0.0, |arm| SETTLED * arm.time_constant)
     }
 
-    /// Whether the robot stops at this plug-socket force, N, task axes: a protective
-    /// stop, or a joint at its torque limit.
+    /// Whether this plug-socket force, N, task axes, stops the robot or overloads a joint.
     pub fn stops(&self, force: &Vector3<f64>) -> bool {
         self.arm().is_some_and(|arm| arm.overloaded(force)) || force.norm() > self.stop_force
     }

@@ -42,8 +42,7 @@ pub struct Parameter {
     pub low: f64,
     /// Largest value, in the unit of the key.
     pub high: f64,
-    /// Smallest difference that can be made (printed, set), same unit; on a log scale the factor
-    /// between neighbours.
+    /// Smallest difference that can be made; on a log scale the factor between neighbours.
     pub step: f64,
     /// Spacing of the values.
     #[serde(default, skip_serializing_if = "Scale::is_linear")]
@@ -215,8 +214,7 @@ const MOST_PARAMETERS: usize = 100;
 /// Smallest step: a thousand times the digit to which values are rounded.
 const FINEST_STEP: f64 = 1e-6;
 
-/// Between what a parameter's values must lie, in the unit of its key: as in a table of
-/// measured stiffness, or wherever a number may lie.
+/// Between what a parameter's values must lie, in the unit of its key.
 fn bounds(key: &str) -> [f64; 2] {
     match key {
         // A finger of no density is no finger.

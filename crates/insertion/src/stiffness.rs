@@ -37,8 +37,7 @@ pub const HEADER: [&str; 5] = [
     "stiffness_compliance_n_per_mm",
 ];
 
-/// Most designs of a table: the time to leave each out in turn and fit all models anew grows
-/// with the fourth power of their number.
+/// Most designs of a table: the time to leave each out in turn grows with its fourth power.
 pub const MOST: usize = 100;
 
 /// Stiffness of one printed finger, as measured.

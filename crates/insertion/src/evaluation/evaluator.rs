@@ -77,8 +77,7 @@ pub struct Specimen {
     pub stiffness: Prediction,
 }
 
-/// Refuses a stiffness, N/mm, that cannot be simulated: far from what was measured the model may
-/// give any.
+/// Refuses a stiffness, N/mm, that cannot be simulated; far from the measured ones any is possible.
 fn check_stiffness(key: &str, n_per_mm: f64) -> Result<(), InputError> {
     if DESIGN.positive(key, n_per_mm)? <= STIFFEST_N_PER_MM {
         return Ok(());
@@ -94,8 +93,7 @@ pub struct Measured {
     pub stiffness: Prediction,
     /// Evaluation on each task, in their order.
     pub tasks: Vec<Evaluation>,
-    /// For each task whether it was not simulated now but known from before; empty where
-    /// nothing could be.
+    /// For each task whether it was known from before; empty where nothing could be.
     pub cached: Vec<bool>,
 }
 

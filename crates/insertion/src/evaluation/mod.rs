@@ -21,8 +21,7 @@ pub type OffsetStep = i32;
 /// Width of the offset grid: the paper shifts the start by 0.1 mm.
 pub const OFFSET_STEP_MM: f64 = 0.1;
 
-/// The offsets that insert around the nominal start, on the 0.1 mm grid, and
-/// what stopped the search at each end.
+/// The offsets that insert around the nominal start, and what ended the search at each end.
 ///
 /// Invariant of a window with `nominal == Inserted`: `negative_steps <= 0 <=
 /// positive_steps`, and both were found to insert. By the step-by-step walk every grid
@@ -44,8 +43,7 @@ pub struct Window {
     pub negative_steps: OffsetStep,
     /// Most positive inserting offset, in grid steps.
     pub positive_steps: OffsetStep,
-    /// What the first failing offset below `negative_steps` did; `None` if the
-    /// search reached its limit without a failure.
+    /// Outcome of the first failing offset below `negative_steps`; `None` at the search's limit.
     pub end_negative: Option<Outcome>,
     /// Outcome of the first failing offset above `positive_steps`.
     pub end_positive: Option<Outcome>,
@@ -144,8 +142,7 @@ impl SuccessRate {
         (counted > 0).then(|| f64::from(self.inserted) / f64::from(counted))
     }
 
-    /// Wilson's score interval of the true rate (E. B. Wilson 1927, J. Am. Stat.
-    /// Assoc. 22:209), `[0, 1]` if no trial counts.
+    /// Wilson's score interval of the true rate (1927, J. Am. Stat. Assoc. 22:209).
     pub fn interval(&self) -> [f64; 2] {
         let Some(rate) = self.rate() else { return [0.0, 1.0] };
         let n = f64::from(self.counted());

@@ -1,5 +1,4 @@
-//! The one form in which an evaluation leaves the program: JSON, journal and tables have
-//! these keys.
+//! The one form of an evaluation outside the program: the keys of JSON, journal and tables.
 
 use super::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
 use crate::outcome::{FailureClass, Outcome};

@@ -17,8 +17,7 @@ const STRIDE: OffsetStep = 5;
 /// Farthest start that is tried, in grid steps: 10 mm.
 const FARTHEST: OffsetStep = 100;
 
-/// By how much the start is moved, in grid steps; `None` if none inserts. Ends early, with a
-/// worthless result, once `stop` is set.
+/// Shift of the start, in grid steps; `None` if none inserts. Worthless once `stop` is set.
 pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Option<OffsetStep> {
     let grasp = Grasp { stop, ..Grasp::of(finger) };
     let grasped = rig.hold(grasp);

@@ -15,10 +15,9 @@ pub const OFFSET_LIMIT_STEPS: OffsetStep = 150;
 pub enum Search {
     /// Step by step outward to the first failure: the paper's way.
     Walk,
-    /// In strides of 0.5 mm outward to the first failure, then by bisection
-    /// between the last two: a third of the trials. It finds the end that the
-    /// walk finds unless a gap in the window is narrower than a stride; so it is on 43 of
-    /// the 44 pairs of task and measured finger (`docs/notes/performance.md`).
+    /// In strides of 0.5 mm outward to the first failure, then by bisection: a third of the trials.
+    /// It finds the walk's end unless a gap in the window is narrower than a stride: on 43 of the
+    /// 44 pairs of task and measured finger (`docs/notes/performance.md`).
     #[default]
     Strides,
 }

@@ -1,5 +1,4 @@
-//! A finger computed from its ribs: the springs about its remote centre that make it as stiff
-//! at the pad as it was measured there.
+//! A computed finger: springs about its remote centre that make it as stiff at the pad as measured.
 //!
 //! A spring at a centre that lies `s` below and `c` in front of the pad's middle is seen from
 //! there with the tilting spring `k_t` in series, so
@@ -8,9 +7,8 @@
 //! 1/k_y,centre = 1/k_y - s^2/k_t,   1/k_z,centre = 1/k_z - c^2/k_t
 //! ```
 //!
-//! The two do not pull at one another.
-//! Across the plane (x, ry, rz) the centre is another one: the plate's 3 x 3 stiffness at the
-//! pad is carried over to the same joint whole, with its coupling of x to ry and rz.
+//! Across the plane (x, ry, rz) the plate's 3 x 3 stiffness at the pad is carried over to the same
+//! joint whole, with its coupling of x to ry and rz.
 
 use super::{Finger, Pad};
 use crate::surrogate::Prediction;

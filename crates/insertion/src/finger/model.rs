@@ -85,9 +85,8 @@ impl FingerSource {
         }
     }
 
-    /// The finger of a design on a task, so stiff at its pad (or, in the paper, at its
-    /// centre). Numbers of the finger that the design sets beside the remote centre and the
-    /// tilting stiffness are the caller's.
+    /// The finger of a design on a task, so stiff at its pad (or, in the paper, at its centre). Its
+    /// other numbers, but for remote centre and tilting stiffness, are set by the caller.
     ///
     /// # Errors
     /// If the printed finger cannot be, or cannot be so stiff.

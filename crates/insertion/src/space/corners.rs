@@ -14,8 +14,7 @@ impl Parameter {
     }
 }
 
-/// All combinations of the extreme values of these parameters; one that would make them more than
-/// `most` is left out.
+/// All combinations of extreme values; a parameter that would make them above `most` is left out.
 pub(crate) fn corners<'a>(
     parameters: impl IntoIterator<Item = &'a Parameter>,
     most: usize,

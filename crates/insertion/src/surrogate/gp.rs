@@ -1,10 +1,9 @@
 //! A Gaussian process about a physical mean.
 //!
-//! A finger is a row of walls filled with ribs. Ribs at angle `theta` to the
-//! assembly direction z are a lamina; the mean uses the leading term of its
-//! transformed properties (Jones, Mechanics of Composite Materials, Sec. 2.6),
-//! and the density law of cellular solids (Gibson and Ashby, Cellular Solids,
-//! Sec. 5.3: stiffness ~ density^n, n = 1 if the cell walls stretch, 2 if they bend).
+//! A finger is a row of walls filled with ribs. Ribs at angle `theta` to the assembly direction z
+//! are a lamina; the mean uses the leading term of its transformed properties (Jones, Mechanics of
+//! Composite Materials, Sec. 2.6), and the density law of cellular solids (Gibson and Ashby,
+//! Cellular Solids, Sec. 5.3: stiffness ~ density^n, n = 1 if the walls stretch, 2 if they bend).
 //!
 //! * Assembly (z) loads the ribs along their length. Walls and ribs share the
 //!   load, so stiffnesses add (rule of mixtures), and the ribs give
@@ -15,10 +14,9 @@
 //!   with density and angle and levels off at the walls' stiffness. `n` is
 //!   chosen by likelihood from 1 to 2.
 //!
-//! What the mean leaves is a Matern 5/2 process over (ln density, direction),
-//! plus noise, so that rounded readings are not interpolated. All
-//! hyperparameters come from a fixed grid by maximum likelihood: no random
-//! restarts, so the fit is the same on every run.
+//! What the mean leaves is a Matern 5/2 process over (ln density, direction), plus noise, so that
+//! rounded readings are not interpolated. All hyperparameters come from a fixed grid by maximum
+//! likelihood: no random restarts, so the fit is the same on every run.
 
 use super::link::{Link, Sum};
 use super::standard::Standard;

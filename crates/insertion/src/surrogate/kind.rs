@@ -44,8 +44,7 @@ impl ModelKind {
     }
 }
 
-/// Fits one model on one axis, everything it has to choose included; of a computed kind to
-/// ratios of measured and computed stiffness.
+/// Fits one model on one axis; of a computed kind to ratios of measured and computed stiffness.
 pub(super) fn fit_axis(
     axis: Axis,
     kind: ModelKind,

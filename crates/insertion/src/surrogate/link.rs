@@ -13,10 +13,9 @@ pub(super) enum Sum {
 
 /// Maps stiffness to the scale on which a model is linear, and back.
 ///
-/// With `q` the stiffness or its inverse, `q = s ln(1 + exp(g / s))` (soft
-/// plus): the identity for `q` well above `s`, and positive for every `g`.
-/// `s` is a quarter of the smallest `q` measured, so inside the data the link
-/// bends values by less than 0.5 %.
+/// With `q` the stiffness or its inverse, `q = s ln(1 + exp(g / s))` (soft plus): the identity for
+/// `q` well above `s`, and positive for every `g`. `s` is a quarter of the smallest `q` measured,
+/// so inside the data the link bends values by less than 0.5 %.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Link {
     sum: Sum,

@@ -17,8 +17,7 @@ pub struct Loo {
     pub rmse_n_per_mm: f64,
     /// Mean absolute error relative to the measured stiffness, percent.
     pub mean_absolute_percent: f64,
-    /// Root mean square of error / predicted standard deviation: 1 if the
-    /// uncertainty is right, above 1 if the model is too sure of itself.
+    /// Root mean square of error / predicted standard deviation: above 1 the model is too sure.
     pub standardised_rms: f64,
     /// Prediction for each design when it is left out, N/m, in input order.
     pub left_out: Vec<f64>,

@@ -26,8 +26,7 @@ pub struct Model {
     pub loo: Vec<Loo>,
     /// The fingers as their ribs have them, each computed once.
     computed: Computed,
-    /// Whether the models are of ratios to the computed stiffness, so that a prediction takes the
-    /// mechanics of a finger, some 0.2 s.
+    /// Whether the models are of ratios to the computed stiffness, which takes some 0.2 s a finger.
     pub ratios: bool,
 }
 

@@ -1,8 +1,7 @@
 //! Ridge polynomials: the baseline that knows no physics.
 //!
-//! Terms and target are standardised, then fitted by `linfa-elasticnet` with an
-//! L1 share of 0. The penalty is the one with the smallest leave-one-out error
-//! among the designs given, so an outer leave-one-out stays honest.
+//! Terms and target are standardised, then fitted by `linfa-elasticnet` with an L1 share of 0. The
+//! penalty has the smallest leave-one-out error of the designs given.
 //!
 //! The terms are turned into their principal axes first. A rotation leaves the ridge penalty
 //! as it is, and along axes that are orthogonal one sweep of coordinate descent is exact.

@@ -14,8 +14,7 @@ pub const GRASP_S: f64 = 0.3;
 pub const CARRY_S: f64 = 0.2;
 
 impl Phase {
-    /// The longest that it can take if its move is `lead` metres longer than it says, on a
-    /// robot that takes `settling` seconds to follow.
+    /// Longest time of the phase with `lead` metres more, on a robot that needs `settling` seconds.
     fn longest_s(&self, lead: f64, settling: f64) -> f64 {
         let [x, y, z] = self.displacement;
         let length = x.hypot(y).hypot(z) + lead;

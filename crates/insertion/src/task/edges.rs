@@ -5,8 +5,7 @@ use input::units::MM;
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Flats of a rounded edge between its two faces. They are tangents: their corners stand out by
-/// 1.2 % of the radius.
+/// Flats of a rounded edge, tangent to the arc: their corners stand out by 1.2 % of the radius.
 const FLATS: usize = 4;
 /// Corners nearer to one another are one, m.
 pub const SAME: f64 = 1e-6 * MM;
@@ -30,8 +29,7 @@ pub enum Cut {
 /// An edge by its two faces.
 pub type Edge = [Face; 2];
 
-/// The edges that a text names: all four of a face, as in "-z", or the one between two, as in
-/// "+x-z". `None` if it names none.
+/// Edges of that name: the four of a face ("-z"), or the one between two ("+x-z"); `None` if bad.
 pub fn named(text: &str) -> Option<Vec<Edge>> {
     let face = |text: &str| {
         let axis = ["x", "y", "z"].iter().position(|name| text.get(1..) == Some(name))?;

@@ -12,8 +12,7 @@ pub struct FingerModel {
     pub coupling: Option<Coupling>,
 }
 
-/// Distance of the remote centre of compliance from the contact plane towards the
-/// plug's tip, by the infill direction.
+/// Distance of the remote centre from the contact plane towards the tip, by infill direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rcc {
     /// At 0 degrees, m.
@@ -22,10 +21,9 @@ pub struct Rcc {
     pub per_degree: f64,
 }
 
-/// Coefficients `c` that couple the six springs: `k_ij = c_ij sqrt(k_i k_j)`. They
-/// do not depend on how stiff a design is, and any positive definite matrix with ones on
-/// its diagonal makes a finger that springs back. Order: translations x, y, z,
-/// rotations x, y, z about the remote centre, of the finger at -y.
+/// Coefficients `c` that couple the six springs: `k_ij = c_ij sqrt(k_i k_j)`. For any design, a
+/// positive definite matrix with ones on its diagonal makes a finger that springs back. Order:
+/// translations x, y, z, rotations x, y, z about the remote centre, of the finger at -y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coupling(Matrix6<f64>);
 

@@ -112,8 +112,7 @@ impl Solid {
         }
     }
 
-    /// Volume, m3; centroid, m; second moments about the centroid per unit of
-    /// density (the tensor of the integral of x xT), m5.
+    /// Volume, m3; centroid, m; second moments about it per unit of density (integral of x xT), m5.
     fn moments(&self) -> (f64, Vector3<f64>, Matrix3<f64>) {
         match self {
             Solid::Box { min, max } => {
@@ -145,8 +144,7 @@ pub(crate) fn other_axes(axis: usize) -> (usize, usize) {
     }
 }
 
-/// Corners of the convex hull of points in a plane, counter-clockwise; two for a segment, one for
-/// a point (Andrew's monotone chain).
+/// Convex hull of points in a plane, counter-clockwise, by Andrew's monotone chain.
 pub fn convex_outline(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
@@ -218,8 +216,7 @@ fn prism_moments(
 /// Corners, and triangles of them that look outward.
 pub type Triangles = (Vec<Point3<f64>>, Vec<[usize; 3]>);
 
-/// The corners and the outward triangles of the convex hull of some points; none if they lie in
-/// a plane or nearly so.
+/// Corners and outward triangles of a convex hull; none of points that lie nearly in a plane.
 pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
     let scaled: Vec<_> = points.iter().map(|p| Vector::new(p.x / MM, p.y / MM, p.z / MM)).collect();
     let (corners, faces) = try_convex_hull(&scaled).ok()?;

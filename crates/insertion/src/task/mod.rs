@@ -15,9 +15,8 @@ pub use latch::Latch;
 
 use crate::task::finger::FingerModel;
 
-/// A checked task, in SI units, in the task frame: origin at the centre of the
-/// socket's opening on its top surface, z out of the socket, y the direction
-/// in which the jaws close and the start is shifted.
+/// A checked task, in SI units, in the task frame: origin at the centre of the socket's opening on
+/// its top, z out of the socket, y the direction in which the jaws close and the start is shifted.
 ///
 /// ```
 /// use input::shipped::TASKS;
@@ -174,8 +173,7 @@ pub enum Ending {
     Tolerance(f64),
     /// When this time has passed since the commanded motion ended, s.
     Duration(f64),
-    /// When the plug touches the socket: the command then goes on by this
-    /// distance along the move (the preload), m.
+    /// When the plug touches the socket; the command goes on by the preload.
     Touch {
         /// Distance beyond where the move was stopped, m.
         preload: f64,

@@ -230,8 +230,7 @@ impl<'a> Attempt<'a> {
             left -= usize::from(felt);
         }
         let along = (end.position - start.position).normalize();
-        // From where the TCP is, not from its command: a soft flange lags behind,
-        // and the lag would come on top of the preload.
+        // From where the TCP is: the lag of a soft flange would come on top of the preload.
         let reached = along.dot(&(self.tcp() - start.position));
         let to = start.moved(along * (reached + preload));
         self.follow(Move::new(self.target, to, speed), self.rest_time())

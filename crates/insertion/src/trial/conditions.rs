@@ -20,8 +20,7 @@ pub struct Conditions {
     pub clearance: f64,
     /// Displacement of the part in the gripper along x, m.
     pub grasp_across: f64,
-    /// How much lower than meant the part sits in the gripper, m: a gap
-    /// between its shoulder and the roof of the notch.
+    /// How much too low the part sits in the gripper, m: a gap between shoulder and roof.
     pub grasp_low: f64,
 }
 

@@ -1,10 +1,9 @@
 //! A rig with a closed-form window, for tests of everything above the trial.
 //!
-//! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm, with
-//! `k` and `a` the compliance and assembly stiffness in N/mm and `r` the distance of the
-//! remote centre in mm; it jams below and misses above.
-//! Conditions narrow it: friction divides the lower end, yaw takes 1 mm a degree off
-//! both ends, what sits low in the gripper its own height off both; clearance is added.
+//! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm, with `k` and `a`
+//! the compliance and assembly stiffness in N/mm and `r` the distance of the remote centre in mm;
+//! it jams below and misses above. Friction divides the lower end, yaw takes 1 mm a degree off
+//! both, a part low in the gripper its own height; clearance is added.
 
 use super::{Conditions, Grasp, Grasped, Rig, Trial};
 use crate::finger::Finger;

@@ -106,8 +106,7 @@ impl Grasp<'static> {
 
 /// A place where trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
-    /// Grasps the part; what follows does not depend on the offset until the approach, so it is
-    /// done once.
+    /// Grasps the part: once for all offsets, which differ from the approach on.
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a>;
 
     /// Grasps for trials that nobody stops, in the world as the task file has it.
@@ -133,8 +132,7 @@ pub trait Grasped: Send + Sync {
     /// One trial with the start shifted by `offset` metres along y.
     fn trial(&self, offset: f64) -> Trial;
 
-    /// The same trial with a sample each `every_s` seconds from the start of the search on;
-    /// none where nothing is simulated.
+    /// The same trial, sampled each `every_s` seconds from the search on if it is simulated.
     fn traced(&self, offset: f64, _every_s: f64) -> (Trial, Vec<Sample>) {
         (self.trial(offset), Vec::new())
     }

@@ -51,8 +51,7 @@ impl Frame {
         Placement::new(&self.poses.plug).tilt / DEG
     }
 
-    /// How far a finger, by its place, is bent from where its jaw would have it, mm; x, y, z of
-    /// the jaw.
+    /// How far a finger, by its place, is bent from where its jaw would have it, mm; jaw axes.
     pub fn deflection_mm(&self, finger: usize) -> [f64; 3] {
         let bent = self.jaws[finger].inverse() * self.poses.fingers[finger];
         (bent.translation.vector / MM).into()
@@ -78,8 +77,7 @@ pub struct Recording {
     pub trial: Trial,
     /// Moments in their order, about a millisecond apart.
     pub frames: Vec<Frame>,
-    /// When its outcome was decided, s: of a plug that missed at the beginning of the push,
-    /// of every other at the end.
+    /// When its outcome was decided, s: of a plug that missed at the push, else at the end.
     pub decided_s: f64,
 }
 

@@ -40,8 +40,7 @@ pub enum RigError {
 }
 
 impl EngineRig {
-    /// Puts the robot in place; for fingers as in the paper, whose springs are not coupled
-    /// unless the task says so.
+    /// Puts the robot in place for the paper's fingers.
     ///
     /// # Errors
     /// If robot or engine cannot do the task.
@@ -176,8 +175,7 @@ impl<'a> Prepared<'a> {
         self.descended.get_or_init(|| self.attempt.descended()).as_ref()
     }
 
-    /// The trial, and what was asked for on the way: samples from the search on, frames from the
-    /// grasp on if it is filmed.
+    /// The trial, samples from the search on, and frames from the grasp on; both if asked for.
     fn watched(&self, offset: f64, trace: Option<Trace>) -> (Trial, Vec<Sample>, Vec<Frame>) {
         let seen = trace.is_some() || self.attempt.recorder.is_some();
         let mut attempt =

@@ -68,10 +68,9 @@ impl Measure {
         matches!(self, Measure::SuccessRate | Measure::RobustRange)
     }
 
-    /// Its value in its unit, `None` if there is none: the measure was not taken, or the
-    /// nominal start diverges. A nominal start that fails leaves a range of 0, and neither
-    /// force nor slip, which are those of inserted trials. A window that a divergence ends
-    /// counts as far as it was seen to insert.
+    /// Its value in its unit, `None` if the measure was not taken or the nominal start diverges. A
+    /// nominal start that fails leaves a range of 0, and neither force nor slip. A window that a
+    /// divergence ends counts as far as it was seen to insert.
     pub fn value(self, evaluation: &Evaluation) -> Option<f64> {
         let value = match self {
             Measure::SuccessRate => evaluation.success.as_ref()?.rate(),

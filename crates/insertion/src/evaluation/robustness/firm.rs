@@ -1,5 +1,4 @@
-//! The firm window: the part of a window that is left when friction, start and step vary a
-//! little, as nobody controls them.
+//! The firm window: what is left of a window when friction, start and step vary a little.
 //!
 //! Each end is followed inward from the window's own, 0.1 mm at a time, to the first offset at
 //! which all repeats insert. What lies between the two ends is not tried again.
@@ -24,8 +23,7 @@ pub struct FirmWindow {
 /// Result of the repeats at both ends of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Firm {
-    /// The firm window; `None` if there is no offset from an end to the nominal start, or no
-    /// window at all, at which all repeats insert.
+    /// The firm window; `None` if nowhere from an end to the nominal start all repeats insert.
     pub window: Option<FirmWindow>,
     /// Trials of all repeats.
     pub trials: u32,
@@ -70,8 +68,7 @@ pub fn measure(repeats: &Repeats, window: &Window) -> Firm {
 }
 
 /// The outermost of the steps `from` to 0 at which all repeats insert, and the trials run. The
-/// repeat that failed last is asked first: it is the likeliest to fail again, and one failure is
-/// enough.
+/// repeat that failed last is asked first: it is the likeliest to fail again, and one is enough.
 fn end(repeats: &Repeats, from: OffsetStep, sign: OffsetStep) -> (Option<OffsetStep>, u32) {
     let (count, mut doubtful, mut trials) = (repeats.count(), 0, 0);
     for step in (0..=from).rev() {

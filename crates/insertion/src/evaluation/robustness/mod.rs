@@ -1,5 +1,4 @@
-//! What a finger keeps of its window when not everything is as the task file
-//! says: trials and windows under drawn errors.
+//! Trials and windows under drawn errors: what a finger keeps of its window.
 
 pub mod firm;
 pub mod repeat;
@@ -14,8 +13,7 @@ use crate::surrogate::Prediction;
 use crate::trial::{Grasp, Rig};
 use rayon::prelude::*;
 
-/// What is measured of a design beside its window, with the draws that all
-/// designs of a study share.
+/// Measures of a design beside its window, with the draws that all designs of a study share.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
     success: Option<(Vec<Draw>, SuccessSettings)>,
@@ -26,8 +24,7 @@ impl Plan {
     /// Nothing beside the window.
     pub const WINDOW: Plan = Plan { success: None, robust: None };
 
-    /// Success rates, robust ranges or both under the errors of a distribution;
-    /// `seed` names the streams they are drawn from.
+    /// Success rates, robust ranges or both; `seed` names the streams that errors are drawn from.
     pub fn new(uncertainty: &Uncertainty, seed: u64, success: bool, robust: bool) -> Self {
         let draws = |count| draws(&uncertainty.errors, seed, count);
         let (rate, range) = (uncertainty.success, uncertainty.robust);

@@ -67,8 +67,7 @@ impl<'a> Repeats<'a> {
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()
     }
 
-    /// Where the outcome near one end of a window hangs on such changes; `sign` is
-    /// the direction of the end, -1 or 1.
+    /// Where the outcome near one end hangs on such changes; `sign` is its direction, -1 or 1.
     fn band(&self, window: &Window, sign: OffsetStep) -> Band {
         let end = if sign < 0 { -window.negative_steps } else { window.positive_steps };
         let inserted = |step: OffsetStep| self.inserted(sign * step);
@@ -100,8 +99,7 @@ impl<'a> Repeats<'a> {
     }
 }
 
-/// The offsets near one end where the outcome changes with small changes; grid steps
-/// outward from the nominal start.
+/// Offsets near one end whose outcome small changes decide; grid steps outward.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// The outermost offset at which all repeats insert.
@@ -111,8 +109,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// Width between the two, less the 0.1 mm that the grid leaves open anyway, mm;
-    /// `None` if it is wider than 2 mm to one side.
+    /// Width less the 0.1 mm that the grid leaves open, mm; `None` if above 2 mm to one side.
     pub fn width_mm(&self) -> Option<f64> {
         Some(grid_mm(self.surely_fails? - self.surely_inserts? - 1))
     }

@@ -6,8 +6,7 @@
 //!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);
 //! - `finger.`, then one of [`finger_keys`] (`finger.rcc_mm`).
 //!
-//! Values are in the unit that the key carries. They are put into the task as read,
-//! before its checks, so that no design escapes them.
+//! Values are in the unit of the key. They enter the task before its checks: none escapes them.
 
 pub mod printable;
 mod space;

@@ -5,10 +5,9 @@ use crate::space::{Design, Parameter, Space, corners};
 use finray::geometry::Geometry;
 use input::{Check, InputError};
 
-/// Checks that a space read from `file` has none but printable fingers: every combination of
-/// extreme values of infill and finger must have a profile, its walls no thinner and its gaps no
-/// narrower than a printer's. Thickness and gaps rise or fall with each number alone, so what lies
-/// between is printable, too.
+/// Checks that a space read from `file` has none but printable fingers, by every combination of
+/// extreme values of infill and finger. Thickness and gaps rise or fall with each number alone, so
+/// what lies between is printable, too.
 ///
 /// # Errors
 /// If a key sets nothing in the finger file, or a combination cannot be printed.

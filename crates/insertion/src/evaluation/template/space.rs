@@ -17,8 +17,7 @@ const COMBINATIONS: usize = 4096;
 
 impl Template {
     /// Checks a space read from `file`: it must have the infill, every other key must set
-    /// something, and no combination of extreme values may be impossible; `fits` says
-    /// whether robot and engine can do a task.
+    /// something, and no combination of extremes may be impossible; `fits` asks robot and engine.
     ///
     /// The checks of a task bound single numbers and differences of two, so a space whose
     /// corners pass has no impossible design; moves may not be zero, so the level nearest to

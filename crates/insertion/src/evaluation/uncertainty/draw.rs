@@ -25,14 +25,12 @@ pub struct Draw {
     stiffness_sd_factor: f64,
 }
 
-/// `count` draws of a study. Draw `i` is a function of the seed and `i`: more
-/// draws leave the first ones as they were.
+/// `count` draws of a study; draw `i` is a function of the seed and `i` alone.
 pub fn draws(errors: &Errors, seed: u64, count: u32) -> Vec<Draw> {
     (0..count).map(|i| draw(errors, seed, u64::from(i))).collect()
 }
 
-/// All numbers are drawn whatever the spreads are, so that switching one error
-/// off leaves the others as they were.
+/// All numbers are always drawn: switching one error off leaves the others as they were.
 fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
     let mut random = stream(seed, index, PURPOSE);
     let [offset, yaw, compliance, assembly, across]: [f64; 5] =

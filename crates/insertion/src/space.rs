@@ -1,9 +1,5 @@
 //! Search spaces: named, bounded, stepped parameters, and the designs in them.
 
-mod corners;
-
-pub(crate) use corners::corners;
-
 use ask_tell::GridPoint;
 use finray::infill;
 use input::{Check, InputError, read, shown};
@@ -114,6 +110,36 @@ impl Parameter {
             }
         }
     }
+
+    /// The smallest and the largest value, and the one nearest to zero.
+    pub(crate) fn extremes(&self) -> Vec<f64> {
+        let last = self.levels() - 1;
+        let zero = (-self.low / self.step).round().clamp(0.0, f64::from(last)) as u32;
+        let mut levels = vec![0, zero, last];
+        levels.sort_unstable();
+        levels.dedup();
+        levels.into_iter().map(|level| self.value(level)).collect()
+    }
+}
+
+/// All combinations of extreme values; a parameter that would make them above `most` is left out.
+pub(crate) fn corners<'a>(
+    parameters: impl IntoIterator<Item = &'a Parameter>,
+    most: usize,
+) -> Vec<Design> {
+    let mut designs = vec![Design::default()];
+    for parameter in parameters {
+        let values = parameter.extremes();
+        if values.len() <= most / designs.len() {
+            let with = |mut design: Design, value| {
+                design.0.insert(parameter.key.clone(), value);
+                design
+            };
+            let each = |design: &Design| values.iter().map(|&v| with(design.clone(), v)).collect();
+            designs = designs.iter().flat_map::<Vec<Design>, _>(each).collect();
+        }
+    }
+    designs
 }
 
 /// A checked search space.

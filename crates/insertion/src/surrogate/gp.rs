@@ -93,7 +93,7 @@ pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess<2>>
 
 /// Fits the ratio of measured and computed stiffness, about one number for all designs.
 pub(super) fn fit_ratio(ratios: &Measured) -> Option<PhysicalProcess<1>> {
-    fit_about(Link::logarithm(), &[1.0], ratios)
+    fit_about(Link { sum: Sum::Product, scale: None }, &[1.0], ratios)
 }
 
 /// Maximum likelihood over the grid.
@@ -156,7 +156,7 @@ impl<const P: usize> Fitted for PhysicalProcess<P> {
     }
 
     fn describe(&self) -> String {
-        let mean = match self.link.sum() {
+        let mean = match self.link.sum {
             Sum::Parallel => "k = a + b density^n cos^4(direction)",
             Sum::Series => "1/k = a + b density^n cos^4(direction)",
             Sum::Product => "ln(k / computed) = a",

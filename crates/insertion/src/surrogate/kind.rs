@@ -55,7 +55,7 @@ pub(super) fn fit_axis(
     }
     let positive = Link::new(Sum::Parallel, measured.targets());
     match kind {
-        ModelKind::Linear => boxed(ridge::fit(measured, 1, Link::identity(), &[0.0])),
+        ModelKind::Linear => boxed(ridge::fit(measured, 1, Link::IDENTITY, &[0.0])),
         ModelKind::RidgeLinear => boxed(ridge::fit(measured, 1, positive, &ridge::PENALTIES)),
         ModelKind::RidgeQuadratic => boxed(ridge::fit(measured, 2, positive, &ridge::PENALTIES)),
         ModelKind::GaussianProcess => boxed(gp::fit(axis, measured)),

@@ -1,9 +1,8 @@
 //! Leave-one-out errors: how well a model predicts a finger it has not seen.
 
 use super::kind::fit_axis;
-use super::{Computed, Fitted, Measured, ModelKind, left_out, measured};
+use super::{Fitted, Measured, ModelKind, left_out, measured};
 use crate::stiffness::{Axis, Measurement};
-use finray::FingerError;
 use input::units::N_PER_MM;
 
 /// Leave-one-out error of one model on one axis.
@@ -35,22 +34,8 @@ pub(super) struct Data {
 }
 
 impl Data {
-    /// The measured stiffness itself.
-    pub fn measured(axis: Axis, measurements: &[Measurement]) -> Self {
-        Data::by(axis, measurements, vec![1.0; measurements.len()])
-    }
-
-    /// Ratios of measured and computed stiffness.
-    pub fn ratios(
-        axis: Axis,
-        measurements: &[Measurement],
-        computed: &Computed,
-    ) -> Result<Self, FingerError> {
-        let unit = |m: &Measurement| computed.stiffness(axis, m.infill());
-        Ok(Data::by(axis, measurements, measurements.iter().map(unit).collect::<Result<_, _>>()?))
-    }
-
-    fn by(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
+    /// Of these measurements, in units of each.
+    pub fn new(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
         let infills: Vec<_> = measurements.iter().map(Measurement::infill).collect();
         let values = measurements.iter().zip(&units).map(|(m, unit)| m.stiffness(axis) / unit);
         Data { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }

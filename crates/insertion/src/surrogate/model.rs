@@ -71,12 +71,12 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     };
     let computed = Computed::new(finger);
     let choose = |axis| {
-        let data = if ratios {
-            Data::ratios(axis, measurements, &computed)?
-        } else {
-            Data::measured(axis, measurements)
+        let unit = |m: &Measurement| match ratios {
+            true => computed.stiffness(axis, m.infill()),
+            false => Ok(1.0),
         };
-        Ok::<_, FitError>(choose(axis, &data, kinds)?)
+        let units = measurements.iter().map(unit).collect::<Result<_, _>>()?;
+        Ok::<_, FitError>(choose(axis, &Data::new(axis, measurements, units), kinds)?)
     };
     let (assembly, mut loo) = choose(Axis::Assembly)?;
     let (compliance, rest) = choose(Axis::Compliance)?;

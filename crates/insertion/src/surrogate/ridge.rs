@@ -130,7 +130,7 @@ mod tests {
         let n = stiffness.len() as f64;
         let data = crate::surrogate::measured(&infills, &stiffness);
         for penalty in PENALTIES {
-            let fitted = fit_one(&data, 2, Link::identity(), penalty).unwrap();
+            let fitted = fit_one(&data, 2, Link::IDENTITY, penalty).unwrap();
             let row = |&infill: &Infill| -> Vec<f64> {
                 let terms = terms(infill, 2);
                 terms.iter().zip(&fitted.terms).map(|(&t, scale)| scale.apply(t)).collect()

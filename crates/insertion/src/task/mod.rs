@@ -6,7 +6,6 @@ pub mod finger;
 pub mod geometry;
 mod latch;
 mod raw;
-mod raw_finger;
 mod raw_part;
 mod rounded;
 

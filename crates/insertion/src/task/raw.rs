@@ -1,7 +1,7 @@
 //! The task file as written, and the checks that turn it into a [`Task`].
 
+use super::finger::{RawFinger, finger};
 use super::latch::{RawLatch, latch};
-use super::raw_finger::{RawFinger, finger};
 use super::raw_part::{RawPart, parts};
 use super::{
     Ending, Friction, Grip, Hold, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,

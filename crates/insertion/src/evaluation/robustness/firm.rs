@@ -5,7 +5,6 @@
 
 use super::repeat::Repeats;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
-use crate::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 
 /// Repeats at each end.
@@ -51,11 +50,8 @@ impl Firm {
     }
 }
 
-/// Follows both ends of a window inward.
+/// Follows both ends of a window whose nominal start inserts inward.
 pub fn measure(repeats: &Repeats, window: &Window) -> Firm {
-    if window.nominal != Outcome::Inserted {
-        return Firm::NONE;
-    }
     let ((negative, below), (positive, above)) = rayon::join(
         || end(repeats, -window.negative_steps, -1),
         || end(repeats, window.positive_steps, 1),
@@ -89,6 +85,7 @@ mod tests {
     use super::*;
     use crate::evaluation::tolerance::{Search, evaluate, offset};
     use crate::fixtures::finger;
+    use crate::outcome::Outcome;
     use crate::trial::Grasp;
     use crate::trial::fake::FakeRig;
 
@@ -115,14 +112,5 @@ mod tests {
             (part.negative_steps, part.end_positive),
             (firm.negative_steps, window.end_positive)
         );
-    }
-
-    #[test]
-    fn nothing_is_firm_where_nothing_inserts() {
-        let (rig, finger) = (FakeRig::default(), finger(3.0, 20.0));
-        let mut window = evaluate(&rig, &finger, Search::Walk).window;
-        window.nominal = Outcome::Diverged;
-        let found = measure(&Repeats::new([&rig, &rig], Grasp::of(&finger), 0, 6), &window);
-        assert_eq!((found, found.range_mm()), (Firm::NONE, 0.0));
     }
 }

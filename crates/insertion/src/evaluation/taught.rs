@@ -4,8 +4,8 @@
 //! that inserts is looked for; then the window around it; the start is its middle. If the
 //! middle does not insert, since the window has a gap, the start stays where it was found.
 
+use super::OffsetStep;
 use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
-use super::{OffsetStep, Window};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::trial::{Grasp, Grasped, Recording, Rig, Sample, Trial};
@@ -25,14 +25,10 @@ pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Option<Offset
     let outward = (1..=FARTHEST / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
     let found = std::iter::once(0).chain(outward).find(|&step| inserts(step))?;
     let window = tolerance::evaluate_in(&Moved { rig, by: found }, grasp, Search::Strides).window;
-    let middle = found + middle(&window);
+    let both = window.negative_steps + window.positive_steps;
+    // Towards zero.
+    let middle = found + both.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
     Some(if inserts(middle) { middle } else { found })
-}
-
-/// The middle of a window, in grid steps, towards zero.
-fn middle(window: &Window) -> OffsetStep {
-    (window.negative_steps + window.positive_steps).clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS)
-        / 2
 }
 
 /// A rig, or a grasped part, whose start is moved.
@@ -54,12 +50,8 @@ impl<R: Deref<Target: Rig> + Send + Sync> Rig for Moved<R> {
 }
 
 impl Grasped for Moved<Box<dyn Grasped + '_>> {
-    fn trial(&self, shift: f64) -> Trial {
-        self.rig.trial(shift + offset(self.by))
-    }
-
-    fn traced(&self, shift: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        self.rig.traced(shift + offset(self.by), every_s)
+    fn sampled(&self, shift: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+        self.rig.sampled(shift + offset(self.by), every_s)
     }
 }
 

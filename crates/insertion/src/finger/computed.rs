@@ -114,7 +114,14 @@ impl Computed<'_> {
         // x at the pad = x at the centre + ry below + rz ahead.
         let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
         let across = to_pad.transpose() * self.across * to_pad;
-        let matrix = assembled([1.0 / in_y, 1.0 / in_z], tilting, across);
+        // The stiffness on all six axes at the centre.
+        let mut matrix = Matrix6::zeros();
+        (matrix[(1, 1)], matrix[(2, 2)], matrix[(3, 3)]) = (1.0 / in_y, 1.0 / in_z, tilting);
+        for (i, row) in ACROSS.into_iter().enumerate() {
+            for (j, column) in ACROSS.into_iter().enumerate() {
+                matrix[(row, column)] = across[(i, j)];
+            }
+        }
         Ok(Finger {
             compliance: matrix[(1, 1)],
             assembly: matrix[(2, 2)],
@@ -131,18 +138,6 @@ impl Computed<'_> {
 
 /// Places of x, ry and rz among the six axes.
 const ACROSS: [usize; 3] = [0, 4, 5];
-
-/// The stiffness on all six axes at the centre.
-fn assembled([in_y, in_z]: [f64; 2], tilting: f64, across: Matrix3<f64>) -> Matrix6<f64> {
-    let mut matrix = Matrix6::zeros();
-    (matrix[(1, 1)], matrix[(2, 2)], matrix[(3, 3)]) = (in_y, in_z, tilting);
-    for (i, row) in ACROSS.into_iter().enumerate() {
-        for (j, column) in ACROSS.into_iter().enumerate() {
-            matrix[(row, column)] = across[(i, j)];
-        }
-    }
-    matrix
-}
 
 #[cfg(test)]
 mod tests {

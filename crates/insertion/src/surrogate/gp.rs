@@ -70,14 +70,6 @@ fn correlation(a: &Place, b: &Place) -> f64 {
     a.iter().zip(b).map(|(a, b)| matern52((a - b) * (a - b))).product()
 }
 
-/// The sum that holds along an axis, and the density exponents tried.
-fn physics(axis: Axis) -> (Sum, &'static [f64]) {
-    match axis {
-        Axis::Assembly => (Sum::Parallel, &[1.0]),
-        Axis::Compliance => (Sum::Series, &[-1.0, -1.25, -1.5, -1.75, -2.0]),
-    }
-}
-
 /// Feature of the mean, then the inputs of the process.
 fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
     let density = infill[0].max(LEAST_DENSITY);
@@ -87,7 +79,10 @@ fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
 
 /// Fits stiffness about the lamina's mean; `None` if nothing can be fitted.
 pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess<2>> {
-    let (sum, exponents) = physics(axis);
+    let (sum, exponents): (_, &[f64]) = match axis {
+        Axis::Assembly => (Sum::Parallel, &[1.0]),
+        Axis::Compliance => (Sum::Series, &[-1.0, -1.25, -1.5, -1.75, -2.0]),
+    };
     fit_about(Link::new(sum, measured.targets()), exponents, measured)
 }
 

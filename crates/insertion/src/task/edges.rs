@@ -71,22 +71,22 @@ impl Face {
     }
 }
 
-/// Error of a box that cannot be cut so.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Uncut {
-    /// The cuts take more than a face has.
-    Room,
-    /// The hull that is left is so thin, or so small, that corners of it would be lost.
-    Thin,
-}
+/// What is wrong with cuts that take more than a face has.
+const ROOM: &str = "take off more than the part has; make them smaller";
+/// What is wrong with cuts of so thin, or so small, a part that corners of the hull would be lost.
+const THIN: &str = "need a part that is not so thin or so small; leave its edges sharp";
 
 /// The solid that the cuts leave of a box.
 ///
 /// # Errors
-/// If the cuts take more than a face has, or leave too thin a hull.
-pub fn cut(min: &Vector3<f64>, max: &Vector3<f64>, edges: &[(Edge, Cut)]) -> Result<Solid, Uncut> {
+/// What is wrong with the cuts.
+pub fn cut(
+    min: &Vector3<f64>,
+    max: &Vector3<f64>,
+    edges: &[(Edge, Cut)],
+) -> Result<Solid, &'static str> {
     if !fit(&(max - min), edges) {
-        return Err(Uncut::Room);
+        return Err(ROOM);
     }
     let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
     let corner = |face: Face| if face.high { max } else { min };
@@ -100,7 +100,7 @@ pub fn cut(min: &Vector3<f64>, max: &Vector3<f64>, edges: &[(Edge, Cut)]) -> Res
     let corners = corners(&spaces);
     match geometry::hull(&corners) {
         Some((points, _)) if points.len() == corners.len() => Ok(Solid::Hull { points }),
-        _ => Err(Uncut::Thin),
+        _ => Err(THIN),
     }
 }
 
@@ -179,7 +179,7 @@ mod tests {
 
     const SIZE: [f64; 3] = [4.0, 6.0, 10.0];
 
-    fn left(text: &str, cut: Cut) -> Result<Solid, Uncut> {
+    fn left(text: &str, cut: Cut) -> Result<Solid, &'static str> {
         let edges: Vec<_> = named(text).unwrap().into_iter().map(|edge| (edge, cut)).collect();
         super::cut(&Vector3::zeros(), &(Vector3::from(SIZE) * MM), &edges)
     }
@@ -215,8 +215,8 @@ mod tests {
     fn a_cut_may_take_a_face_away_but_not_the_other_side() {
         let Ok(Solid::Hull { points }) = left("-z+x", Cut::Chamfer(4.0 * MM)) else { panic!() };
         assert_eq!(points.len(), 8, "a wedge at the tip: {points:?}");
-        assert_eq!(left("-z+x", Cut::Chamfer(4.1 * MM)), Err(Uncut::Room));
-        assert_eq!(left("-z", Cut::Radius(2.1 * MM)), Err(Uncut::Room));
+        assert_eq!(left("-z+x", Cut::Chamfer(4.1 * MM)), Err(ROOM));
+        assert_eq!(left("-z", Cut::Radius(2.1 * MM)), Err(ROOM));
         assert!(left("-z", Cut::Radius(1.9 * MM)).is_ok());
     }
 
@@ -240,7 +240,7 @@ mod tests {
                     }
                     Err(why) => {
                         refused += 1;
-                        assert_eq!(why, Uncut::Thin);
+                        assert_eq!(why, THIN);
                         assert!(thick / side < 0.003, "{thick} x {side} mm");
                     }
                 }

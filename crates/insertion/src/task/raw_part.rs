@@ -1,6 +1,6 @@
 //! Parts as written, and the checks that turn them into solids.
 
-use super::edges::{self, Cut, Edge, Uncut};
+use super::edges::{self, Cut, Edge};
 use super::geometry::{self, Axis, Part, Solid};
 use super::raw::{coefficient, size, span};
 use input::units::MM;
@@ -160,11 +160,5 @@ fn without_edges(
     if cuts.is_empty() {
         return Ok(Solid::Box { min, max });
     }
-    match edges::cut(&min, &max, &cuts) {
-        Ok(solid) => Ok(solid),
-        Err(Uncut::Room) => check.fail(key, "take off more than the part has; make them smaller"),
-        Err(Uncut::Thin) => {
-            check.fail(key, "need a part that is not so thin or so small; leave its edges sharp")
-        }
-    }
+    edges::cut(&min, &max, &cuts).or_else(|problem| check.fail(key, problem))
 }

@@ -5,7 +5,7 @@
 //! it jams below and misses above. Friction divides the lower end, yaw takes 1 mm a degree off
 //! both, a part low in the gripper its own height; clearance is added.
 
-use super::{Conditions, Grasp, Grasped, Rig, Trial};
+use super::{Conditions, Grasp, Grasped, Rig, Sample, Trial};
 use crate::finger::Finger;
 use crate::outcome::{FailureClass, Outcome};
 use input::units::{DEG, MM, N_PER_MM};
@@ -61,7 +61,7 @@ struct FakeGrasp<'a> {
 }
 
 impl Grasped for FakeGrasp<'_> {
-    fn trial(&self, offset: f64) -> Trial {
+    fn sampled(&self, offset: f64, _every_s: Option<f64>) -> (Trial, Vec<Sample>) {
         let stopped = self.stop.load(Ordering::Relaxed);
         if !stopped {
             std::thread::sleep(self.delay);
@@ -79,7 +79,7 @@ impl Grasped for FakeGrasp<'_> {
         };
         // Distance in mm to the nearer end.
         let margin = (offset_mm - self.low).min(self.high - offset_mm).clamp(-1.0, 1.0);
-        Trial {
+        let trial = Trial {
             outcome,
             margin,
             depth_mm: if outcome == Outcome::Inserted { 12.0 } else { 0.0 },
@@ -89,7 +89,8 @@ impl Grasped for FakeGrasp<'_> {
             phases: Vec::new(),
             simulated_s: 1.0,
             retried: false,
-        }
+        };
+        (trial, Vec::new())
     }
 }
 
@@ -108,8 +109,8 @@ impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Rig for Altered<F> {
 }
 
 impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Grasped for AlteredGrasp<'_, F> {
-    fn trial(&self, offset: f64) -> Trial {
+    fn sampled(&self, offset: f64, _every_s: Option<f64>) -> (Trial, Vec<Sample>) {
         let trial = FakeRig::default().hold(self.grasp).trial(offset);
-        (self.alter)(&self.grasp, offset, trial)
+        ((self.alter)(&self.grasp, offset, trial), Vec::new())
     }
 }

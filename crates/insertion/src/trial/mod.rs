@@ -129,11 +129,12 @@ pub trait Rig: Send + Sync {
 
 /// A part held and tilted, ready for a trial at any offset.
 pub trait Grasped: Send + Sync {
-    /// One trial with the start shifted by `offset` metres along y.
-    fn trial(&self, offset: f64) -> Trial;
+    /// One trial with the start shifted by `offset` metres along y; sampled each `every_s` seconds
+    /// from the search on, if that is asked for and it is simulated.
+    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>);
 
-    /// The same trial, sampled each `every_s` seconds from the search on if it is simulated.
-    fn traced(&self, offset: f64, _every_s: f64) -> (Trial, Vec<Sample>) {
-        (self.trial(offset), Vec::new())
+    /// The trial alone.
+    fn trial(&self, offset: f64) -> Trial {
+        self.sampled(offset, None).0
     }
 }

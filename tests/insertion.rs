@@ -7,7 +7,7 @@ use contact::scene::{
 };
 use contact::{Engine, World};
 use finray::printed::PrintedFinger;
-use input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
+use input::shipped::{FINGERS, ROBOTS, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
 use input::units::{DEG, MM, N_PER_MM};
 use insertion::evaluation::robustness::{self, Plan};
 use insertion::evaluation::tolerance::{Search, evaluate};
@@ -76,13 +76,15 @@ fn all_measured_fingers_insert_at_each_nominal_start() {
 }
 
 #[test]
-fn the_arm_inserts_all_four_plugs() {
-    for name in ["ket8", "ket12", "rj45", "usb"] {
-        let rig = rig(task(name), "ur5e");
+fn the_arm_and_rapier_insert_all_four_plugs() {
+    for Shipped { name, .. } in TASKS {
+        let arm = rig(task(name), "ur5e");
         for finger in [finger(1.2, 52.4), finger(2.6, 45.0), finger(3.84, 35.0)] {
-            let outcome = trial(&rig, &finger, 0.0).outcome;
+            let outcome = trial(&arm, &finger, 0.0).outcome;
             assert_eq!(outcome, Outcome::Inserted, "{name} {finger:?}");
         }
+        let rapier = EngineRig::new(task(name), &robot("servo"), Box::<Rapier>::default()).unwrap();
+        assert_eq!(trial(&rapier, &finger(1.2, 52.4), 0.0).outcome, Outcome::Inserted, "{name}");
     }
 }
 
@@ -96,16 +98,6 @@ fn a_rigid_flange_inserts_with_more_force_than_a_soft_one() {
     };
     let peaks = [peak("servo"), peak("rigid")];
     assert!(peaks[1] > peaks[0] + 5.0, "{peaks:?} N");
-}
-
-#[test]
-fn rapier_inserts_all_four_plugs_too() {
-    for file in TASKS {
-        let engine = Box::<Rapier>::default();
-        let rig = EngineRig::new(task(file.name), &robot("servo"), engine).unwrap();
-        let trial = trial(&rig, &finger(1.2, 52.4), 0.0);
-        assert_eq!(trial.outcome, Outcome::Inserted, "{}", file.name);
-    }
 }
 
 #[test]
@@ -277,8 +269,7 @@ fn a_robust_range_is_smaller_than_the_range() {
 
 #[test]
 fn a_picture_shows_each_phase_twice() {
-    let rig = direct("rj45");
-    let finger = finger(2.0, 50.0);
+    let (rig, finger) = (direct("rj45"), finger(2.0, 50.0));
     let trial = trial(&rig, &finger, 0.0);
     let svg = picture::svg(&rig.task, &finger.pad, &trial, "a <trial>");
     assert_eq!(svg.matches("(y, z)").count(), trial.phases.len());

@@ -199,10 +199,14 @@ impl RobustRange {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn success(inserted: u32, failed: u32) -> SuccessRate {
+    pub fn ranges(ranges_mm: Vec<f64>) -> RobustRange {
+        RobustRange { ranges_mm, diverged: 0, value_mm: None, trials: 0 }
+    }
+
+    pub fn success(inserted: u32, failed: u32) -> SuccessRate {
         let failure_counts = [0, 0, failed, 0];
         SuccessRate { inserted, failure_counts, diverged: 3, confidence: 0.95 }
     }
@@ -225,8 +229,7 @@ mod tests {
 
     #[test]
     fn the_spread_of_ranges() {
-        let robust =
-            RobustRange { ranges_mm: vec![3.0, 5.0, 7.0], diverged: 0, value_mm: None, trials: 30 };
+        let robust = ranges(vec![3.0, 5.0, 7.0]);
         assert_eq!((robust.mean_mm(), robust.sd_mm()), (5.0, 2.0));
     }
 }

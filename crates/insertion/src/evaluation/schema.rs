@@ -149,6 +149,7 @@ pub(super) fn with_spread<S: Serializer>(
 mod tests {
     use super::*;
     use crate::evaluation::Evaluation;
+    use crate::evaluation::tests::{ranges, success};
 
     fn evaluation() -> Evaluation {
         let window = Window {
@@ -182,14 +183,8 @@ mod tests {
         full.window.nominal = Outcome::Failed(FailureClass::PlugMissed);
         (full.window.negative_steps, full.window.positive_steps) = (0, 0);
         (full.window.end_negative, full.window.end_positive) = (missed, missed);
-        full.success = Some(SuccessRate {
-            inserted: 3,
-            failure_counts: [1, 0, 2, 0],
-            diverged: 1,
-            confidence: 0.95,
-        });
-        full.robust =
-            Some(RobustRange { ranges_mm: vec![1.1], diverged: 2, value_mm: None, trials: 7 });
+        full.success = Some(success(3, 2));
+        full.robust = Some(RobustRange { diverged: 2, trials: 7, ..ranges(vec![1.1]) });
         assert_eq!(again(&full), full);
         full.taught = Some(-13);
         assert_eq!(again(&full), full);

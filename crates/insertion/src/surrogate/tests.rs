@@ -112,15 +112,9 @@ fn the_hull_is_that_of_the_measured_designs() {
     let outside = model.predict(40.0, 20.0).unwrap();
     assert!((outside.hull_distance - 0.5).abs() < 1e-12);
     assert!(!model.predict(10.0, 40.0).unwrap().inside_hull());
-    assert!(outside.compliance.sd > 0.0);
-}
-
-#[test]
-fn predictions_are_uncertain_away_from_the_data() {
-    let model = model();
-    let inside = model.predict(20.0, 20.0).unwrap().assembly;
-    let outside = model.predict(60.0, 60.0).unwrap().assembly;
-    assert!(outside.sd / outside.mean > inside.sd / inside.mean);
+    // Farther away predictions are less certain.
+    let [near, far] = [20.0, 60.0].map(|at| model.predict(at, at).unwrap().assembly);
+    assert!(far.sd / far.mean > near.sd / near.mean);
 }
 
 #[test]

@@ -128,29 +128,22 @@ mod tests {
 
     /// Free width of the socket along an axis through the middle of its opening, at the top.
     fn width(task: &Task, axis: usize) -> f64 {
-        let other = 1 - axis;
-        let [from, to] = task.opening[other];
+        let middle = task.opening.map(|[from, to]| (from + to) / 2.0);
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for part in &task.socket {
             let corners = part.solid.corners();
-            let span = |axis: usize| {
-                let along = corners.iter().map(|corner| corner[axis]);
-                (
-                    along.clone().fold(f64::INFINITY, f64::min),
-                    along.fold(f64::NEG_INFINITY, f64::max),
-                )
-            };
-            let (a, b) = span(other);
-            let at_top = span(2).1 > -0.1 * MM;
-            let beside = a < (from + to) / 2.0 && (from + to) / 2.0 < b;
-            let middle = (task.opening[axis][0] + task.opening[axis][1]) / 2.0;
-            if at_top && beside {
-                let (a, b) = span(axis);
-                if b <= middle {
-                    low = low.max(b);
-                } else if a >= middle {
-                    high = high.min(a);
-                }
+            let along = |axis: usize| corners.iter().map(move |corner| corner[axis]);
+            let lowest = |axis| along(axis).fold(f64::INFINITY, f64::min);
+            let highest = |axis| along(axis).fold(f64::NEG_INFINITY, f64::max);
+            let beside =
+                lowest(1 - axis) < middle[1 - axis] && middle[1 - axis] < highest(1 - axis);
+            if !beside || highest(2) <= -0.1 * MM {
+                continue;
+            }
+            if highest(axis) <= middle[axis] {
+                low = low.max(highest(axis));
+            } else if lowest(axis) >= middle[axis] {
+                high = high.min(lowest(axis));
             }
         }
         high - low

@@ -117,6 +117,7 @@ fn statistic(robust: &RobustRange, of: Statistic) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::evaluation::grid_mm;
+    use crate::evaluation::tests::ranges;
     use crate::fixtures::{finger, predicted};
     use crate::trial::fake::{FakeRig, window_in_mm};
     use input::shipped::UNCERTAINTIES;
@@ -147,10 +148,6 @@ mod tests {
         assert!(below > 5 && above > 20, "{below} and {above}");
         assert_eq!(found.failure_counts, [0, above, below, 0]);
         assert_eq!((found.inserted, found.counted()), (300 - below - above, 300));
-    }
-
-    fn ranges(ranges_mm: Vec<f64>) -> RobustRange {
-        RobustRange { ranges_mm, diverged: 0, value_mm: None, trials: 0 }
     }
 
     #[test]

@@ -48,7 +48,6 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// The first problem of bounds and step, if any.
     fn problem(&self) -> Option<String> {
         let Parameter { low, high, step, .. } = *self;
         let [least, most] = bounds(&self.key);
@@ -78,7 +77,6 @@ impl Parameter {
         self.steps().round() as u32 + 1
     }
 
-    /// Steps from the lowest value to the highest.
     fn steps(&self) -> f64 {
         self.steps_to(self.high)
     }
@@ -235,7 +233,6 @@ impl std::fmt::Display for Design {
     }
 }
 
-/// Most parameters of a space.
 const MOST_PARAMETERS: usize = 100;
 /// Smallest step: a thousand times the digit to which values are rounded.
 const FINEST_STEP: f64 = 1e-6;

@@ -134,7 +134,6 @@ impl Evaluation {
         }
     }
 
-    /// Counts some of the trials by which the window was found.
     fn count(&mut self, trials: &[Trial]) {
         self.trials += trials.len() as u32;
         self.simulated_s += trials.iter().map(|trial| trial.simulated_s).sum::<f64>();

@@ -41,9 +41,7 @@ const LEAST_DENSITY: f64 = 1.0;
 struct Setting {
     /// Of the density in the feature.
     exponent: f64,
-    /// Inverse correlation length.
     theta: f64,
-    /// Ratio of noise to process variance.
     nugget: f64,
 }
 
@@ -56,7 +54,6 @@ pub(super) struct PhysicalProcess<const P: usize> {
     scales: [Standard; 3],
     /// Of the values on the scale of the link.
     target: Standard,
-    /// Where the designs lie.
     places: Vec<Place>,
     /// Of the standardised values, in units of the process variance.
     process: Process<P>,

@@ -24,7 +24,6 @@ pub struct Loo {
     pub chosen: bool,
 }
 
-/// What the models of one axis are fitted to.
 pub(super) struct Data {
     axis: Axis,
     /// Stiffness, N/m; of computed kinds measured / computed.

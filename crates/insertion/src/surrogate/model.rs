@@ -20,8 +20,8 @@ pub struct Model {
     /// The measurements it was fitted to.
     pub measurements: Vec<Measurement>,
     hull: Hull,
-    assembly: Chosen,
-    compliance: Chosen,
+    /// By axis.
+    chosen: [Chosen; 2],
     /// Leave-one-out errors: one row per axis and model, assembly first.
     pub loo: Vec<Loo>,
     /// The fingers as their ribs have them, each computed once.
@@ -35,13 +35,6 @@ pub struct Model {
 struct Chosen {
     fitted: Box<dyn Fitted>,
     widen: f64,
-}
-
-impl Chosen {
-    fn predict(&self, infill: Infill) -> Estimate {
-        let Estimate { mean, sd } = self.fitted.predict(infill);
-        Estimate { mean, sd: sd * self.widen }
-    }
 }
 
 /// Why there is no model.
@@ -83,7 +76,7 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     loo.extend(rest);
     let hull = Hull::new(&infills);
     let measurements = measurements.to_vec();
-    Ok(Model { measurements, hull, assembly, compliance, loo, computed, ratios })
+    Ok(Model { measurements, hull, chosen: [assembly, compliance], loo, computed, ratios })
 }
 
 fn choose(
@@ -124,13 +117,15 @@ impl Model {
         direction_deg: f64,
     ) -> Result<Prediction, FingerError> {
         let infill = [density_percent, direction_deg];
-        let axis = |axis, chosen: &Chosen| {
-            let unit = self.ratios.then(|| self.computed.stiffness(axis, infill));
-            Ok::<_, FingerError>(chosen.predict(infill).times(unit.transpose()?.unwrap_or(1.0)))
+        let along = |axis| {
+            let Chosen { fitted, widen } = &self.chosen[axis as usize];
+            let unit = if self.ratios { self.computed.stiffness(axis, infill)? } else { 1.0 };
+            let Estimate { mean, sd } = fitted.predict(infill);
+            Ok::<_, FingerError>(Estimate { mean: mean * unit, sd: sd * widen * unit })
         };
         Ok(Prediction {
-            compliance: axis(Axis::Compliance, &self.compliance)?,
-            assembly: axis(Axis::Assembly, &self.assembly)?,
+            compliance: along(Axis::Compliance)?,
+            assembly: along(Axis::Assembly)?,
             hull_distance: self.hull.distance(infill),
         })
     }
@@ -150,19 +145,12 @@ impl Model {
 
     /// The model's parameters on an axis, in words.
     pub fn describe(&self, axis: Axis) -> String {
-        self.of(axis).fitted.describe()
+        self.chosen[axis as usize].fitted.describe()
     }
 
     /// Factor by which the predicted standard deviation of an axis was widened
     /// so that the leave-one-out errors fit it; 1 if it fitted already.
     pub fn widening(&self, axis: Axis) -> f64 {
-        self.of(axis).widen
-    }
-
-    fn of(&self, axis: Axis) -> &Chosen {
-        match axis {
-            Axis::Assembly => &self.assembly,
-            Axis::Compliance => &self.compliance,
-        }
+        self.chosen[axis as usize].widen
     }
 }

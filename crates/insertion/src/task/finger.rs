@@ -79,7 +79,6 @@ impl Coupling {
     }
 }
 
-/// Largest infill direction, degrees.
 const LARGEST_DIRECTION_DEG: f64 = 90.0;
 
 #[derive(Deserialize, Default)]
@@ -122,7 +121,6 @@ enum RawAxis {
     Rz,
 }
 
-/// The fingers of a task file.
 pub(super) fn finger(check: Check<'_>, raw: &RawFinger) -> Result<FingerModel, InputError> {
     let rcc = raw.rcc_mm.map(|raw| rcc(check, raw)).transpose()?;
     Ok(FingerModel { rcc, coupling: coupling(check, &raw.coupling)? })

@@ -50,7 +50,6 @@ fn stiffness(length: f64, width: f64, thickness: f64, modulus: f64) -> f64 {
     GAMMA * K_THETA * modulus * second_moment / length
 }
 
-/// The latch of a plug with these parts.
 pub fn latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, InputError> {
     let mut found = Vec::new();
     for name in &raw.parts {

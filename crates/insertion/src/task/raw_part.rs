@@ -51,7 +51,6 @@ pub struct RawEdges {
 
 /// Most parts of a plug or a socket: what a collision costs grows with their product.
 const MOST_PARTS: usize = 200;
-/// Most corners of an outline.
 const MOST_CORNERS: usize = 256;
 
 pub fn parts(check: Check<'_>, key: &str, parts: &[RawPart]) -> Result<Vec<Part>, InputError> {

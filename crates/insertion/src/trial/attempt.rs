@@ -166,7 +166,6 @@ impl<'a> Attempt<'a> {
         end
     }
 
-    /// The move of a phase that begins now.
     fn motion(&self, phase: &Phase) -> Move {
         let mut displacement = Vector3::from(phase.displacement);
         if phase.stage == Stage::Assembly {
@@ -291,7 +290,6 @@ impl<'a> Attempt<'a> {
         sum
     }
 
-    /// Takes a frame, if the trial is filmed.
     fn record(&mut self, dt: f64) {
         if !self.recorder.as_mut().is_some_and(|recorder| recorder.wants(dt)) {
             return;
@@ -409,7 +407,6 @@ impl<'a> Attempt<'a> {
     }
 }
 
-/// A turn about z, rad.
 fn turned(angle: f64) -> Pose {
     Pose::rotation(Vector3::z() * angle)
 }

@@ -149,7 +149,6 @@ fn servo_flange(servo: &Servo) -> (Motion, Springs) {
     (Motion::Carried(inertia), Springs::Axes(std::array::from_fn(axis)))
 }
 
-/// Friction of a finger's soft pad on the plug.
 fn pad_friction(task: &Task) -> Friction {
     let coefficient = task.friction.finger_plug;
     let torsion = match task.friction.finger_torsion {
@@ -242,7 +241,6 @@ fn body(name: impl Into<String>, motion: Motion, pose: Pose, geoms: Vec<Geom>) -
     Body { name: name.into(), motion, pose, geoms }
 }
 
-/// A joint between parent and child by its frames in the two.
 fn joint(
     name: impl Into<String>,
     [parent, child]: [BodyId; 2],

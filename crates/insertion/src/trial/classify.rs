@@ -56,7 +56,6 @@ impl Placement {
     }
 }
 
-/// Whether a value lies between two others.
 pub(super) fn within(value: f64, [from, to]: [f64; 2]) -> bool {
     from <= value && value <= to
 }

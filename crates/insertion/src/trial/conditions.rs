@@ -86,7 +86,6 @@ fn side(part: &Part, axis: usize, middle: f64) -> f64 {
 }
 
 impl Solid {
-    /// Moves the solid by x and y, m.
     fn shift(&mut self, [x, y]: [f64; 2]) {
         let moved = |corner: &mut Vector3<f64>| {
             corner.x += x;

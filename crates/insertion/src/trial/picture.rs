@@ -228,7 +228,6 @@ fn projected(geom: &Geom, body: &Pose, axis: usize) -> Vec<Point2<f64>> {
     geom.shape.corners().iter().map(project).collect()
 }
 
-/// The outline of a convex geom, projected along x (axis 1) or y (axis 0).
 fn polygon(out: &mut String, geom: &Geom, body: &Pose, axis: usize, fill: &str) {
     let outline = convex_outline(projected(geom, body, axis));
     let text: Vec<_> = outline.iter().map(|p| format!("{:.2},{:.2}", p.x, p.y)).collect();

@@ -78,7 +78,6 @@ impl EngineRig {
         Ok(EngineRig { task, robot: Arc::new(mounted), engine })
     }
 
-    /// Grasps, carries and approaches.
     fn prepare<'a>(
         &self,
         engine: &dyn Engine,
@@ -153,7 +152,6 @@ impl Ready<'_> {
 /// An attempt stopped right before the search; every offset starts from a copy.
 struct Prepared<'a> {
     attempt: Attempt<'a>,
-    /// Whether it came so far.
     end: Result<(), Stop>,
     /// The attempt after its way through the air, where that is the same for every offset.
     descended: OnceLock<Option<Attempt<'a>>>,

@@ -57,7 +57,6 @@ pub fn evaluate(
     evaluation
 }
 
-/// Runs one trial for each grasp, from its offset.
 fn success_rate(rig: &dyn Rig, drawn: &[(Grasp, f64)], settings: &SuccessSettings) -> SuccessRate {
     let trial = |&(grasp, offset): &(Grasp, f64)| rig.hold(grasp).trial(offset).outcome;
     let outcomes: Vec<Outcome> = drawn.par_iter().map(trial).collect();

@@ -13,7 +13,6 @@ use rayon::prelude::*;
 pub const FRICTION_SHARE: f64 = 0.1;
 /// Largest change of the start, m.
 pub const START: f64 = 0.02 * MM;
-/// Names the stream of the changes.
 const PURPOSE: &str = "repeat";
 /// Largest distance from an end at which its band is followed, in grid steps.
 const REACH: OffsetStep = 20;
@@ -48,12 +47,10 @@ impl<'a> Repeats<'a> {
         self.runs.par_iter().map(|(grasped, shift)| grasped.trial(offset + shift).outcome).collect()
     }
 
-    /// Number of runs.
     pub(super) fn count(&self) -> usize {
         self.runs.len()
     }
 
-    /// Whether one of the runs inserts at a grid step.
     pub(super) fn inserts(&self, run: usize, step: OffsetStep) -> bool {
         let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
             grasped.trial(tolerance::offset(step) + shift).outcome
@@ -61,7 +58,6 @@ impl<'a> Repeats<'a> {
         self.runs.get(run).map(trial) == Some(Outcome::Inserted)
     }
 
-    /// Number of runs that insert at a grid step.
     fn inserted(&self, step: OffsetStep) -> usize {
         let outcomes = self.outcomes(tolerance::offset(step));
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()

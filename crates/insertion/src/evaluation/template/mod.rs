@@ -125,7 +125,6 @@ impl Template {
         Ok((task, made))
     }
 
-    /// The task with these numbers in place of its own.
     fn changed(&self, of_task: &[(&str, f64)]) -> Result<Task, InputError> {
         if of_task.is_empty() {
             return Ok(self.task.clone());

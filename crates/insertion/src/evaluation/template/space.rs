@@ -12,7 +12,6 @@ use input::{Check, InputError};
 /// Whether robot and engine can do a task.
 pub type Fits<'a> = dyn Fn(&Task) -> Result<(), RigError> + 'a;
 
-/// Most combinations of extreme values that are tried.
 const COMBINATIONS: usize = 4096;
 
 impl Template {

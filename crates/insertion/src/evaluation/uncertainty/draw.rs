@@ -8,7 +8,6 @@ use ask_tell::stream::stream;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
-/// Names the stream of the errors.
 const PURPOSE: &str = "errors";
 
 /// One draw: what one insertion is like. It does not depend on the design, so

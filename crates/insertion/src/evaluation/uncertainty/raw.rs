@@ -68,13 +68,9 @@ enum RawStatistic {
 
 /// Largest error of a length, mm: no part is placed so badly.
 const LARGEST_MM: f64 = 20.0;
-/// Largest error of a clearance, mm.
 const LARGEST_CLEARANCE_MM: f64 = 2.0;
-/// Largest error of an angle, degrees.
 const LARGEST_DEG: f64 = 30.0;
-/// Largest factor on the stiffness model's own error.
 const LARGEST_FACTOR: f64 = 10.0;
-/// Most trials or samples a design may take.
 const MOST: u32 = 100_000;
 
 impl Uncertainty {

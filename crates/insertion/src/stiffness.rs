@@ -1,5 +1,6 @@
 //! Measured fingers: the CSV file and its checks.
 
+use finray::FingerError;
 use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
 
@@ -116,6 +117,9 @@ pub enum SurrogateError {
         /// Number of designs given.
         found: usize,
     },
+    /// A measured finger that cannot be computed.
+    #[error(transparent)]
+    Finger(#[from] FingerError),
     /// No model could be fitted.
     #[error(
         "no stiffness model in the {axis} direction can be fitted: \

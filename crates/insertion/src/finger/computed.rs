@@ -146,6 +146,7 @@ mod tests {
     use nalgebra::Vector3;
 
     const SHOULDER: f64 = 3.5 * MM;
+    const AT_PAD: AtPad = AtPad { compliance: 2.6e3, assembly: 45e3 };
 
     fn printed() -> PrintedFinger {
         PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
@@ -178,15 +179,14 @@ mod tests {
 
     #[test]
     fn at_the_pad_a_finger_is_as_stiff_as_measured_and_turns_as_computed() {
-        let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
-        let finger = finger(at_pad, Given::default()).unwrap();
+        let finger = finger(AT_PAD, Given::default()).unwrap();
         let compliance = at_pad_middle(&finger);
         for (axis, stiffness) in [(1, 2.6e3), (2, 45e3), (3, 2.5)] {
             let found = 1.0 / compliance[(axis, axis)];
             assert!((found / stiffness - 1.0).abs() < 1e-12, "{axis}: {found}");
         }
         // The pad's middle lies 0.95 mm below the TCP of the keys.
-        assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > at_pad.compliance);
+        assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > AT_PAD.compliance);
         assert_eq!(finger.pad.height, 9.0 * MM);
         let plate = stiffness(0.0, 0.0, 1.0).1.try_inverse().unwrap();
         for (i, row) in ACROSS.into_iter().enumerate() {
@@ -199,22 +199,20 @@ mod tests {
 
     #[test]
     fn a_given_centre_takes_the_computed_ones_place() {
-        let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
         let given = Given { rcc: Some(5.0 * MM), tilting: Some(3.0) };
-        let finger = finger(at_pad, given).unwrap();
+        let finger = finger(AT_PAD, given).unwrap();
         assert_eq!((finger.rcc, finger.rotation[0]), (5.0 * MM, 3.0));
         assert!((1.0 / at_pad_middle(&finger)[(1, 1)] / 2.6e3 - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_centre_too_far_for_the_stiffness_is_refused() {
-        let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
         let given = Given { rcc: Some(40.0 * MM), tilting: None };
-        let error = finger(at_pad, given).unwrap_err().to_string();
+        let error = finger(AT_PAD, given).unwrap_err().to_string();
         for part in ["finray9", "2.60 N/mm", "compliance", "39.0 mm", "2.50 N m/rad", "rcc_mm"] {
             assert!(error.contains(part), "{error}");
         }
-        let stiff = AtPad { assembly: 1e6, ..at_pad };
+        let stiff = AtPad { assembly: 1e6, ..AT_PAD };
         assert!(finger(stiff, Given::default()).unwrap_err().to_string().contains("assembly"));
     }
 }

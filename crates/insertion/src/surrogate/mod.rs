@@ -35,7 +35,7 @@ use rayon::prelude::*;
 use computed::Computed;
 pub use kind::ModelKind;
 pub use loo::Loo;
-pub use model::{ENOUGH, FitError, Model, fit};
+pub use model::{ENOUGH, Model, fit};
 pub(crate) use row::null_is_nan;
 
 /// A value with its standard deviation, both in the same unit.

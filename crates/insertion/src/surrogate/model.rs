@@ -37,24 +37,13 @@ struct Chosen {
     widen: f64,
 }
 
-/// Why there is no model.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum FitError {
-    /// Measurements that cannot be used.
-    #[error(transparent)]
-    Measurements(#[from] SurrogateError),
-    /// A measured finger that cannot be computed.
-    #[error(transparent)]
-    Finger(#[from] FingerError),
-}
-
 /// Fits every model, chooses one per axis by its leave-one-out error. Of [`ENOUGH`] designs
 /// without the finger, which costs nothing; of fewer about its computed stiffness.
 ///
 /// # Errors
 /// A measurement that cannot be used, none at all, designs that differ in too few respects,
 /// or of few measurements one of a finger that cannot be computed.
-pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, FitError> {
+pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, SurrogateError> {
     check_all(measurements)?;
     let infills: Vec<Infill> = measurements.iter().map(Measurement::infill).collect();
     let (ratios, kinds) = match measurements.len() {
@@ -68,8 +57,8 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
             true => computed.stiffness(axis, m.infill()),
             false => Ok(1.0),
         };
-        let units = measurements.iter().map(unit).collect::<Result<_, _>>()?;
-        Ok::<_, FitError>(choose(axis, &Data::new(axis, measurements, units), kinds)?)
+        let units = measurements.iter().map(unit).collect::<Result<_, FingerError>>()?;
+        choose(axis, &Data::new(axis, measurements, units), kinds)
     };
     let (assembly, mut loo) = choose(Axis::Assembly)?;
     let (compliance, rest) = choose(Axis::Compliance)?;

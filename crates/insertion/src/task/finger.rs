@@ -1,4 +1,4 @@
-//! What a task file may say of its fingers beyond their two measured springs.
+//! Fingers of a task file: what it may say beyond their two measured springs.
 
 use input::units::MM;
 use input::{Check, InputError};
@@ -110,7 +110,7 @@ struct RawCoupling {
     coefficient: f64,
 }
 
-#[derive(Deserialize, Clone, Copy, PartialEq, Debug)]
+#[derive(Deserialize, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 #[serde(rename_all = "kebab-case")]
 enum RawAxis {
     X,
@@ -150,8 +150,7 @@ fn coupling(check: Check<'_>, raw: &[RawCoupling]) -> Result<Option<Coupling>, I
         if first == second {
             return check.fail(key, format!("couples {first:?} with itself; name two axes"));
         }
-        let (low, high) =
-            ((*first as usize).min(*second as usize), (*first as usize).max(*second as usize));
+        let [low, high] = [first.min(second), first.max(second)].map(|axis| *axis as usize);
         if pairs.iter().any(|&(i, j, _)| (i, j) == (low, high)) {
             return check.fail(key, format!("couples {first:?} and {second:?} twice"));
         }
@@ -160,34 +159,25 @@ fn coupling(check: Check<'_>, raw: &[RawCoupling]) -> Result<Option<Coupling>, I
     if pairs.is_empty() {
         return Ok(None);
     }
-    match Coupling::new(pairs) {
-        Some(coupling) => Ok(Some(coupling)),
-        None => check.fail(
-            key,
-            "would let the finger run away: the 6x6 matrix of coefficients, with ones on its \
-                 diagonal, must be positive definite (one coefficient alone: between -1 and 1)",
-        ),
-    }
+    let problem = "would let the finger run away: the 6x6 matrix of coefficients, with ones on its \
+                   diagonal, must be positive definite (one coefficient alone: between -1 and 1)";
+    Coupling::new(pairs).map_or_else(|| check.fail(key, problem), |coupling| Ok(Some(coupling)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::task_file;
     use crate::task::Task;
 
     fn parse(finger: &str) -> Result<FingerModel, String> {
-        let text = include_str!("../../../../tasks/usb.toml")
-            .replace("[friction]", &format!("{finger}\n[friction]"));
+        let text = task_file("usb").text.replace("[friction]", &format!("{finger}\n[friction]"));
         Task::parse(&text, "usb.toml").map(|task| task.finger).map_err(|error| error.to_string())
     }
 
     #[test]
-    fn a_task_file_may_say_nothing_of_its_fingers() {
+    fn the_remote_centre_is_nothing_a_number_or_a_line() {
         assert_eq!(parse(""), Ok(FingerModel::default()));
-    }
-
-    #[test]
-    fn the_remote_centre_is_a_number_or_a_line() {
         assert_eq!(parse("[finger]\nrcc_mm = 25").unwrap().rcc.unwrap().at(40.0), 25.0 * MM);
         let line =
             parse("[finger]\nrcc_mm = { at_0_deg = 21.0, per_deg = 0.25 }").unwrap().rcc.unwrap();
@@ -203,7 +193,7 @@ mod tests {
             ("[finger]\nrcc_mm = nan".to_owned(), "finger.rcc_mm"),
             ("[finger]\nrcc_mm = \"far\"".to_owned(), "a number of mm, or {"),
             (
-                "[finger]\nrcc_mm = { at_0_deg = 21.0, per_degree = 1.0 }".to_owned(),
+                "[finger]\nrcc_mm = { at_0_deg = 2.0, per_degree = 1.0 }".to_owned(),
                 "a number of mm, or {",
             ),
             ("[finger]\nrcc_mm = { at_0_deg = 21.0, per_deg = -1.0 }".to_owned(), "at 90 degrees"),

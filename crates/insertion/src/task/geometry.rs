@@ -130,7 +130,11 @@ impl Solid {
                 (volume, middle, Matrix3::from_diagonal(&Vector3::new(across, across, along)))
             }
             Solid::Prism { axis, outline, span } => prism_moments(*axis, outline, *span),
-            Solid::Hull { points } => hull_moments(points),
+            Solid::Hull { points } => {
+                // The task file's checks leave no flat hull.
+                let (corners, faces) = hull(points).unwrap_or_default();
+                surface_moments(&corners, &faces)
+            }
         }
     }
 }
@@ -227,12 +231,6 @@ pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
 
 /// A hull of less volume is flat, m3.
 const FLAT: f64 = 1e-3 * MM * MM * MM;
-
-fn hull_moments(points: &[Point3<f64>]) -> (f64, Vector3<f64>, Matrix3<f64>) {
-    // The task file's checks leave no flat hull.
-    let (corners, faces) = hull(points).unwrap_or_default();
-    surface_moments(&corners, &faces)
-}
 
 /// Volume, centroid and second moments about it of what a closed surface of outward triangles
 /// holds: the sum of the tetrahedra between each and the origin.

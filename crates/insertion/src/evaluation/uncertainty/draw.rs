@@ -150,18 +150,9 @@ mod tests {
 
     #[test]
     fn without_errors_every_draw_is_the_nominal_trial() {
-        let none = Errors {
-            offset_sd: 0.0,
-            yaw_sd: 0.0,
-            friction_half_width: 0.0,
-            stiffness_sd_factor: 0.0,
-            clearance_half_width: 0.0,
-            grasp_across_sd: 0.0,
-            grasp_low_max: 0.0,
-        };
         let predicted = predicted([1.0, 0.0], [1.0, 0.0]);
         let finger = Finger::new(1e3, 2e4);
-        for draw in draws(&none, 0, 20) {
+        for draw in draws(&Errors::default(), 0, 20) {
             assert_eq!((draw.offset, draw.conditions), (0.0, Conditions::NOMINAL));
             assert_eq!(draw.finger(&finger, &predicted), finger);
         }

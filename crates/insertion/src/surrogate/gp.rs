@@ -36,7 +36,7 @@ pub(super) const READING_SD: f64 = 0.01;
 /// Densities below this are taken as this, percent: the law diverges at 0.
 const LEAST_DENSITY: f64 = 1.0;
 
-/// What the likelihood chooses.
+/// Hyperparameters, chosen by likelihood.
 #[derive(Debug, Clone, Copy)]
 struct Setting {
     /// Of the density in the feature.

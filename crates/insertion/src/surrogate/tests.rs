@@ -166,12 +166,8 @@ fn each_bad_line_of_a_file_is_named_with_what_would_be_right() {
 fn measurements_without_a_file_are_checked_too() {
     let mut bad = shipped();
     bad[2].compliance = f64::NAN;
-    assert!(
-        fit(&bad, &finray9())
-            .unwrap_err()
-            .to_string()
-            .starts_with("design 3: stiffness_compliance")
-    );
+    let error = fit(&bad, &finray9()).unwrap_err().to_string();
+    assert!(error.starts_with("design 3: stiffness_compliance"), "{error}");
     assert_eq!(fit(&[], &finray9()).unwrap_err(), SurrogateError::None);
 }
 

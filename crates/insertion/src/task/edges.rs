@@ -71,15 +71,15 @@ impl Face {
     }
 }
 
-/// What is wrong with cuts that take more than a face has.
+/// Problem of cuts that take more than a face has.
 const ROOM: &str = "take off more than the part has; make them smaller";
-/// What is wrong with cuts of so thin, or so small, a part that corners of the hull would be lost.
+/// Problem of so thin, or so small, a part that corners of the hull would be lost.
 const THIN: &str = "need a part that is not so thin or so small; leave its edges sharp";
 
 /// The solid that the cuts leave of a box.
 ///
 /// # Errors
-/// What is wrong with the cuts.
+/// The problem of the cuts.
 pub fn cut(
     min: &Vector3<f64>,
     max: &Vector3<f64>,

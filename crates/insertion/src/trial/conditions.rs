@@ -1,4 +1,4 @@
-//! What may differ between two trials of the same finger at the same offset.
+//! Differences between two trials of the same finger at the same offset.
 
 use super::cell::WorkCell;
 use crate::finger::{Pad, ROOF_GAP};

@@ -31,7 +31,7 @@ pub enum RigError {
         robot: String,
         /// Name of the task.
         task: String,
-        /// What its arm lacks, or which phase takes how long.
+        /// Defect of the arm, or the phase that takes too long.
         problem: String,
     },
     /// The engine cannot simulate the two.

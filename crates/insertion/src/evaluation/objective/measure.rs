@@ -1,4 +1,4 @@
-//! What can be asked of an evaluation, and in which unit it is answered.
+//! Measures: the numbers of an evaluation, and their units.
 
 use crate::evaluation::Evaluation;
 use crate::outcome::Outcome;

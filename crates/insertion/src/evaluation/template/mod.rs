@@ -213,11 +213,7 @@ mod tests {
             ("task.strategy.tild_deg", 1.0, "`task.strategy.` goes on with phase, start_mm, tilt_"),
             ("task.strategy.start_mm", 1.0, "`task.strategy.start_mm.` goes on with x, y, z"),
             ("task.strategy.phase.side.motion", 1.0, "goes on with move_mm, settle_s, speed_mm_"),
-            (
-                "tilt",
-                1.0,
-                "begins with finger, infill_density_percent, infill_direction_deg or task",
-            ),
+            ("tilt", 1.0, "begins with finger, infill_density_percent, infill_direction_deg or"),
         ] {
             let error = apply(&[(key, value)]).unwrap_err().to_string();
             assert!(error.contains(words), "{key}: {error}");

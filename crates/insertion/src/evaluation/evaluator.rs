@@ -217,8 +217,8 @@ impl Evaluator {
         self.measure(&taught, search, plan, stop)
     }
 
-    /// The firm part of the window that was measured of a specimen, from the start that was taught then, by [`firm::REPEATS`] repeats that this seed names;
-    /// ends early, with a worthless result, once `stop` is set.
+    /// The firm part of the window that was measured of a specimen, from the start taught then, by
+    /// [`firm::REPEATS`] repeats that this seed names; worthless once `stop` is set.
     ///
     /// # Errors
     /// If robot or engine cannot do the task.

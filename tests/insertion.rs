@@ -7,7 +7,7 @@ use contact::scene::{
 };
 use contact::{Engine, World};
 use finray::printed::PrintedFinger;
-use input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS, UNCERTAINTIES};
+use input::shipped::{FINGERS, ROBOTS, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
 use input::units::{DEG, MM, N_PER_MM};
 use insertion::evaluation::robustness::{self, Plan};
 use insertion::evaluation::tolerance::{Search, evaluate};
@@ -20,12 +20,12 @@ use insertion::outcome::{FailureClass, Outcome};
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::stiffness;
-use insertion::surrogate::{self, Estimate, Prediction};
+use insertion::surrogate::{self, Prediction};
 use insertion::task::finger::Coupling;
 use insertion::task::{PadTorsion, Task};
 use insertion::trial::cell;
 use insertion::trial::run::EngineRig;
-use insertion::trial::{Conditions, PhaseEnd, Rig, Trial, picture};
+use insertion::trial::{Conditions, Grasp, PhaseEnd, Rig, Trial, picture};
 use nalgebra::Vector3;
 
 fn task(name: &str) -> Task {
@@ -76,13 +76,15 @@ fn all_measured_fingers_insert_at_each_nominal_start() {
 }
 
 #[test]
-fn the_arm_inserts_all_four_plugs() {
-    for name in ["ket8", "ket12", "rj45", "usb"] {
-        let rig = rig(task(name), "ur5e");
+fn the_arm_and_rapier_insert_all_four_plugs() {
+    for Shipped { name, .. } in TASKS {
+        let arm = rig(task(name), "ur5e");
         for finger in [finger(1.2, 52.4), finger(2.6, 45.0), finger(3.84, 35.0)] {
-            let outcome = trial(&rig, &finger, 0.0).outcome;
+            let outcome = trial(&arm, &finger, 0.0).outcome;
             assert_eq!(outcome, Outcome::Inserted, "{name} {finger:?}");
         }
+        let rapier = EngineRig::new(task(name), &robot("servo"), Box::<Rapier>::default()).unwrap();
+        assert_eq!(trial(&rapier, &finger(1.2, 52.4), 0.0).outcome, Outcome::Inserted, "{name}");
     }
 }
 
@@ -96,16 +98,6 @@ fn a_rigid_flange_inserts_with_more_force_than_a_soft_one() {
     };
     let peaks = [peak("servo"), peak("rigid")];
     assert!(peaks[1] > peaks[0] + 5.0, "{peaks:?} N");
-}
-
-#[test]
-fn rapier_inserts_all_four_plugs_too() {
-    for file in TASKS {
-        let engine = Box::<Rapier>::default();
-        let rig = EngineRig::new(task(file.name), &robot("servo"), engine).unwrap();
-        let trial = trial(&rig, &finger(1.2, 52.4), 0.0);
-        assert_eq!(trial.outcome, Outcome::Inserted, "{}", file.name);
-    }
 }
 
 #[test]
@@ -214,7 +206,7 @@ fn yaw_turns_the_socket_about_its_middle_and_too_much_of_it_keeps_a_key_out() {
     let soft = finger(1.2, 52.4);
     let at = |yaw_deg: f64| {
         let conditions = Conditions { yaw: yaw_deg * DEG, ..Conditions::NOMINAL };
-        rig.grasp_in(&soft, &conditions).trial(0.3 * MM)
+        rig.hold(Grasp { conditions, ..Grasp::of(&soft) }).trial(0.3 * MM)
     };
     assert_eq!(at(0.0), rig.grasp(&soft).trial(0.3 * MM));
     let (half, ten) = (at(0.5), at(10.0));
@@ -228,7 +220,7 @@ fn a_part_low_in_the_gripper_is_touched_that_much_earlier() {
     let soft = finger(1.2, 52.4);
     let touch = |grasp_low: f64| {
         let conditions = Conditions { grasp_low, ..Conditions::NOMINAL };
-        phase(&rig.grasp_in(&soft, &conditions).trial(0.0), "approach").tip_mm[2]
+        phase(&rig.hold(Grasp { conditions, ..Grasp::of(&soft) }).trial(0.0), "approach").tip_mm[2]
     };
     let lower = touch(0.0) - touch(0.3 * MM);
     assert!((lower - 0.3).abs() < 0.05, "{lower} mm");
@@ -243,13 +235,9 @@ fn the_success_rate_follows_the_window() {
     let rig = direct("usb");
     let rate = |compliance: f64| {
         let finger = finger(compliance, 52.4);
-        let exact = |mean| Estimate { mean, sd: 0.0 };
-        let predicted = Prediction {
-            compliance: exact(finger.compliance),
-            assembly: exact(finger.assembly),
-            hull_distance: 0.0,
-        };
-        let found = robustness::evaluate(&rig, &finger, &predicted, Search::Strides, &plan);
+        let predicted = Prediction::exact(finger.compliance, finger.assembly);
+        let found =
+            robustness::evaluate(&rig, Grasp::of(&finger), &predicted, Search::Strides, &plan);
         let success = found.success.unwrap();
         assert_eq!(success.diverged, 0);
         (found.window.range_mm(), success.rate().unwrap())
@@ -270,7 +258,8 @@ fn a_robust_range_is_smaller_than_the_range() {
     let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
     let predicted = surrogate::fit(&measured, &printed).unwrap().predict(20.0, 10.0).unwrap();
     let finger = Finger::new(predicted.compliance.mean, predicted.assembly.mean);
-    let found = robustness::evaluate(&direct("ket12"), &finger, &predicted, Search::Strides, &plan);
+    let (rig, grasp) = (direct("ket12"), Grasp::of(&finger));
+    let found = robustness::evaluate(&rig, grasp, &predicted, Search::Strides, &plan);
     let robust = found.robust.unwrap();
     assert_eq!((robust.ranges_mm.len(), robust.diverged), (6, 0));
     assert!(robust.sd_mm() > 0.0);
@@ -280,8 +269,7 @@ fn a_robust_range_is_smaller_than_the_range() {
 
 #[test]
 fn a_picture_shows_each_phase_twice() {
-    let rig = direct("rj45");
-    let finger = finger(2.0, 50.0);
+    let (rig, finger) = (direct("rj45"), finger(2.0, 50.0));
     let trial = trial(&rig, &finger, 0.0);
     let svg = picture::svg(&rig.task, &finger.pad, &trial, "a <trial>");
     assert_eq!(svg.matches("(y, z)").count(), trial.phases.len());

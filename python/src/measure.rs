@@ -145,7 +145,7 @@ pub fn space(name: &str) -> PyResult<String> {
         let Parameter { key, low, high, step, .. } = parameter;
         json!({"name": key, "low": low, "high": high, "step": step})
     };
-    Ok(space.parameters().iter().map(line).collect::<Value>().to_string())
+    Ok(space.parameters.iter().map(line).collect::<Value>().to_string())
 }
 
 /// Name in messages and text of the task file of this name or path.

@@ -67,15 +67,15 @@ impl Emulator {
         count: usize,
         seed: u64,
     ) -> Result<Self, CalibrationError> {
-        let dimension = space.parameters().len() + simulation.parameters.len();
+        let dimension = space.parameters.len() + simulation.parameters.len();
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
         let run = |at: Vec<f64>| {
-            let (of_space, shares) = at.split_at(space.parameters().len());
+            let (of_space, shares) = at.split_at(space.parameters.len());
             let value = |(parameter, share): (&Parameter, &f64)| {
                 (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
             };
-            let design = Design(space.parameters().iter().zip(of_space).map(value).collect());
+            let design = Design(space.parameters.iter().zip(of_space).map(value).collect());
             let evaluation = simulation.window(&design, shares)?;
             let window = &evaluation.window;
             let class = |end: Option<Outcome>| match end {

@@ -1,10 +1,10 @@
 //! The published ranges: simulation and bench, 11 designs, four tasks.
 
 use crate::calibration::experiments::{self, Experiment};
-use input::shipped::{MEASUREMENTS, Shipped};
+use input::shipped::{MEASUREMENTS, STIFFNESS, Shipped};
 use insertion::outcome::FailureClass;
 use insertion::space::Design;
-use insertion::stiffness::{Measurement, SHIPPED_CSV, SHIPPED_FILE, parse};
+use insertion::stiffness::{Measurement, parse};
 use serde::Deserialize;
 
 const SIMULATION: &str = include_str!("../../data/published_simulation.csv");
@@ -76,7 +76,7 @@ fn row(experiment: &Experiment) -> Option<Published> {
 
 /// The designs the publication measured.
 pub fn designs() -> Vec<Measurement> {
-    parse(SHIPPED_CSV, SHIPPED_FILE).unwrap_or_default()
+    parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap_or_default()
 }
 
 /// The measured designs of lowest, middle and highest compliance stiffness.

@@ -6,14 +6,13 @@ use input::units::MM;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::stoppable::Stoppable;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
 use insertion::robot::{Drive, Robot};
 use insertion::space::Design;
-use insertion::trial::Conditions;
+use insertion::trial::{Conditions, Grasp};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -44,7 +43,7 @@ impl<'a> Simulation<'a> {
     ) -> Self {
         let soft = matches!(evaluator.robot.drive, Drive::Servo(_));
         let has = |parameter: &&Parameter| match &parameter.sets {
-            Target::Task(path) => template.number(path).is_some(),
+            Target::Task(path) => template.numbers.number(path).is_some(),
             Target::Flange => soft,
             _ => true,
         };
@@ -85,8 +84,8 @@ impl<'a> Simulation<'a> {
             return Ok(found);
         }
         let rig = engine.rig(&specimen.task, robot, &specimen.finger, 1.0)?;
-        let rig = Stoppable { inner: &*rig, stop: self.stop };
-        let evaluation = tolerance::evaluate(&rig, &specimen.finger, search);
+        let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
+        let evaluation = tolerance::evaluate_in(&*rig, grasp, search);
         if let Some((cache, key)) = keep
             && !self.stop.load(Ordering::SeqCst)
         {
@@ -100,7 +99,7 @@ impl<'a> Simulation<'a> {
         let mut set = design.clone();
         for (parameter, value) in values() {
             if let Target::Task(path) = &parameter.sets
-                && let Some(own) = design.get(path).or_else(|| self.template.number(path))
+                && let Some(own) = design.get(path).or_else(|| self.template.numbers.number(path))
             {
                 set.0.insert(path.clone(), parameter.applied(own, value));
             }

@@ -47,7 +47,7 @@ impl Subject {
         experiments: &[Experiment],
         more: &[Design],
     ) -> Result<Self, CalibrationError> {
-        let task = template.task().name.clone();
+        let task = template.task.name.clone();
         let mut designs = fingers(space);
         let of_space = designs.len();
         let mut numbered = |design: Design| {
@@ -165,18 +165,18 @@ pub fn whole(
     template: &Template,
     line: &Experiment,
 ) -> Result<Design, CalibrationError> {
-    let name = space.name();
+    let name = &space.name;
     let fault = |words: String| Err(CalibrationError::Measured(line.line, words));
-    let known = |key: &String| space.parameters().iter().any(|parameter| parameter.key == *key);
+    let known = |key: &String| space.parameters.iter().any(|parameter| parameter.key == *key);
     if let Some(key) = line.design.0.keys().find(|key| !known(key)) {
         return fault(format!(
             "{key}: the space `{name}` has no such parameter; give --space FILE with it"
         ));
     }
     let mut design = Design::default();
-    for Parameter { key, low, high, .. } in space.parameters() {
-        let value =
-            line.design.get(key).or_else(|| template.number(key)).unwrap_or((low + high) / 2.0);
+    for Parameter { key, low, high, .. } in &space.parameters {
+        let value = line.design.get(key).or_else(|| template.numbers.number(key));
+        let value = value.unwrap_or((low + high) / 2.0);
         if !(*low..=*high).contains(&value) {
             return fault(format!(
                 "{key}: {value} lies outside {low} .. {high} of the space `{name}`; give a wider \
@@ -195,7 +195,7 @@ fn shares(space: &Space, design: &Design) -> Vec<f64> {
         let width = parameter.high - parameter.low;
         if width > 0.0 { (value - parameter.low) / width } else { 0.5 }
     };
-    space.parameters().iter().map(share).collect()
+    space.parameters.iter().map(share).collect()
 }
 
 /// Less the mean, over the standard deviation, of the first `reference` rows.

@@ -130,7 +130,7 @@ fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
     let best = record.best().filter(|_| answer.front.is_none());
     let mut fields = json!({
         "task": config.task_name(),
-        "space": config.space.name(),
+        "space": config.space.name,
         "robot": config.robot,
         "engine": record.segments.last().map(|segment| &segment.provenance.engine.name),
         "optimizer": config.optimizer,

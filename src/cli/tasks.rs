@@ -43,9 +43,8 @@ type Entries = Vec<(&'static str, String)>;
 
 fn lists_of_shipped() -> Result<[(&'static str, Entries); 4], Failure> {
     let task = |file: &Shipped| Ok::<_, InputError>(Task::parse(file.text, file.file)?.description);
-    let space = |file: &Shipped| {
-        Ok::<_, InputError>(Space::parse(file.text, file.file)?.description().to_owned())
-    };
+    let space =
+        |file: &Shipped| Ok::<_, InputError>(Space::parse(file.text, file.file)?.description);
     let robot =
         |file: &Shipped| Ok::<_, InputError>(Robot::parse(file.text, file.file)?.description);
     let uncertainty =

@@ -6,8 +6,9 @@ use super::seat::{Seat, Seating, section};
 use contact::scene::{Geom, Pose};
 use input::units::MM;
 use insertion::finger::Pad;
+use insertion::task::geometry::convex_outline;
 use insertion::task::{Part, Task};
-use insertion::trial::picture::{convex_outline, escape};
+use insertion::trial::picture::escape;
 use nalgebra::{Point2, Point3};
 use std::fmt::Write;
 

@@ -170,7 +170,7 @@ fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
         ("aggregate", aggregate),
         ("robot", config.robot.clone()),
         ("engine", config.provenance.engine.name.clone()),
-        ("space", config.space.name().to_owned()),
+        ("space", config.space.name.to_owned()),
     ]
 }
 

@@ -62,7 +62,7 @@ pub(super) fn embedded(value: &Value) -> String {
 }
 
 fn to_json(record: &StudyRecord, model: Option<&surface::Model>) -> Value {
-    let parameters = record.config.space.parameters();
+    let parameters = &record.config.space.parameters;
     let measure = record.config.objective.first();
     let named: Vec<Value> = parameters
         .iter()

@@ -97,7 +97,7 @@ fn stiffness(model: &Model, robust: bool) -> String {
             errors.join(" and by ")
         ),
     };
-    let ribs = match model.computes() {
+    let ribs = match model.ratios {
         true => ", and from the ribs of the finger",
         false => "",
     };
@@ -112,7 +112,7 @@ fn stiffness(model: &Model, robust: bool) -> String {
 }
 
 fn remote_centre(record: &StudyRecord) -> &'static str {
-    let parameters = record.config.space.parameters();
+    let parameters = &record.config.space.parameters;
     if parameters.iter().any(|parameter| parameter.key == REMOTE_CENTRE_KEY) {
         "The finger's remote centre is a number of the design here, set apart from the infill. In \
          truth it moves with the infill direction; whether a finger with this infill and this \

@@ -60,8 +60,8 @@ pub(super) fn provenance(record: &StudyRecord) -> Markup {
         add("objective over the tasks", format!("{aggregate}, of values that are not scaled"));
     }
     config.uncertainty.iter().for_each(|errors| add("drawn errors", errors.clone()));
-    for p in config.space.parameters() {
-        let name = format!("{}: {}", config.space.name(), p.key);
+    for p in &config.space.parameters {
+        let name = format!("{}: {}", config.space.name, p.key);
         add(&name, format!("{} to {} in steps of {}", p.low, p.high, p.step));
     }
     let searches = record.evaluations.iter().flat_map(Recorded::tasks);

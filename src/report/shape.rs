@@ -12,7 +12,7 @@ use maud::{Markup, html};
 
 /// The section; `None` if the space has no such parameter.
 pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
-    let parameters = record.config.space.parameters();
+    let parameters = &record.config.space.parameters;
     let shape: Vec<&Parameter> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
     let index = record.recommended().filter(|_| !shape.is_empty())?.index;
     // As the search found it, which alone has looked at the others, too.
@@ -20,7 +20,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let file = finger_file(record)?;
     let plain: Vec<(&str, f64)> = shape
         .iter()
-        .filter_map(|p| Some((p.key.as_str(), p.value(p.nearest(file.value(&p.key)?)))))
+        .filter_map(|p| Some((p.key.as_str(), p.value(p.nearest(file.numbers.number(&p.key)?)))))
         .collect();
     let alone = record.best_where(|recorded| {
         plain.iter().all(|(key, value)| recorded.design.get(key) == Some(*value))

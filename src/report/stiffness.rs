@@ -14,14 +14,14 @@ pub fn table(model: &Model) -> String {
          Errors are leave-one-out: each design is predicted by a model that never saw it.\n\n\
          {:<16}{:<34}{:>12}{:>12}{:>14}\n",
         model.counted(),
-        if model.computes() { " and computed from its ribs" } else { "" },
+        if model.ratios { " and computed from its ribs" } else { "" },
         "axis",
         "model",
         "RMSE N/mm",
         "mean |e| %",
         "RMS of e/sd",
     );
-    for row in model.loo() {
+    for row in &model.loo {
         let chosen = if row.chosen { "  <- used" } else { "" };
         // Writing to a string cannot fail.
         let _ = writeln!(
@@ -40,14 +40,14 @@ pub fn table(model: &Model) -> String {
         let widening = model.widening(axis);
         let note = if widening > 1.0 {
             format!("standard deviations are widened by {widening:.2} to fit the errors above")
-        } else if model.measurements().len() == 1 {
+        } else if model.measurements.len() == 1 {
             "one finger leaves no error; scatter as of the shipped designs is assumed".to_owned()
         } else {
             "standard deviations fit the errors above, or are larger".to_owned()
         };
         let _ = writeln!(text, "  {note}");
     }
-    if model.measurements().len() > 1 {
+    if model.measurements.len() > 1 {
         text.push_str(
             "The choice rests on these same errors, so they flatter the chosen model a little.\n",
         );
@@ -70,7 +70,7 @@ pub(super) fn key(axis: Axis) -> &'static str {
 
 /// The same as JSON: `designs`, `models` (a list, one of each axis and model), `used` (per axis).
 pub fn json(model: &Model) -> Value {
-    let models = model.loo().iter().map(|row| {
+    let models = model.loo.iter().map(|row| {
         json!({
             "axis": key(row.axis),
             "model": row.model.label(),
@@ -88,7 +88,7 @@ pub fn json(model: &Model) -> Value {
         })
     };
     json!({
-        "designs": model.measurements().len(),
+        "designs": model.measurements.len(),
         "models": models.collect::<Vec<_>>(),
         "used": { "assembly": used(Axis::Assembly), "compliance": used(Axis::Compliance) },
     })

@@ -80,14 +80,14 @@ impl By {
 }
 
 fn draw(area: &Area<'_>, model: &Model, axis: Axis, by: By) -> Drawn {
-    let measured = model.measurements();
+    let measured = &model.measurements;
     let limits = around(measured.iter().map(|m| by.of(m).0), 0.0);
     let span = limits.end - limits.start;
     let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
     let curves = levels(measured.iter().map(|m| by.of(m).1));
     // Each place may take the mechanics of a finger, a third of a second: then only the ends and where
     // the other panel of the axis has its curves, so that both share them.
-    let places: Vec<f64> = if model.computes() {
+    let places: Vec<f64> = if model.ratios {
         let levels = levels(measured.iter().map(|m| by.of(m).0));
         [x.start].into_iter().chain(levels).chain([x.end]).collect()
     } else {

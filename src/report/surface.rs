@@ -27,7 +27,7 @@ pub(super) struct Model {
 impl Model {
     /// `None` with too few evaluations, or if their values are all alike.
     pub(super) fn of(record: &StudyRecord) -> Option<Self> {
-        let parameters = record.config.space.parameters();
+        let parameters = &record.config.space.parameters;
         let known: Vec<(Vec<f64>, f64)> = record
             .current()
             .iter()
@@ -65,7 +65,7 @@ fn unit(parameter: &Parameter, value: f64) -> f64 {
 /// The surface over the two parameters that matter most, the others as recommended; nothing for
 /// one parameter or too few evaluations.
 pub(super) fn to_json(record: &StudyRecord, model: &Model) -> Option<Value> {
-    let parameters = record.config.space.parameters();
+    let parameters = &record.config.space.parameters;
     if parameters.len() < 2 {
         return None;
     }
@@ -100,7 +100,7 @@ pub(super) fn to_json(record: &StudyRecord, model: &Model) -> Option<Value> {
 /// The share of the variance over the space that each parameter makes by itself (Sobol's first
 /// order index, I. M. Sobol 2001, Math. Comput. Simul. 55:271) by the model's mean; by name.
 pub(super) fn importance(record: &StudyRecord, model: &Model) -> Vec<(String, f64)> {
-    let parameters = record.config.space.parameters();
+    let parameters = &record.config.space.parameters;
     if parameters.len() < 2 {
         return Vec::new();
     }

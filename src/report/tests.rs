@@ -2,7 +2,7 @@ use super::*;
 use crate::answer::words;
 use crate::study::{Provenance, Recorded, Segment, StudyConfig, Timing};
 use finray::printed::PrintedFinger;
-use input::shipped::FINGERS;
+use input::shipped::{FINGERS, STIFFNESS};
 use input::units::{MM, N_PER_MM};
 use insertion::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
 use insertion::evaluation::tolerance::{Search, evaluate};
@@ -10,7 +10,7 @@ use insertion::evaluation::{Evaluation, Window};
 use insertion::finger::Finger;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use insertion::stiffness::{Axis, SHIPPED_CSV, SHIPPED_FILE, parse};
+use insertion::stiffness::{Axis, parse};
 use insertion::surrogate::{Model, fit};
 use insertion::trial::engine::EngineKind;
 use insertion::trial::fake::{Altered, FakeRig};
@@ -25,7 +25,9 @@ fn finray9() -> PrintedFinger {
 /// The shipped model, fitted once.
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
-    MODEL.get_or_init(|| fit(&parse(SHIPPED_CSV, SHIPPED_FILE).unwrap(), &finray9()).unwrap())
+    MODEL.get_or_init(|| {
+        fit(&parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap(), &finray9()).unwrap()
+    })
 }
 
 fn provenance() -> Provenance {

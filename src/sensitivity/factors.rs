@@ -3,12 +3,11 @@
 use input::units::{DEG, MM};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Evaluator;
-use insertion::evaluation::stoppable::Stoppable;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::uncertainty::{Draw, Errors};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use insertion::trial::Conditions;
+use insertion::trial::{Conditions, Grasp};
 use std::sync::atomic::AtomicBool;
 
 /// Half width over which a normal error is varied, in standard deviations: 95 % of it.
@@ -40,11 +39,11 @@ impl Factors {
     /// If the space has no infill density or direction.
     pub fn new(space: &Space, errors: Option<&Errors>) -> Result<Self, String> {
         for key in [DENSITY_KEY, DIRECTION_KEY] {
-            if !space.parameters().iter().any(|parameter| parameter.key == key) {
-                return Err(format!("the space `{}` has no {key}", space.name()));
+            if !space.parameters.iter().any(|parameter| parameter.key == key) {
+                return Err(format!("the space `{}` has no {key}", space.name));
             }
         }
-        let of_space = space.parameters().iter().map(|parameter| Factor {
+        let of_space = space.parameters.iter().map(|parameter| Factor {
             key: parameter.key.clone(),
             low: parameter.low,
             high: parameter.high,
@@ -79,8 +78,8 @@ impl Factors {
         let specimen = evaluator.specimen(template, &design, predicted)?;
         let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, stop)?, 1.0)?;
         let finger = Draw::under(conditions, stiffness).finger(&specimen.finger, &predicted);
-        let rig = Stoppable { inner: &*rig, stop };
-        Ok(tolerance::evaluate_in(&rig, &finger, &conditions, Search::Strides))
+        let grasp = Grasp { finger, conditions, stop };
+        Ok(tolerance::evaluate_in(&*rig, grasp, Search::Strides))
     }
 }
 

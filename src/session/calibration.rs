@@ -169,7 +169,7 @@ impl<'a> Ground<'a> {
             CalibrationError::Measured(..) => Failure::usage(format!("{measurements}: {error}")),
         })?;
         let of_task = |template: &'a Template| {
-            (template.task().name.clone(), self.simulation(template).parameters)
+            (template.task.name.clone(), self.simulation(template).parameters)
         };
         let of_tasks: Vec<_> = templates.iter().map(of_task).collect();
         Ok((subjects, Layout::new(&of_tasks)))
@@ -183,7 +183,7 @@ impl<'a> Ground<'a> {
         watch: &mut Watch<'_>,
     ) -> Result<Subject, CalibrationError> {
         let (evaluator, space) = (&self.setup.evaluator, &self.setup.space);
-        let (task, count) = (&template.task().name, self.simulations);
+        let (task, count) = (&template.task.name, self.simulations);
         if evaluator.engine.simulates() {
             watch(Event::Simulating { task, count });
         }

@@ -9,7 +9,8 @@ use insertion::finger::file::FingerFile;
 use insertion::finger::model::{ComputedFingers, FingerSource};
 use insertion::robot::Robot;
 use insertion::stiffness;
-use insertion::surrogate::{self, FitError, Model};
+use insertion::stiffness::SurrogateError;
+use insertion::surrogate::{self, Model};
 use std::path::Path;
 
 /// What presses the pad of a computed finger; why is in `docs/notes/finger.md`.
@@ -32,7 +33,7 @@ impl Fingers {
     /// The finger whose stiffness was measured: of the file; without one, the shipped finger.
     pub fn measured_finger(&self) -> Result<PrintedFinger, Failure> {
         match &self.file {
-            Some(file) => Ok(file.finger().clone()),
+            Some(file) => Ok(file.finger.clone()),
             None => printed_finger(DEFAULT_FINGER),
         }
     }
@@ -93,7 +94,7 @@ pub fn printed_finger(name: &str) -> Result<PrintedFinger, Failure> {
 pub fn surrogate(data: &Source, finger: &PrintedFinger) -> Result<Model, Failure> {
     let measurements = stiffness::parse(&data.text, &data.file).map_err(Failure::input)?;
     surrogate::fit(&measurements, finger).map_err(|error| match error {
-        FitError::Measurements(error) => Failure::usage(format!("{}: {error}", data.file)),
-        FitError::Finger(error) => Failure::input(error),
+        SurrogateError::Finger(error) => Failure::input(error),
+        error => Failure::usage(format!("{}: {error}", data.file)),
     })
 }

@@ -140,7 +140,7 @@ impl FingerRequest {
                     "--set {key}: give the infill by --density and --direction"
                 )));
             }
-            if setup.space.parameters().iter().any(|parameter| parameter.key == *key) {
+            if setup.space.parameters.iter().any(|parameter| parameter.key == *key) {
                 check(setup, "--set", key, *value)?;
             }
             if set.0.insert(key.clone(), *value).is_some() {
@@ -153,7 +153,7 @@ impl FingerRequest {
 
 /// A value must lie within the bounds its key has in the space.
 fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure> {
-    let parameters = setup.space.parameters();
+    let parameters = &setup.space.parameters;
     match parameters.iter().find(|parameter| parameter.key == key) {
         // Written so that a NaN is outside.
         Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
@@ -162,10 +162,10 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
             shown(value),
             parameter.low,
             parameter.high,
-            setup.space.name()
+            setup.space.name
         ))),
         None => {
-            Err(Failure::usage(format!("{flag}: the space `{}` has no {key}", setup.space.name())))
+            Err(Failure::usage(format!("{flag}: the space `{}` has no {key}", setup.space.name)))
         }
     }
 }

@@ -72,7 +72,7 @@ pub fn check(
     template: &Template,
     space: &Space,
 ) -> Result<(), Failure> {
-    let task = &template.task().name;
+    let task = &template.task.name;
     let own = || lines.iter().filter(|line| line.task == *task);
     if !own().any(|line| line.extent().is_some()) {
         return Err(Failure::usage(format!(

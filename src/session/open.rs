@@ -139,7 +139,7 @@ fn confirm(
 /// Whether `study.toml` says what the input files say, which it was once written from.
 fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
     let evaluator = &setup.evaluator;
-    let tasks = evaluator.templates.iter().map(|template| template.task().name.as_str());
+    let tasks = evaluator.templates.iter().map(|template| template.task.name.as_str());
     let uncertainty = setup.uncertainty.as_ref().map(|errors| &errors.name);
     for (key, same) in [
         ("tasks", tasks.eq(config.tasks())),

@@ -25,7 +25,7 @@ pub(super) fn optimizer(
     let search = ask_tell::build_for(kind, grid.clone(), config.seed, &floors);
     let search = match measured_points(setup) {
         points if kind == OptimizerKind::Gp && !points.is_empty() => {
-            let own = setup.space.parameters().len() + 1;
+            let own = setup.space.parameters.len() + 1;
             Box::new(Informed::new(search, own, points)) as Box<dyn Optimizer + Send>
         }
         _ => search,
@@ -39,17 +39,18 @@ pub(super) fn optimizer(
 /// Of a space of printed fingers the points next to the measured ones, which have the shape of the
 /// finger file: what the other numbers add to the infill is told against those.
 fn measured_points(setup: &Setup) -> Vec<GridPoint> {
-    let parameters = setup.space.parameters();
+    let parameters = &setup.space.parameters;
     let FingerSource::Computed(fingers) = &setup.evaluator.fingers else { return Vec::new() };
     if !parameters.iter().any(|parameter| is_shape(&parameter.key)) {
         return Vec::new();
     }
     let point = |measured: &Measurement| {
         let infill = Design::infill(measured.density_percent, measured.direction_deg);
-        let value = |p: &Parameter| infill.get(&p.key).or_else(|| fingers.file.value(&p.key));
+        let value =
+            |p: &Parameter| infill.get(&p.key).or_else(|| fingers.file.numbers.number(&p.key));
         parameters.iter().map(|p| Some(p.nearest(value(p)?))).collect::<Option<_>>().map(GridPoint)
     };
-    setup.evaluator.surrogate.measurements().iter().filter_map(point).collect()
+    setup.evaluator.surrogate.measurements.iter().filter_map(point).collect()
 }
 
 /// Standard deviation of what a measure's steps round off, in its unit: ranges have steps of

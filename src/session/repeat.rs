@@ -4,9 +4,9 @@ use super::failure::{not_stopped, within};
 use super::finger::Chosen;
 use super::{Failure, Setup};
 use insertion::evaluation::robustness::repeat::{Bands, Repeats};
-use insertion::evaluation::stoppable::Stoppable;
 use insertion::evaluation::{Evaluation, OffsetStep};
 use insertion::outcome::Outcome;
+use insertion::trial::Grasp;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
@@ -71,8 +71,8 @@ impl RepeatRequest {
     ) -> Result<T, Failure> {
         let rig = |factor| setup.evaluator.rig(specimen, taught, factor).map_err(Failure::input);
         let rigs = [rig(1.0)?, rig(0.5)?];
-        let [whole, half] = rigs.each_ref().map(|rig| Stoppable { inner: &**rig, stop });
-        let repeats = Repeats::new([&whole, &half], &specimen.finger, self.seed, self.count);
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let repeats = Repeats::new(rigs.each_ref().map(|rig| &**rig), grasp, self.seed, self.count);
         let measured = measure(&repeats);
         not_stopped(stop)?;
         Ok(measured)

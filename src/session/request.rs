@@ -122,7 +122,7 @@ impl SetupRequest {
     /// finger have to be.
     fn finger_file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
         let shape = |p: &&Parameter| is_shape(&p.key);
-        let shaped = space.and_then(|space| space.parameters().iter().find(shape));
+        let shaped = space.and_then(|space| space.parameters.iter().find(shape));
         let kind = match (self.finger_model, shaped) {
             (Some(FingerModelKind::Paper), Some(Parameter { key, .. })) => {
                 return Err(Failure::usage(format!(

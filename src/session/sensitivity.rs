@@ -65,7 +65,7 @@ impl SensitivityRequest {
             ))
         })?;
         Ok(Found {
-            task: setup.only_task()?.task().name.clone(),
+            task: setup.only_task()?.task.name.clone(),
             objective: self.objective,
             factors: factors.0.clone(),
             indices,

@@ -145,7 +145,7 @@ impl Setup {
 
     /// The names of its tasks.
     pub fn task_names(&self) -> Vec<&str> {
-        self.evaluator.templates.iter().map(|template| template.task().name.as_str()).collect()
+        self.evaluator.templates.iter().map(|template| template.task.name.as_str()).collect()
     }
 
     /// What a study records of all this.
@@ -180,7 +180,7 @@ fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), 
     }
     let fits = |task: &Task| engine.rig(task, robot, &fingers.any(task), 1.0).map(|_| ());
     for template in templates {
-        fits(template.task()).map_err(Failure::input)?;
+        fits(&template.task).map_err(Failure::input)?;
         template.check(space, file, &fits).map_err(Failure::input)?;
     }
     sprung::check(evaluator, space, file).map_err(Failure::input)
@@ -188,7 +188,7 @@ fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), 
 
 /// A task that is given twice would count twice.
 fn different(templates: &[Template]) -> Result<(), Failure> {
-    let names: Vec<&str> = templates.iter().map(|template| &*template.task().name).collect();
+    let names: Vec<&str> = templates.iter().map(|template| &*template.task.name).collect();
     match names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
         None => Ok(()),
         Some((_, twice)) => {

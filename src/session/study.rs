@@ -222,7 +222,7 @@ impl StudyRequest {
 
     fn config(&self, setup: &Setup) -> Result<StudyConfig, Failure> {
         let evaluator = &setup.evaluator;
-        let names = evaluator.templates.iter().map(|template| template.task().name.clone());
+        let names = evaluator.templates.iter().map(|template| template.task.name.clone());
         let tasks: Vec<String> = names.collect();
         Ok(StudyConfig {
             aggregate: self.aggregate(tasks.len())?,

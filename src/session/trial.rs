@@ -90,9 +90,8 @@ impl TrialRequest {
         let filmed = self.film.record(&*rig, specimen, offset_mm)?;
         let grasp = || rig.hold(Grasp { stop, ..Grasp::of(&specimen.finger) });
         let (trial, samples) = match (self.every_s, filmed) {
-            (Some(every_s), _) => grasp().traced(offset, every_s),
             (None, Some(recording)) => (recording.trial, Vec::new()),
-            (None, None) => (grasp().trial(offset), Vec::new()),
+            (every_s, _) => grasp().sampled(offset, every_s),
         };
         not_stopped(stop)?;
         if let Some(file) = &self.svg {

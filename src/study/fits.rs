@@ -97,10 +97,10 @@ pub fn sound(score: &Score) -> bool {
 }
 
 pub(super) fn off_the_space(design: &Design, space: &Space) -> Option<String> {
-    if design.0.len() != space.parameters().len() {
+    if design.0.len() != space.parameters.len() {
         return Some(format!("{design} has not the parameters of the space"));
     }
-    let off = space.parameters().iter().find(|parameter| {
+    let off = space.parameters.iter().find(|parameter| {
         let value = design.get(&parameter.key).unwrap_or(f64::NAN);
         parameter.value(parameter.nearest(value)) != value
     });

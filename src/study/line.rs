@@ -99,7 +99,7 @@ pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::
         state: if score.is_some() { COMPLETE } else { FAIL },
         values: score.map(|score| score.values.clone()),
         params: recorded.design.0.clone(),
-        distributions: space.parameters().iter().map(distribution).collect::<Result<_, _>>()?,
+        distributions: space.parameters.iter().map(distribution).collect::<Result<_, _>>()?,
         user_attrs: UserAttributes { stiffness: recorded.stiffness, tasks: recorded.tasks.clone() },
         system_attrs: SystemAttributes {
             constraints: score.map_or_else(Vec::new, |score| score.violations.clone()),

@@ -87,7 +87,7 @@ impl Rule<'_> {
             let (value, span) = (design.get(&parameter.key)?, parameter.high - parameter.low);
             (span > 0.0).then(|| (value - parameter.low).min(parameter.high - value) / span)
         };
-        self.space.parameters().iter().filter_map(of).fold(0.5, f64::min)
+        self.space.parameters.iter().filter_map(of).fold(0.5, f64::min)
     }
 }
 

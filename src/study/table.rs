@@ -51,7 +51,7 @@ fn csv(record: &StudyRecord) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
 fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Error> {
     let config = &record.config;
     let mut row = vec![("evaluation".to_owned(), recorded.index.to_string())];
-    for parameter in config.space.parameters() {
+    for parameter in &config.space.parameters {
         let value = recorded.design.get(&parameter.key);
         row.push((parameter.key.clone(), value.map_or(String::new(), |value| value.to_string())));
     }

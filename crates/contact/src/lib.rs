@@ -155,3 +155,9 @@ pub trait World: Send + Sync {
     /// Independent copy that continues with the same bits.
     fn snapshot(&self) -> Box<dyn World>;
 }
+
+impl Clone for Box<dyn World> {
+    fn clone(&self) -> Self {
+        self.snapshot()
+    }
+}

@@ -92,7 +92,10 @@ pub struct Check<'a> {
 }
 
 impl Check<'_> {
-    /// The error of a field.
+    /// Refuses a field.
+    ///
+    /// # Errors
+    /// Always: with this problem of the field.
     pub fn fail<T>(&self, key: &str, problem: impl Into<String>) -> Result<T, InputError> {
         Err(InputError::Value {
             file: self.file.to_owned(),
@@ -131,6 +134,9 @@ impl Check<'_> {
     }
 
     /// The value, if it is finite and not beyond 1e9.
+    ///
+    /// # Errors
+    /// If it is not.
     pub fn finite(&self, key: &str, value: f64) -> Result<f64, InputError> {
         // Written so that a NaN is outside.
         let fits = value.abs() <= LARGEST;
@@ -138,18 +144,27 @@ impl Check<'_> {
     }
 
     /// The value, if it is above 0: from 1e-9 to 1e9.
+    ///
+    /// # Errors
+    /// If it is not.
     pub fn positive(&self, key: &str, value: f64) -> Result<f64, InputError> {
         let fits = (SMALLEST..=LARGEST).contains(&value);
         self.require(key, value, fits, "be a finite number above 0, 1e-9 to 1e9")
     }
 
     /// The value, if it is not below 0 and not beyond 1e9.
+    ///
+    /// # Errors
+    /// If it is not.
     pub fn not_negative(&self, key: &str, value: f64) -> Result<f64, InputError> {
         let fits = (0.0..=LARGEST).contains(&value);
         self.require(key, value, fits, "be a finite number, 0 or above, 1e9 at most")
     }
 
-    /// A coordinate or a difference of two, mm.
+    /// The value, if it can be a coordinate or a difference of two, mm.
+    ///
+    /// # Errors
+    /// If it is not finite, or longer than 1 m.
     pub fn distance(&self, key: &str, mm: f64) -> Result<f64, InputError> {
         let fits = self.finite(key, mm)?.abs() <= LONGEST_MM;
         self.require(key, mm, fits, &format!("lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))

@@ -68,6 +68,9 @@ pub enum Flange {
 impl Robot {
     /// The robot at the start of a task whose frame is turned by `turn` about the
     /// base's z, with the TCP tilted by `tilt` about the task's x, rad.
+    ///
+    /// # Errors
+    /// If an arm does not reach the start, or is singular there.
     pub fn mount(&self, turn: f64, tilt: f64) -> Result<Mounted, ArmError> {
         let flange = match &self.drive {
             Drive::Ideal => Flange::Ideal,
@@ -95,8 +98,7 @@ impl Mounted {
         self.arm().map_or(0.0, |arm| SETTLED * arm.time_constant)
     }
 
-    /// Whether the robot stops at this plug-socket force, N, task axes: a protective
-    /// stop, or a joint at its torque limit.
+    /// Whether this plug-socket force, N, task axes, stops the robot or overloads a joint.
     pub fn stops(&self, force: &Vector3<f64>) -> bool {
         self.arm().is_some_and(|arm| arm.overloaded(force)) || force.norm() > self.stop_force
     }
@@ -132,6 +134,9 @@ enum RawRobot {
 
 impl Robot {
     /// Reads and checks a robot; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not such a file, or a value cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let raw: RawRobot = read(text, file)?;
         let check = Check { file };

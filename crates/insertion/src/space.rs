@@ -1,9 +1,5 @@
 //! Search spaces: named, bounded, stepped parameters, and the designs in them.
 
-mod corners;
-
-pub(crate) use corners::corners;
-
 use ask_tell::GridPoint;
 use finray::infill;
 use input::{Check, InputError, read, shown};
@@ -42,8 +38,7 @@ pub struct Parameter {
     pub low: f64,
     /// Largest value, in the unit of the key.
     pub high: f64,
-    /// Smallest difference that can be made (printed, set), same unit; on a log scale the factor
-    /// between neighbours.
+    /// Smallest difference that can be made; on a log scale the factor between neighbours.
     pub step: f64,
     /// Spacing of the values.
     #[serde(default, skip_serializing_if = "Scale::is_linear")]
@@ -53,12 +48,35 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    fn problem(&self) -> Option<String> {
+        let Parameter { low, high, step, .. } = *self;
+        let [least, most] = bounds(&self.key);
+        let (linear, levels) = (self.scale.is_linear(), self.steps());
+        let wide = linear && high > low && step > (high - low) * (1.0 + 1e-9);
+        let uneven = (levels - levels.round()).abs() > 1e-6 || levels > 1e6;
+        let within = format!("must lie in {} .. {}", shown(least), shown(most));
+        let log = "on a log scale step must be above 1 and low above 0";
+        let problems = [
+            (
+                ![low, high, step].iter().all(|v| v.is_finite()),
+                "low, high and step must be finite numbers",
+            ),
+            (low > high, "low must not be above high"),
+            (linear && step <= 0.0, "step must be above 0"),
+            (!linear && (step <= 1.0 || low <= 0.0), log),
+            (low < least || high > most, &within),
+            (step < FINEST_STEP, "step must be 1e-6 or more"),
+            (wide, "step must not be larger than high - low"),
+            (uneven, "high - low must be a whole number of steps, at most 1e6"),
+        ];
+        problems.into_iter().find(|(wrong, _)| *wrong).map(|(_, problem)| problem.to_owned())
+    }
+
     /// Number of distinct values.
     pub fn levels(&self) -> u32 {
         self.steps().round() as u32 + 1
     }
 
-    /// Steps from the lowest value to the highest.
     fn steps(&self) -> f64 {
         self.steps_to(self.high)
     }
@@ -90,16 +108,49 @@ impl Parameter {
             }
         }
     }
+
+    /// The smallest and the largest value, and the one nearest to zero.
+    pub(crate) fn extremes(&self) -> Vec<f64> {
+        let last = self.levels() - 1;
+        let zero = (-self.low / self.step).round().clamp(0.0, f64::from(last)) as u32;
+        let mut levels = vec![0, zero, last];
+        levels.sort_unstable();
+        levels.dedup();
+        levels.into_iter().map(|level| self.value(level)).collect()
+    }
+}
+
+/// All combinations of extreme values; a parameter that would make them above `most` is left out.
+pub(crate) fn corners<'a>(
+    parameters: impl IntoIterator<Item = &'a Parameter>,
+    most: usize,
+) -> Vec<Design> {
+    let mut designs = vec![Design::default()];
+    for parameter in parameters {
+        let values = parameter.extremes();
+        if values.len() <= most / designs.len() {
+            let with = |mut design: Design, value| {
+                design.0.insert(parameter.key.clone(), value);
+                design
+            };
+            let each = |design: &Design| values.iter().map(|&v| with(design.clone(), v)).collect();
+            designs = designs.iter().flat_map::<Vec<Design>, _>(each).collect();
+        }
+    }
+    designs
 }
 
 /// A checked search space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "RawSpace")]
 pub struct Space {
-    name: String,
-    description: String,
+    /// Name in study folders.
+    pub name: String,
+    /// One-line description for lists.
+    pub description: String,
+    /// The parameters in file order: the order of the unit cube's axes.
     #[serde(rename = "parameter")]
-    parameters: Vec<Parameter>,
+    pub parameters: Vec<Parameter>,
 }
 
 /// A design: values by key, in the units the keys carry.
@@ -182,13 +233,11 @@ impl std::fmt::Display for Design {
     }
 }
 
-/// Most parameters of a space.
 const MOST_PARAMETERS: usize = 100;
 /// Smallest step: a thousand times the digit to which values are rounded.
 const FINEST_STEP: f64 = 1e-6;
 
-/// Between what a parameter's values must lie, in the unit of its key: as in a table of
-/// measured stiffness, or wherever a number may lie.
+/// Between what a parameter's values must lie, in the unit of its key.
 fn bounds(key: &str) -> [f64; 2] {
     match key {
         // A finger of no density is no finger.
@@ -216,9 +265,11 @@ impl TryFrom<RawSpace> for Space {
 
 impl Space {
     /// Reads and checks a space; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not such a file, or a value cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let raw: RawSpace = read(text, file)?;
-        Self::check(raw, file)
+        Self::check(read(text, file)?, file)
     }
 
     fn check(raw: RawSpace, file: &str) -> Result<Self, InputError> {
@@ -227,55 +278,16 @@ impl Space {
             let problem = format!("a space needs one [[parameter]] to {MOST_PARAMETERS} of them");
             return fail("parameter", &problem);
         }
-        for (i, p) in raw.parameter.iter().enumerate() {
-            if raw.parameter[..i].iter().any(|other| other.key == p.key) {
-                return fail(&p.key, "is given twice; each key may stand once");
+        for (i, parameter) in raw.parameter.iter().enumerate() {
+            let key = &parameter.key;
+            if raw.parameter[..i].iter().any(|other| other.key == *key) {
+                return fail(key, "is given twice; each key may stand once");
             }
-            if ![p.low, p.high, p.step].iter().all(|v| v.is_finite()) {
-                return fail(&p.key, "low, high and step must be finite numbers");
-            }
-            if p.low > p.high {
-                return fail(&p.key, "low must not be above high");
-            }
-            match p.scale {
-                Scale::Linear if p.step <= 0.0 => return fail(&p.key, "step must be above 0"),
-                Scale::Log if p.step <= 1.0 || p.low <= 0.0 => {
-                    return fail(&p.key, "on a log scale step must be above 1 and low above 0");
-                }
-                _ => {}
-            }
-            let [least, most] = bounds(&p.key);
-            if p.low < least || p.high > most {
-                let [least, most] = [least, most].map(shown);
-                return fail(&p.key, &format!("must lie in {least} .. {most}"));
-            }
-            if p.step < FINEST_STEP {
-                return fail(&p.key, "step must be 1e-6 or more");
-            }
-            if p.scale.is_linear() && p.high > p.low && p.step > (p.high - p.low) * (1.0 + 1e-9) {
-                return fail(&p.key, "step must not be larger than high - low");
-            }
-            let levels = p.steps();
-            if (levels - levels.round()).abs() > 1e-6 || levels > 1e6 {
-                return fail(&p.key, "high - low must be a whole number of steps, at most 1e6");
+            if let Some(problem) = parameter.problem() {
+                return fail(key, &problem);
             }
         }
         Ok(Space { name: raw.name, description: raw.description, parameters: raw.parameter })
-    }
-
-    /// Name, as used in study folders.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// One-line description for lists.
-    pub fn description(&self) -> &str {
-        &self.description
-    }
-
-    /// The parameters in file order: the order of the unit cube's axes.
-    pub fn parameters(&self) -> &[Parameter] {
-        &self.parameters
     }
 
     /// Levels per axis: what an optimizer may know of the space.
@@ -310,7 +322,7 @@ source = "paper"
         let space = Space::parse(GOOD, "s.toml").unwrap();
         assert_eq!(space.levels(), vec![21]);
         assert_eq!(space.design(&GridPoint(vec![20])).get(DENSITY_KEY), Some(30.0));
-        let parameter = &space.parameters()[0];
+        let parameter = &space.parameters[0];
         assert_eq!([0.0, 12.4, 30.0].map(|value| parameter.nearest(value)), [0, 2, 20]);
     }
 
@@ -319,7 +331,7 @@ source = "paper"
         let text = GOOD.replace("low = 10.0", "low = 0.5").replace("high = 30.0", "high = 4.0");
         let text = text.replace("step = 1.0", "step = 1.189207115\nscale = 'log'");
         let space = Space::parse(&text, "s.toml").unwrap();
-        let parameter = &space.parameters()[0];
+        let parameter = &space.parameters[0];
         assert_eq!(parameter.levels(), 13);
         let values = [0, 1, 4, 8, 12].map(|level| parameter.value(level));
         assert_eq!(values, [0.5, 0.5946, 1.0, 2.0, 4.0]);

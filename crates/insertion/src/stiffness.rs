@@ -1,12 +1,8 @@
 //! Measured fingers: the CSV file and its checks.
 
+use finray::FingerError;
+use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
-
-/// The measured designs shipped with the program (`data/measured_stiffness.csv`).
-pub const SHIPPED_CSV: &str = include_str!("../../../data/measured_stiffness.csv");
-
-/// Name of the shipped file, for messages.
-pub const SHIPPED_FILE: &str = "data/measured_stiffness.csv";
 
 /// A direction in which a finger yields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -42,8 +38,7 @@ pub const HEADER: [&str; 5] = [
     "stiffness_compliance_n_per_mm",
 ];
 
-/// Most designs of a table: the time to leave each out in turn and fit all models anew grows
-/// with the fourth power of their number.
+/// Most designs of a table: the time to leave each out in turn grows with its fourth power.
 pub const MOST: usize = 100;
 
 /// Stiffness of one printed finger, as measured.
@@ -122,6 +117,9 @@ pub enum SurrogateError {
         /// Number of designs given.
         found: usize,
     },
+    /// A measured finger that cannot be computed.
+    #[error(transparent)]
+    Finger(#[from] FingerError),
     /// No model could be fitted.
     #[error(
         "no stiffness model in the {axis} direction can be fitted: \
@@ -134,6 +132,9 @@ pub enum SurrogateError {
 }
 
 /// Reads and checks a measurement file; `file` is named in errors.
+///
+/// # Errors
+/// If it is no such table, a value cannot be used, or a column seems to be in another unit.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     unit(rows(text, file)?, file)
 }
@@ -168,7 +169,7 @@ const OTHER_UNIT: f64 = 100.0;
 /// Asks about columns that look as if they were in another unit: nobody prints a finger a hundred
 /// times as stiff or as soft as the measured ones.
 fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
-    let shipped = rows(SHIPPED_CSV, SHIPPED_FILE)?;
+    let shipped = rows(STIFFNESS[0].text, STIFFNESS[0].file)?;
     for (axis, column) in [(Axis::Assembly, HEADER[3]), (Axis::Compliance, HEADER[4])] {
         let [own, usual] = [&found, &shipped].map(|all| median(all, axis) / N_PER_MM);
         let question = match own / usual {

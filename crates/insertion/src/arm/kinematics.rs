@@ -1,8 +1,19 @@
-//! Forward kinematics: where the links are, and how the joints move a point.
+//! Forward kinematics, mass matrix, and inverse kinematics by damped least squares (Wampler 1986,
+//! IEEE Trans. Syst. Man Cybern. 16:93): `dq = J^T (J J^T + l^2)^-1 e`, from the home angles.
 
-use super::{Angles, Arm, JOINTS};
+use super::{Angles, Arm, ArmError, JOINTS};
 use contact::scene::Pose;
-use nalgebra::{Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
+use input::units::{DEG, MM};
+use nalgebra::{
+    Isometry3, Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6,
+};
+
+/// Damping `l` far from the target, m: steps near a singular pose stay bounded.
+const DAMPING: f64 = 0.02;
+/// Steps at most; a start near home takes fewer than twenty.
+const STEPS: usize = 200;
+/// Error of a solution, m and rad.
+const EXACT: f64 = 1e-10;
 
 /// The arm at some joint angles, base frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +41,47 @@ impl Arm {
         }
         Posture { links, axes, tcp: frame * self.tool }
     }
+
+    /// `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: the sum over the links of
+    /// `m Jv^T Jv + Jw^T I Jw`, each about the link's centre of mass.
+    pub fn mass(&self, posture: &Posture) -> Matrix6<f64> {
+        (0..JOINTS)
+            .map(|i| {
+                let (link, frame) = (&self.joints[i].link, posture.links[i]);
+                let jacobian = posture.jacobian(&(frame * link.centre), i);
+                let axes = frame.rotation.to_rotation_matrix().into_inner();
+                let tensor = axes * Matrix3::from_diagonal(&link.moments) * axes.transpose();
+                let (linear, angular) = (jacobian.fixed_rows::<3>(0), jacobian.fixed_rows::<3>(3));
+                linear.tr_mul(&linear) * link.mass + angular.tr_mul(&(tensor * angular))
+            })
+            .sum()
+    }
+
+    /// Angles near home that bring the TCP to a pose in the base frame.
+    ///
+    /// # Errors
+    /// If the pose is out of reach or singular.
+    pub fn reach(&self, target: &Pose) -> Result<Angles, ArmError> {
+        let mut angles = self.home;
+        let mut error = Vector6::zeros();
+        for _ in 0..STEPS {
+            let posture = self.at(&angles);
+            error = displacement(&posture.tcp, target);
+            if error.amax() < EXACT {
+                return Ok(angles);
+            }
+            let jacobian = posture.tcp_jacobian();
+            // The damping goes with the error, so that the last steps are Newton's.
+            let damping = (DAMPING * error.norm().min(1.0)).powi(2);
+            let square = jacobian * jacobian.transpose() + Matrix6::from_diagonal_element(damping);
+            let step = square.cholesky().ok_or(ArmError::Singular)?.solve(&error);
+            angles += jacobian.tr_mul(&step);
+        }
+        Err(ArmError::Unreachable {
+            miss_mm: error.fixed_rows::<3>(0).norm() / MM,
+            miss_deg: error.fixed_rows::<3>(3).norm() / DEG,
+        })
+    }
 }
 
 impl Posture {
@@ -49,4 +101,11 @@ impl Posture {
     pub fn tcp_jacobian(&self) -> Matrix6<f64> {
         self.jacobian(&Point3::from(self.tcp.translation.vector), JOINTS - 1)
     }
+}
+
+/// Translation, and rotation vector, from one pose to another, base axes.
+pub fn displacement(from: &Pose, to: &Pose) -> Vector6<f64> {
+    let moved = to.translation.vector - from.translation.vector;
+    let turned = (to.rotation * from.rotation.inverse()).scaled_axis();
+    Vector6::new(moved.x, moved.y, moved.z, turned.x, turned.y, turned.z)
 }

@@ -1,23 +1,18 @@
 //! A six-joint arm with position servos, and what it feels like at its TCP.
 //!
-//! Each joint is a servo `tau = k (q_command - q) - c dq/dt`. Its damper acts on the
-//! joint's speed, so the arm trails its command by c/k; or, with the commanded speed
-//! fed forward, on the error's rate, `c d/dt (q_command - q)`. A blocked arm of the
-//! first kind pushes with its spring alone. The links carry their own weight.
+//! Each joint is a servo `tau = k (q_command - q) - c dq/dt`: the arm trails its command by c/k,
+//! and a blocked one pushes with its spring alone. With the commanded speed fed forward the damper
+//! acts on the error's rate, `c d/dt (q_command - q)`. The links carry their own weight.
 //!
-//! With six joints and six directions at the TCP, displacements `x = J q` are only
-//! another set of coordinates: near a pose the arm *is* one body at the TCP with the
-//! coupled 6x6 spring, damper and mass of [`Reduced`]. What that leaves out is how
-//! `J` changes with the pose.
+//! With six joints and six directions at the TCP, displacements `x = J q` are only another set of
+//! coordinates: near a pose the arm *is* one body at the TCP with the coupled 6x6 spring, damper
+//! and mass of [`Reduced`]. What that leaves out is how `J` changes with the pose.
 
-mod dynamics;
-mod inverse;
 mod kinematics;
 mod raw;
 mod reduced;
 
-pub use inverse::displacement;
-pub use kinematics::Posture;
+pub use kinematics::{Posture, displacement};
 pub(crate) use raw::{RawArm, arm};
 pub use reduced::Reduced;
 

@@ -37,7 +37,6 @@ struct RawJoint {
     link_inertia_kg_m2: [f64; 3],
 }
 
-/// The arm of a robot file.
 pub(crate) fn arm(check: Check<'_>, raw: &RawArm) -> Result<Arm, InputError> {
     let joints = raw.joint.iter().map(|raw| joint(check, raw)).collect::<Result<Vec<_>, _>>()?;
     let count = joints.len();

@@ -34,9 +34,11 @@ pub struct Reduced {
 }
 
 impl Arm {
-    /// The arm at a task's start: the TCP where it is at the home angles, the task
-    /// frame turned about the base's z by `turn`, the TCP tilted about the task's x
-    /// by `tilt`, rad.
+    /// The arm at a task's start: the TCP where it is at the home angles, the task frame turned
+    /// about the base's z by `turn`, the TCP tilted about the task's x by `tilt`, rad.
+    ///
+    /// # Errors
+    /// If the arm does not reach the start, or is singular there.
     pub fn at_start(&self, turn: f64, tilt: f64) -> Result<Reduced, ArmError> {
         let task = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn);
         let tilted = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), tilt);
@@ -46,6 +48,9 @@ impl Arm {
     }
 
     /// The arm at some joint angles, its TCP upright; `task` turns task axes into base axes.
+    ///
+    /// # Errors
+    /// If a direction is left in which no joint moves the TCP.
     pub fn reduced(
         &self,
         angles: &Angles,

@@ -4,7 +4,6 @@ use super::leaving;
 use super::robustness::firm::{self, Firm};
 use super::robustness::repeat::Repeats;
 use super::robustness::{self, Plan};
-use super::stoppable::Stoppable;
 use super::taught::{Moved, teach};
 use super::template::{Impossible, Template};
 use super::tolerance::Search;
@@ -17,19 +16,41 @@ use crate::robot::Robot;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::surrogate::{Model, Prediction};
 use crate::task::{StartRule, Task};
-use crate::trial::Rig;
 use crate::trial::engine::EngineKind;
 use crate::trial::run::RigError;
+use crate::trial::{Grasp, Rig};
 use input::numbers::DESIGN;
+use input::shown;
 use input::units::N_PER_MM;
-use input::{InputError, shown};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Stiffest finger, N/mm: a thousand times that of a solid one.
 const STIFFEST_N_PER_MM: f64 = 1e6;
 
-/// Stiffness model, tasks, robot and engine: all that decides what a design measures.
+/// Stiffness model, tasks, robot and engine: all that decides the evaluation of a design.
+///
+/// ```
+/// use finray::printed::PrintedFinger;
+/// use input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS};
+/// use insertion::evaluation::{evaluator::Evaluator, template::Template};
+/// use insertion::finger::model::FingerSource;
+/// use insertion::{robot::Robot, space::Design, stiffness, surrogate, trial::engine::EngineKind};
+/// let measured = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file)?;
+/// let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file)?;
+/// let evaluator = Evaluator {
+///     surrogate: surrogate::fit(&measured, &printed)?.into(),
+///     fingers: FingerSource::Paper,
+///     templates: vec![Template::parse(TASKS[0].text, TASKS[0].file)?],
+///     robot: Robot::parse(ROBOTS[0].text, ROBOTS[0].file)?,
+///     engine: EngineKind::Direct,
+/// };
+/// let design = Design::infill(20.0, 10.0);
+/// let stiffness = evaluator.predict(&design)?;
+/// let specimen = evaluator.specimen(&evaluator.templates[0], &design, stiffness)?;
+/// assert!(specimen.finger.assembly > 10.0 * specimen.finger.compliance);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Evaluator {
     /// Predicts a finger's stiffness from its infill.
     pub surrogate: Arc<Model>,
@@ -56,16 +77,6 @@ pub struct Specimen {
     pub stiffness: Prediction,
 }
 
-/// Refuses a stiffness, N/mm, that cannot be simulated: far from what was measured the model may
-/// give any.
-fn check_stiffness(key: &str, n_per_mm: f64) -> Result<(), InputError> {
-    if DESIGN.positive(key, n_per_mm)? <= STIFFEST_N_PER_MM {
-        return Ok(());
-    }
-    let found = shown(n_per_mm);
-    DESIGN.fail(key, format!("is {found} N/mm; it may be {STIFFEST_N_PER_MM} at most"))
-}
-
 /// Evaluation of one design on all tasks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
@@ -73,8 +84,7 @@ pub struct Measured {
     pub stiffness: Prediction,
     /// Evaluation on each task, in their order.
     pub tasks: Vec<Evaluation>,
-    /// For each task whether it was not simulated now but known from before; empty where
-    /// nothing could be.
+    /// For each task whether it was known from before; empty where nothing could be.
     pub cached: Vec<bool>,
 }
 
@@ -98,7 +108,7 @@ impl Evaluator {
         match &self.fingers {
             FingerSource::Paper => Ok(plain),
             FingerSource::Computed(fingers) => {
-                let measured = self.surrogate.measurements();
+                let measured = &self.surrogate.measurements;
                 Ok(leaving::predict(fingers, measured, design, plain)?)
             }
         }
@@ -118,7 +128,13 @@ impl Evaluator {
             ("compliance stiffness", stiffness.compliance),
             ("assembly stiffness", stiffness.assembly),
         ] {
-            check_stiffness(key, axis.mean / N_PER_MM)?;
+            let n_per_mm = DESIGN.positive(key, axis.mean / N_PER_MM)?;
+            // Far from what was measured the model may give any.
+            if n_per_mm > STIFFEST_N_PER_MM {
+                let found = shown(n_per_mm);
+                let problem = format!("is {found} N/mm; it may be {STIFFEST_N_PER_MM} at most");
+                return Ok(DESIGN.fail(key, problem)?);
+            }
             DESIGN.not_negative(key, axis.sd / N_PER_MM)?;
         }
         let at_pad = AtPad::of(&stiffness);
@@ -176,9 +192,8 @@ impl Evaluator {
     ) -> Result<Evaluation, RigError> {
         let taught = self.taught(specimen, stop)?;
         let rig = self.rig(specimen, taught, 1.0)?;
-        let rig = Stoppable { inner: &*rig, stop };
-        let Specimen { finger, stiffness, .. } = specimen;
-        let evaluation = robustness::evaluate(&rig, finger, stiffness, search, plan);
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let evaluation = robustness::evaluate(&*rig, grasp, &specimen.stiffness, search, plan);
         Ok(Evaluation { taught, ..evaluation })
     }
 
@@ -202,8 +217,8 @@ impl Evaluator {
         self.measure(&taught, search, plan, stop)
     }
 
-    /// The firm part of the window that was measured of a specimen, from the start that was taught then, by [`firm::REPEATS`] repeats that this seed names;
-    /// ends early, with a worthless result, once `stop` is set.
+    /// The firm part of the window that was measured of a specimen, from the start taught then, by
+    /// [`firm::REPEATS`] repeats that this seed names; worthless once `stop` is set.
     ///
     /// # Errors
     /// If robot or engine cannot do the task.
@@ -219,8 +234,8 @@ impl Evaluator {
         }
         let rig = |factor| self.rig(specimen, measured.taught, factor);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);
-        let [whole, half] = [&whole, &half].map(|rig| Stoppable { inner: &**rig, stop });
-        let repeats = Repeats::new([&whole, &half], &specimen.finger, seed, firm::REPEATS);
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let repeats = Repeats::new([&*whole, &*half], grasp, seed, firm::REPEATS);
         Ok(firm::measure(&repeats, &measured.window))
     }
 

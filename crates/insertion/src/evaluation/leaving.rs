@@ -28,7 +28,7 @@ pub fn predict(
     plain: Prediction,
 ) -> Result<Prediction, FingerError> {
     let change = |(key, value): (&String, &f64)| {
-        fingers.file.value(key).map_or(0.0, |from| libm::log(value / from))
+        fingers.file.numbers.number(key).map_or(0.0, |from| libm::log(value / from))
     };
     let shape = design.0.iter().filter(|(key, _)| is_shape(key));
     let far: f64 = shape.map(change).map(|change| change * change).sum();

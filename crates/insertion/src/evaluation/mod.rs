@@ -1,4 +1,4 @@
-//! What a trial, a window search and an evaluation report.
+//! Results of window searches and evaluations.
 
 pub mod evaluator;
 mod leaving;
@@ -6,13 +6,13 @@ pub mod objective;
 pub mod robustness;
 mod schema;
 pub mod sprung;
-pub mod stoppable;
 pub mod taught;
 pub mod template;
 pub mod tolerance;
 pub mod uncertainty;
 
 use crate::outcome::Outcome;
+use crate::surrogate::null_is_nan;
 use serde::{Deserialize, Serialize};
 
 /// A shift of the start position along y, as a number of 0.1 mm grid steps.
@@ -21,13 +21,21 @@ pub type OffsetStep = i32;
 /// Width of the offset grid: the paper shifts the start by 0.1 mm.
 pub const OFFSET_STEP_MM: f64 = 0.1;
 
-/// The offsets that insert around the nominal start, on the 0.1 mm grid, and
-/// what stopped the search at each end.
+/// The offsets that insert around the nominal start, and what ended the search at each end.
 ///
 /// Invariant of a window with `nominal == Inserted`: `negative_steps <= 0 <=
 /// positive_steps`, and both were found to insert. By the step-by-step walk every grid
 /// offset between them was; by strides a gap between the offsets tried stays unseen.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// ```
+/// use insertion::{evaluation::Window, outcome::Outcome};
+/// let nominal = Outcome::Inserted;
+/// let (end_negative, end_positive) = (Some(Outcome::Diverged), None);
+/// let window = Window { nominal, negative_steps: -33, positive_steps: 14, end_negative, end_positive };
+/// assert_eq!(window.range_mm(), 4.7);
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "schema::WindowRow", try_from = "schema::WindowRow")]
 pub struct Window {
     /// Outcome at the nominal start; anything but inserted makes the range 0.
     pub nominal: Outcome,
@@ -35,8 +43,7 @@ pub struct Window {
     pub negative_steps: OffsetStep,
     /// Most positive inserting offset, in grid steps.
     pub positive_steps: OffsetStep,
-    /// What the first failing offset below `negative_steps` did; `None` if the
-    /// search reached its limit without a failure.
+    /// Outcome of the first failing offset below `negative_steps`; `None` at the search's limit.
     pub end_negative: Option<Outcome>,
     /// Outcome of the first failing offset above `positive_steps`.
     pub end_positive: Option<Outcome>,
@@ -70,31 +77,39 @@ pub fn grid_mm(steps: OffsetStep) -> f64 {
 /// Everything measured for one design on one task. The counts and times are those
 /// of the window search. Written in the one form of `schema.rs`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(into = "schema::EvaluationRow", try_from = "schema::EvaluationRow")]
 pub struct Evaluation {
     /// Tolerance window around the nominal start.
+    #[serde(flatten)]
     pub window: Window,
     /// Trials that failed with class 1 to 4, over all trials run.
     pub failure_counts: [u32; 4],
     /// Trials that diverged numerically.
     pub diverged: u32,
-    /// Trials of the window search.
-    pub trials: u32,
     /// Largest contact force between plug and socket over the inserted trials, N.
+    #[serde(deserialize_with = "null_is_nan")]
     pub peak_force_n: f64,
     /// Largest slip of the part in the grasp over the inserted trials, mm.
+    #[serde(deserialize_with = "null_is_nan")]
     pub slip_mm: f64,
+    /// Trials of the window search.
+    pub trials: u32,
     /// Simulated time over all trials, s.
+    #[serde(deserialize_with = "null_is_nan")]
     pub simulated_s: f64,
     /// Where the outcome turns within the grid step beyond each end (negative, positive), as
     /// a share of it, 0 to 1: interpolated over [`Trial::margin`](crate::trial::Trial::margin).
     /// If the nominal start fails, its margin, -1 to 0.
+    #[serde(serialize_with = "schema::finite")]
     pub end_shares: [f64; 2],
     /// Shift of a taught start from that of the task file, in grid steps.
+    #[serde(rename = "taught_start_mm", default, skip_serializing_if = "Option::is_none")]
+    #[serde(serialize_with = "schema::taught_mm", deserialize_with = "schema::taught_steps")]
     pub taught: Option<OffsetStep>,
     /// Success rate under sampled errors, if measured.
+    #[serde(flatten, serialize_with = "schema::with_rate")]
     pub success: Option<SuccessRate>,
     /// Range under sampled errors, if measured.
+    #[serde(flatten, serialize_with = "schema::with_spread")]
     pub robust: Option<RobustRange>,
 }
 
@@ -127,8 +142,7 @@ impl SuccessRate {
         (counted > 0).then(|| f64::from(self.inserted) / f64::from(counted))
     }
 
-    /// Wilson's score interval of the true rate (E. B. Wilson 1927, J. Am. Stat.
-    /// Assoc. 22:209), `[0, 1]` if no trial counts.
+    /// Wilson's score interval of the true rate (1927, J. Am. Stat. Assoc. 22:209).
     pub fn interval(&self) -> [f64; 2] {
         let Some(rate) = self.rate() else { return [0.0, 1.0] };
         let n = f64::from(self.counted());
@@ -151,16 +165,20 @@ fn normal_quantile(probability: f64) -> f64 {
 }
 
 /// Ranges of one design under sampled errors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RobustRange {
     /// Range under each sample, mm; a sample whose nominal start diverged has none.
+    #[serde(rename = "robust_ranges_mm")]
     pub ranges_mm: Vec<f64>,
     /// Samples whose nominal start diverged.
+    #[serde(rename = "robust_diverged")]
     pub diverged: u32,
-    /// The statistic the settings ask for, mm; `None` with fewer than two ranges.
-    pub value_mm: Option<f64>,
-    /// Trials run for all windows.
+    /// Trials of all windows.
+    #[serde(rename = "robust_trials")]
     pub trials: u32,
+    /// The statistic the settings ask for, mm; `None` with fewer than two ranges.
+    #[serde(rename = "robust_range_mm", skip_serializing)]
+    pub value_mm: Option<f64>,
 }
 
 impl RobustRange {
@@ -181,10 +199,14 @@ impl RobustRange {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn success(inserted: u32, failed: u32) -> SuccessRate {
+    pub fn ranges(ranges_mm: Vec<f64>) -> RobustRange {
+        RobustRange { ranges_mm, diverged: 0, value_mm: None, trials: 0 }
+    }
+
+    pub fn success(inserted: u32, failed: u32) -> SuccessRate {
         let failure_counts = [0, 0, failed, 0];
         SuccessRate { inserted, failure_counts, diverged: 3, confidence: 0.95 }
     }
@@ -207,8 +229,7 @@ mod tests {
 
     #[test]
     fn the_spread_of_ranges() {
-        let robust =
-            RobustRange { ranges_mm: vec![3.0, 5.0, 7.0], diverged: 0, value_mm: None, trials: 30 };
+        let robust = ranges(vec![3.0, 5.0, 7.0]);
         assert_eq!((robust.mean_mm(), robust.sd_mm()), (5.0, 2.0));
     }
 }

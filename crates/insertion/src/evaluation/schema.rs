@@ -1,228 +1,172 @@
-//! The one form in which an evaluation leaves the program: JSON, journal and tables have
-//! these keys.
+//! The one form of an evaluation outside the program: the keys of JSON, journal and tables.
 
-use super::{Evaluation, RobustRange, SuccessRate, Window, grid_mm};
+use super::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
 use crate::outcome::{FailureClass, Outcome};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// An [`Evaluation`] as flat keys.
+/// A [`Window`] in mm.
 #[derive(Serialize, Deserialize)]
-pub(super) struct EvaluationRow {
+pub(super) struct WindowRow {
     range_mm: f64,
     negative_mm: f64,
     positive_mm: f64,
-    nominal: OutcomeWord,
-    failure_negative: Option<FailureWord>,
-    failure_positive: Option<FailureWord>,
-    failure_counts: [u32; 4],
-    diverged: u32,
-    #[serde(deserialize_with = "null_is_nan")]
-    peak_force_n: f64,
-    #[serde(deserialize_with = "null_is_nan")]
-    slip_mm: f64,
-    trials: u32,
-    #[serde(deserialize_with = "null_is_nan")]
-    simulated_s: f64,
-    end_shares: [f64; 2],
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    taught_start_mm: Option<f64>,
-    #[serde(flatten)]
-    success: Option<SuccessRow>,
-    #[serde(flatten)]
-    robust: Option<RobustRow>,
-}
-
-/// An outcome without its class.
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum OutcomeWord {
-    Inserted,
-    Failed,
-    Diverged,
+    /// Outcome without its class: that is at either end.
+    nominal: String,
+    failure_negative: Option<End>,
+    failure_positive: Option<End>,
 }
 
 /// Outcome that ended the search at one side: the failure class, 1 to 4, or `diverged`.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
-enum FailureWord {
+enum End {
     Class(FailureClass),
-    Other(OutcomeWord),
+    Other(Outcome),
 }
 
-/// Success rate with its interval, for readers outside, and the counts they follow from.
-#[derive(Serialize, Deserialize)]
-struct SuccessRow {
-    success_rate: Option<f64>,
-    success_low: f64,
-    success_high: f64,
-    #[serde(flatten)]
-    counts: SuccessRate,
-}
-
-#[derive(Serialize, Deserialize)]
-struct RobustRow {
-    robust_range_mm: Option<f64>,
-    robust_mean_mm: Option<f64>,
-    robust_sd_mm: Option<f64>,
-    robust_windows: usize,
-    robust_ranges_mm: Vec<f64>,
-    robust_diverged: u32,
-    robust_trials: u32,
-}
-
-/// JSON has no NaN: it is written as null.
-fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
-}
-
-impl From<Outcome> for OutcomeWord {
+impl From<Outcome> for End {
     fn from(outcome: Outcome) -> Self {
         match outcome {
-            Outcome::Inserted => OutcomeWord::Inserted,
-            Outcome::Failed(_) => OutcomeWord::Failed,
-            Outcome::Diverged => OutcomeWord::Diverged,
+            Outcome::Failed(class) => End::Class(class),
+            other => End::Other(other),
         }
     }
 }
 
-impl From<Outcome> for FailureWord {
-    fn from(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Failed(class) => FailureWord::Class(class),
-            other => FailureWord::Other(other.into()),
+impl From<End> for Outcome {
+    fn from(end: End) -> Self {
+        match end {
+            End::Class(class) => Outcome::Failed(class),
+            End::Other(outcome) => outcome,
         }
     }
 }
 
-impl FailureWord {
-    fn outcome(&self) -> Result<Outcome, String> {
-        match self {
-            FailureWord::Class(class) => Ok(Outcome::Failed(*class)),
-            FailureWord::Other(OutcomeWord::Inserted) => Ok(Outcome::Inserted),
-            FailureWord::Other(OutcomeWord::Diverged) => Ok(Outcome::Diverged),
-            FailureWord::Other(OutcomeWord::Failed) => Err("a failure without its class".into()),
-        }
-    }
-}
-
-impl From<Evaluation> for EvaluationRow {
-    fn from(evaluation: Evaluation) -> Self {
-        let window = &evaluation.window;
-        EvaluationRow {
+impl From<Window> for WindowRow {
+    fn from(window: Window) -> Self {
+        WindowRow {
             range_mm: window.range_mm(),
             negative_mm: window.negative_mm(),
             positive_mm: window.positive_mm(),
-            nominal: window.nominal.into(),
-            failure_negative: window.end_negative.map(FailureWord::from),
-            failure_positive: window.end_positive.map(FailureWord::from),
-            failure_counts: evaluation.failure_counts,
-            diverged: evaluation.diverged,
-            peak_force_n: evaluation.peak_force_n,
-            slip_mm: evaluation.slip_mm,
-            trials: evaluation.trials,
-            simulated_s: evaluation.simulated_s,
-            // A share that is no number would not be read again.
-            end_shares: evaluation
-                .end_shares
-                .map(|share| if share.is_finite() { share } else { 0.0 }),
-            taught_start_mm: evaluation.taught.map(grid_mm),
-            success: evaluation.success.map(SuccessRow::from),
-            robust: evaluation.robust.map(RobustRow::from),
+            nominal: window.nominal.word().to_owned(),
+            failure_negative: window.end_negative.map(End::from),
+            failure_positive: window.end_positive.map(End::from),
         }
     }
 }
 
-impl TryFrom<EvaluationRow> for Evaluation {
+impl TryFrom<WindowRow> for Window {
     type Error = String;
 
-    fn try_from(row: EvaluationRow) -> Result<Self, String> {
-        let end = |failure: &Option<FailureWord>| failure.as_ref().map(FailureWord::outcome);
-        let end_negative = end(&row.failure_negative).transpose()?;
-        let nominal = match row.nominal {
-            OutcomeWord::Inserted => Outcome::Inserted,
-            OutcomeWord::Diverged => Outcome::Diverged,
+    fn try_from(row: WindowRow) -> Result<Self, String> {
+        let end_negative = row.failure_negative.map(Outcome::from);
+        let nominal = match &*row.nominal {
+            "inserted" => Outcome::Inserted,
+            "diverged" => Outcome::Diverged,
             // A window that is empty ends as its nominal start does.
-            OutcomeWord::Failed => end_negative.ok_or("a nominal failure without its class")?,
+            "failed" => end_negative.ok_or("a nominal failure without its class")?,
+            other => return Err(format!("`{other}` is not inserted, failed or diverged")),
         };
-        let steps = |mm: f64| (mm / grid_mm(1)).round() as i32;
-        Ok(Evaluation {
-            window: Window {
-                nominal,
-                negative_steps: steps(row.negative_mm),
-                positive_steps: steps(row.positive_mm),
-                end_negative,
-                end_positive: end(&row.failure_positive).transpose()?,
-            },
-            failure_counts: row.failure_counts,
-            diverged: row.diverged,
-            trials: row.trials,
-            peak_force_n: row.peak_force_n,
-            slip_mm: row.slip_mm,
-            simulated_s: row.simulated_s,
-            end_shares: row.end_shares,
-            taught: row.taught_start_mm.map(steps),
-            success: row.success.map(|row| row.counts),
-            robust: row.robust.map(RobustRange::from),
+        Ok(Window {
+            nominal,
+            negative_steps: steps(row.negative_mm),
+            positive_steps: steps(row.positive_mm),
+            end_negative,
+            end_positive: row.failure_positive.map(Outcome::from),
         })
     }
 }
 
-impl From<SuccessRate> for SuccessRow {
-    fn from(counts: SuccessRate) -> Self {
+fn steps(mm: f64) -> OffsetStep {
+    (mm / grid_mm(1)).round() as OffsetStep
+}
+
+pub(super) fn taught_mm<S: Serializer>(
+    taught: &Option<OffsetStep>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    taught.map(grid_mm).serialize(to)
+}
+
+pub(super) fn taught_steps<'de, D: Deserializer<'de>>(
+    from: D,
+) -> Result<Option<OffsetStep>, D::Error> {
+    Ok(Option::deserialize(from)?.map(steps))
+}
+
+/// A share that is no number would not be read again.
+pub(super) fn finite<S: Serializer>(shares: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
+    shares.map(|share| if share.is_finite() { share } else { 0.0 }).serialize(to)
+}
+
+/// Success rate with its interval, for readers outside, and the counts they follow from.
+#[derive(Serialize)]
+struct SuccessRow<'a> {
+    success_rate: Option<f64>,
+    success_low: f64,
+    success_high: f64,
+    #[serde(flatten)]
+    counts: &'a SuccessRate,
+}
+
+pub(super) fn with_rate<S: Serializer>(
+    success: &Option<SuccessRate>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    let row = success.as_ref().map(|counts| {
         let [success_low, success_high] = counts.interval();
         SuccessRow { success_rate: counts.rate(), success_low, success_high, counts }
-    }
+    });
+    row.serialize(to)
 }
 
-impl From<RobustRange> for RobustRow {
-    fn from(robust: RobustRange) -> Self {
-        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
-        RobustRow {
-            robust_range_mm: robust.value_mm,
-            robust_mean_mm: finite(robust.mean_mm()),
-            robust_sd_mm: finite(robust.sd_mm()),
-            robust_windows: robust.ranges_mm.len(),
-            robust_diverged: robust.diverged,
-            robust_trials: robust.trials,
-            robust_ranges_mm: robust.ranges_mm,
-        }
-    }
+#[derive(Serialize)]
+struct RobustRow<'a> {
+    robust_range_mm: Option<f64>,
+    robust_mean_mm: Option<f64>,
+    robust_sd_mm: Option<f64>,
+    robust_windows: usize,
+    #[serde(flatten)]
+    ranges: &'a RobustRange,
 }
 
-impl From<RobustRow> for RobustRange {
-    fn from(row: RobustRow) -> Self {
-        RobustRange {
-            ranges_mm: row.robust_ranges_mm,
-            diverged: row.robust_diverged,
-            value_mm: row.robust_range_mm,
-            trials: row.robust_trials,
-        }
-    }
+pub(super) fn with_spread<S: Serializer>(
+    robust: &Option<RobustRange>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+    let row = robust.as_ref().map(|ranges| RobustRow {
+        robust_range_mm: ranges.value_mm,
+        robust_mean_mm: finite(ranges.mean_mm()),
+        robust_sd_mm: finite(ranges.sd_mm()),
+        robust_windows: ranges.ranges_mm.len(),
+        ranges,
+    });
+    row.serialize(to)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluation::Evaluation;
+    use crate::evaluation::tests::{ranges, success};
 
     fn evaluation() -> Evaluation {
+        let window = Window {
+            nominal: Outcome::Inserted,
+            negative_steps: -33,
+            positive_steps: 14,
+            end_negative: Some(Outcome::Diverged),
+            end_positive: Some(Outcome::Failed(FailureClass::PlugMissed)),
+        };
         Evaluation {
-            window: Window {
-                nominal: Outcome::Inserted,
-                negative_steps: -33,
-                positive_steps: 14,
-                end_negative: Some(Outcome::Diverged),
-                end_positive: Some(Outcome::Failed(FailureClass::PlugMissed)),
-            },
             failure_counts: [0, 1, 0, 0],
             diverged: 1,
             trials: 20,
             peak_force_n: 0.1 + 0.2,
             slip_mm: 0.3,
             simulated_s: 12.5,
-            end_shares: [0.25, 1.0 / 3.0],
-            taught: None,
-            success: None,
-            robust: None,
+            ..Evaluation::of(window, [0.25, 1.0 / 3.0])
         }
     }
 
@@ -239,14 +183,8 @@ mod tests {
         full.window.nominal = Outcome::Failed(FailureClass::PlugMissed);
         (full.window.negative_steps, full.window.positive_steps) = (0, 0);
         (full.window.end_negative, full.window.end_positive) = (missed, missed);
-        full.success = Some(SuccessRate {
-            inserted: 3,
-            failure_counts: [1, 0, 2, 0],
-            diverged: 1,
-            confidence: 0.95,
-        });
-        full.robust =
-            Some(RobustRange { ranges_mm: vec![1.1], diverged: 2, value_mm: None, trials: 7 });
+        full.success = Some(success(3, 2));
+        full.robust = Some(RobustRange { diverged: 2, trials: 7, ..ranges(vec![1.1]) });
         assert_eq!(again(&full), full);
         full.taught = Some(-13);
         assert_eq!(again(&full), full);

@@ -16,11 +16,11 @@ use input::{Check, InputError};
 pub fn check(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), InputError> {
     let sets = |key: &str| [RCC_KEY, TILTING_KEY].contains(&key);
     let computed = matches!(evaluator.fingers, FingerSource::Computed(_));
-    let Some(first) = space.parameters().iter().find(|p| computed && sets(&p.key)) else {
+    let Some(first) = space.parameters.iter().find(|p| computed && sets(&p.key)) else {
         return Ok(());
     };
     let tried = |p: &&Parameter| sets(&p.key) || is_infill(&p.key);
-    for design in corners(space.parameters().iter().filter(tried), usize::MAX) {
+    for design in corners(space.parameters.iter().filter(tried), usize::MAX) {
         if let Err(error) = springs(evaluator, &design) {
             return Check { file }.fail(&first.key, format!("{design} has no springs: {error}"));
         }
@@ -30,9 +30,9 @@ pub fn check(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Inp
 
 fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), Impossible> {
     let stiffness = evaluator.predict(design)?;
-    let at_pad = AtPad { compliance: stiffness.compliance.mean, assembly: stiffness.assembly.mean };
+    let at_pad = AtPad::of(&stiffness);
     for template in &evaluator.templates {
-        evaluator.fingers.make(at_pad, design, template.task())?;
+        evaluator.fingers.make(at_pad, design, &template.task)?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use crate::evaluation::{Evaluation, OFFSET_STEP_MM, OffsetStep, Window};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
-use crate::trial::{Conditions, Grasped, Rig, Trial};
+use crate::trial::{Grasp, Grasped, Rig, Trial};
 use input::units::MM;
 
 /// Farthest offset tried, in grid steps: well beyond any published window (9 mm).
@@ -15,10 +15,9 @@ pub const OFFSET_LIMIT_STEPS: OffsetStep = 150;
 pub enum Search {
     /// Step by step outward to the first failure: the paper's way.
     Walk,
-    /// In strides of 0.5 mm outward to the first failure, then by bisection
-    /// between the last two: a third of the trials. It finds the end that the
-    /// walk finds unless a gap in the window is narrower than a stride; so it is on 43 of
-    /// the 44 pairs of task and measured finger (`docs/notes/performance.md`).
+    /// In strides of 0.5 mm outward to the first failure, then by bisection: a third of the trials.
+    /// It finds the walk's end unless a gap in the window is narrower than a stride: on 43 of the
+    /// 44 pairs of task and measured finger (`docs/notes/performance.md`).
     #[default]
     Strides,
 }
@@ -37,17 +36,12 @@ impl Search {
 /// The start is shifted outward on the 0.1 mm grid in both directions until
 /// the first trial that does not insert (the paper, Sec. "Robot Movement").
 pub fn evaluate(rig: &dyn Rig, finger: &Finger, search: Search) -> Evaluation {
-    evaluate_in(rig, finger, &Conditions::NOMINAL, search)
+    evaluate_in(rig, Grasp::of(finger), search)
 }
 
-/// As [`evaluate`], under other conditions than those of the task file.
-pub fn evaluate_in(
-    rig: &dyn Rig,
-    finger: &Finger,
-    conditions: &Conditions,
-    search: Search,
-) -> Evaluation {
-    let grasped = rig.grasp_in(finger, conditions);
+/// As [`evaluate`], of any grasp; ends early, with a worthless result, once that is to stop.
+pub fn evaluate_in(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation {
+    let grasped = rig.hold(grasp);
     let nominal = [grasped.trial(0.0)];
     let Trial { outcome, margin, .. } = nominal[0];
     let ([negative, positive], sides) = if outcome == Outcome::Inserted {
@@ -124,7 +118,7 @@ pub fn offset(step: OffsetStep) -> f64 {
 
 impl Evaluation {
     /// A window without the trials by which it was found.
-    fn of(window: Window, end_shares: [f64; 2]) -> Self {
+    pub(super) fn of(window: Window, end_shares: [f64; 2]) -> Self {
         Evaluation {
             window,
             failure_counts: [0; 4],
@@ -140,7 +134,6 @@ impl Evaluation {
         }
     }
 
-    /// Counts some of the trials by which the window was found.
     fn count(&mut self, trials: &[Trial]) {
         self.trials += trials.len() as u32;
         self.simulated_s += trials.iter().map(|trial| trial.simulated_s).sum::<f64>();
@@ -162,7 +155,6 @@ mod tests {
     use super::*;
     use crate::fixtures::finger;
     use crate::outcome::FailureClass;
-    use crate::trial::Grasp;
     use crate::trial::fake::{Altered, FakeRig};
 
     #[test]
@@ -207,10 +199,8 @@ mod tests {
             assert_eq!(end(Search::Walk), from - 1);
             let found = end(Search::Strides);
             // Whatever it steps over, it ends where one start inserts and the next does not.
-            assert!(
-                found == from - 1 || (found == 20 && width < 5),
-                "{width} from {from}: {found}"
-            );
+            let over_it = found == 20 && width < 5;
+            assert!(found == from - 1 || over_it, "{width} from {from}: {found}");
             over += usize::from(found == 20);
         }
         assert!(over > 0, "no gap was stepped over");

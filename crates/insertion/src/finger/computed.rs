@@ -1,5 +1,4 @@
-//! A finger computed from its ribs: the springs about its remote centre that make it as stiff
-//! at the pad as it was measured there.
+//! A computed finger: springs about its remote centre that make it as stiff at the pad as measured.
 //!
 //! A spring at a centre that lies `s` below and `c` in front of the pad's middle is seen from
 //! there with the tilting spring `k_t` in series, so
@@ -8,9 +7,8 @@
 //! 1/k_y,centre = 1/k_y - s^2/k_t,   1/k_z,centre = 1/k_z - c^2/k_t
 //! ```
 //!
-//! The two do not pull at one another.
-//! Across the plane (x, ry, rz) the centre is another one: the plate's 3 x 3 stiffness at the
-//! pad is carried over to the same joint whole, with its coupling of x to ry and rz.
+//! Across the plane (x, ry, rz) the plate's 3 x 3 stiffness at the pad is carried over to the same
+//! joint whole, with its coupling of x to ry and rz.
 
 use super::{Finger, Pad};
 use crate::surrogate::Prediction;
@@ -37,14 +35,6 @@ impl Touching {
         match self {
             Touching::Pad => &computed.pad,
             Touching::PadAndRoof => &computed.pad_and_roof,
-        }
-    }
-
-    /// The computed stiffness in the finger's plane, to be corrected.
-    pub(super) fn of_mut(self, computed: &mut FingerStiffness) -> &mut PlanarStiffness {
-        match self {
-            Touching::Pad => &mut computed.pad,
-            Touching::PadAndRoof => &mut computed.pad_and_roof,
         }
     }
 }
@@ -84,8 +74,10 @@ impl Pad {
 /// A printed finger in a gripper, with what was computed of it.
 pub(super) struct Computed<'a> {
     pub printed: &'a PrintedFinger,
-    pub stiffness: &'a FingerStiffness,
-    pub touching: Touching,
+    /// Stiffness in its plane.
+    pub plane: PlanarStiffness,
+    /// Stiffness in x, ry and rz at the pad's middle.
+    pub across: Matrix3<f64>,
     /// Height of the part's shoulder above the TCP, m.
     pub shoulder: f64,
 }
@@ -96,7 +88,7 @@ impl Computed<'_> {
     /// # Errors
     /// If turning about the centre alone gives way by more than that.
     pub fn finger(&self, at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
-        let plane = self.touching.of(self.stiffness);
+        let plane = self.plane;
         let pad = Pad::of(&self.printed.outline);
         let middle = pad.middle(self.shoulder);
         let rcc = given.rcc.unwrap_or(plane.centre_below_pad() - middle);
@@ -105,12 +97,31 @@ impl Computed<'_> {
         // Compliances at the centre, m/N.
         let at_centre = |name, stiffness: f64, lever: f64| {
             let centre = 1.0 / stiffness - lever * lever / tilting;
-            if centre > 0.0 { Ok(centre) } else { self.refuse(name, stiffness, lever, tilting) }
+            if centre > 0.0 {
+                return Ok(centre);
+            }
+            let (at_pad, turning) = (stiffness / N_PER_MM, tilting / (lever * lever) / N_PER_MM);
+            let problem = format!(
+                "a finger of {at_pad:.2} N/mm in {name} at its pad cannot turn about a centre {:.1} mm \
+                 beside it at {tilting:.2} N m/rad: that alone gives way at {turning:.2} N/mm; bring \
+                 finger.rcc_mm nearer to the pad, or use --finger-model paper",
+                lever / MM
+            );
+            Err(FingerError::Unfit { file: self.printed.file.clone(), problem })
         };
         let in_y = at_centre("compliance", at_pad.compliance, below)?;
         let in_z = at_centre("assembly", at_pad.assembly, ahead)?;
-        let across = across_at_centre(self.stiffness, below, ahead);
-        let matrix = assembled([1.0 / in_y, 1.0 / in_z], tilting, across);
+        // x at the pad = x at the centre + ry below + rz ahead.
+        let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+        let across = to_pad.transpose() * self.across * to_pad;
+        // The stiffness on all six axes at the centre.
+        let mut matrix = Matrix6::zeros();
+        (matrix[(1, 1)], matrix[(2, 2)], matrix[(3, 3)]) = (1.0 / in_y, 1.0 / in_z, tilting);
+        for (i, row) in ACROSS.into_iter().enumerate() {
+            for (j, column) in ACROSS.into_iter().enumerate() {
+                matrix[(row, column)] = across[(i, j)];
+            }
+        }
         Ok(Finger {
             compliance: matrix[(1, 1)],
             assembly: matrix[(2, 2)],
@@ -123,76 +134,36 @@ impl Computed<'_> {
             ..Finger::new(at_pad.compliance, at_pad.assembly)
         })
     }
-
-    fn refuse(
-        &self,
-        axis: &'static str,
-        stiffness: f64,
-        lever: f64,
-        tilting: f64,
-    ) -> Result<f64, FingerError> {
-        let (at_pad, turning) = (stiffness / N_PER_MM, tilting / (lever * lever) / N_PER_MM);
-        let problem = format!(
-            "a finger of {at_pad:.2} N/mm in {axis} at its pad cannot turn about a centre {:.1} mm \
-             beside it at {tilting:.2} N m/rad: that alone gives way at {turning:.2} N/mm; bring \
-             finger.rcc_mm nearer to the pad, or use --finger-model paper",
-            lever / MM
-        );
-        Err(FingerError::Unfit { file: self.printed.file.clone(), problem })
-    }
 }
 
 /// Places of x, ry and rz among the six axes.
 const ACROSS: [usize; 3] = [0, 4, 5];
 
-/// The stiffness on all six axes at the centre.
-fn assembled([in_y, in_z]: [f64; 2], tilting: f64, across: Matrix3<f64>) -> Matrix6<f64> {
-    let mut matrix = Matrix6::zeros();
-    (matrix[(1, 1)], matrix[(2, 2)], matrix[(3, 3)]) = (in_y, in_z, tilting);
-    for (i, row) in ACROSS.into_iter().enumerate() {
-        for (j, column) in ACROSS.into_iter().enumerate() {
-            matrix[(row, column)] = across[(i, j)];
-        }
-    }
-    matrix
-}
-
-/// Stiffness in x, ry and rz at a point below and in front of the pad's middle, m.
-fn across_at_centre(computed: &FingerStiffness, below: f64, ahead: f64) -> Matrix3<f64> {
-    // x at the pad = x at the centre + ry below + rz ahead.
-    let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-    to_pad.transpose() * computed.cross.matrix * to_pad
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use finray::mechanics::FingerStiffness;
-    use finray::stiffness::CrossStiffness;
     use input::shipped::FINGERS;
     use nalgebra::Vector3;
 
     const SHOULDER: f64 = 3.5 * MM;
+    const AT_PAD: AtPad = AtPad { compliance: 2.6e3, assembly: 45e3 };
 
     fn printed() -> PrintedFinger {
         PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
     }
 
     /// Springs that sit so far below and in front of the pad, and a plate.
-    fn stiffness(below: f64, ahead: f64, tilting: f64) -> FingerStiffness {
+    fn stiffness(below: f64, ahead: f64, tilting: f64) -> (PlanarStiffness, Matrix3<f64>) {
         let to_centre = Matrix3::new(1.0, 0.0, below, 0.0, 1.0, ahead, 0.0, 0.0, 1.0);
         let springs = Matrix3::from_diagonal(&Vector3::new(9e3, 9e4, tilting));
         let plane = PlanarStiffness::new(to_centre.transpose() * springs * to_centre).unwrap();
         let across = Matrix3::new(6e4, -600.0, -200.0, -600.0, 9.0, 1.0, -200.0, 1.0, 5.0);
-        let cross = CrossStiffness::new(across).unwrap();
-        FingerStiffness { pad: plane, pad_and_roof: plane, cross }
+        (plane, across)
     }
 
     fn finger(at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
-        let (printed, stiffness) = (printed(), stiffness(8.0 * MM, -2.0 * MM, 2.5));
-        let (touching, shoulder) = (Touching::Pad, SHOULDER);
-        Computed { printed: &printed, stiffness: &stiffness, touching, shoulder }
-            .finger(at_pad, given)
+        let (plane, across) = stiffness(8.0 * MM, -2.0 * MM, 2.5);
+        Computed { printed: &printed(), plane, across, shoulder: SHOULDER }.finger(at_pad, given)
     }
 
     /// Compliance of a finger at the middle of its pad, the finger at -y.
@@ -208,17 +179,16 @@ mod tests {
 
     #[test]
     fn at_the_pad_a_finger_is_as_stiff_as_measured_and_turns_as_computed() {
-        let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
-        let finger = finger(at_pad, Given::default()).unwrap();
+        let finger = finger(AT_PAD, Given::default()).unwrap();
         let compliance = at_pad_middle(&finger);
         for (axis, stiffness) in [(1, 2.6e3), (2, 45e3), (3, 2.5)] {
             let found = 1.0 / compliance[(axis, axis)];
             assert!((found / stiffness - 1.0).abs() < 1e-12, "{axis}: {found}");
         }
         // The pad's middle lies 0.95 mm below the TCP of the keys.
-        assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > at_pad.compliance);
+        assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > AT_PAD.compliance);
         assert_eq!(finger.pad.height, 9.0 * MM);
-        let plate = stiffness(0.0, 0.0, 1.0).cross.matrix.try_inverse().unwrap();
+        let plate = stiffness(0.0, 0.0, 1.0).1.try_inverse().unwrap();
         for (i, row) in ACROSS.into_iter().enumerate() {
             for (j, column) in ACROSS.into_iter().enumerate() {
                 let error = compliance[(row, column)] - plate[(i, j)];
@@ -229,22 +199,20 @@ mod tests {
 
     #[test]
     fn a_given_centre_takes_the_computed_ones_place() {
-        let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
         let given = Given { rcc: Some(5.0 * MM), tilting: Some(3.0) };
-        let finger = finger(at_pad, given).unwrap();
+        let finger = finger(AT_PAD, given).unwrap();
         assert_eq!((finger.rcc, finger.rotation[0]), (5.0 * MM, 3.0));
         assert!((1.0 / at_pad_middle(&finger)[(1, 1)] / 2.6e3 - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_centre_too_far_for_the_stiffness_is_refused() {
-        let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
         let given = Given { rcc: Some(40.0 * MM), tilting: None };
-        let error = finger(at_pad, given).unwrap_err().to_string();
+        let error = finger(AT_PAD, given).unwrap_err().to_string();
         for part in ["finray9", "2.60 N/mm", "compliance", "39.0 mm", "2.50 N m/rad", "rcc_mm"] {
             assert!(error.contains(part), "{error}");
         }
-        let stiff = AtPad { assembly: 1e6, ..at_pad };
+        let stiff = AtPad { assembly: 1e6, ..AT_PAD };
         assert!(finger(stiff, Given::default()).unwrap_err().to_string().contains("assembly"));
     }
 }

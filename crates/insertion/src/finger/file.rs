@@ -11,8 +11,10 @@ use input::numbers::NumberFile;
 /// A finger file, the numbers of which a design may set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FingerFile {
-    numbers: NumberFile,
-    finger: PrintedFinger,
+    /// Numbers of the file, by their keys.
+    pub numbers: NumberFile,
+    /// The finger as the file has it.
+    pub finger: PrintedFinger,
 }
 
 /// Whether a key sets a number of a finger file: it names a table of it. (The numbers of a
@@ -29,16 +31,6 @@ impl FingerFile {
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let finger = PrintedFinger::parse(text, file)?;
         Ok(FingerFile { numbers: NumberFile::parse("finger", text, file)?, finger })
-    }
-
-    /// The finger as the file has it.
-    pub fn finger(&self) -> &PrintedFinger {
-        &self.finger
-    }
-
-    /// The value that the file has under a key, in the unit of the key.
-    pub fn value(&self, key: &str) -> Option<f64> {
-        self.numbers.number(key)
     }
 
     /// The finger with the numbers that a design sets; keys of anything else are left alone.
@@ -72,15 +64,15 @@ mod tests {
     #[test]
     fn a_design_sets_what_it_names_and_nothing_else() {
         let file = finray9();
-        assert_eq!(&file.with(&Design::infill(20.0, 10.0)).unwrap(), file.finger());
-        assert_eq!(&with("finger.rcc_mm", 3.0).unwrap(), file.finger());
-        let mut expected = file.finger().clone();
+        assert_eq!(file.with(&Design::infill(20.0, 10.0)).unwrap(), file.finger);
+        assert_eq!(with("finger.rcc_mm", 3.0).unwrap(), file.finger);
+        let mut expected = file.finger.clone();
         expected.skin = 0.8 * MM;
         assert_eq!(with("finger.skin.thickness_mm", 0.8).unwrap(), expected);
         let modulus = with("finger.material.modulus_gpa", 0.5).unwrap().material.modulus;
         assert_eq!(modulus, 0.5e9);
-        assert_eq!(file.value("finger.outline.back_radius_mm"), Some(23.0));
-        assert_eq!(file.value("finger.outline.radius_mm"), None);
+        assert_eq!(file.numbers.number("finger.outline.back_radius_mm"), Some(23.0));
+        assert_eq!(file.numbers.number("finger.outline.radius_mm"), None);
     }
 
     #[test]

@@ -1,6 +1,5 @@
-//! One printed finger: six springs about a remote centre of compliance (RCC), a pad and a
-//! roof. As the paper models it (Sec. "Stiffness model" and Table "Simulation Inputs"), or
-//! computed from its ribs.
+//! One printed finger: six springs about a remote centre of compliance (RCC), a pad and a roof; as
+//! in the paper (Sec. "Stiffness model", Table "Simulation Inputs"), or computed from its ribs.
 
 pub mod computed;
 pub mod file;
@@ -38,14 +37,12 @@ pub struct Finger {
     pub coupling: Option<Coupling>,
 }
 
-/// Rotational spring about x, N m/rad: the upper end of the range in the paper's
-/// Table "Simulation Inputs" (0.5 .. 2), of which the paper itself used 1; why is
-/// in `docs/notes/calibration.md`.
+/// Rotational spring about x, N m/rad: the upper end of the range in the paper's Table "Simulation
+/// Inputs" (0.5 .. 2), of which the paper itself used 1; why is in `docs/notes/calibration.md`.
 const TILTING: f64 = 2.0;
 
 impl Finger {
-    /// A finger of the given compliance and assembly stiffness (N/m, per
-    /// finger), everything else as in the paper.
+    /// A finger of this compliance and assembly stiffness, N/m; everything else as in the paper.
     pub fn new(compliance: f64, assembly: f64) -> Self {
         Finger {
             compliance,
@@ -112,8 +109,7 @@ impl Pad {
 const PAD_THICKNESS: f64 = 4.0 * MM;
 /// Thickness of the roof (not decisive), m.
 const ROOF_THICKNESS: f64 = 3.0 * MM;
-/// Gap between roof and shoulder at the grasp, m: the roof comes to rest on the shoulder
-/// when the part is first pushed up.
+/// Gap between roof and shoulder at the grasp, m: closed when the part is first pushed up.
 pub const ROOF_GAP: f64 = 0.05 * MM;
 
 impl Finger {
@@ -121,19 +117,11 @@ impl Finger {
     pub fn springs(&self) -> [Spring; 6] {
         let translation = |k: f64| Spring::new(k, self.damping);
         let rotation = |k: f64| Spring::new(k, self.rotational_damping);
-        let [rx, ry, rz] = self.rotation;
-        [
-            translation(self.depth),
-            translation(self.compliance),
-            translation(self.assembly),
-            rotation(rx),
-            rotation(ry),
-            rotation(rz),
-        ]
+        let [x, y, z] = [self.depth, self.compliance, self.assembly].map(translation);
+        let [rx, ry, rz] = self.rotation.map(rotation);
+        [x, y, z, rx, ry, rz]
     }
-}
 
-impl Finger {
     /// Place of the RCC in the finger frame, m; `side` as of [`Pad::geoms`].
     pub fn centre(&self, side: f64) -> Point3<f64> {
         Point3::new(0.0, -side * self.ahead, -self.rcc)
@@ -152,14 +140,12 @@ impl Finger {
     }
 }
 
-/// Radius of gyration of a finger about its centre of mass, m: that of a rod of
-/// the length of a printed finger (70 mm).
+/// Radius of gyration of a finger about its centre of mass, m: that of a rod of 70 mm.
 const GYRATION: f64 = 20.0 * MM;
 
-/// Mass properties of a finger, in the finger frame. Its centre of mass is put
-/// on its axis at the RCC, about the middle of a real finger; at the speed of
-/// an insertion 2 g do not matter, but a centre far from the joint would couple
-/// the six springs in the engine and slow its convergence. `side` as of [`Pad::geoms`].
+/// Mass properties of a finger, in its frame. The centre of mass is put on its axis at the RCC: 2 g
+/// do not matter, but a centre far from the joint would couple the springs in the engine and slow
+/// its convergence. `side` as of [`Pad::geoms`].
 pub fn inertia(finger: &Finger, side: f64) -> Inertia {
     Inertia {
         mass: finger.mass,

@@ -85,9 +85,8 @@ impl FingerSource {
         }
     }
 
-    /// The finger of a design on a task, so stiff at its pad (or, in the paper, at its
-    /// centre). Numbers of the finger that the design sets beside the remote centre and the
-    /// tilting stiffness are the caller's.
+    /// The finger of a design on a task, so stiff at its pad (or, in the paper, at its centre). Its
+    /// other numbers, but for remote centre and tilting stiffness, are set by the caller.
     ///
     /// # Errors
     /// If the printed finger cannot be, or cannot be so stiff.
@@ -150,16 +149,15 @@ impl ComputedFingers {
         if task.finger.coupling.is_some() {
             return Err(FingerError::Coupled { task: task.name.clone() });
         }
-        let mut stiffness = self.stiffness(design)?;
+        let computed = self.stiffness(design)?;
+        let mut plane = *self.touching.of(&computed);
         if design.0.keys().any(|key| is_shape(key)) {
             // Fingers that nobody has measured: none may be refused because measured over computed
             // stiffness of others does not suit its centre.
-            let plane = self.touching.of_mut(&mut stiffness);
-            let corrected = plane.corrected(at_pad.compliance, at_pad.assembly);
-            *plane = corrected.unwrap_or(*plane);
+            plane = plane.corrected(at_pad.compliance, at_pad.assembly).unwrap_or(plane);
         }
-        let (printed, touching) = (&self.file.with(design)?, self.touching);
+        let (printed, across) = (&self.file.with(design)?, computed.cross.matrix);
         let shoulder = task.grip.shoulder();
-        Computed { printed, stiffness: &stiffness, touching, shoulder }.finger(at_pad, given)
+        Computed { printed, plane, across, shoulder }.finger(at_pad, given)
     }
 }

@@ -1,6 +1,5 @@
 //! The stiffness that its ribs give a finger: the physical mean where few fingers were measured.
 
-use super::Estimate;
 use crate::stiffness::{Axis, Infill};
 use finray::FingerError;
 use finray::mechanics::over_phases;
@@ -20,11 +19,6 @@ impl Computed {
     /// The fingers of this file.
     pub fn new(finger: &PrintedFinger) -> Self {
         Computed { finger: finger.clone(), known: Mutex::default() }
-    }
-
-    /// The file.
-    pub fn finger(&self) -> &PrintedFinger {
-        &self.finger
     }
 
     /// A finger's stiffness at every phase of its ribs.
@@ -55,12 +49,5 @@ impl Computed {
             Axis::Assembly => pad_and_roof.in_assembly().ln(),
         });
         Ok((logs.sum::<f64>() / phases.len() as f64).exp())
-    }
-}
-
-impl Estimate {
-    /// The same in another unit.
-    pub(super) fn times(self, unit: f64) -> Self {
-        Estimate { mean: self.mean * unit, sd: self.sd * unit }
     }
 }

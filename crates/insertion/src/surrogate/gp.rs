@@ -1,10 +1,9 @@
 //! A Gaussian process about a physical mean.
 //!
-//! A finger is a row of walls filled with ribs. Ribs at angle `theta` to the
-//! assembly direction z are a lamina; the mean uses the leading term of its
-//! transformed properties (Jones, Mechanics of Composite Materials, Sec. 2.6),
-//! and the density law of cellular solids (Gibson and Ashby, Cellular Solids,
-//! Sec. 5.3: stiffness ~ density^n, n = 1 if the cell walls stretch, 2 if they bend).
+//! A finger is a row of walls filled with ribs. Ribs at angle `theta` to the assembly direction z
+//! are a lamina; the mean uses the leading term of its transformed properties (Jones, Mechanics of
+//! Composite Materials, Sec. 2.6), and the density law of cellular solids (Gibson and Ashby,
+//! Cellular Solids, Sec. 5.3: stiffness ~ density^n, n = 1 if the walls stretch, 2 if they bend).
 //!
 //! * Assembly (z) loads the ribs along their length. Walls and ribs share the
 //!   load, so stiffnesses add (rule of mixtures), and the ribs give
@@ -15,10 +14,9 @@
 //!   with density and angle and levels off at the walls' stiffness. `n` is
 //!   chosen by likelihood from 1 to 2.
 //!
-//! What the mean leaves is a Matern 5/2 process over (ln density, direction),
-//! plus noise, so that rounded readings are not interpolated. All
-//! hyperparameters come from a fixed grid by maximum likelihood: no random
-//! restarts, so the fit is the same on every run.
+//! What the mean leaves is a Matern 5/2 process over (ln density, direction), plus noise, so that
+//! rounded readings are not interpolated. All hyperparameters come from a fixed grid by maximum
+//! likelihood: no random restarts, so the fit is the same on every run.
 
 use super::link::{Link, Sum};
 use super::standard::Standard;
@@ -38,14 +36,12 @@ pub(super) const READING_SD: f64 = 0.01;
 /// Densities below this are taken as this, percent: the law diverges at 0.
 const LEAST_DENSITY: f64 = 1.0;
 
-/// What the likelihood chooses.
+/// Hyperparameters, chosen by likelihood.
 #[derive(Debug, Clone, Copy)]
 struct Setting {
     /// Of the density in the feature.
     exponent: f64,
-    /// Inverse correlation length.
     theta: f64,
-    /// Ratio of noise to process variance.
     nugget: f64,
 }
 
@@ -58,7 +54,6 @@ pub(super) struct PhysicalProcess<const P: usize> {
     scales: [Standard; 3],
     /// Of the values on the scale of the link.
     target: Standard,
-    /// Where the designs lie.
     places: Vec<Place>,
     /// Of the standardised values, in units of the process variance.
     process: Process<P>,
@@ -72,14 +67,6 @@ fn correlation(a: &Place, b: &Place) -> f64 {
     a.iter().zip(b).map(|(a, b)| matern52((a - b) * (a - b))).product()
 }
 
-/// The sum that holds along an axis, and the density exponents tried.
-fn physics(axis: Axis) -> (Sum, &'static [f64]) {
-    match axis {
-        Axis::Assembly => (Sum::Parallel, &[1.0]),
-        Axis::Compliance => (Sum::Series, &[-1.0, -1.25, -1.5, -1.75, -2.0]),
-    }
-}
-
 /// Feature of the mean, then the inputs of the process.
 fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
     let density = infill[0].max(LEAST_DENSITY);
@@ -89,13 +76,16 @@ fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
 
 /// Fits stiffness about the lamina's mean; `None` if nothing can be fitted.
 pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess<2>> {
-    let (sum, exponents) = physics(axis);
+    let (sum, exponents): (_, &[f64]) = match axis {
+        Axis::Assembly => (Sum::Parallel, &[1.0]),
+        Axis::Compliance => (Sum::Series, &[-1.0, -1.25, -1.5, -1.75, -2.0]),
+    };
     fit_about(Link::new(sum, measured.targets()), exponents, measured)
 }
 
 /// Fits the ratio of measured and computed stiffness, about one number for all designs.
 pub(super) fn fit_ratio(ratios: &Measured) -> Option<PhysicalProcess<1>> {
-    fit_about(Link::logarithm(), &[1.0], ratios)
+    fit_about(Link { sum: Sum::Product, scale: None }, &[1.0], ratios)
 }
 
 /// Maximum likelihood over the grid.
@@ -158,7 +148,7 @@ impl<const P: usize> Fitted for PhysicalProcess<P> {
     }
 
     fn describe(&self) -> String {
-        let mean = match self.link.sum() {
+        let mean = match self.link.sum {
             Sum::Parallel => "k = a + b density^n cos^4(direction)",
             Sum::Series => "1/k = a + b density^n cos^4(direction)",
             Sum::Product => "ln(k / computed) = a",

@@ -1,6 +1,8 @@
 //! The convex hull of the measured designs, and the distance to it.
 
 use crate::stiffness::Infill;
+use crate::task::geometry::{convex_outline, cross};
+use nalgebra::Point2;
 
 /// Convex hull in coordinates scaled by the measured spans.
 #[derive(Debug, Clone, PartialEq)]
@@ -8,7 +10,7 @@ pub(super) struct Hull {
     origin: Infill,
     span: Infill,
     /// Corners, counter-clockwise; two for a segment, one for a point.
-    corners: Vec<Infill>,
+    corners: Vec<Point2<f64>>,
 }
 
 /// Below this (in units of the spans) a point counts as on the hull.
@@ -27,10 +29,7 @@ impl Hull {
         };
         let span = [width(0), width(1)];
         let mut hull = Hull { origin, span, corners: Vec::new() };
-        let mut scaled: Vec<Infill> = points.iter().map(|&p| hull.scale(p)).collect();
-        scaled.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-        scaled.dedup();
-        hull.corners = chain(&scaled);
+        hull.corners = convex_outline(points.iter().map(|&p| hull.scale(p)).collect());
         hull
     }
 
@@ -44,40 +43,12 @@ impl Hull {
         if inside || distance < TOLERANCE { 0.0 } else { distance }
     }
 
-    fn scale(&self, p: Infill) -> Infill {
-        [(p[0] - self.origin[0]) / self.span[0], (p[1] - self.origin[1]) / self.span[1]]
+    fn scale(&self, p: Infill) -> Point2<f64> {
+        Point2::from([0, 1].map(|axis| (p[axis] - self.origin[axis]) / self.span[axis]))
     }
 }
 
-/// Andrew's monotone chain over sorted, distinct points.
-fn chain(sorted: &[Infill]) -> Vec<Infill> {
-    if sorted.len() < 3 {
-        return sorted.to_vec();
-    }
-    let half = |points: &mut dyn Iterator<Item = &Infill>| {
-        let mut corners: Vec<Infill> = Vec::new();
-        for &p in points {
-            while let [.., a, b] = corners[..]
-                && cross(a, b, p) <= 0.0
-            {
-                corners.pop();
-            }
-            corners.push(p);
-        }
-        corners.pop();
-        corners
-    };
-    let mut corners = half(&mut sorted.iter());
-    corners.extend(half(&mut sorted.iter().rev()));
-    corners
-}
-
-/// Twice the signed area of the triangle; positive if `p` is left of `a -> b`.
-fn cross(a: Infill, b: Infill, p: Infill) -> f64 {
-    (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
-}
-
-fn to_segment(a: Infill, b: Infill, p: Infill) -> f64 {
+fn to_segment(a: Point2<f64>, b: Point2<f64>, p: Point2<f64>) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let length2 = along[0] * along[0] + along[1] * along[1];
     let t = if length2 == 0.0 {

@@ -44,8 +44,7 @@ impl ModelKind {
     }
 }
 
-/// Fits one model on one axis, everything it has to choose included; of a computed kind to
-/// ratios of measured and computed stiffness.
+/// Fits one model on one axis; of a computed kind to ratios of measured and computed stiffness.
 pub(super) fn fit_axis(
     axis: Axis,
     kind: ModelKind,
@@ -56,7 +55,7 @@ pub(super) fn fit_axis(
     }
     let positive = Link::new(Sum::Parallel, measured.targets());
     match kind {
-        ModelKind::Linear => boxed(ridge::fit(measured, 1, Link::identity(), &[0.0])),
+        ModelKind::Linear => boxed(ridge::fit(measured, 1, Link::IDENTITY, &[0.0])),
         ModelKind::RidgeLinear => boxed(ridge::fit(measured, 1, positive, &ridge::PENALTIES)),
         ModelKind::RidgeQuadratic => boxed(ridge::fit(measured, 2, positive, &ridge::PENALTIES)),
         ModelKind::GaussianProcess => boxed(gp::fit(axis, measured)),

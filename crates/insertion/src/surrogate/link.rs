@@ -13,15 +13,14 @@ pub(super) enum Sum {
 
 /// Maps stiffness to the scale on which a model is linear, and back.
 ///
-/// With `q` the stiffness or its inverse, `q = s ln(1 + exp(g / s))` (soft
-/// plus): the identity for `q` well above `s`, and positive for every `g`.
-/// `s` is a quarter of the smallest `q` measured, so inside the data the link
-/// bends values by less than 0.5 %.
+/// With `q` the stiffness or its inverse, `q = s ln(1 + exp(g / s))` (soft plus): the identity for
+/// `q` well above `s`, and positive for every `g`. `s` is a quarter of the smallest `q` measured,
+/// so inside the data the link bends values by less than 0.5 %.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Link {
-    sum: Sum,
+    pub sum: Sum,
     /// `None`: no bend at all (the plain linear reference).
-    scale: Option<f64>,
+    pub scale: Option<f64>,
 }
 
 impl Link {
@@ -34,19 +33,7 @@ impl Link {
     }
 
     /// The identity.
-    pub fn identity() -> Self {
-        Link { sum: Sum::Parallel, scale: None }
-    }
-
-    /// The logarithm, positive without a bend.
-    pub fn logarithm() -> Self {
-        Link { sum: Sum::Product, scale: None }
-    }
-
-    /// How it adds up.
-    pub fn sum(self) -> Sum {
-        self.sum
-    }
+    pub const IDENTITY: Link = Link { sum: Sum::Parallel, scale: None };
 
     /// From stiffness (N/m) to the linear scale.
     pub fn forward(self, stiffness: f64) -> f64 {

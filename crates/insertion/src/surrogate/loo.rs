@@ -1,9 +1,8 @@
 //! Leave-one-out errors: how well a model predicts a finger it has not seen.
 
 use super::kind::fit_axis;
-use super::{Computed, Fitted, Measured, ModelKind, left_out, measured};
+use super::{Fitted, Measured, ModelKind, left_out, measured};
 use crate::stiffness::{Axis, Measurement};
-use finray::FingerError;
 use input::units::N_PER_MM;
 
 /// Leave-one-out error of one model on one axis.
@@ -17,8 +16,7 @@ pub struct Loo {
     pub rmse_n_per_mm: f64,
     /// Mean absolute error relative to the measured stiffness, percent.
     pub mean_absolute_percent: f64,
-    /// Root mean square of error / predicted standard deviation: 1 if the
-    /// uncertainty is right, above 1 if the model is too sure of itself.
+    /// Root mean square of error / predicted standard deviation: above 1 the model is too sure.
     pub standardised_rms: f64,
     /// Prediction for each design when it is left out, N/m, in input order.
     pub left_out: Vec<f64>,
@@ -26,7 +24,6 @@ pub struct Loo {
     pub chosen: bool,
 }
 
-/// What the models of one axis are fitted to.
 pub(super) struct Data {
     axis: Axis,
     /// Stiffness, N/m; of computed kinds measured / computed.
@@ -36,22 +33,8 @@ pub(super) struct Data {
 }
 
 impl Data {
-    /// The measured stiffness itself.
-    pub fn measured(axis: Axis, measurements: &[Measurement]) -> Self {
-        Data::by(axis, measurements, vec![1.0; measurements.len()])
-    }
-
-    /// Ratios of measured and computed stiffness.
-    pub fn ratios(
-        axis: Axis,
-        measurements: &[Measurement],
-        computed: &Computed,
-    ) -> Result<Self, FingerError> {
-        let unit = |m: &Measurement| computed.stiffness(axis, m.infill());
-        Ok(Data::by(axis, measurements, measurements.iter().map(unit).collect::<Result<_, _>>()?))
-    }
-
-    fn by(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
+    /// Of these measurements, in units of each.
+    pub fn new(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
         let infills: Vec<_> = measurements.iter().map(Measurement::infill).collect();
         let values = measurements.iter().zip(&units).map(|(m, unit)| m.stiffness(axis) / unit);
         Data { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }

@@ -8,9 +8,8 @@
 //!    hyperparameters, penalty) without it, and predict it ([`Loo`]);
 //! 3. keep the candidate with the smallest mean absolute percentage error.
 //!
-//! Fewer than seven fingers do not carry such a model. Then the models are of measured /
-//! computed stiffness: the ribs give the shape ([`Computed`]), the fingers its scale.
-//! `docs/notes/finger.md` has how far each carries.
+//! Of fewer than seven fingers the models are of measured / computed stiffness: the ribs give the
+//! shape ([`Computed`]), the fingers its scale (`docs/notes/finger.md`).
 //!
 //! Nothing here is random, so equal measurements give bit-identical models.
 
@@ -33,10 +32,11 @@ use linfa::prelude::Dataset;
 use ndarray::{Array1, Array2, Ix1};
 use rayon::prelude::*;
 
-pub use computed::Computed;
+use computed::Computed;
 pub use kind::ModelKind;
 pub use loo::Loo;
-pub use model::{ENOUGH, FitError, Model, fit};
+pub use model::{ENOUGH, Model, fit};
+pub(crate) use row::null_is_nan;
 
 /// A value with its standard deviation, both in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,8 +55,7 @@ pub struct Prediction {
     pub compliance: Estimate,
     /// In the assembly direction (z), N/m.
     pub assembly: Estimate,
-    /// Distance to the convex hull of the measured designs, in units of the
-    /// measured spans (density span = direction span = 1); 0 inside.
+    /// Distance to the hull of the measured designs, in units of the measured spans; 0 inside.
     pub hull_distance: f64,
 }
 
@@ -81,8 +80,7 @@ impl Prediction {
     }
 }
 
-/// Designs and their stiffness along one axis: a row of density (percent) and direction
-/// (degrees) each, and N/m.
+/// Designs (density in percent, direction in degrees) and their stiffness along one axis, N/m.
 type Measured = Dataset<f64, f64, Ix1>;
 
 fn measured(infills: &[Infill], stiffness: &[f64]) -> Measured {
@@ -103,8 +101,7 @@ trait Fitted: std::fmt::Debug + Send + Sync {
     fn describe(&self) -> String;
 }
 
-/// Each design predicted without it, in their order: `predict` fits a model to the others and asks
-/// it. No numbers where there is no model.
+/// Each design predicted by a model of the others; no numbers where there is no model.
 fn left_out(
     measured: &Measured,
     predict: impl Fn(&Measured, Infill) -> Option<Estimate> + Sync,

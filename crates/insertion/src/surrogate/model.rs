@@ -17,15 +17,17 @@ const SEVERAL: usize = 4;
 /// Stiffness of a finger as a function of its infill, fitted to measurements.
 #[derive(Debug)]
 pub struct Model {
-    measurements: Vec<Measurement>,
+    /// The measurements it was fitted to.
+    pub measurements: Vec<Measurement>,
     hull: Hull,
-    assembly: Chosen,
-    compliance: Chosen,
-    loo: Vec<Loo>,
-    /// The fingers as their ribs have them.
+    /// By axis.
+    chosen: [Chosen; 2],
+    /// Leave-one-out errors: one row per axis and model, assembly first.
+    pub loo: Vec<Loo>,
+    /// The fingers as their ribs have them, each computed once.
     computed: Computed,
-    /// Whether the models are of ratios to the computed stiffness.
-    ratios: bool,
+    /// Whether the models are of ratios to the computed stiffness, which takes some 0.2 s a finger.
+    pub ratios: bool,
 }
 
 /// The model of one axis and the factor on its standard deviation.
@@ -35,31 +37,13 @@ struct Chosen {
     widen: f64,
 }
 
-impl Chosen {
-    fn predict(&self, infill: Infill) -> Estimate {
-        let Estimate { mean, sd } = self.fitted.predict(infill);
-        Estimate { mean, sd: sd * self.widen }
-    }
-}
-
-/// Why there is no model.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum FitError {
-    /// Measurements that cannot be used.
-    #[error(transparent)]
-    Measurements(#[from] SurrogateError),
-    /// A measured finger that cannot be computed.
-    #[error(transparent)]
-    Finger(#[from] FingerError),
-}
-
 /// Fits every model, chooses one per axis by its leave-one-out error. Of [`ENOUGH`] designs
 /// without the finger, which costs nothing; of fewer about its computed stiffness.
 ///
 /// # Errors
 /// A measurement that cannot be used, none at all, designs that differ in too few respects,
 /// or of few measurements one of a finger that cannot be computed.
-pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, FitError> {
+pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, SurrogateError> {
     check_all(measurements)?;
     let infills: Vec<Infill> = measurements.iter().map(Measurement::infill).collect();
     let (ratios, kinds) = match measurements.len() {
@@ -69,19 +53,19 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     };
     let computed = Computed::new(finger);
     let choose = |axis| {
-        let data = if ratios {
-            Data::ratios(axis, measurements, &computed)?
-        } else {
-            Data::measured(axis, measurements)
+        let unit = |m: &Measurement| match ratios {
+            true => computed.stiffness(axis, m.infill()),
+            false => Ok(1.0),
         };
-        Ok::<_, FitError>(choose(axis, &data, kinds)?)
+        let units = measurements.iter().map(unit).collect::<Result<_, FingerError>>()?;
+        choose(axis, &Data::new(axis, measurements, units), kinds)
     };
     let (assembly, mut loo) = choose(Axis::Assembly)?;
     let (compliance, rest) = choose(Axis::Compliance)?;
     loo.extend(rest);
     let hull = Hull::new(&infills);
     let measurements = measurements.to_vec();
-    Ok(Model { measurements, hull, assembly, compliance, loo, computed, ratios })
+    Ok(Model { measurements, hull, chosen: [assembly, compliance], loo, computed, ratios })
 }
 
 fn choose(
@@ -122,13 +106,15 @@ impl Model {
         direction_deg: f64,
     ) -> Result<Prediction, FingerError> {
         let infill = [density_percent, direction_deg];
-        let axis = |axis, chosen: &Chosen| {
-            let unit = self.ratios.then(|| self.computed.stiffness(axis, infill));
-            Ok::<_, FingerError>(chosen.predict(infill).times(unit.transpose()?.unwrap_or(1.0)))
+        let along = |axis| {
+            let Chosen { fitted, widen } = &self.chosen[axis as usize];
+            let unit = if self.ratios { self.computed.stiffness(axis, infill)? } else { 1.0 };
+            let Estimate { mean, sd } = fitted.predict(infill);
+            Ok::<_, FingerError>(Estimate { mean: mean * unit, sd: sd * widen * unit })
         };
         Ok(Prediction {
-            compliance: axis(Axis::Compliance, &self.compliance)?,
-            assembly: axis(Axis::Assembly, &self.assembly)?,
+            compliance: along(Axis::Compliance)?,
+            assembly: along(Axis::Assembly)?,
             hull_distance: self.hull.distance(infill),
         })
     }
@@ -141,21 +127,6 @@ impl Model {
         }
     }
 
-    /// Whether a prediction takes the mechanics of a finger, some 0.2 s.
-    pub fn computes(&self) -> bool {
-        self.ratios
-    }
-
-    /// The fingers as their ribs have them, each computed once.
-    pub fn computed(&self) -> &Computed {
-        &self.computed
-    }
-
-    /// Leave-one-out errors: one row per axis and model, assembly first.
-    pub fn loo(&self) -> &[Loo] {
-        &self.loo
-    }
-
     /// The row of the model used on an axis.
     pub fn chosen(&self, axis: Axis) -> Option<&Loo> {
         self.loo.iter().find(|row| row.axis == axis && row.chosen)
@@ -163,24 +134,12 @@ impl Model {
 
     /// The model's parameters on an axis, in words.
     pub fn describe(&self, axis: Axis) -> String {
-        self.of(axis).fitted.describe()
+        self.chosen[axis as usize].fitted.describe()
     }
 
     /// Factor by which the predicted standard deviation of an axis was widened
     /// so that the leave-one-out errors fit it; 1 if it fitted already.
     pub fn widening(&self, axis: Axis) -> f64 {
-        self.of(axis).widen
-    }
-
-    /// The measurements it was fitted to.
-    pub fn measurements(&self) -> &[Measurement] {
-        &self.measurements
-    }
-
-    fn of(&self, axis: Axis) -> &Chosen {
-        match axis {
-            Axis::Assembly => &self.assembly,
-            Axis::Compliance => &self.compliance,
-        }
+        self.chosen[axis as usize].widen
     }
 }

@@ -1,8 +1,7 @@
 //! Ridge polynomials: the baseline that knows no physics.
 //!
-//! Terms and target are standardised, then fitted by `linfa-elasticnet` with an
-//! L1 share of 0. The penalty is the one with the smallest leave-one-out error
-//! among the designs given, so an outer leave-one-out stays honest.
+//! Terms and target are standardised, then fitted by `linfa-elasticnet` with an L1 share of 0. The
+//! penalty has the smallest leave-one-out error of the designs given.
 //!
 //! The terms are turned into their principal axes first. A rotation leaves the ridge penalty
 //! as it is, and along axes that are orthogonal one sweep of coordinate descent is exact.
@@ -118,19 +117,20 @@ impl Fitted for Ridge {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stiffness::{SHIPPED_CSV, SHIPPED_FILE, parse};
+    use crate::stiffness::parse;
+    use input::shipped::STIFFNESS;
 
     /// At the smallest penalised square error its gradient is 0: every term's product with the
     /// residuals is the penalty's pull on its coefficient.
     #[test]
     fn one_sweep_along_the_principal_axes_is_the_minimum() {
-        let shipped = parse(SHIPPED_CSV, SHIPPED_FILE).unwrap();
+        let shipped = parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
         let infills: Vec<Infill> = shipped.iter().map(|m| m.infill()).collect();
         let stiffness: Vec<f64> = shipped.iter().map(|m| m.compliance).collect();
         let n = stiffness.len() as f64;
         let data = crate::surrogate::measured(&infills, &stiffness);
         for penalty in PENALTIES {
-            let fitted = fit_one(&data, 2, Link::identity(), penalty).unwrap();
+            let fitted = fit_one(&data, 2, Link::IDENTITY, penalty).unwrap();
             let row = |&infill: &Infill| -> Vec<f64> {
                 let terms = terms(infill, 2);
                 terms.iter().zip(&fitted.terms).map(|(&t, scale)| scale.apply(t)).collect()

@@ -30,12 +30,6 @@ pub(super) fn fit(axis: Axis, ratios: &Measured) -> Option<Scale> {
     Some(Scale { log, sd: (squares / (FREEDOM + count - 1.0)).sqrt(), count })
 }
 
-impl Scale {
-    fn error_percent(&self) -> f64 {
-        100.0 * self.sd / self.count.sqrt()
-    }
-}
-
 impl Fitted for Scale {
     fn predict(&self, _: Infill) -> Estimate {
         let mean = self.log.exp();
@@ -43,6 +37,7 @@ impl Fitted for Scale {
     }
 
     fn describe(&self) -> String {
-        format!("computed stiffness x {:.3}, ± {:.0} %", self.log.exp(), self.error_percent())
+        let error_percent = 100.0 * self.sd / self.count.sqrt();
+        format!("computed stiffness x {:.3}, ± {error_percent:.0} %", self.log.exp())
     }
 }

@@ -14,8 +14,7 @@ pub const GRASP_S: f64 = 0.3;
 pub const CARRY_S: f64 = 0.2;
 
 impl Phase {
-    /// The longest that it can take if its move is `lead` metres longer than it says, on a
-    /// robot that takes `settling` seconds to follow.
+    /// Longest time of the phase with `lead` metres more, on a robot that needs `settling` seconds.
     fn longest_s(&self, lead: f64, settling: f64) -> f64 {
         let [x, y, z] = self.displacement;
         let length = x.hypot(y).hypot(z) + lead;
@@ -31,7 +30,7 @@ impl Phase {
 }
 
 impl Strategy {
-    /// What is wrong if a trial can take longer than [`LONGEST_TRIAL_S`] on a robot that takes
+    /// The problem if a trial can take longer than [`LONGEST_TRIAL_S`] on a robot that takes
     /// `settling` seconds to follow a command and makes a phase's move longer by its `lead`, m.
     pub fn too_long(&self, lead: impl Fn(&Phase) -> f64, settling: f64) -> Option<String> {
         let seconds = |phase: &Phase| phase.longest_s(lead(phase), settling);
@@ -51,29 +50,26 @@ impl Strategy {
 
 #[cfg(test)]
 mod tests {
+    use crate::fixtures::task_file;
     use crate::task::Task;
 
     #[test]
     fn a_trial_that_takes_too_long_is_refused_with_its_longest_phase() {
-        let usb = include_str!("../../../../tasks/usb.toml");
-        let with = |from: &str, to: &str| {
-            assert!(usb.contains(from), "{from}");
-            Task::parse(&usb.replacen(from, to, 1), "usb.toml")
-        };
-        assert!(with("mass_g", "mass_g").is_ok());
-        let first = |key: &str| {
+        let usb = task_file("usb").text;
+        // The first line of a key with another value.
+        let with = |key: &str, value: &str| {
             let line = usb.lines().find(|line| line.starts_with(key)).unwrap();
-            line.to_owned()
+            Task::parse(&usb.replacen(line, &format!("{key} = {value}"), 1), "usb.toml")
         };
         for (key, value) in [("speed_mm_per_s", "0.001"), ("settle_s", "1e9"), ("settle_s", "59.9")]
         {
-            let error = with(&first(key), &format!("{key} = {value}")).unwrap_err().to_string();
+            let error = with(key, value).unwrap_err().to_string();
             for part in ["usb.toml", "strategy.phase", "a trial takes", "it may take 60 s", "\""] {
                 assert!(error.contains(part), "{error}");
             }
         }
-        let error = with(&first("move_mm"), "move_mm = [0.0, 0.0, -1e9]").unwrap_err().to_string();
+        let error = with("move_mm", "[0.0, 0.0, -1e9]").unwrap_err().to_string();
         assert!(error.contains("move_mm: is -1000000000; it must lie in -1000"), "{error}");
-        assert!(with(&first("settle_s"), "settle_s = 40.0").is_ok());
+        assert!(with("settle_s", "40.0").is_ok());
     }
 }

@@ -5,8 +5,7 @@ use input::units::MM;
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Flats of a rounded edge between its two faces. They are tangents: their corners stand out by
-/// 1.2 % of the radius.
+/// Flats of a rounded edge, tangent to the arc: their corners stand out by 1.2 % of the radius.
 const FLATS: usize = 4;
 /// Corners nearer to one another are one, m.
 pub const SAME: f64 = 1e-6 * MM;
@@ -30,8 +29,7 @@ pub enum Cut {
 /// An edge by its two faces.
 pub type Edge = [Face; 2];
 
-/// The edges that a text names: all four of a face, as in "-z", or the one between two, as in
-/// "+x-z". `None` if it names none.
+/// Edges of that name: the four of a face ("-z"), or the one between two ("+x-z"); `None` if bad.
 pub fn named(text: &str) -> Option<Vec<Edge>> {
     let face = |text: &str| {
         let axis = ["x", "y", "z"].iter().position(|name| text.get(1..) == Some(name))?;
@@ -73,19 +71,22 @@ impl Face {
     }
 }
 
-/// Error of a box that cannot be cut so.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Uncut {
-    /// The cuts take more than a face has.
-    Room,
-    /// The hull that is left is so thin, or so small, that corners of it would be lost.
-    Thin,
-}
+/// Problem of cuts that take more than a face has.
+const ROOM: &str = "take off more than the part has; make them smaller";
+/// Problem of so thin, or so small, a part that corners of the hull would be lost.
+const THIN: &str = "need a part that is not so thin or so small; leave its edges sharp";
 
 /// The solid that the cuts leave of a box.
-pub fn cut(min: &Vector3<f64>, max: &Vector3<f64>, edges: &[(Edge, Cut)]) -> Result<Solid, Uncut> {
+///
+/// # Errors
+/// The problem of the cuts.
+pub fn cut(
+    min: &Vector3<f64>,
+    max: &Vector3<f64>,
+    edges: &[(Edge, Cut)],
+) -> Result<Solid, &'static str> {
     if !fit(&(max - min), edges) {
-        return Err(Uncut::Room);
+        return Err(ROOM);
     }
     let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
     let corner = |face: Face| if face.high { max } else { min };
@@ -99,7 +100,7 @@ pub fn cut(min: &Vector3<f64>, max: &Vector3<f64>, edges: &[(Edge, Cut)]) -> Res
     let corners = corners(&spaces);
     match geometry::hull(&corners) {
         Some((points, _)) if points.len() == corners.len() => Ok(Solid::Hull { points }),
-        _ => Err(Uncut::Thin),
+        _ => Err(THIN),
     }
 }
 
@@ -178,7 +179,7 @@ mod tests {
 
     const SIZE: [f64; 3] = [4.0, 6.0, 10.0];
 
-    fn left(text: &str, cut: Cut) -> Result<Solid, Uncut> {
+    fn left(text: &str, cut: Cut) -> Result<Solid, &'static str> {
         let edges: Vec<_> = named(text).unwrap().into_iter().map(|edge| (edge, cut)).collect();
         super::cut(&Vector3::zeros(), &(Vector3::from(SIZE) * MM), &edges)
     }
@@ -214,8 +215,8 @@ mod tests {
     fn a_cut_may_take_a_face_away_but_not_the_other_side() {
         let Ok(Solid::Hull { points }) = left("-z+x", Cut::Chamfer(4.0 * MM)) else { panic!() };
         assert_eq!(points.len(), 8, "a wedge at the tip: {points:?}");
-        assert_eq!(left("-z+x", Cut::Chamfer(4.1 * MM)), Err(Uncut::Room));
-        assert_eq!(left("-z", Cut::Radius(2.1 * MM)), Err(Uncut::Room));
+        assert_eq!(left("-z+x", Cut::Chamfer(4.1 * MM)), Err(ROOM));
+        assert_eq!(left("-z", Cut::Radius(2.1 * MM)), Err(ROOM));
         assert!(left("-z", Cut::Radius(1.9 * MM)).is_ok());
     }
 
@@ -239,7 +240,7 @@ mod tests {
                     }
                     Err(why) => {
                         refused += 1;
-                        assert_eq!(why, Uncut::Thin);
+                        assert_eq!(why, THIN);
                         assert!(thick / side < 0.003, "{thick} x {side} mm");
                     }
                 }

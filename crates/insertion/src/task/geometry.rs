@@ -2,7 +2,7 @@
 
 use contact::scene::{Geom, Inertia, Pose, Shape};
 use input::units::MM;
-use nalgebra::{Matrix3, Point3, Translation3, Vector3};
+use nalgebra::{Matrix3, Point2, Point3, Translation3, Vector3};
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::parry::transformation::try_convex_hull;
 
@@ -112,8 +112,7 @@ impl Solid {
         }
     }
 
-    /// Volume, m3; centroid, m; second moments about the centroid per unit of
-    /// density (the tensor of the integral of x xT), m5.
+    /// Volume, m3; centroid, m; second moments about it per unit of density (integral of x xT), m5.
     fn moments(&self) -> (f64, Vector3<f64>, Matrix3<f64>) {
         match self {
             Solid::Box { min, max } => {
@@ -131,7 +130,11 @@ impl Solid {
                 (volume, middle, Matrix3::from_diagonal(&Vector3::new(across, across, along)))
             }
             Solid::Prism { axis, outline, span } => prism_moments(*axis, outline, *span),
-            Solid::Hull { points } => hull_moments(points),
+            Solid::Hull { points } => {
+                // The task file's checks leave no flat hull.
+                let (corners, faces) = hull(points).unwrap_or_default();
+                surface_moments(&corners, &faces)
+            }
         }
     }
 }
@@ -143,6 +146,36 @@ pub(crate) fn other_axes(axis: usize) -> (usize, usize) {
         1 => (0, 2),
         _ => (0, 1),
     }
+}
+
+/// Convex hull of points in a plane, counter-clockwise, by Andrew's monotone chain.
+pub fn convex_outline(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let half = |points: &mut dyn Iterator<Item = &Point2<f64>>| {
+        let mut corners: Vec<Point2<f64>> = Vec::new();
+        for &p in points {
+            while let [.., a, b] = corners[..]
+                && cross(a, b, p) <= 0.0
+            {
+                corners.pop();
+            }
+            corners.push(p);
+        }
+        corners.pop();
+        corners
+    };
+    let mut corners = half(&mut points.iter());
+    corners.extend(half(&mut points.iter().rev()));
+    corners
+}
+
+/// Twice the signed area of the triangle; positive if `p` is left of `a -> b`.
+pub(crate) fn cross(a: Point2<f64>, b: Point2<f64>, p: Point2<f64>) -> f64 {
+    (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)
 }
 
 /// Volume of a solid, m3.
@@ -187,8 +220,7 @@ fn prism_moments(
 /// Corners, and triangles of them that look outward.
 pub type Triangles = (Vec<Point3<f64>>, Vec<[usize; 3]>);
 
-/// The corners and the outward triangles of the convex hull of some points; none if they lie in
-/// a plane or nearly so.
+/// Corners and outward triangles of a convex hull; none of points that lie nearly in a plane.
 pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
     let scaled: Vec<_> = points.iter().map(|p| Vector::new(p.x / MM, p.y / MM, p.z / MM)).collect();
     let (corners, faces) = try_convex_hull(&scaled).ok()?;
@@ -199,12 +231,6 @@ pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
 
 /// A hull of less volume is flat, m3.
 const FLAT: f64 = 1e-3 * MM * MM * MM;
-
-fn hull_moments(points: &[Point3<f64>]) -> (f64, Vector3<f64>, Matrix3<f64>) {
-    // The task file's checks leave no flat hull.
-    let (corners, faces) = hull(points).unwrap_or_default();
-    surface_moments(&corners, &faces)
-}
 
 /// Volume, centroid and second moments about it of what a closed surface of outward triangles
 /// holds: the sum of the tetrahedra between each and the origin.

@@ -44,14 +44,12 @@ pub struct RawLatch {
     modulus_gpa: f64,
 }
 
-/// Stiffness of the hinge that stands for a cantilever, N m/rad: length, width, thickness, m;
-/// modulus, Pa.
+/// Stiffness of the hinge that stands for a cantilever, N m/rad; sizes in m, modulus in Pa.
 fn stiffness(length: f64, width: f64, thickness: f64, modulus: f64) -> f64 {
     let second_moment = width * thickness.powi(3) / 12.0;
     GAMMA * K_THETA * modulus * second_moment / length
 }
 
-/// The latch of a plug with these parts.
 pub fn latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, InputError> {
     let mut found = Vec::new();
     for name in &raw.parts {

@@ -6,7 +6,6 @@ pub mod finger;
 pub mod geometry;
 mod latch;
 mod raw;
-mod raw_finger;
 mod raw_part;
 mod rounded;
 
@@ -15,9 +14,15 @@ pub use latch::Latch;
 
 use crate::task::finger::FingerModel;
 
-/// A checked task, in SI units, in the task frame: origin at the centre of the
-/// socket's opening on its top surface, z out of the socket, y the direction
-/// in which the jaws close and the start is shifted.
+/// A checked task, in SI units, in the task frame: origin at the centre of the socket's opening on
+/// its top, z out of the socket, y the direction in which the jaws close and the start is shifted.
+///
+/// ```
+/// use input::shipped::TASKS;
+/// let task = insertion::task::Task::parse(TASKS[0].text, TASKS[0].file)?;
+/// assert_eq!((task.name.as_str(), task.strategy.phases.len()), ("ket8", 6));
+/// # Ok::<(), input::InputError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Task {
     /// Name in study folders.
@@ -167,8 +172,7 @@ pub enum Ending {
     Tolerance(f64),
     /// When this time has passed since the commanded motion ended, s.
     Duration(f64),
-    /// When the plug touches the socket: the command then goes on by this
-    /// distance along the move (the preload), m.
+    /// When the plug touches the socket; the command goes on by the preload.
     Touch {
         /// Distance beyond where the move was stopped, m.
         preload: f64,

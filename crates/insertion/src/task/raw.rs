@@ -1,7 +1,7 @@
 //! The task file as written, and the checks that turn it into a [`Task`].
 
+use super::finger::{RawFinger, finger};
 use super::latch::{RawLatch, latch};
-use super::raw_finger::{RawFinger, finger};
 use super::raw_part::{RawPart, parts};
 use super::{
     Ending, Friction, Grip, Hold, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
@@ -118,7 +118,6 @@ struct RawSuccess {
 
 /// Thinnest part and narrowest opening, mm: a thousandth of what a printer prints.
 const THINNEST_MM: f64 = 1e-3;
-/// Most phases of a strategy.
 const MOST_PHASES: usize = 100;
 /// Largest radius of the patch that torsional friction stands for, mm: larger is none.
 const LARGEST_PATCH_MM: f64 = 100.0;
@@ -188,7 +187,6 @@ pub fn coefficient(check: Check<'_>, key: &str, value: f64) -> Result<f64, Input
     check.fail(key, format!("is {value}; a coefficient of friction lies in 0 .. 5"))
 }
 
-/// A size above 0, m.
 pub fn size(check: Check<'_>, key: &str, mm: f64) -> Result<f64, InputError> {
     if check.distance(key, check.positive(key, mm)?)? < THINNEST_MM {
         return check.fail(key, format!("is {mm}; it must be {THINNEST_MM} mm or more"));
@@ -298,7 +296,17 @@ fn phase(check: Check<'_>, raw: &RawPhase) -> Result<Phase, InputError> {
     }
     let (field, value, _) = given[wanted];
     let value = check.positive(&at(field), value.unwrap_or(f64::NAN))?;
-    let sensed = sensed(check, raw)?;
+    for (field, value) in [("touch_force_n", raw.touch_force_n), ("latency_s", raw.latency_s)] {
+        if value.is_some() && !matches!(raw.motion, RawMotion::Touch) {
+            return check.fail(&at(field), "goes only with motion = \"touch\"");
+        }
+    }
+    let force = raw.touch_force_n.unwrap_or(Sensed::FIRST.force);
+    let latency = raw.latency_s.unwrap_or(Sensed::FIRST.latency);
+    let sensed = Sensed {
+        force: check.positive(&at("touch_force_n"), force)?,
+        latency: check.not_negative(&at("latency_s"), latency)?,
+    };
     Ok(Phase {
         name: raw.name.clone(),
         stage: raw.stage,
@@ -309,21 +317,5 @@ fn phase(check: Check<'_>, raw: &RawPhase) -> Result<Phase, InputError> {
             RawMotion::Duration => Ending::Duration(value),
             RawMotion::Touch => Ending::Touch { preload: value * MM, sensed },
         },
-    })
-}
-
-/// Detection of a touch.
-fn sensed(check: Check<'_>, raw: &RawPhase) -> Result<Sensed, InputError> {
-    let at = |field: &str| format!("strategy.phase \"{}\" {field}", raw.name);
-    for (field, value) in [("touch_force_n", raw.touch_force_n), ("latency_s", raw.latency_s)] {
-        if value.is_some() && !matches!(raw.motion, RawMotion::Touch) {
-            return check.fail(&at(field), "goes only with motion = \"touch\"");
-        }
-    }
-    let force = raw.touch_force_n.unwrap_or(Sensed::FIRST.force);
-    let latency = raw.latency_s.unwrap_or(Sensed::FIRST.latency);
-    Ok(Sensed {
-        force: check.positive(&at("touch_force_n"), force)?,
-        latency: check.not_negative(&at("latency_s"), latency)?,
     })
 }

@@ -1,6 +1,6 @@
 //! Parts as written, and the checks that turn them into solids.
 
-use super::edges::{self, Cut, Edge, Uncut};
+use super::edges::{self, Cut, Edge};
 use super::geometry::{self, Axis, Part, Solid};
 use super::raw::{coefficient, size, span};
 use input::units::MM;
@@ -51,7 +51,6 @@ pub struct RawEdges {
 
 /// Most parts of a plug or a socket: what a collision costs grows with their product.
 const MOST_PARTS: usize = 200;
-/// Most corners of an outline.
 const MOST_CORNERS: usize = 256;
 
 pub fn parts(check: Check<'_>, key: &str, parts: &[RawPart]) -> Result<Vec<Part>, InputError> {
@@ -160,11 +159,5 @@ fn without_edges(
     if cuts.is_empty() {
         return Ok(Solid::Box { min, max });
     }
-    match edges::cut(&min, &max, &cuts) {
-        Ok(solid) => Ok(solid),
-        Err(Uncut::Room) => check.fail(key, "take off more than the part has; make them smaller"),
-        Err(Uncut::Thin) => {
-            check.fail(key, "need a part that is not so thin or so small; leave its edges sharp")
-        }
-    }
+    edges::cut(&min, &max, &cuts).or_else(|problem| check.fail(key, problem))
 }

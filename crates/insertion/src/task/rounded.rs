@@ -65,8 +65,7 @@ mod tests {
     use crate::task::geometry::volume;
     use std::f64::consts::PI;
 
-    /// The key's four edges at the tip and the slot's four at its mouth are round, nothing else is,
-    /// and the slot is as wide as before.
+    /// The key's four edges at the tip and the slot's four at its mouth are round, nothing else is.
     #[test]
     fn the_edges_that_lead_in_are_rounded() {
         let task = crate::fixtures::task("ket8");

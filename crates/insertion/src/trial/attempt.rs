@@ -4,8 +4,7 @@ use super::cell::{self, Hand, WorkCell};
 use super::classify::{Facts, Placement, classify};
 use super::leading::LeadingEdge;
 use super::motion::{Move, Tcp};
-use super::record::{Frame, Recorder};
-use super::trace::{Sample, Trace};
+use super::record::{Frame, Recorder, Sample, Trace};
 use super::watch::Watch;
 use super::{PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
@@ -42,7 +41,8 @@ impl From<Diverged> for Stop {
     }
 }
 
-/// An attempt as it goes on.
+/// An attempt as it goes on; a clone goes on bit for bit alike.
+#[derive(Clone)]
 pub(super) struct Attempt<'a> {
     robot: Arc<Mounted>,
     /// Set when it is to end at once.
@@ -102,25 +102,9 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// An independent copy that goes on bit for bit alike.
-    pub fn copy(&self) -> Attempt<'a> {
-        Attempt {
-            robot: Arc::clone(&self.robot),
-            stop: self.stop,
-            task: Arc::clone(&self.task),
-            cell: self.cell.clone(),
-            world: self.world.snapshot(),
-            edge: self.edge.clone(),
-            phases: self.phases.clone(),
-            trace: self.trace.clone(),
-            recorder: self.recorder.clone(),
-            ..*self
-        }
-    }
-
     /// A copy with the start shifted by `offset` metres along y.
     pub fn shifted(&self, offset: f64) -> Attempt<'a> {
-        let mut shifted = self.copy();
+        let mut shifted = self.clone();
         // Shifting the start by y is shifting the socket by -y: the part has
         // touched nothing of it yet. So all offsets share grasp and approach.
         let socket = Pose::translation(0.0, -offset, 0.0) * turned(self.yaw);
@@ -182,7 +166,6 @@ impl<'a> Attempt<'a> {
         end
     }
 
-    /// The move of a phase that begins now.
     fn motion(&self, phase: &Phase) -> Move {
         let mut displacement = Vector3::from(phase.displacement);
         if phase.stage == Stage::Assembly {
@@ -246,8 +229,7 @@ impl<'a> Attempt<'a> {
             left -= usize::from(felt);
         }
         let along = (end.position - start.position).normalize();
-        // From where the TCP is, not from its command: a soft flange lags behind,
-        // and the lag would come on top of the preload.
+        // From where the TCP is: the lag of a soft flange would come on top of the preload.
         let reached = along.dot(&(self.tcp() - start.position));
         let to = start.moved(along * (reached + preload));
         self.follow(Move::new(self.target, to, speed), self.rest_time())
@@ -308,7 +290,6 @@ impl<'a> Attempt<'a> {
         sum
     }
 
-    /// Takes a frame, if the trial is filmed.
     fn record(&mut self, dt: f64) {
         if !self.recorder.as_mut().is_some_and(|recorder| recorder.wants(dt)) {
             return;
@@ -426,7 +407,6 @@ impl<'a> Attempt<'a> {
     }
 }
 
-/// A turn about z, rad.
 fn turned(angle: f64) -> Pose {
     Pose::rotation(Vector3::z() * angle)
 }

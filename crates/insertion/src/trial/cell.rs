@@ -93,9 +93,8 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     WorkCell { command, flange, hands, plug, latch, socket, stand, scene }
 }
 
-/// The servo setting of a jaw that has been closing for `time` seconds; `side`
-/// is 0 for the jaw at -y. The target runs ahead into the part until the servo
-/// is at its limit; a jump there would let the jaw run into its stop.
+/// The servo setting of a jaw, 0 at -y, that has been closing for `time` seconds. The target runs
+/// ahead until the servo is at its limit; a jump there would let the jaw run into its stop.
 pub fn closing(side: usize, force: f64, time: f64) -> Spring {
     let inward = if side == 0 { 1.0 } else { -1.0 };
     let target = inward * (time * CLOSING_SPEED).min(CLOSING_STROKE);
@@ -123,8 +122,7 @@ pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) 
     (command, flange)
 }
 
-/// What damps the flange's speed, if not that of its error: a damper to the world,
-/// whose axes are the tilted TCP's.
+/// Damper between flange and world, if not the error's rate is damped; axes of the tilted TCP.
 fn brake(scene: &mut Scene, arm: &Reduced, flange: BodyId, tcp: Pose) {
     let Some(damper) = arm.brake() else { return };
     let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
@@ -151,7 +149,6 @@ fn servo_flange(servo: &Servo) -> (Motion, Springs) {
     (Motion::Carried(inertia), Springs::Axes(std::array::from_fn(axis)))
 }
 
-/// Friction of a finger's soft pad on the plug.
 fn pad_friction(task: &Task) -> Friction {
     let coefficient = task.friction.finger_plug;
     let torsion = match task.friction.finger_torsion {
@@ -243,7 +240,6 @@ fn body(name: impl Into<String>, motion: Motion, pose: Pose, geoms: Vec<Geom>) -
     Body { name: name.into(), motion, pose, geoms }
 }
 
-/// A joint between parent and child by its frames in the two.
 fn joint(
     name: impl Into<String>,
     [parent, child]: [BodyId; 2],

@@ -1,10 +1,11 @@
-//! What may differ between two trials of the same finger at the same offset.
+//! Differences between two trials of the same finger at the same offset.
 
 use super::cell::WorkCell;
 use crate::finger::{Pad, ROOF_GAP};
 use crate::task::geometry::other_axes;
 use crate::task::{PadTorsion, Part, Solid, Task};
 use contact::scene::Pose;
+use nalgebra::Vector3;
 
 /// Deviations of the world from the task file; SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,8 +20,7 @@ pub struct Conditions {
     pub clearance: f64,
     /// Displacement of the part in the gripper along x, m.
     pub grasp_across: f64,
-    /// How much lower than meant the part sits in the gripper, m: a gap
-    /// between its shoulder and the roof of the notch.
+    /// How much too low the part sits in the gripper, m: a gap between shoulder and roof.
     pub grasp_low: f64,
 }
 
@@ -86,22 +86,15 @@ fn side(part: &Part, axis: usize, middle: f64) -> f64 {
 }
 
 impl Solid {
-    /// Moves the solid by x and y, m.
     fn shift(&mut self, [x, y]: [f64; 2]) {
+        let moved = |corner: &mut Vector3<f64>| {
+            corner.x += x;
+            corner.y += y;
+        };
         match self {
-            Solid::Box { min, max } => {
-                for corner in [min, max] {
-                    corner.x += x;
-                    corner.y += y;
-                }
-            }
+            Solid::Box { min, max } => [min, max].into_iter().for_each(moved),
             Solid::Cylinder { centre, .. } => *centre = [centre[0] + x, centre[1] + y],
-            Solid::Hull { points } => {
-                for corner in points {
-                    corner.x += x;
-                    corner.y += y;
-                }
-            }
+            Solid::Hull { points } => points.iter_mut().map(|p| &mut p.coords).for_each(moved),
             Solid::Prism { axis, outline, span } => {
                 let by = [x, y, 0.0];
                 let (first, second) = other_axes(*axis);
@@ -134,29 +127,22 @@ mod tests {
 
     /// Free width of the socket along an axis through the middle of its opening, at the top.
     fn width(task: &Task, axis: usize) -> f64 {
-        let other = 1 - axis;
-        let [from, to] = task.opening[other];
+        let middle = task.opening.map(|[from, to]| (from + to) / 2.0);
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for part in &task.socket {
             let corners = part.solid.corners();
-            let span = |axis: usize| {
-                let along = corners.iter().map(|corner| corner[axis]);
-                (
-                    along.clone().fold(f64::INFINITY, f64::min),
-                    along.fold(f64::NEG_INFINITY, f64::max),
-                )
-            };
-            let (a, b) = span(other);
-            let at_top = span(2).1 > -0.1 * MM;
-            let beside = a < (from + to) / 2.0 && (from + to) / 2.0 < b;
-            let middle = (task.opening[axis][0] + task.opening[axis][1]) / 2.0;
-            if at_top && beside {
-                let (a, b) = span(axis);
-                if b <= middle {
-                    low = low.max(b);
-                } else if a >= middle {
-                    high = high.min(a);
-                }
+            let along = |axis: usize| corners.iter().map(move |corner| corner[axis]);
+            let lowest = |axis| along(axis).fold(f64::INFINITY, f64::min);
+            let highest = |axis| along(axis).fold(f64::NEG_INFINITY, f64::max);
+            let beside =
+                lowest(1 - axis) < middle[1 - axis] && middle[1 - axis] < highest(1 - axis);
+            if !beside || highest(2) <= -0.1 * MM {
+                continue;
+            }
+            if highest(axis) <= middle[axis] {
+                low = low.max(highest(axis));
+            } else if lowest(axis) >= middle[axis] {
+                high = high.min(lowest(axis));
             }
         }
         high - low

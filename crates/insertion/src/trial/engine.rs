@@ -1,4 +1,4 @@
-//! What computes the contacts of a trial, by name.
+//! Contact engines by name.
 
 use super::Rig;
 use super::run::{EngineRig, RigError};
@@ -35,7 +35,7 @@ pub enum EngineKind {
 pub struct EngineRecord {
     /// Name on the command line.
     pub name: String,
-    /// What it is, with its version.
+    /// Version of the engine, after its name.
     pub version: String,
     /// All its settings, SI units.
     pub settings: toml::Table,

@@ -1,15 +1,15 @@
 //! A rig with a closed-form window, for tests of everything above the trial.
 //!
-//! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm, with
-//! `k` and `a` the compliance and assembly stiffness in N/mm and `r` the distance of the
-//! remote centre in mm; it jams below and misses above.
-//! Conditions narrow it: friction divides the lower end, yaw takes 1 mm a degree off
-//! both ends, what sits low in the gripper its own height off both; clearance is added.
+//! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm, with `k` and `a`
+//! the compliance and assembly stiffness in N/mm and `r` the distance of the remote centre in mm;
+//! it jams below and misses above. Friction divides the lower end, yaw takes 1 mm a degree off
+//! both, a part low in the gripper its own height; clearance is added.
 
-use super::{Conditions, Grasp, Grasped, Rig, Trial};
+use super::{Conditions, Grasp, Grasped, Rig, Sample, Trial};
 use crate::finger::Finger;
 use crate::outcome::{FailureClass, Outcome};
 use input::units::{DEG, MM, N_PER_MM};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The rig with the closed-form window.
 #[derive(Debug, Clone, Copy, Default)]
@@ -32,7 +32,7 @@ impl FakeRig {
 impl Rig for FakeRig {
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
         let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
-        Box::new(FakeGrasp { low, high, delay: self.delay })
+        Box::new(FakeGrasp { low, high, delay: self.delay, stop: grasp.stop })
     }
 }
 
@@ -53,18 +53,24 @@ pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     (nanometres(low + less), nanometres(high - less))
 }
 
-struct FakeGrasp {
+struct FakeGrasp<'a> {
     low: f64,
     high: f64,
     delay: std::time::Duration,
+    stop: &'a AtomicBool,
 }
 
-impl Grasped for FakeGrasp {
-    fn trial(&self, offset: f64) -> Trial {
-        std::thread::sleep(self.delay);
+impl Grasped for FakeGrasp<'_> {
+    fn sampled(&self, offset: f64, _every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+        let stopped = self.stop.load(Ordering::Relaxed);
+        if !stopped {
+            std::thread::sleep(self.delay);
+        }
         // Whole nanometres: a shift of 14 steps is 1.4 mm, not 1.4000000000000001.
         let offset_mm = (offset / MM * 1e6).round() / 1e6;
-        let outcome = if offset_mm < self.low {
+        let outcome = if stopped {
+            Outcome::Diverged
+        } else if offset_mm < self.low {
             Outcome::Failed(FailureClass::Jammed)
         } else if offset_mm > self.high {
             Outcome::Failed(FailureClass::PlugMissed)
@@ -73,7 +79,7 @@ impl Grasped for FakeGrasp {
         };
         // Distance in mm to the nearer end.
         let margin = (offset_mm - self.low).min(self.high - offset_mm).clamp(-1.0, 1.0);
-        Trial {
+        let trial = Trial {
             outcome,
             margin,
             depth_mm: if outcome == Outcome::Inserted { 12.0 } else { 0.0 },
@@ -83,7 +89,8 @@ impl Grasped for FakeGrasp {
             phases: Vec::new(),
             simulated_s: 1.0,
             retried: false,
-        }
+        };
+        (trial, Vec::new())
     }
 }
 
@@ -102,8 +109,8 @@ impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Rig for Altered<F> {
 }
 
 impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Grasped for AlteredGrasp<'_, F> {
-    fn trial(&self, offset: f64) -> Trial {
+    fn sampled(&self, offset: f64, _every_s: Option<f64>) -> (Trial, Vec<Sample>) {
         let trial = FakeRig::default().hold(self.grasp).trial(offset);
-        (self.alter)(&self.grasp, offset, trial)
+        ((self.alter)(&self.grasp, offset, trial), Vec::new())
     }
 }

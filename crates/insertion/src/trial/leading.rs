@@ -6,11 +6,9 @@ use contact::scene::Pose;
 use input::units::MM;
 use nalgebra::Point3;
 
-/// The leading edge is inside when it is this far below the socket's top, m:
-/// more than contacts sink, less than any preload.
+/// Depth of an edge that is inside, m: more than contacts sink, less than any preload.
 const DEPTH: f64 = 0.15 * MM;
-/// An edge that leans on a wall is inside, m: more than contacts sink, less than any clearance
-/// that a finger could feel.
+/// Overlap of an edge that leans on a wall, m: more than contacts sink, less than a clearance.
 const LEANING: f64 = 0.02 * MM;
 
 /// The corners of the part of a plug that goes in.

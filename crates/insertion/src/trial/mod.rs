@@ -19,13 +19,11 @@ pub mod motion;
 pub mod picture;
 pub mod record;
 pub mod run;
-mod trace;
 mod watch;
 
 pub use attempt::driven::{Driven, State};
 pub use conditions::Conditions;
-pub use record::Recording;
-pub use trace::Sample;
+pub use record::{Recording, Sample};
 
 /// State at the end of one phase of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -108,14 +106,8 @@ impl Grasp<'static> {
 
 /// A place where trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
-    /// Grasps the part; what follows does not depend on the offset until the approach, so it is
-    /// done once. Rigs whose trials take no time need not look at the stop flag.
+    /// Grasps the part: once for all offsets, which differ from the approach on.
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a>;
-
-    /// Grasps for trials that nobody stops.
-    fn grasp_in(&self, finger: &Finger, conditions: &Conditions) -> Box<dyn Grasped + '_> {
-        self.hold(Grasp { conditions: *conditions, ..Grasp::of(finger) })
-    }
 
     /// Grasps for trials that nobody stops, in the world as the task file has it.
     fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
@@ -137,12 +129,12 @@ pub trait Rig: Send + Sync {
 
 /// A part held and tilted, ready for a trial at any offset.
 pub trait Grasped: Send + Sync {
-    /// One trial with the start shifted by `offset` metres along y.
-    fn trial(&self, offset: f64) -> Trial;
+    /// One trial with the start shifted by `offset` metres along y; sampled each `every_s` seconds
+    /// from the search on, if that is asked for and it is simulated.
+    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>);
 
-    /// The same trial with a sample each `every_s` seconds from the start of the search on;
-    /// none where nothing is simulated.
-    fn traced(&self, offset: f64, _every_s: f64) -> (Trial, Vec<Sample>) {
-        (self.trial(offset), Vec::new())
+    /// The trial alone.
+    fn trial(&self, offset: f64) -> Trial {
+        self.sampled(offset, None).0
     }
 }

@@ -26,8 +26,7 @@ impl Tcp {
     }
 }
 
-/// A minimum-jerk move (Flash and Hogan 1985, J. Neurosci. 5:1688): at rest at
-/// both ends, peak speed 15/8 of the mean.
+/// A minimum-jerk move (Flash and Hogan 1985, J. Neurosci. 5:1688); peak speed 15/8 of the mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
     from: Tcp,

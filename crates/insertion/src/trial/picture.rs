@@ -5,6 +5,7 @@ use super::{PhaseEnd, Trial};
 use crate::finger::Pad;
 use crate::outcome::Outcome;
 use crate::task::Task;
+use crate::task::geometry::convex_outline;
 use contact::ContactPoint;
 use contact::scene::{Geom, Pose};
 use input::units::MM;
@@ -227,7 +228,6 @@ fn projected(geom: &Geom, body: &Pose, axis: usize) -> Vec<Point2<f64>> {
     geom.shape.corners().iter().map(project).collect()
 }
 
-/// The outline of a convex geom, projected along x (axis 1) or y (axis 0).
 fn polygon(out: &mut String, geom: &Geom, body: &Pose, axis: usize, fill: &str) {
     let outline = convex_outline(projected(geom, body, axis));
     let text: Vec<_> = outline.iter().map(|p| format!("{:.2},{:.2}", p.x, p.y)).collect();
@@ -239,42 +239,7 @@ fn polygon(out: &mut String, geom: &Geom, body: &Pose, axis: usize, fill: &str) 
     );
 }
 
-/// Convex hull of points in the plane (Andrew's monotone chain).
-pub fn convex_outline(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let turn = |a: &Point2<f64>, b: &Point2<f64>, c: &Point2<f64>| (b - a).perp(&(c - b));
-    let half = |points: &mut dyn Iterator<Item = Point2<f64>>| {
-        let mut chain: Vec<Point2<f64>> = Vec::new();
-        for p in points {
-            while chain.len() > 1
-                && turn(&chain[chain.len() - 2], &chain[chain.len() - 1], &p) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(p);
-        }
-        chain.pop();
-        chain
-    };
-    let mut lower = half(&mut points.iter().copied());
-    lower.extend(half(&mut points.iter().rev().copied()));
-    lower
-}
-
 /// A text for XML.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_outline_of_a_square_with_a_point_inside_is_the_square() {
-        let points = [(0.0, 0.0), (1.0, 1.0), (0.5, 0.5), (0.0, 1.0), (1.0, 0.0)];
-        let outline = convex_outline(points.iter().map(|&(x, y)| Point2::new(x, y)).collect());
-        assert_eq!(outline.len(), 4);
-        assert!(!outline.contains(&Point2::new(0.5, 0.5)));
-    }
 }

@@ -1,5 +1,5 @@
-//! A trial as it goes on, for replays: where the bodies are and which forces act, each
-//! millisecond. It only looks: a recorded trial ends as an unrecorded one, bit for bit.
+//! A trial as it goes on: samples at even times, and frames of bodies and forces each millisecond
+//! for replays. Both only look: a recorded trial ends as an unrecorded one, bit for bit.
 
 use super::classify::Placement;
 use super::{Poses, Trial};
@@ -9,6 +9,7 @@ use contact::ContactPoint;
 use contact::scene::Pose;
 use input::units::{DEG, MM};
 use nalgebra::Vector3;
+use serde::Serialize;
 
 /// Time between two frames, s.
 const INTERVAL: f64 = 1e-3;
@@ -50,8 +51,7 @@ impl Frame {
         Placement::new(&self.poses.plug).tilt / DEG
     }
 
-    /// How far a finger, by its place, is bent from where its jaw would have it, mm; x, y, z of
-    /// the jaw.
+    /// How far a finger, by its place, is bent from where its jaw would have it, mm; jaw axes.
     pub fn deflection_mm(&self, finger: usize) -> [f64; 3] {
         let bent = self.jaws[finger].inverse() * self.poses.fingers[finger];
         (bent.translation.vector / MM).into()
@@ -77,8 +77,7 @@ pub struct Recording {
     pub trial: Trial,
     /// Moments in their order, about a millisecond apart.
     pub frames: Vec<Frame>,
-    /// When its outcome was decided, s: of a plug that missed at the beginning of the push,
-    /// of every other at the end.
+    /// When its outcome was decided, s: of a plug that missed at the push, else at the end.
     pub decided_s: f64,
 }
 
@@ -111,5 +110,50 @@ impl Recorder {
     /// Transforms the frames so far to another frame of reference.
     pub fn seen(&mut self, from: &Pose) {
         self.frames.iter_mut().for_each(|frame| frame.seen(from));
+    }
+}
+
+/// Sample of a trial at one time: part, robot and force; task frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Sample {
+    /// Simulated time since the trial began, s.
+    pub time_s: f64,
+    /// Place of the phase among [`Trial::phases`](super::Trial::phases).
+    pub phase: u32,
+    /// Position of the TCP, mm.
+    pub tcp_mm: [f64; 3],
+    /// Tip of the plug, mm.
+    pub tip_mm: [f64; 3],
+    /// Angle between the plug's axis and z, degrees.
+    pub tilt_deg: f64,
+    /// Net contact force of the socket on the plug over the last step, N.
+    pub force_n: [f64; 3],
+    /// Slip of the part in the grasp since the grasp, mm.
+    pub slip_mm: f64,
+}
+
+/// Samples taken on the way.
+#[derive(Debug, Clone)]
+pub(super) struct Trace {
+    every_s: f64,
+    next_s: f64,
+    pub samples: Vec<Sample>,
+}
+
+impl Trace {
+    /// A sample each `every_s` seconds of simulated time, or at each step if that is longer.
+    pub fn new(every_s: f64) -> Self {
+        Trace { every_s, next_s: 0.0, samples: Vec::new() }
+    }
+
+    /// Whether a sample is due after a step of `step_s` that ended at this time.
+    pub fn due(&self, time_s: f64, step_s: f64) -> bool {
+        time_s > self.next_s - 0.5 * step_s
+    }
+
+    /// Keeps a sample and sets the time of the next.
+    pub fn take(&mut self, sample: Sample) {
+        self.samples.push(sample);
+        self.next_s = sample.time_s + self.every_s;
     }
 }

@@ -2,10 +2,8 @@
 
 use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
-use super::record::{Frame, Recorder};
-use super::trace::{Sample, Trace};
+use super::record::{Frame, Recorder, Sample, Trace};
 use super::{Grasp, Grasped, Recording, Rig, Trial, cell};
-use crate::arm::ArmError;
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::robot::{Mounted, Robot};
@@ -26,24 +24,14 @@ pub struct EngineRig {
 /// Error of task, robot and engine that do not go together.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
-    /// The robot cannot do the task.
-    #[error("the robot `{robot}` on the task `{task}`: {error}")]
+    /// The robot cannot do the task, or not in time.
+    #[error("the robot `{robot}` on the task `{task}`: {problem}")]
     Robot {
         /// Name of the robot.
         robot: String,
         /// Name of the task.
         task: String,
-        /// Cause in its arm.
-        error: ArmError,
-    },
-    /// A trial would not end in time.
-    #[error("the robot `{robot}` on the task `{task}`: {problem}")]
-    TooLong {
-        /// Name of the robot.
-        robot: String,
-        /// Name of the task.
-        task: String,
-        /// Which phase takes how long.
+        /// Defect of the arm, or the phase that takes too long.
         problem: String,
     },
     /// The engine cannot simulate the two.
@@ -52,8 +40,10 @@ pub enum RigError {
 }
 
 impl EngineRig {
-    /// Puts the robot in place; for fingers as in the paper, whose springs are not coupled
-    /// unless the task says so.
+    /// Puts the robot in place for the paper's fingers.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
     pub fn new(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<Self, RigError> {
         // What a scene needs does not depend on how stiff its fingers are.
         let any = Finger::new(N_PER_MM, N_PER_MM).shaped(&task.finger, 0.0);
@@ -61,33 +51,38 @@ impl EngineRig {
     }
 
     /// Puts the robot in place for such fingers.
+    ///
+    /// # Errors
+    /// If robot or engine cannot do the task.
     pub fn with(
         task: Task,
         robot: &Robot,
         finger: &Finger,
         engine: Box<dyn Engine>,
     ) -> Result<Self, RigError> {
-        let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(|error| {
-            RigError::Robot { robot: robot.name.clone(), task: task.name.clone(), error }
-        })?;
+        let refused = |problem| RigError::Robot {
+            robot: robot.name.clone(),
+            task: task.name.clone(),
+            problem,
+        };
+        let mounted = robot.mount(task.turn, task.strategy.tilt);
+        let mounted = mounted.map_err(|error| refused(error.to_string()))?;
         let lead = |phase: &Phase| match Vector3::from(phase.displacement).try_normalize(0.0) {
             Some(along) if phase.stage == Stage::Assembly => mounted.lead(&along).abs(),
             _ => 0.0,
         };
         if let Some(problem) = task.strategy.too_long(lead, mounted.settling()) {
-            let (robot, task) = (robot.name.clone(), task.name.clone());
-            return Err(RigError::TooLong { robot, task, problem });
+            return Err(refused(problem));
         }
         engine.supports(&cell::build(&task, &mounted, finger).scene)?;
         Ok(EngineRig { task, robot: Arc::new(mounted), engine })
     }
 
-    /// Grasps, carries and approaches.
     fn prepare<'a>(
         &self,
         engine: &dyn Engine,
         Grasp { finger, conditions, stop }: Grasp<'a>,
-        recorder: Option<Recorder>,
+        filmed: bool,
     ) -> Prepared<'a> {
         let task = Arc::new(conditions.task(&self.task));
         let mut cell = cell::build(&task, &self.robot, &finger);
@@ -95,34 +90,29 @@ impl EngineRig {
         let world = engine.world(&cell.scene);
         let mut attempt = Attempt::new(Arc::clone(&self.robot), task, cell, world, stop);
         attempt.yaw = conditions.yaw;
-        attempt.recorder = recorder;
+        attempt.recorder = filmed.then(Recorder::default);
         let end = attempt.prepare();
         Prepared { attempt, end, descended: OnceLock::new() }
+    }
+
+    fn ready<'a>(&'a self, grasp: Grasp<'a>, filmed: bool) -> Ready<'a> {
+        let prepared = self.prepare(&*self.engine, grasp, filmed);
+        Ready { rig: self, grasp, filmed, prepared, halved: OnceLock::new() }
     }
 }
 
 impl Rig for EngineRig {
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
-        let prepared = self.prepare(&*self.engine, grasp, None);
-        Box::new(Ready { rig: self, grasp, prepared, halved: OnceLock::new() })
+        Box::new(self.ready(grasp, false))
     }
 
     fn record(&self, finger: &Finger, offset: f64) -> Option<Recording> {
-        let by = |engine: &dyn Engine| {
-            let prepared = self.prepare(engine, Grasp::of(finger), Some(Recorder::default()));
-            let (trial, _, frames) = prepared.watched(offset, None);
-            Recording::new(trial, frames)
-        };
-        let recording = by(&*self.engine);
-        if recording.trial.outcome != Outcome::Diverged {
-            return Some(recording);
-        }
-        let again = by(&*self.engine.halved());
-        Some(Recording { trial: Trial { retried: true, ..again.trial }, ..again })
+        let (trial, _, frames) = self.ready(Grasp::of(finger), true).watched(offset, None);
+        Some(Recording::new(trial, frames))
     }
 
     fn driven(&self, finger: &Finger) -> Option<Driven> {
-        let ready = self.prepare(&*self.engine, Grasp::of(finger), None);
+        let ready = self.prepare(&*self.engine, Grasp::of(finger), false);
         Some(Driven::new(ready.attempt, ready.end))
     }
 }
@@ -131,61 +121,54 @@ impl Rig for EngineRig {
 struct Ready<'a> {
     rig: &'a EngineRig,
     grasp: Grasp<'a>,
+    filmed: bool,
     prepared: Prepared<'a>,
     /// Prepared at half the step, once a trial has diverged.
     halved: OnceLock<Prepared<'a>>,
 }
 
 impl Grasped for Ready<'_> {
-    fn trial(&self, offset: f64) -> Trial {
-        self.run(offset, None).0
-    }
-
-    fn traced(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        self.run(offset, Some(every_s))
+    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+        let (trial, samples, _) = self.watched(offset, every_s);
+        (trial, samples)
     }
 }
 
+/// A trial, samples from the search on, and frames from the grasp on; both if asked for.
+type Watched = (Trial, Vec<Sample>, Vec<Frame>);
+
 impl Ready<'_> {
-    fn run(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
-        let (trial, samples) = self.prepared.run(offset, every_s);
-        if trial.outcome != Outcome::Diverged {
-            return (trial, samples);
+    fn watched(&self, offset: f64, every_s: Option<f64>) -> Watched {
+        let first = self.prepared.watched(offset, every_s);
+        if first.0.outcome != Outcome::Diverged {
+            return first;
         }
-        let again = || self.rig.prepare(&*self.rig.engine.halved(), self.grasp, None);
-        let (trial, samples) = self.halved.get_or_init(again).run(offset, every_s);
-        (Trial { retried: true, ..trial }, samples)
+        let again = || self.rig.prepare(&*self.rig.engine.halved(), self.grasp, self.filmed);
+        let (trial, samples, frames) = self.halved.get_or_init(again).watched(offset, every_s);
+        (Trial { retried: true, ..trial }, samples, frames)
     }
 }
 
 /// An attempt stopped right before the search; every offset starts from a copy.
 struct Prepared<'a> {
     attempt: Attempt<'a>,
-    /// Whether it came so far.
     end: Result<(), Stop>,
     /// The attempt after its way through the air, where that is the same for every offset.
     descended: OnceLock<Option<Attempt<'a>>>,
 }
 
 impl<'a> Prepared<'a> {
-    fn run(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
-        let (trial, samples, _) = self.watched(offset, every_s.map(Trace::new));
-        (trial, samples)
-    }
-
     /// Common start of all offsets, where nobody looks at the way through the air.
     fn descended(&self) -> Option<&Attempt<'a>> {
         self.end.ok()?;
         self.descended.get_or_init(|| self.attempt.descended()).as_ref()
     }
 
-    /// The trial, and what was asked for on the way: samples from the search on, frames from the
-    /// grasp on if it is filmed.
-    fn watched(&self, offset: f64, trace: Option<Trace>) -> (Trial, Vec<Sample>, Vec<Frame>) {
-        let seen = trace.is_some() || self.attempt.recorder.is_some();
+    fn watched(&self, offset: f64, every_s: Option<f64>) -> Watched {
+        let seen = every_s.is_some() || self.attempt.recorder.is_some();
         let mut attempt =
             if seen { None } else { self.descended() }.unwrap_or(&self.attempt).shifted(offset);
-        attempt.trace = trace;
+        attempt.trace = every_s.map(Trace::new);
         if let Some(recorder) = &mut attempt.recorder {
             recorder.seen(&attempt.socket);
         }
@@ -272,7 +255,7 @@ mod tests {
     fn samples_change_nothing_and_end_where_the_trial_ends() {
         let rig = rig(task("ket8"));
         let grasped = rig.grasp(&finger(2.6, 45.0));
-        let (trial, samples) = grasped.traced(0.0, 1e-3);
+        let (trial, samples) = grasped.sampled(0.0, Some(1e-3));
         assert_eq!(trial, grasped.trial(0.0));
         let last = samples.last().unwrap();
         let apart = |pair: &[Sample]| pair[1].time_s - pair[0].time_s;
@@ -289,12 +272,12 @@ mod tests {
         for speed in [slow, "speed_mm_per_s = 2000.0"] {
             let text = usb.text.replace(slow, speed);
             let rig = rig(Task::parse(&text, usb.file).unwrap());
-            let ready = rig.prepare(&Direct::default(), Grasp::of(&finger(2.6, 45.0)), None);
+            let ready = rig.prepare(&Direct::default(), Grasp::of(&finger(2.6, 45.0)), false);
             assert!(speed != slow || ready.descended().is_some());
             // A trial with samples goes all the way by itself.
             for offset in [-2.5e-3, 0.0, 4e-3] {
-                let trial = ready.run(offset, None).0;
-                assert_eq!(trial, ready.run(offset, Some(1e-3)).0, "{speed} at {offset} m");
+                let trial = ready.watched(offset, None).0;
+                assert_eq!(trial, ready.watched(offset, Some(1e-3)).0, "{speed} at {offset} m");
             }
         }
     }

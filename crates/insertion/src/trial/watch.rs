@@ -1,10 +1,8 @@
-//! What is watched at every step of an attempt: the force of plug and socket, and
-//! whether the fingers hold the plug.
+//! Monitors of an attempt: the force of plug and socket, and whether the fingers hold the plug.
 
 use nalgebra::Vector3;
 
-/// Time constant of the force filter, s, as of a wrist sensor: a single step's
-/// impact is numerics, not a force that a part feels.
+/// Time constant of the force filter, s, as of a wrist sensor: a step's impact is numerics.
 const FORCE_FILTER: f64 = 0.005;
 /// A finger that is off for this long has let go, s: longer than a bounce.
 const LOSS_TIME: f64 = 0.02;

@@ -116,8 +116,6 @@ mod tests {
             assert_eq!(aggregate.to_string().parse(), Ok(aggregate.clone()));
             assert_eq!(aggregate.of(1.0, &[0.1]), 0.1);
         }
-        assert!(Aggregate::weighted(vec![1.0], 2).unwrap_err().contains("1 weights for 2 tasks"));
-        assert!(Aggregate::weighted(vec![0.0, 1.0], 2).unwrap_err().contains("above 0"));
         assert!(Aggregate::weighted(vec![1e308, 1.0], 2).unwrap_err().contains("1e308 is no"));
         assert!("weighted".parse::<Aggregate>().is_err());
     }

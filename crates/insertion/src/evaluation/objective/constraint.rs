@@ -122,10 +122,7 @@ mod tests {
             assert_eq!(text.parse::<Constraint>().unwrap().to_string(), text);
         }
         for (bad, word) in [
-            ("peak-force<30", "'peak-force<=30'"),
             ("peak-force", "MEASURE>=NUMBER"),
-            ("force<=3", "range, centred-range"),
-            ("peak-force<=30N", "peak-force (N) without its unit"),
             ("slip<=inf", "not a number"),
             ("slip<=1e300", "between 1e-9 and 1e9"),
             ("slip<=1e-300", "between 1e-9 and 1e9"),

@@ -1,5 +1,4 @@
-//! What is asked of a design: what is to be made large or small, over which
-//! tasks, and within which limits.
+//! Goals: what is made large or small, over which tasks, and within which limits.
 
 mod aggregate;
 mod constraint;
@@ -51,8 +50,7 @@ pub struct Goals {
 pub struct Score {
     /// Value of each objective, in its own unit and sense.
     pub values: Vec<f64>,
-    /// How far each constraint is violated, as a share of its limit; 0 or below where
-    /// it is kept. Of several tasks the worst counts.
+    /// Violation of each constraint on the worst task, as a share of its limit; 0 or below if kept.
     pub violations: Vec<f64>,
 }
 

@@ -7,7 +7,7 @@ use crate::evaluation::{Evaluation, OFFSET_STEP_MM};
 use crate::outcome::Outcome;
 
 impl Goals {
-    /// What an optimizer is told of a design evaluated on each task: values as of
+    /// Values for an optimizer of a design evaluated on each task: as of
     /// [`score`](Goals::score), larger being better, with the slope. `None` if there is no score.
     pub fn told(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
         let of = |&measure: &Measure| {

@@ -1,12 +1,10 @@
-//! The firm window: the part of a window that is left when friction, start and step vary a
-//! little, as nobody controls them.
+//! The firm window: what is left of a window when friction, start and step vary a little.
 //!
 //! Each end is followed inward from the window's own, 0.1 mm at a time, to the first offset at
 //! which all repeats insert. What lies between the two ends is not tried again.
 
 use super::repeat::Repeats;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
-use crate::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 
 /// Repeats at each end.
@@ -21,18 +19,10 @@ pub struct FirmWindow {
     pub positive_steps: OffsetStep,
 }
 
-impl FirmWindow {
-    /// Width of the firm window, mm.
-    pub fn range_mm(&self) -> f64 {
-        grid_mm(self.positive_steps - self.negative_steps)
-    }
-}
-
 /// Result of the repeats at both ends of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Firm {
-    /// The firm window; `None` if there is no offset from an end to the nominal start, or no
-    /// window at all, at which all repeats insert.
+    /// The firm window; `None` if nowhere from an end to the nominal start all repeats insert.
     pub window: Option<FirmWindow>,
     /// Trials of all repeats.
     pub trials: u32,
@@ -44,7 +34,7 @@ impl Firm {
 
     /// The firm range, mm; 0 without a firm window.
     pub fn range_mm(&self) -> f64 {
-        self.window.map_or(0.0, |window| window.range_mm())
+        self.window.map_or(0.0, |window| grid_mm(window.positive_steps - window.negative_steps))
     }
 
     /// The firm window, mm.
@@ -60,11 +50,8 @@ impl Firm {
     }
 }
 
-/// Follows both ends of a window inward.
+/// Follows both ends of a window whose nominal start inserts inward.
 pub fn measure(repeats: &Repeats, window: &Window) -> Firm {
-    if window.nominal != Outcome::Inserted {
-        return Firm::NONE;
-    }
     let ((negative, below), (positive, above)) = rayon::join(
         || end(repeats, -window.negative_steps, -1),
         || end(repeats, window.positive_steps, 1),
@@ -77,8 +64,7 @@ pub fn measure(repeats: &Repeats, window: &Window) -> Firm {
 }
 
 /// The outermost of the steps `from` to 0 at which all repeats insert, and the trials run. The
-/// repeat that failed last is asked first: it is the likeliest to fail again, and one failure is
-/// enough.
+/// repeat that failed last is asked first: it is the likeliest to fail again, and one is enough.
 fn end(repeats: &Repeats, from: OffsetStep, sign: OffsetStep) -> (Option<OffsetStep>, u32) {
     let (count, mut doubtful, mut trials) = (repeats.count(), 0, 0);
     for step in (0..=from).rev() {
@@ -99,6 +85,8 @@ mod tests {
     use super::*;
     use crate::evaluation::tolerance::{Search, evaluate, offset};
     use crate::fixtures::finger;
+    use crate::outcome::Outcome;
+    use crate::trial::Grasp;
     use crate::trial::fake::FakeRig;
 
     /// The lower end of the closed form, -3.33 mm, moves with friction to as near as -3.03 mm;
@@ -107,7 +95,7 @@ mod tests {
     fn the_firm_window_is_the_innermost_of_the_repeats() {
         let (rig, finger) = (FakeRig::default(), finger(3.0, 20.0));
         let window = evaluate(&rig, &finger, Search::Walk).window;
-        let repeats = Repeats::new([&rig, &rig], &finger, 0, 100);
+        let repeats = Repeats::new([&rig, &rig], Grasp::of(&finger), 0, 100);
         let found = measure(&repeats, &window);
         let firm = found.window.unwrap();
         assert!((-31..=-30).contains(&firm.negative_steps), "{firm:?}");
@@ -120,18 +108,7 @@ mod tests {
         // One trial at most steps that fail, a hundred at the two that hold.
         assert!((200..320).contains(&found.trials), "{}", found.trials);
         let part = found.of(&window);
-        assert_eq!(
-            (part.negative_steps, part.end_positive),
-            (firm.negative_steps, window.end_positive)
-        );
-    }
-
-    #[test]
-    fn nothing_is_firm_where_nothing_inserts() {
-        let (rig, finger) = (FakeRig::default(), finger(3.0, 20.0));
-        let mut window = evaluate(&rig, &finger, Search::Walk).window;
-        window.nominal = Outcome::Diverged;
-        let found = measure(&Repeats::new([&rig, &rig], &finger, 0, 6), &window);
-        assert_eq!((found, found.range_mm()), (Firm::NONE, 0.0));
+        assert_eq!(part.negative_steps, firm.negative_steps);
+        assert_eq!(part.end_positive, window.end_positive);
     }
 }

@@ -1,20 +1,19 @@
-//! What a finger keeps of its window when not everything is as the task file
-//! says: trials and windows under drawn errors.
+//! Trials and windows under drawn errors: what a finger keeps of its window.
 
 pub mod firm;
-mod range;
 pub mod repeat;
-mod success;
 
-use crate::evaluation::Evaluation;
 use crate::evaluation::tolerance::{self, Search};
-use crate::evaluation::uncertainty::{Draw, RobustSettings, SuccessSettings, Uncertainty, draws};
-use crate::finger::Finger;
+use crate::evaluation::uncertainty::{
+    Draw, RobustSettings, Statistic, SuccessSettings, Uncertainty, draws,
+};
+use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
+use crate::outcome::Outcome;
 use crate::surrogate::Prediction;
-use crate::trial::Rig;
+use crate::trial::{Grasp, Rig};
+use rayon::prelude::*;
 
-/// What is measured of a design beside its window, with the draws that all
-/// designs of a study share.
+/// Measures of a design beside its window, with the draws that all designs of a study share.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
     success: Option<(Vec<Draw>, SuccessSettings)>,
@@ -25,8 +24,7 @@ impl Plan {
     /// Nothing beside the window.
     pub const WINDOW: Plan = Plan { success: None, robust: None };
 
-    /// Success rates, robust ranges or both under the errors of a distribution;
-    /// `seed` names the streams they are drawn from.
+    /// Success rates, robust ranges or both; `seed` names the streams that errors are drawn from.
     pub fn new(uncertainty: &Uncertainty, seed: u64, success: bool, robust: bool) -> Self {
         let draws = |count| draws(&uncertainty.errors, seed, count);
         let (rate, range) = (uncertainty.success, uncertainty.robust);
@@ -37,41 +35,146 @@ impl Plan {
     }
 }
 
-/// Measures one finger, whose stiffness was predicted with an error: its window,
-/// and what the plan adds.
+/// Measures a grasp in the world as the task file has it, by fingers whose stiffness was predicted
+/// with an error: its window, and what the plan adds.
 pub fn evaluate(
     rig: &dyn Rig,
-    finger: &Finger,
+    grasp: Grasp,
     predicted: &Prediction,
     search: Search,
     plan: &Plan,
 ) -> Evaluation {
-    let mut evaluation = tolerance::evaluate(rig, finger, search);
-    let part = |draw: &Draw| (draw.finger(finger, predicted), *draw);
+    let mut evaluation = tolerance::evaluate_in(rig, grasp, search);
+    let drawn = |draws: &[Draw]| -> Vec<_> {
+        draws.iter().map(|draw| (draw.grasp(grasp, predicted), draw.offset)).collect()
+    };
     if let Some((draws, settings)) = &plan.success {
-        let drawn: Vec<_> = draws.iter().map(part).collect();
-        evaluation.success = Some(success::measure(rig, &drawn, settings));
+        evaluation.success = Some(success_rate(rig, &drawn(draws), settings));
     }
     if let Some((draws, settings)) = &plan.robust {
-        let drawn: Vec<_> = draws.iter().map(part).collect();
-        evaluation.robust = Some(range::measure(rig, &drawn, settings));
+        evaluation.robust = Some(robust_range(rig, &drawn(draws), settings));
     }
     evaluation
+}
+
+fn success_rate(rig: &dyn Rig, drawn: &[(Grasp, f64)], settings: &SuccessSettings) -> SuccessRate {
+    let trial = |&(grasp, offset): &(Grasp, f64)| rig.hold(grasp).trial(offset).outcome;
+    let outcomes: Vec<Outcome> = drawn.par_iter().map(trial).collect();
+    let mut success = SuccessRate {
+        inserted: 0,
+        failure_counts: [0; 4],
+        diverged: 0,
+        confidence: settings.confidence,
+    };
+    for outcome in outcomes {
+        match outcome {
+            Outcome::Inserted => success.inserted += 1,
+            Outcome::Failed(class) => success.failure_counts[class as usize] += 1,
+            Outcome::Diverged => success.diverged += 1,
+        }
+    }
+    success
+}
+
+/// Measures the window of each grasp. The offset is left out: the window spans the offsets.
+fn robust_range(rig: &dyn Rig, drawn: &[(Grasp, f64)], settings: &RobustSettings) -> RobustRange {
+    let window = |&(grasp, _): &(Grasp, f64)| {
+        let found = tolerance::evaluate_in(rig, grasp, settings.search);
+        let diverged = found.window.nominal == Outcome::Diverged;
+        ((!diverged).then(|| found.window.range_mm()), found.trials)
+    };
+    let found: Vec<(Option<f64>, u32)> = drawn.par_iter().map(window).collect();
+    let ranges_mm: Vec<f64> = found.iter().filter_map(|(range, _)| *range).collect();
+    let mut robust = RobustRange {
+        diverged: (found.len() - ranges_mm.len()) as u32,
+        ranges_mm,
+        value_mm: None,
+        trials: found.iter().map(|(_, trials)| trials).sum(),
+    };
+    robust.value_mm = statistic(&robust, settings.statistic);
+    robust
+}
+
+/// The statistic, mm; `None` with fewer than two ranges.
+fn statistic(robust: &RobustRange, of: Statistic) -> Option<f64> {
+    let count = robust.ranges_mm.len();
+    if count < 2 {
+        return None;
+    }
+    Some(match of {
+        Statistic::MeanMinusSd(factor) => robust.mean_mm() - factor * robust.sd_mm(),
+        Statistic::LowerTail(share) => {
+            let mut sorted = robust.ranges_mm.clone();
+            sorted.sort_by(f64::total_cmp);
+            let tail = &sorted[..((share * count as f64).round() as usize).max(1)];
+            tail.iter().sum::<f64>() / tail.len() as f64
+        }
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluation::grid_mm;
+    use crate::evaluation::tests::ranges;
     use crate::fixtures::{finger, predicted};
+    use crate::trial::fake::{FakeRig, window_in_mm};
     use input::shipped::UNCERTAINTIES;
+    use input::units::MM;
 
     /// Fingers of 3 N/mm and this assembly stiffness (N/mm) drawn under the shipped errors.
-    pub fn drawn(assembly: f64, count: u32) -> (Uncertainty, Vec<(Finger, Draw)>) {
+    fn drawn(assembly: f64, count: u32) -> (Uncertainty, Vec<(Grasp<'static>, f64)>) {
         let typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
         let predicted = predicted([3.0, 1.0], [assembly, 2.0]);
-        let nominal = finger(3.0, assembly);
+        let nominal = Grasp::of(&finger(3.0, assembly));
         let drawn = draws(&typical.errors, 5, count).into_iter();
-        let drawn = drawn.map(|draw| (draw.finger(&nominal, &predicted), draw)).collect();
+        let drawn = drawn.map(|draw| (draw.grasp(nominal, &predicted), draw.offset)).collect();
         (typical, drawn)
+    }
+
+    #[test]
+    fn every_trial_ends_as_its_own_window_says() {
+        let (typical, drawn) = drawn(20.0, 300);
+        let found = success_rate(&FakeRig::default(), &drawn, &typical.success);
+        let (mut below, mut above) = (0, 0);
+        for (grasp, offset) in &drawn {
+            let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
+            let offset = offset / MM;
+            // A window that errors closed jams on the whole of its lower side.
+            below += u32::from(offset < low);
+            above += u32::from(offset >= low && offset > high);
+        }
+        assert!(below > 5 && above > 20, "{below} and {above}");
+        assert_eq!(found.failure_counts, [0, above, below, 0]);
+        assert_eq!((found.inserted, found.counted()), (300 - below - above, 300));
+    }
+
+    #[test]
+    fn the_statistics_worked_by_hand() {
+        let three = ranges(vec![7.0, 3.0, 5.0]);
+        assert_eq!(statistic(&three, Statistic::MeanMinusSd(1.5)), Some(2.0));
+        assert_eq!(statistic(&three, Statistic::LowerTail(0.1)), Some(3.0));
+        assert_eq!(statistic(&three, Statistic::LowerTail(0.67)), Some(4.0));
+        assert_eq!(statistic(&ranges(vec![7.0]), Statistic::LowerTail(0.1)), None);
+    }
+
+    #[test]
+    fn each_range_is_that_of_its_own_window() {
+        let (typical, drawn) = drawn(60.0, 12);
+        let settings = RobustSettings { search: Search::Strides, ..typical.robust };
+        let found = robust_range(&FakeRig::default(), &drawn, &settings);
+        let expected: Vec<f64> = drawn
+            .iter()
+            .map(|(grasp, _)| {
+                let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
+                if low > 0.0 || high < 0.0 {
+                    return 0.0;
+                }
+                grid_mm((high * 10.0).floor() as i32 - (low * 10.0).ceil() as i32)
+            })
+            .collect();
+        assert_eq!(found.ranges_mm, expected);
+        assert!(found.sd_mm() > 0.3, "{found:?}");
+        assert_eq!(found.value_mm, Some(found.mean_mm() - found.sd_mm()));
     }
 }

@@ -2,9 +2,8 @@
 
 use crate::evaluation::tolerance;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
-use crate::finger::Finger;
 use crate::outcome::Outcome;
-use crate::trial::{Conditions, Grasped, Rig};
+use crate::trial::{Conditions, Grasp, Grasped, Rig};
 use ask_tell::stream::stream;
 use input::units::MM;
 use rand::RngExt;
@@ -14,7 +13,6 @@ use rayon::prelude::*;
 pub const FRICTION_SHARE: f64 = 0.1;
 /// Largest change of the start, m.
 pub const START: f64 = 0.02 * MM;
-/// Names the stream of the changes.
 const PURPOSE: &str = "repeat";
 /// Largest distance from an end at which its band is followed, in grid steps.
 const REACH: OffsetStep = 20;
@@ -29,7 +27,7 @@ pub struct Repeats<'a> {
 impl<'a> Repeats<'a> {
     /// Grasps `count` times: friction within 10 %, start within 0.02 mm, both uniform; the
     /// rigs by turns, the first with the production step, the second with half of it.
-    pub fn new(rigs: [&'a dyn Rig; 2], finger: &Finger, seed: u64, count: u32) -> Self {
+    pub fn new(rigs: [&'a dyn Rig; 2], grasp: Grasp<'a>, seed: u64, count: u32) -> Self {
         let run = |index: u32| {
             let mut random = stream(seed, u64::from(index), PURPOSE);
             let mut around = |half_width: f64| half_width * random.random_range(-1.0..1.0);
@@ -39,7 +37,7 @@ impl<'a> Repeats<'a> {
                 ..Conditions::NOMINAL
             };
             let rig = rigs[index as usize % rigs.len()];
-            (rig.grasp_in(finger, &conditions), around(START))
+            (rig.hold(Grasp { conditions, ..grasp }), around(START))
         };
         Repeats { runs: (0..count).into_par_iter().map(run).collect() }
     }
@@ -49,12 +47,10 @@ impl<'a> Repeats<'a> {
         self.runs.par_iter().map(|(grasped, shift)| grasped.trial(offset + shift).outcome).collect()
     }
 
-    /// Number of runs.
     pub(super) fn count(&self) -> usize {
         self.runs.len()
     }
 
-    /// Whether one of the runs inserts at a grid step.
     pub(super) fn inserts(&self, run: usize, step: OffsetStep) -> bool {
         let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
             grasped.trial(tolerance::offset(step) + shift).outcome
@@ -62,14 +58,12 @@ impl<'a> Repeats<'a> {
         self.runs.get(run).map(trial) == Some(Outcome::Inserted)
     }
 
-    /// Number of runs that insert at a grid step.
     fn inserted(&self, step: OffsetStep) -> usize {
         let outcomes = self.outcomes(tolerance::offset(step));
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()
     }
 
-    /// Where the outcome near one end of a window hangs on such changes; `sign` is
-    /// the direction of the end, -1 or 1.
+    /// Where the outcome near one end hangs on such changes; `sign` is its direction, -1 or 1.
     fn band(&self, window: &Window, sign: OffsetStep) -> Band {
         let end = if sign < 0 { -window.negative_steps } else { window.positive_steps };
         let inserted = |step: OffsetStep| self.inserted(sign * step);
@@ -101,8 +95,7 @@ impl<'a> Repeats<'a> {
     }
 }
 
-/// The offsets near one end where the outcome changes with small changes; grid steps
-/// outward from the nominal start.
+/// Offsets near one end whose outcome small changes decide; grid steps outward.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// The outermost offset at which all repeats insert.
@@ -112,8 +105,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// Width between the two, less the 0.1 mm that the grid leaves open anyway, mm;
-    /// `None` if it is wider than 2 mm to one side.
+    /// Width less the 0.1 mm that the grid leaves open, mm; `None` if above 2 mm to one side.
     pub fn width_mm(&self) -> Option<f64> {
         Some(grid_mm(self.surely_fails? - self.surely_inserts? - 1))
     }
@@ -144,7 +136,7 @@ mod tests {
     #[test]
     fn the_bands_are_as_wide_as_the_closed_form_says() {
         let rig = FakeRig::default();
-        let repeats = Repeats::new([&rig, &rig], &finger(3.0, 20.0), 7, 200);
+        let repeats = Repeats::new([&rig, &rig], Grasp::of(&finger(3.0, 20.0)), 7, 200);
         let window = tolerance::evaluate(&rig, &finger(3.0, 20.0), Search::Walk).window;
         let bands = repeats.bands(&window);
         let below = bands.negative.width_mm().unwrap();
@@ -158,8 +150,8 @@ mod tests {
     #[test]
     fn repeats_are_a_function_of_the_seed() {
         let rig = FakeRig::default();
-        let of =
-            |seed| Repeats::new([&rig, &rig], &finger(3.0, 20.0), seed, 60).outcomes(-3.33 * MM);
+        let grasp = Grasp::of(&finger(3.0, 20.0));
+        let of = |seed| Repeats::new([&rig, &rig], grasp, seed, 60).outcomes(-3.33 * MM);
         assert_eq!(of(1), of(1));
         assert_ne!(of(1), of(2));
         let inserted = of(1).iter().filter(|&&outcome| outcome == Outcome::Inserted).count();

@@ -1,14 +1,12 @@
 //! Co-design: what a design may set beside the infill.
 //!
-//! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path
-//! to one number:
+//! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path to one number:
 //!
 //! - `task.`, then the path in the task file as of [`NumberFile`]
 //!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);
 //! - `finger.`, then one of [`finger_keys`] (`finger.rcc_mm`).
 //!
-//! Values are in the unit that the key carries. They are put into the task as read,
-//! before its checks, so that no design escapes them.
+//! Values are in the unit of the key. They enter the task before its checks: none escapes them.
 
 pub mod printable;
 mod space;
@@ -28,8 +26,10 @@ use input::units::{GRAM, MM, N_PER_MM};
 /// A task file, the numbers of which a design may set.
 #[derive(Debug, Clone)]
 pub struct Template {
-    numbers: NumberFile,
-    task: Task,
+    /// Numbers of the file, by their keys.
+    pub numbers: NumberFile,
+    /// The task as the file has it.
+    pub task: Task,
 }
 
 /// Error of a design that cannot be simulated.
@@ -80,16 +80,6 @@ impl Template {
         Ok(Template { numbers: NumberFile::parse("task", text, file)?, task })
     }
 
-    /// The task as the file has it.
-    pub fn task(&self) -> &Task {
-        &self.task
-    }
-
-    /// The number that the task file has under a key, in the unit of the key.
-    pub fn number(&self, key: &str) -> Option<f64> {
-        self.numbers.number(key)
-    }
-
     /// The task, and the finger of this stiffness at its pad, with the values that the design
     /// gives; what it does not name stays as in the task file and as `fingers` makes it.
     ///
@@ -135,7 +125,6 @@ impl Template {
         Ok((task, made))
     }
 
-    /// The task with these numbers in place of its own.
     fn changed(&self, of_task: &[(&str, f64)]) -> Result<Task, InputError> {
         if of_task.is_empty() {
             return Ok(self.task.clone());
@@ -184,7 +173,7 @@ mod tests {
             ("finger.rotation_x_nm_per_rad", 1.5),
         ])
         .unwrap();
-        let mut expected = usb().task().clone();
+        let mut expected = usb().task.clone();
         expected.strategy.tilt = 8.0 * DEG;
         expected.strategy.phases[1].ending =
             Ending::Touch { preload: 0.5 * MM, sensed: Sensed::FIRST };
@@ -204,11 +193,11 @@ mod tests {
         for file in TASKS {
             let template = Template::parse(file.text, file.file).unwrap();
             let keys = template.numbers.keys().into_iter();
-            let values = keys.map(|key| (key.clone(), template.number(&key).unwrap()));
+            let values = keys.map(|key| (key.clone(), template.numbers.number(&key).unwrap()));
             let design = Design(values.collect());
             assert!(design.0.len() > 50, "{}", file.name);
             let (task, _) = template.apply(&design, &FingerSource::Paper, AT_PAD).unwrap();
-            assert_eq!(&task, template.task());
+            assert_eq!(&task, &template.task);
         }
     }
 
@@ -224,11 +213,7 @@ mod tests {
             ("task.strategy.tild_deg", 1.0, "`task.strategy.` goes on with phase, start_mm, tilt_"),
             ("task.strategy.start_mm", 1.0, "`task.strategy.start_mm.` goes on with x, y, z"),
             ("task.strategy.phase.side.motion", 1.0, "goes on with move_mm, settle_s, speed_mm_"),
-            (
-                "tilt",
-                1.0,
-                "begins with finger, infill_density_percent, infill_direction_deg or task",
-            ),
+            ("tilt", 1.0, "begins with finger, infill_density_percent, infill_direction_deg or"),
         ] {
             let error = apply(&[(key, value)]).unwrap_err().to_string();
             assert!(error.contains(words), "{key}: {error}");

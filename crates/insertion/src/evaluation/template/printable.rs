@@ -5,17 +5,16 @@ use crate::space::{Design, Parameter, Space, corners};
 use finray::geometry::Geometry;
 use input::{Check, InputError};
 
-/// Checks that a space read from `file` has none but printable fingers: every combination of
-/// extreme values of infill and finger must have a profile, its walls no thinner and its gaps no
-/// narrower than a printer's. Thickness and gaps rise or fall with each number alone, so what lies
-/// between is printable, too.
+/// Checks that a space read from `file` has none but printable fingers, by every combination of
+/// extreme values of infill and finger. Thickness and gaps rise or fall with each number alone, so
+/// what lies between is printable, too.
 ///
 /// # Errors
 /// If a key sets nothing in the finger file, or a combination cannot be printed.
 pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), InputError> {
     let check = Check { file };
     let shape = |p: &&Parameter| is_shape(&p.key);
-    for parameter in space.parameters().iter().filter(shape) {
+    for parameter in space.parameters.iter().filter(shape) {
         for value in parameter.extremes() {
             let alone = Design([(parameter.key.clone(), value)].into());
             if let Err(error) = finger.with(&alone) {
@@ -24,7 +23,7 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
         }
     }
     let sets = |p: &&Parameter| shape(p) || super::is_infill(&p.key);
-    for design in corners(space.parameters().iter().filter(sets), usize::MAX) {
+    for design in corners(space.parameters.iter().filter(sets), usize::MAX) {
         let finger = finger.with(&design)?;
         if let Err(error) = Geometry::new(&finger, &design.printed(None)) {
             return check.fail("parameter", format!("{design} cannot be printed: {error}"));

@@ -3,12 +3,11 @@
 use super::Errors;
 use crate::finger::Finger;
 use crate::surrogate::{Estimate, Prediction};
-use crate::trial::Conditions;
+use crate::trial::{Conditions, Grasp};
 use ask_tell::stream::stream;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
-/// Names the stream of the errors.
 const PURPOSE: &str = "errors";
 
 /// One draw: what one insertion is like. It does not depend on the design, so
@@ -25,14 +24,12 @@ pub struct Draw {
     stiffness_sd_factor: f64,
 }
 
-/// `count` draws of a study. Draw `i` is a function of the seed and `i`: more
-/// draws leave the first ones as they were.
+/// `count` draws of a study; draw `i` is a function of the seed and `i` alone.
 pub fn draws(errors: &Errors, seed: u64, count: u32) -> Vec<Draw> {
     (0..count).map(|i| draw(errors, seed, u64::from(i))).collect()
 }
 
-/// All numbers are drawn whatever the spreads are, so that switching one error
-/// off leaves the others as they were.
+/// All numbers are always drawn: switching one error off leaves the others as they were.
 fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
     let mut random = stream(seed, index, PURPOSE);
     let [offset, yaw, compliance, assembly, across]: [f64; 5] =
@@ -60,6 +57,12 @@ impl Draw {
     /// many standard deviations of the stiffness model above their medians.
     pub fn under(conditions: Conditions, stiffness: [f64; 2]) -> Self {
         Draw { offset: 0.0, conditions, stiffness, stiffness_sd_factor: 1.0 }
+    }
+
+    /// A grasp by fingers that were to have the predicted stiffness, as it turns out.
+    pub fn grasp<'a>(&self, nominal: Grasp<'a>, predicted: &Prediction) -> Grasp<'a> {
+        let finger = self.finger(&nominal.finger, predicted);
+        Grasp { finger, conditions: self.conditions, ..nominal }
     }
 
     /// A finger that was to have the predicted stiffness, as it came out.
@@ -147,18 +150,9 @@ mod tests {
 
     #[test]
     fn without_errors_every_draw_is_the_nominal_trial() {
-        let none = Errors {
-            offset_sd: 0.0,
-            yaw_sd: 0.0,
-            friction_half_width: 0.0,
-            stiffness_sd_factor: 0.0,
-            clearance_half_width: 0.0,
-            grasp_across_sd: 0.0,
-            grasp_low_max: 0.0,
-        };
         let predicted = predicted([1.0, 0.0], [1.0, 0.0]);
         let finger = Finger::new(1e3, 2e4);
-        for draw in draws(&none, 0, 20) {
+        for draw in draws(&Errors::default(), 0, 20) {
             assert_eq!((draw.offset, draw.conditions), (0.0, Conditions::NOMINAL));
             assert_eq!(draw.finger(&finger, &predicted), finger);
         }

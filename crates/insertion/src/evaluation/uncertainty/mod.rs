@@ -1,5 +1,4 @@
-//! What varies from one insertion to the next, and how often: the errors over
-//! which a success rate and a robust range are taken, from one TOML file.
+//! Errors from one insertion to the next, over which a success rate and a robust range are taken.
 
 mod draw;
 mod raw;
@@ -24,7 +23,7 @@ pub struct Uncertainty {
 }
 
 /// Spread of each error; 0 switches it off.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Errors {
     /// Start along y, normal: standard deviation, m.
     pub offset_sd: f64,

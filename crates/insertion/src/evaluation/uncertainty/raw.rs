@@ -68,13 +68,9 @@ enum RawStatistic {
 
 /// Largest error of a length, mm: no part is placed so badly.
 const LARGEST_MM: f64 = 20.0;
-/// Largest error of a clearance, mm.
 const LARGEST_CLEARANCE_MM: f64 = 2.0;
-/// Largest error of an angle, degrees.
 const LARGEST_DEG: f64 = 30.0;
-/// Largest factor on the stiffness model's own error.
 const LARGEST_FACTOR: f64 = 10.0;
-/// Most trials or samples a design may take.
 const MOST: u32 = 100_000;
 
 impl Uncertainty {
@@ -211,28 +207,18 @@ mod tests {
             ("trials = 100", "trials = 0", "success_rate.trials", "1 .."),
             ("samples = 12", "samples = 1", "robust_range.samples", "2 .."),
             ("confidence_percent = 95.0", "confidence_percent = 100.0", "confidence", "between"),
-            (
-                "\nsd_factor = 1.0\n#",
-                "\ntail_percent = 10.0\n#",
-                "robust_range.statistic",
-                "sd_factor",
-            ),
+            ("\nsd_factor = 1.0\n#", "\ntail_percent = 10.0\n#", "range.statistic", "sd_factor"),
             ("sd_deg = 1.0", "sd_rad = 1.0", "sd_rad", "sd_deg"),
             ("search = \"walk\"", "search = \"run\"", "run", "walk"),
         ] {
             let text = good.replacen(from, to, 1);
             assert_ne!(text, good, "{from}");
             let error = Uncertainty::parse(&text, "u.toml").unwrap_err().to_string();
-            assert!(
-                error.contains(key) && error.contains(word) && error.contains("u.toml"),
-                "{error}"
-            );
+            assert!([key, word, "u.toml"].iter().all(|part| error.contains(part)), "{error}");
         }
         let tail =
             good.replace("mean-minus-sd\"\nsd_factor = 1.0", "lower-tail\"\ntail_percent = 10.0");
-        assert_eq!(
-            Uncertainty::parse(&tail, "u").unwrap().robust.statistic,
-            Statistic::LowerTail(0.1)
-        );
+        let tail = Uncertainty::parse(&tail, "u").unwrap();
+        assert_eq!(tail.robust.statistic, Statistic::LowerTail(0.1));
     }
 }

@@ -1,5 +1,4 @@
-//! The part of the first touch that is the same wherever the socket lies: the way through the air
-//! above it.
+//! The way through the air above the socket, which all offsets share.
 
 use super::Attempt;
 use crate::task::{Ending, Stage};
@@ -9,8 +8,7 @@ use input::units::MM;
 
 /// The way down is shared while the plug is this far above the socket, m.
 const CLEAR: f64 = 0.3 * MM;
-/// ... and was, if it is still this far above at its end: more than a contact is foreseen, m. A fast move may
-/// come nearer within a step.
+/// ... and was, if it is still this far above at its end, m: a fast move may come nearer.
 const UNTOUCHED: f64 = 0.25 * MM;
 
 /// A phase that has begun.
@@ -32,7 +30,7 @@ impl<'a> Attempt<'a> {
         if phase.stage != Stage::Search || !matches!(phase.ending, Ending::Touch { .. }) {
             return None;
         }
-        let mut copy = self.copy();
+        let mut copy = self.clone();
         copy.stage = phase.stage;
         let motion = copy.motion(phase);
         let mut steps = 0;

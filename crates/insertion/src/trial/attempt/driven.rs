@@ -1,5 +1,4 @@
-//! A trial whose moves are commanded from outside in place of the task's search strategy: for
-//! learning a search.
+//! A trial whose moves are commanded from outside: for learning a search.
 
 use super::{Attempt, REST, Stop};
 use crate::outcome::Outcome;
@@ -28,11 +27,9 @@ pub struct Driven {
 pub struct State {
     /// Simulated time since the start of the search, s.
     pub time_s: f64,
-    /// The TCP as the robot measures it, mm: from the middle of where the robot believes the
-    /// socket's opening to be.
+    /// The TCP as the robot measures it, mm: from where it believes the opening's middle to be.
     pub tcp_mm: [f64; 3],
-    /// How far the flange is turned about x, y and z, degrees; what is tilted for the search
-    /// counts.
+    /// Turn of the flange about x, y and z, degrees; the tilt for the search counts.
     pub turn_deg: [f64; 3],
     /// Net force of the socket on the plug as a wrist sensor filters it, N.
     pub force_n: [f64; 3],
@@ -50,7 +47,7 @@ pub struct State {
 
 impl Driven {
     pub(in crate::trial) fn new(ready: Attempt<'static>, prepared: Result<(), Stop>) -> Self {
-        let attempt = ready.copy();
+        let attempt = ready.clone();
         let mut driven = Driven { ready, prepared, attempt, end: Ok(()), seated_s: 0.0 };
         driven.start(0.0);
         driven

@@ -2,7 +2,7 @@
 
 use super::functions::Function;
 use super::landscape::Landscape;
-use ask_tell::cmaes::{Restarts, Solution, StartBox, Strategy, Tolerances};
+use ask_tell::cmaes::{Restarts, Solution, StartBox, Tolerances};
 use ask_tell::{Grid, GridPoint, Observation, Optimizer};
 
 /// Levels per axis of the grids on which the functions are searched.
@@ -106,11 +106,10 @@ pub(super) fn cma_evaluations(function: Function, n: usize, seed: u64) -> Option
         high: vec![4.0; n],
         sigma: 2.0,
         min_std: Vec::new(),
-        active: true,
         max_lambda: 1 << 14,
         tolerances: Tolerances::default(),
     };
-    let mut cma = Restarts::new(Strategy::Bipop, start, seed);
+    let mut cma = Restarts::new(start, seed);
     let mut evaluations = 0;
     while evaluations < CMA_LIMIT {
         let mut told = Vec::new();

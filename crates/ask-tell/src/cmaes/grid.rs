@@ -1,7 +1,7 @@
 //! CMA-ES on a grid.
 
 use super::core::Solution;
-use super::restarts::{Restarts, StartBox, Strategy};
+use super::restarts::{Restarts, StartBox};
 use super::stop::Tolerances;
 use crate::GridPoint;
 use crate::{Grid, Observation, Optimizer, Proposed, StopReason};
@@ -60,19 +60,12 @@ impl CmaEsOptimizer {
             high: vec![1.0; free.len()],
             sigma: SIGMA,
             min_std: free.iter().map(step).collect(),
-            active: true,
             max_lambda: (grid.size() / 10).clamp(8, 512) as usize,
             // On a grid equal values are common and no sign of convergence.
-            tolerances: Tolerances {
-                fun: 0.0,
-                fun_hist: 0.0,
-                x: 0.0,
-                x_up: 1e2,
-                max_generations: None,
-            },
+            tolerances: Tolerances { fun: 0.0, fun_hist: 0.0, x: 0.0, x_up: 1e2 },
         };
         CmaEsOptimizer {
-            restarts: Restarts::new(Strategy::Bipop, start, seed),
+            restarts: Restarts::new(start, seed),
             proposed: Proposed::new(grid, seed),
             generation: Vec::new(),
             values: BTreeMap::new(),
@@ -82,31 +75,25 @@ impl CmaEsOptimizer {
         }
     }
 
-    fn draw(&mut self) -> Candidate {
-        let x = self.restarts.sample();
-        let point = self.proposed.grid().folded(&x);
-        Candidate { x, point }
-    }
-
     /// The next unseen candidate of the search, or `None` if it has none to offer.
     fn next(&mut self) -> Option<GridPoint> {
-        let lambda = |s: &Self| s.restarts.current().parameters().lambda;
         let mut extra = 0;
         while self.barren_restarts < BARREN_RESTARTS && extra < EXTRA_DRAWS {
-            let full = self.generation.len() >= lambda(self);
+            let full = self.generation.len() >= self.restarts.current.parameters.lambda;
             if full && self.generation.iter().all(|c| self.values.contains_key(&c.point)) {
                 self.finish_generation();
                 continue;
             }
-            let candidate = self.draw();
-            let new = self.proposed.insert(&candidate.point);
+            let x = self.restarts.current.sample();
+            let point = self.proposed.grid().folded(&x);
+            let new = self.proposed.insert(&point);
             // A full generation that waits for values grows by new points only.
             if new || !full {
-                self.generation.push(candidate.clone());
+                self.generation.push(Candidate { x, point: point.clone() });
             }
             if new {
                 self.fruitful = true;
-                return Some(candidate.point);
+                return Some(point);
             }
             extra += u32::from(full);
         }
@@ -139,7 +126,7 @@ impl Optimizer for CmaEsOptimizer {
     fn ask(&mut self, n: usize) -> Vec<GridPoint> {
         let mut points = Vec::new();
         while points.len() < n && !self.proposed.exhausted() {
-            let found = if self.restarts.current().mean().is_empty() { None } else { self.next() };
+            let found = if self.restarts.current.mean.is_empty() { None } else { self.next() };
             let Some(point) = found.or_else(|| self.proposed.next_unseen()) else { break };
             self.barren_restarts = 0;
             points.push(point);
@@ -157,12 +144,12 @@ impl Optimizer for CmaEsOptimizer {
             self.values.insert(o.point.clone(), value);
         }
         // Known results before the first ask: the search begins at the best of them.
-        if self.generation.is_empty() && self.restarts.current().generation() == 0 {
+        if self.generation.is_empty() && self.restarts.current.generation == 0 {
             let finite = self.values.iter().filter(|(_, value)| value.is_finite());
             if let Some((point, _)) = finite.min_by(|a, b| a.1.total_cmp(b.1)) {
                 let (grid, unit) = (self.proposed.grid(), self.proposed.grid().unit(point));
-                let mean = grid.free_axes().into_iter().map(|axis| unit[axis]).collect();
-                self.restarts.begin_at(mean);
+                let mean: Vec<f64> = grid.free_axes().into_iter().map(|i| unit[i]).collect();
+                self.restarts.current.mean = mean.into();
             }
         }
         // A candidate that was asked and not told would keep its generation waiting for ever.

@@ -61,14 +61,13 @@ impl Optimizer for Informed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Grid;
-    use crate::gp::GpOptimizer;
+    use crate::{Grid, OptimizerKind, build};
 
     #[test]
     fn chosen_points_come_once_after_the_first_ones_and_are_told() {
         let grid = Grid::new(vec![5, 5]);
         let chosen = [[0, 0], [4, 4], [0, 0], [2, 3]].map(|levels| GridPoint(levels.to_vec()));
-        let inner = Box::new(GpOptimizer::new(grid, 1));
+        let inner = build(OptimizerKind::Gp, grid, 1);
         let mut optimizer = Informed::new(inner, 3, chosen.clone());
         let mut seen = Vec::new();
         loop {

@@ -4,8 +4,8 @@ use super::core::Solution;
 use super::restarts::{Restarts, StartBox};
 use super::stop::Tolerances;
 use crate::GridPoint;
-use crate::{Grid, Observation, Optimizer, Proposed, StopReason};
-use std::collections::BTreeMap;
+use crate::proposed::Costs;
+use crate::{Grid, Observation, Optimizer, StopReason};
 
 /// Initial step size in units of the cube's edge (the tutorial advises 0.3 of the range).
 const SIGMA: f64 = 0.3;
@@ -32,22 +32,15 @@ const EXTRA_DRAWS: u32 = 50;
 /// - *Batches* that end within a generation enlarge it: the distribution is updated with all its
 ///   candidates and the constants of its true size.
 #[derive(Debug, Clone)]
-pub struct CmaEsOptimizer {
-    proposed: Proposed,
+pub(crate) struct CmaEsOptimizer {
+    costs: Costs,
     restarts: Restarts,
-    generation: Vec<Candidate>,
-    /// Negated values; infinite for points without one.
-    values: BTreeMap<GridPoint, f64>,
+    /// Candidates, and the grid points they stand for.
+    generation: Vec<(Vec<f64>, GridPoint)>,
     /// Whether the present generation proposed a new point.
     fruitful: bool,
     barren_generations: u32,
     barren_restarts: u32,
-}
-
-#[derive(Debug, Clone)]
-struct Candidate {
-    x: Vec<f64>,
-    point: GridPoint,
 }
 
 impl CmaEsOptimizer {
@@ -66,9 +59,8 @@ impl CmaEsOptimizer {
         };
         CmaEsOptimizer {
             restarts: Restarts::new(start, seed),
-            proposed: Proposed::new(grid, seed),
+            costs: Costs::new(grid, seed),
             generation: Vec::new(),
-            values: BTreeMap::new(),
             fruitful: false,
             barren_generations: 0,
             barren_restarts: 0,
@@ -80,16 +72,16 @@ impl CmaEsOptimizer {
         let mut extra = 0;
         while self.barren_restarts < BARREN_RESTARTS && extra < EXTRA_DRAWS {
             let full = self.generation.len() >= self.restarts.current.parameters.lambda;
-            if full && self.generation.iter().all(|c| self.values.contains_key(&c.point)) {
+            if full && self.generation.iter().all(|(_, point)| self.costs.of.contains_key(point)) {
                 self.finish_generation();
                 continue;
             }
             let x = self.restarts.current.sample();
-            let point = self.proposed.grid().folded(&x);
-            let new = self.proposed.insert(&point);
+            let point = self.costs.proposed.grid().folded(&x);
+            let new = self.costs.proposed.insert(&point);
             // A full generation that waits for values grows by new points only.
             if new || !full {
-                self.generation.push(Candidate { x, point: point.clone() });
+                self.generation.push((x, point.clone()));
             }
             if new {
                 self.fruitful = true;
@@ -101,9 +93,9 @@ impl CmaEsOptimizer {
     }
 
     fn finish_generation(&mut self) {
-        let solution = |c: Candidate| {
-            let value = self.values.get(&c.point).copied().unwrap_or(f64::INFINITY);
-            Solution { x: c.x, value }
+        let solution = |(x, point)| {
+            let value = self.costs.of.get(&point).copied().unwrap_or(f64::INFINITY);
+            Solution { x, value }
         };
         let told: Vec<Solution> =
             std::mem::take(&mut self.generation).into_iter().map(solution).collect();
@@ -125,9 +117,9 @@ impl CmaEsOptimizer {
 impl Optimizer for CmaEsOptimizer {
     fn ask(&mut self, n: usize) -> Vec<GridPoint> {
         let mut points = Vec::new();
-        while points.len() < n && !self.proposed.exhausted() {
+        while points.len() < n && !self.costs.proposed.exhausted() {
             let found = if self.restarts.current.mean.is_empty() { None } else { self.next() };
-            let Some(point) = found.or_else(|| self.proposed.next_unseen()) else { break };
+            let Some(point) = found.or_else(|| self.costs.proposed.next_unseen()) else { break };
             self.barren_restarts = 0;
             points.push(point);
         }
@@ -135,29 +127,20 @@ impl Optimizer for CmaEsOptimizer {
     }
 
     fn tell(&mut self, observations: &[Observation]) {
-        for o in observations {
-            if !self.proposed.grid().contains(&o.point) {
-                continue;
-            }
-            let value = o.merit().filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
-            self.proposed.insert(&o.point);
-            self.values.insert(o.point.clone(), value);
-        }
+        self.costs.tell(observations);
         // Known results before the first ask: the search begins at the best of them.
-        if self.generation.is_empty() && self.restarts.current.generation == 0 {
-            let finite = self.values.iter().filter(|(_, value)| value.is_finite());
-            if let Some((point, _)) = finite.min_by(|a, b| a.1.total_cmp(b.1)) {
-                let (grid, unit) = (self.proposed.grid(), self.proposed.grid().unit(point));
-                let mean: Vec<f64> = grid.free_axes().into_iter().map(|i| unit[i]).collect();
-                self.restarts.current.mean = mean.into();
-            }
+        if self.generation.is_empty()
+            && self.restarts.current.generation == 0
+            && let Some(best) = self.costs.best()
+        {
+            self.restarts.current.mean = best.into();
         }
         // A candidate that was asked and not told would keep its generation waiting for ever.
-        self.generation.retain(|c| self.values.contains_key(&c.point));
+        self.generation.retain(|(_, point)| self.costs.of.contains_key(point));
     }
 
     fn stop(&self) -> Option<StopReason> {
-        self.proposed.stop()
+        self.costs.proposed.stop()
     }
 }
 

@@ -1,7 +1,7 @@
 //! CMA-ES after N. Hansen, *The CMA Evolution Strategy: A Tutorial* (arXiv 1604.00772, 2023),
 //! in its symbols and with its constants.
 //!
-//! [`Restarts`] **minimises** on R^n by ask and tell; [`CmaEsOptimizer`] adapts it to a
+//! [`Restarts`] **minimises** on R^n by ask and tell; the optimizer `cma-es` adapts it to a
 //! [`Grid`](super::Grid) and **maximises**, like every [`Optimizer`](super::Optimizer).
 
 mod core;
@@ -11,6 +11,6 @@ mod restarts;
 mod stop;
 
 pub use self::core::Solution;
-pub use grid::CmaEsOptimizer;
+pub(crate) use grid::CmaEsOptimizer;
 pub use restarts::{Restarts, StartBox};
 pub use stop::Tolerances;

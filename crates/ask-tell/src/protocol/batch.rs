@@ -1,6 +1,5 @@
 //! The points of one batch on their way out and their values on the way back.
 
-use super::AskTellError;
 use super::message::PointValue;
 use crate::GridPoint;
 use crate::Observation;
@@ -50,23 +49,20 @@ impl Batch {
     }
 
     /// Whether these can all be told.
-    pub fn check(&self, told: &[PointValue]) -> Result<(), AskTellError> {
-        let mut seen: Vec<u64> = Vec::with_capacity(told.len());
+    pub fn check(&self, told: &[PointValue]) -> Result<(), String> {
+        let twice = |id| Err(format!("tell: id {id} is told twice; each id is told once"));
         for PointValue { id, .. } in told {
             if *id >= self.first + self.asked as u64 {
-                return Err(AskTellError::UnknownId(*id));
+                return Err(format!("tell: id {id} was not asked"));
             }
             // All ids before this batch have their values.
             if *id < self.first || self.values.contains_key(id) {
-                return Err(AskTellError::ToldTwice(*id));
+                return twice(*id);
             }
-            seen.push(*id);
         }
-        seen.sort_unstable();
-        match seen.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(AskTellError::ToldTwice(pair[0])),
-            None => Ok(()),
-        }
+        let mut ids: Vec<u64> = told.iter().map(|told| told.id).collect();
+        ids.sort_unstable();
+        ids.windows(2).find(|pair| pair[0] == pair[1]).map_or(Ok(()), |pair| twice(pair[0]))
     }
 
     /// Keeps the value (larger is better) of a point that [`check`](Self::check) passed; gives

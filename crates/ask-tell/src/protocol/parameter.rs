@@ -1,6 +1,5 @@
 //! A parameter, and the levels an optimizer sees of it.
 
-use super::AskTellError;
 use super::decimal::Decimal;
 use serde::Deserialize;
 
@@ -14,24 +13,19 @@ const MOST_STEPS: f64 = 1e9;
 const WHOLE: f64 = 1e-6;
 
 /// A parameter as the first line names it.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ParameterLine {
-    /// Its name in the points asked.
+pub(super) struct ParameterLine {
     pub name: String,
-    /// Smallest value.
     pub low: f64,
-    /// Largest value.
     pub high: f64,
     /// Values are `low + k step`; without it any value to 1e-9 of the span.
-    #[serde(default)]
     pub step: Option<f64>,
 }
 
 /// A checked parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Parameter {
-    /// Its name.
+#[derive(Debug)]
+pub(super) struct Parameter {
     pub name: String,
     low: f64,
     high: f64,
@@ -43,11 +37,8 @@ pub struct Parameter {
 
 impl Parameter {
     /// Checks a parameter.
-    pub fn new(line: &ParameterLine) -> Result<Parameter, AskTellError> {
-        let fail = |problem| {
-            let name = line.name.clone();
-            Err(AskTellError::Parameter { name, problem })
-        };
+    pub fn new(line: &ParameterLine) -> Result<Parameter, String> {
+        let fail = |problem| Err(format!("parameter `{}`: {problem}", line.name));
         let span = line.high - line.low;
         if line.name.is_empty() {
             return fail("a name must have at least one character");
@@ -197,7 +188,7 @@ mod tests {
             (line(1e15, 1e15 + 1.0, None), "too small beside"),
             (line(0.3, 0.3 + 1e-12, None), "too small beside"),
         ] {
-            let error = Parameter::new(&wrong).unwrap_err().to_string();
+            let error = Parameter::new(&wrong).unwrap_err();
             assert!(error.contains(word) && error.contains("`x`"), "{error}");
         }
     }

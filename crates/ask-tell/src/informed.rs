@@ -1,7 +1,6 @@
 //! An optimizer that is given the values of chosen points.
 
-use super::{Observation, Optimizer, StopReason};
-use crate::GridPoint;
+use super::{GridPoint, Observation, Optimizer, StopReason};
 use std::collections::VecDeque;
 
 /// Asks another optimizer for a number of points first, so that it has its own first design, then

@@ -1,7 +1,6 @@
 //! Nelder-Mead about the best point told, on a grid.
 
-use super::{Grid, Observation, StopReason};
-use crate::GridPoint;
+use super::{Grid, GridPoint, Observation, StopReason};
 use crate::proposed::Costs;
 
 /// Edge of the first simplex, in edges of the cube; each run begins with half of it.

@@ -1,7 +1,6 @@
 //! The points an optimizer has already proposed, and a way to any that are left.
 
-use super::{Grid, Observation, StopReason};
-use crate::GridPoint;
+use super::{Grid, GridPoint, Observation, StopReason};
 use crate::stream::stream;
 use rand::RngExt;
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,17 +25,14 @@ impl Proposed {
         Proposed { grid, seed, points: BTreeSet::new(), cursor }
     }
 
-    /// The grid.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// Number of points proposed.
     pub fn len(&self) -> u64 {
         self.points.len() as u64
     }
 
-    /// Whether `point` has been proposed.
     pub fn contains(&self, point: &GridPoint) -> bool {
         self.points.contains(point)
     }
@@ -51,7 +47,6 @@ impl Proposed {
         self.len() >= self.grid.size()
     }
 
-    /// The stop reason that goes with [`exhausted`](Self::exhausted).
     pub fn stop(&self) -> Option<StopReason> {
         self.exhausted().then_some(StopReason::GridExhausted)
     }

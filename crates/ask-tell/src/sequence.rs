@@ -1,7 +1,6 @@
 //! Optimizers that learn nothing.
 
-use super::{Grid, Observation, Optimizer, StopReason};
-use crate::GridPoint;
+use super::{Grid, GridPoint, Observation, Optimizer, StopReason};
 use crate::proposed::Proposed;
 
 /// Proposes the points of a sequence, each once; when it has ended, the points that are left.

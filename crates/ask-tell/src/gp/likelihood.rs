@@ -43,12 +43,12 @@ pub(super) fn log_posterior(
     }
     let process = Process::new(k.clone(), &vec![[1.0]; n], y)?;
     let (alpha, [to_mean], [precision]) =
-        (process.weights(), &process.linear_mean().weights, process.linear_mean().pivots);
+        (process.weights(), &process.mean.weights, process.mean.pivots);
     let w = to_mean / precision.max(f64::MIN_POSITIVE).sqrt();
     let mut value = process.log_likelihood();
 
     // d value / d theta = 1/2 sum_ij (alpha_i alpha_j + w_i w_j - (K^-1)_ij) dK_ij / d theta.
-    let inverse = inverse(process.factor());
+    let inverse = inverse(&process.factor);
     let mut gradient = vec![0.0; d + 2];
     let (mut through_k, mut trace) = (0.0, 0.0);
     for j in 0..n {

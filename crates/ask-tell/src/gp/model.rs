@@ -97,7 +97,7 @@ impl Gp {
     /// holds that of the constant mean (ordinary kriging).
     pub fn predict(&self, x: &[f64]) -> (f64, f64) {
         let k = self.covariances(x);
-        (self.mean_at(&k), self.variance_at(&k))
+        (self.mean_at(&k), self.process.variance(&k, &ONE, self.signal))
     }
 
     /// Posterior mean of the function at a point.
@@ -119,7 +119,7 @@ impl Gp {
         let points = &self.points;
         let r2 = points.distances2(x);
         let k = covariances(&r2, self.signal);
-        let (factor, constant) = (self.process.factor(), self.process.linear_mean());
+        let (factor, constant) = (&self.process.factor, &self.process.mean);
         let half = half_solved(factor, &k);
         let variance = self.process.variance_of(&k, &ONE, self.signal, &half);
         let mut solved = half;
@@ -150,12 +150,7 @@ impl Gp {
     pub(super) fn variance_bound(&self, k: &DVector<f64>) -> f64 {
         let largest = k.iter().copied().fold(0.0, f64::max);
         let given = self.signal - largest * largest / (self.signal + self.noise);
-        given + self.process.linear_mean().variance(k, &ONE)
-    }
-
-    /// Posterior variance from the covariances `k` of a candidate.
-    pub(super) fn variance_at(&self, k: &DVector<f64>) -> f64 {
-        self.process.variance(k, &ONE, self.signal)
+        given + self.process.mean.variance(k, &ONE)
     }
 
     /// Covariances of a point of the unit cube with all observations.

@@ -8,9 +8,8 @@ use super::model::Gp;
 use super::neighbours::{FEW, Neighbours};
 use super::search::{Room, Search};
 use super::trained::{Front, Goal, Trained};
-use crate::GridPoint;
-use crate::Observation;
 use crate::pareto::front;
+use crate::{GridPoint, Observation};
 
 /// Points around which the acquisition is searched more closely.
 const INCUMBENTS: usize = 4;

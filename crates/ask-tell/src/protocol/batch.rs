@@ -1,8 +1,7 @@
 //! The points of one batch on their way out and their values on the way back.
 
 use super::message::PointValue;
-use crate::GridPoint;
-use crate::Observation;
+use crate::{GridPoint, Observation};
 use std::collections::BTreeMap;
 
 /// A batch: the optimizer proposes it whole and is told of it whole and in order; in between
@@ -42,10 +41,17 @@ impl Batch {
         asked
     }
 
-    /// The ids asked and not told.
-    pub fn untold(&self) -> Vec<u64> {
+    /// The points asked and not told: `id 3`, or `ids 3, 4 and 17 more`.
+    pub fn untold(&self) -> String {
+        const SHOWN: usize = 8;
         let asked = self.first..self.first + self.asked as u64;
-        asked.filter(|id| !self.values.contains_key(id)).collect()
+        let ids: Vec<u64> = asked.filter(|id| !self.values.contains_key(id)).collect();
+        let shown: Vec<String> = ids.iter().take(SHOWN).map(u64::to_string).collect();
+        let (word, shown) = (if ids.len() == 1 { "id" } else { "ids" }, shown.join(", "));
+        match ids.len().saturating_sub(SHOWN) {
+            0 => format!("{word} {shown}"),
+            more => format!("{word} {shown} and {more} more"),
+        }
     }
 
     /// Whether these can all be told.
@@ -75,7 +81,6 @@ impl Batch {
     /// All points with their values, in order.
     pub fn observations(&self) -> Vec<Observation> {
         let value = |id| self.values.get(&id).copied().flatten();
-        let numbered = (self.first..).zip(&self.points);
-        numbered.map(|(id, point)| Observation::new(point.clone(), value(id))).collect()
+        self.points().map(|(id, point)| Observation::new(point.clone(), value(id))).collect()
     }
 }

@@ -6,8 +6,7 @@ use super::message::{
     Told,
 };
 use super::parameter::Parameter;
-use crate::GridPoint;
-use crate::{Grid, Observation, Optimizer, OptimizerKind, StopReason, build};
+use crate::{Grid, GridPoint, Observation, Optimizer, OptimizerKind, StopReason, build};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -131,7 +130,7 @@ impl Begun {
         let mut asked = self.batch.hand_out(n);
         if asked.is_empty() && n > 0 {
             if !self.batch.complete() {
-                let ids = list(&self.batch.untold());
+                let ids = self.batch.untold();
                 return Err(format!(
                     "ask: tell the values of {ids} first (null for one that failed)"
                 ));
@@ -243,16 +242,5 @@ impl Begun {
     fn values(&self, point: &GridPoint) -> Map<String, Value> {
         let values = self.axes.iter().zip(&point.0);
         values.map(|(axis, &level)| (axis.name.clone(), json!(axis.value(level)))).collect()
-    }
-}
-
-/// `id 3`, or `ids 3, 4 and 17 more`.
-fn list(ids: &[u64]) -> String {
-    const SHOWN: usize = 8;
-    let shown: Vec<String> = ids.iter().take(SHOWN).map(u64::to_string).collect();
-    let (word, shown) = (if ids.len() == 1 { "id" } else { "ids" }, shown.join(", "));
-    match ids.len().saturating_sub(SHOWN) {
-        0 => format!("{word} {shown}"),
-        more => format!("{word} {shown} and {more} more"),
     }
 }

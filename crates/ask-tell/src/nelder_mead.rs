@@ -1,6 +1,6 @@
 //! Nelder-Mead about the best point told, on a grid.
 
-use super::{Grid, GridPoint, Observation, StopReason};
+use super::{Grid, GridPoint, Observation};
 use crate::proposed::Costs;
 
 /// Edge of the first simplex, in edges of the cube; each run begins with half of it.
@@ -21,7 +21,7 @@ const BARREN_RUNS: u32 = 3;
 /// - A batch holds the point needed first and the other moves of the same simplex.
 #[derive(Debug, Clone)]
 pub(super) struct NelderMead {
-    costs: Costs,
+    pub costs: Costs,
     /// Asked and not told.
     pending: Vec<GridPoint>,
     /// Vertices on the free axes; empty if nothing told has a value.
@@ -71,11 +71,6 @@ impl NelderMead {
         for point in self.pending.drain(..) {
             self.costs.of.entry(point).or_insert(f64::INFINITY);
         }
-    }
-
-    /// Whether every point of the grid was proposed.
-    pub fn stop(&self) -> Option<StopReason> {
-        self.costs.proposed.stop()
     }
 
     /// Goes on until a value is missing; the points wanted then, the needed one first.

@@ -65,8 +65,11 @@ impl Optimizer for Polished {
     }
 
     fn stop(&self) -> Option<StopReason> {
-        let exhausted = self.polish.as_ref().map_or_else(|| self.inner.stop(), NelderMead::stop);
-        exhausted.or_else(|| self.converged.then_some(StopReason::Converged))
+        let exhausted = match &self.polish {
+            Some(polish) => polish.costs.proposed.stop(),
+            None => self.inner.stop(),
+        };
+        exhausted.or(self.converged.then_some(StopReason::Converged))
     }
 }
 

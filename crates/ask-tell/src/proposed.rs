@@ -119,14 +119,4 @@ mod tests {
         assert_eq!(all.len(), 35);
         assert_eq!(proposed.stop(), Some(StopReason::GridExhausted));
     }
-
-    #[test]
-    fn points_off_the_grid_are_not_marked() {
-        let mut proposed = Proposed::new(Grid::new(vec![2, 2]), 0);
-        assert!(!proposed.insert(&GridPoint(vec![2, 0])));
-        assert!(!proposed.insert(&GridPoint(vec![0])));
-        assert!(
-            proposed.insert(&GridPoint(vec![1, 1])) && !proposed.insert(&GridPoint(vec![1, 1]))
-        );
-    }
 }

@@ -97,12 +97,12 @@ impl Gp {
     /// holds that of the constant mean (ordinary kriging).
     pub fn predict(&self, x: &[f64]) -> (f64, f64) {
         let k = self.covariances(x);
-        (self.mean_at(&k), self.process.variance(&k, &ONE, self.signal))
+        (self.process.mean(&k, &ONE), self.process.variance(&k, &ONE, self.signal))
     }
 
     /// Posterior mean of the function at a point.
     pub fn mean(&self, x: &[f64]) -> f64 {
-        self.mean_at(&self.covariances(x))
+        self.process.mean(&self.covariances(x), &ONE)
     }
 
     /// Takes the posterior mean at `x` for observed (kriging believer). The mean stays as it is,
@@ -136,25 +136,21 @@ impl Gp {
             slopes.0.push(self.signal * inverse_length * slope.dot(self.process.weights()));
             slopes.1.push(self.signal * inverse_length * slope.dot(&by_k));
         }
-        let mean = self.mean_at(&k);
+        let mean = self.process.mean(&k, &ONE);
         Sloped { mean, variance, mean_slope: slopes.0, variance_slope: slopes.1 }
     }
 
-    /// Posterior mean from the covariances `k` of a candidate.
-    pub(super) fn mean_at(&self, k: &DVector<f64>) -> f64 {
-        self.process.mean(k, &ONE)
-    }
-
-    /// A bound on the posterior variance that needs no triangular solution: that given the most
-    /// correlated observation alone, and that of the mean.
-    pub(super) fn variance_bound(&self, k: &DVector<f64>) -> f64 {
+    /// Posterior mean, and a bound on the variance that needs no triangular solution: that given
+    /// the most correlated observation alone, and that of the mean.
+    pub(super) fn bound(&self, x: &[f64]) -> (f64, f64) {
+        let k = self.covariances(x);
         let largest = k.iter().copied().fold(0.0, f64::max);
         let given = self.signal - largest * largest / (self.signal + self.noise);
-        given + self.process.mean.variance(k, &ONE)
+        (self.process.mean(&k, &ONE), given + self.process.mean.variance(&k, &ONE))
     }
 
     /// Covariances of a point of the unit cube with all observations.
-    pub(super) fn covariances(&self, x: &[f64]) -> DVector<f64> {
+    fn covariances(&self, x: &[f64]) -> DVector<f64> {
         covariances(&self.points.distances2(x), self.signal)
     }
 }
@@ -238,8 +234,8 @@ mod tests {
         for x in [0.03, 0.2, 0.77, 1.0] {
             let at = |x: f64| gp.predict(&[x]);
             let (mean, variance) = at(x);
-            let k = gp.covariances(&[x]);
-            assert!((gp.mean_at(&k) - mean).abs() < 1e-12 && gp.variance_bound(&k) >= variance);
+            let bound = gp.bound(&[x]);
+            assert!((bound.0 - mean).abs() < 1e-12 && bound.1 >= variance);
             let sloped = gp.sloped(&[x]);
             assert!(
                 (sloped.mean - mean).abs() < 1e-12 && (sloped.variance - variance).abs() < 1e-12

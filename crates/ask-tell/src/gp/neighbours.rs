@@ -40,7 +40,11 @@ impl Neighbours {
     /// others in the order in which they came: those nearest to an optimum crowd it, and know
     /// nothing of the slopes around. `None` if a model cannot be made.
     pub fn about(&self, place: &[f64], count: usize) -> Option<Trained> {
-        let chosen = self.chosen(place, count);
+        self.of(&self.chosen(place, count))
+    }
+
+    /// The models of these points.
+    pub fn of(&self, chosen: &[usize]) -> Option<Trained> {
         let x: Vec<Vec<f64>> = chosen.iter().map(|&i| self.x[i].clone()).collect();
         let model = |(data, theta): (&Standardised, &Hyperparameters)| {
             let y: Vec<f64> = chosen.iter().map(|&i| data.values[i]).collect();

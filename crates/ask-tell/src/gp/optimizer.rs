@@ -73,10 +73,7 @@ impl GpOptimizer {
         let fits = |(model, _): &(Model, _)| matches!(model, Model::Whole(_)) == whole;
         if !self.model.as_ref().is_some_and(fits) {
             let x: Vec<Vec<f64>> = self.told.iter().map(|o| self.unit(&o.point)).collect();
-            self.model = match whole {
-                true => self.training.whole(&self.told, &x),
-                false => self.training.local(&self.told, x),
-            };
+            self.model = self.training.model(&self.told, x, whole);
         }
         self.model.clone()
     }

@@ -142,7 +142,7 @@ impl Trained {
         let (Goal::Improve(best), [gp, ..]) = (&self.goal, &self.models[..]) else {
             return f64::INFINITY;
         };
-        let k = gp.covariances(x);
-        log_expected_improvement(gp.mean_at(&k), gp.variance_bound(&k).sqrt(), *best)
+        let (mean, variance) = gp.bound(x);
+        log_expected_improvement(mean, variance.sqrt(), *best)
     }
 }

@@ -4,7 +4,6 @@ use super::data::{Standardised, spread, standardise};
 use super::fit::{FitEffort, fit};
 use super::hyperparameters::Hyperparameters;
 use super::local_search;
-use super::model::Gp;
 use super::neighbours::{FEW, Neighbours};
 use super::search::{Room, Search};
 use super::trained::{Front, Goal, Trained};
@@ -70,49 +69,37 @@ impl Training {
         Training { noise_floors, thetas: Vec::new(), fitted: 0 }
     }
 
-    /// The models of what was `told` at `x`, and good points to start a search from, best first.
-    pub fn whole(
-        &mut self,
-        told: &[Observation],
-        x: &[Vec<f64>],
-    ) -> Option<(Model, Vec<GridPoint>)> {
-        let (data, zeros) = self.standardised(told)?;
-        let all: Vec<usize> = (0..x.len()).collect();
-        let thetas = self.fitted(x, &data, &all, FitEffort::for_observations(x.len()));
-        let model = |(data, theta): (&Standardised, &Hyperparameters)| {
-            Gp::new(x, &data.values, data.noise_floor, theta)
-        };
-        let models = data.iter().zip(&thetas).map(model).collect::<Option<_>>()?;
-        (self.thetas, self.fitted) = (thetas, x.len());
-        let mut trained = Trained { models, zeros, goal: Goal::Feasible };
-        let objectives = &trained.models[..trained.objectives()];
-        let means = |i: usize| objectives.iter().map(|gp| gp.mean(&x[i])).collect::<Vec<_>>();
-        let (goal, starts) = goal(
-            told,
-            !trained.zeros.is_empty(),
-            |i| trained.acquisition(&x[i]),
-            |feasible| best_first(|i| objectives[0].mean(&x[i]), feasible),
-            means,
-        )?;
-        trained.goal = goal;
-        Some((Model::Whole(trained), starts))
-    }
-
-    /// The same with models of the neighbours of a place. Told values are taken for means where
-    /// there are many.
-    pub fn local(
+    /// Models of what was `told` at `x`, of the whole of it or of the neighbours of a place, and
+    /// good points to start a search from, best first.
+    pub fn model(
         &mut self,
         told: &[Observation],
         x: Vec<Vec<f64>>,
+        whole: bool,
     ) -> Option<(Model, Vec<GridPoint>)> {
         let (data, zeros) = self.standardised(told)?;
-        let due = x.len() <= FITTED || x.len() >= self.fitted + self.fitted / REFIT;
+        let (n, constrained) = (x.len(), !zeros.is_empty());
+        let due = whole || n <= FITTED || n >= self.fitted + self.fitted / REFIT;
         if due || self.thetas.len() != data.len() {
-            let (some, effort) = some_of(&data[0].values);
+            let (some, effort) = match whole || n <= FITTED {
+                true => ((0..n).collect(), FitEffort::for_observations(n)),
+                false => (some_of(&data[0].values), EFFORT),
+            };
             self.thetas = self.fitted(&x, &data, &some, effort);
-            self.fitted = x.len();
+            self.fitted = n;
         }
         let mut known = Neighbours::new(x, data, self.thetas.clone(), zeros);
+        if whole {
+            let mut trained = known.of(&(0..n).collect::<Vec<_>>())?;
+            let (x, objectives) = (&known.x, &trained.models[..trained.objectives()]);
+            let margin = |i: usize| trained.acquisition(&x[i]);
+            let leaders = |feasible| best_first(|i| objectives[0].mean(&x[i]), feasible);
+            let means = |i: usize| objectives.iter().map(|gp| gp.mean(&x[i])).collect();
+            let (goal, starts) = goal(told, constrained, margin, leaders, means)?;
+            trained.goal = goal;
+            return Some((Model::Whole(trained), starts));
+        }
+        // Told values are taken for means where there are many.
         let (objectives, margins) = known.data.split_at(known.data.len() - known.zeros.len());
         let margin = |i: usize| {
             let margins =
@@ -127,8 +114,8 @@ impl Training {
             let among = best_first(|i| objectives[0].values[i], feasible);
             best_first(mean, among.into_iter().take(LEADERS).map(|(_, i)| i))
         };
-        let values = |i: usize| objectives.iter().map(|data| data.values[i]).collect::<Vec<_>>();
-        let (goal, starts) = goal(told, !known.zeros.is_empty(), margin, leaders, values)?;
+        let means = |i: usize| objectives.iter().map(|data| data.values[i]).collect();
+        let (goal, starts) = goal(told, constrained, margin, leaders, means)?;
         known.goal = goal;
         Some((Model::Local(known), starts))
     }
@@ -175,18 +162,15 @@ impl Training {
     }
 }
 
-/// Which values are fitted to: of many, the largest of the first objective, about which the search
-/// goes on, and as many evenly of all.
-fn some_of(values: &[f64]) -> (Vec<usize>, FitEffort) {
+/// Which of many values are fitted to: the largest, about which the search goes on, and as many
+/// evenly of all.
+fn some_of(values: &[f64]) -> Vec<usize> {
     let n = values.len();
-    if n <= FITTED {
-        return ((0..n).collect(), FitEffort::for_observations(n));
-    }
     let leaders = best_first(|i| values[i], 0..n).into_iter().take(FITTED / 2);
     let mut some: Vec<usize> = spread(n, FITTED / 2).chain(leaders.map(|(_, i)| i)).collect();
     some.sort_unstable();
     some.dedup();
-    (some, EFFORT)
+    some
 }
 
 /// Places with their numbers, the largest number first.

@@ -1,8 +1,8 @@
 //! The lines as they are read.
 
 use super::parameter::ParameterLine;
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -58,7 +58,7 @@ pub(super) enum Told {
 pub(super) struct KnownValue {
     pub values: BTreeMap<String, f64>,
     /// Its value; `null` if the evaluation failed. It may not be left out.
-    #[serde(deserialize_with = "must_be_given")]
+    #[serde(deserialize_with = "Option::deserialize")]
     pub value: Option<f64>,
 }
 
@@ -68,13 +68,8 @@ pub(super) struct KnownValue {
 pub(super) struct PointValue {
     pub id: u64,
     /// Its value; `null` if the evaluation failed. It may not be left out.
-    #[serde(deserialize_with = "must_be_given")]
+    #[serde(deserialize_with = "Option::deserialize")]
     pub value: Option<f64>,
-}
-
-/// Without this a missing value would read as null.
-fn must_be_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    Option::deserialize(deserializer)
 }
 
 #[derive(Deserialize)]

@@ -61,7 +61,7 @@ impl Session {
     fn take(&mut self, line: &str) -> Result<Option<Value>, String> {
         match (Line::parse(line)?, &mut self.begun) {
             (Line::Header(header), None) => {
-                self.begun = Some(Begun::new(&header)?);
+                self.begun = Some(Begun::new(header)?);
                 Ok(None)
             }
             (Line::Header(_), Some(_)) => {
@@ -87,7 +87,7 @@ fn few_enough(points: usize, parameters: usize) -> Result<(), String> {
 }
 
 impl Begun {
-    fn new(header: &Header) -> Result<Self, String> {
+    fn new(header: Header) -> Result<Self, String> {
         if header.parameters.is_empty() {
             return Err("parameters: is empty; there must be at least one".to_owned());
         }
@@ -99,7 +99,8 @@ impl Begun {
         if let Some(size) = header.batch.filter(|size| !(1..=LARGEST_BATCH).contains(size)) {
             return Err(format!("batch: {size} is not between 1 and {LARGEST_BATCH}"));
         }
-        let axes = header.parameters.iter().map(Parameter::new).collect::<Result<Vec<_>, _>>()?;
+        let axes =
+            header.parameters.into_iter().map(Parameter::new).collect::<Result<Vec<_>, _>>()?;
         let kind: OptimizerKind =
             header.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
         let (found, most) = (axes.len(), kind.most_parameters());
@@ -200,7 +201,7 @@ impl Begun {
     /// The grid point of values by name.
     fn point(&self, values: &BTreeMap<String, f64>) -> Result<GridPoint, String> {
         let fail = |name: &str, problem| Err(format!("tell: `{name}` {problem}"));
-        let named = |name: &str| self.axes.iter().any(|axis| axis.name == name);
+        let named = |name: &str| self.axes.iter().any(|axis| axis.line.name == name);
         if values.len() > self.axes.len()
             && let Some(name) = values.keys().find(|name| !named(name))
         {
@@ -208,9 +209,9 @@ impl Begun {
         }
         let mut levels = Vec::with_capacity(self.axes.len());
         for axis in &self.axes {
-            match values.get(&axis.name).map(|&value| axis.level(value)) {
-                None => return fail(&axis.name, "is missing"),
-                Some(None) => return fail(&axis.name, "must be low + k step, up to high"),
+            match values.get(&axis.line.name).map(|&value| axis.level(value)) {
+                None => return fail(&axis.line.name, "is missing"),
+                Some(None) => return fail(&axis.line.name, "must be low + k step, up to high"),
                 Some(Some(level)) => levels.push(level),
             }
         }
@@ -241,6 +242,6 @@ impl Begun {
 
     fn values(&self, point: &GridPoint) -> Map<String, Value> {
         let values = self.axes.iter().zip(&point.0);
-        values.map(|(axis, &level)| (axis.name.clone(), json!(axis.value(level)))).collect()
+        values.map(|(axis, &level)| (axis.line.name.clone(), json!(axis.value(level)))).collect()
     }
 }

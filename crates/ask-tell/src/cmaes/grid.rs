@@ -3,9 +3,8 @@
 use super::core::Solution;
 use super::restarts::{Restarts, StartBox};
 use super::stop::Tolerances;
-use crate::GridPoint;
 use crate::proposed::Costs;
-use crate::{Grid, Observation, Optimizer, StopReason};
+use crate::{Grid, GridPoint, Observation, Optimizer, StopReason};
 
 /// Initial step size in units of the cube's edge (the tutorial advises 0.3 of the range).
 const SIGMA: f64 = 0.3;
@@ -93,10 +92,7 @@ impl CmaEsOptimizer {
     }
 
     fn finish_generation(&mut self) {
-        let solution = |(x, point)| {
-            let value = self.costs.of.get(&point).copied().unwrap_or(f64::INFINITY);
-            Solution { x, value }
-        };
+        let solution = |(x, point)| Solution { x, value: self.costs.of[&point] };
         let told: Vec<Solution> =
             std::mem::take(&mut self.generation).into_iter().map(solution).collect();
         self.restarts.tell(&told);

@@ -18,6 +18,9 @@ const OFF_THE_FACE: f64 = 0.1;
 /// Relative change of the value that ends it.
 const LEAST_GAIN: f64 = 1e-7;
 
+/// A value and its derivatives.
+type WithSlope = (f64, Vec<f64>);
+
 /// The box and the budget.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits<'a> {
@@ -30,7 +33,7 @@ pub(super) struct Limits<'a> {
 /// Minimises `f` (value and gradient, `None` outside its domain) from `start`; returns the best
 /// point met and its value, or `None` if `f` has no value at the start.
 pub(super) fn minimise(
-    f: impl Fn(&[f64]) -> Option<(f64, Vec<f64>)>,
+    f: impl Fn(&[f64]) -> Option<WithSlope>,
     start: &[f64],
     limits: &Limits,
 ) -> Option<(Vec<f64>, f64)> {
@@ -55,7 +58,7 @@ pub(super) fn minimise(
     if !unit.is_finite() {
         return Some((x, value));
     }
-    let scaled = |value: f64, slope: Vec<f64>| -> (f64, Vec<f64>) {
+    let scaled = |value: f64, slope: Vec<f64>| -> WithSlope {
         (unit * value, slope.iter().map(|g| unit * g).collect())
     };
     let tolerance = LEAST_GAIN * unit * value.abs().max(1.0);
@@ -86,10 +89,10 @@ pub(super) fn minimise(
 
 /// The function in angles, in units in which the first slope has the length of the first step;
 /// nothing when the evaluations are spent, or a point has no value.
-struct Scaled<'a>(&'a dyn Fn(&[f64]) -> Option<(f64, Vec<f64>)>);
+struct Scaled<'a>(&'a dyn Fn(&[f64]) -> Option<WithSlope>);
 
 impl Scaled<'_> {
-    fn at(&self, u: &[f64]) -> Result<(f64, Vec<f64>), Error> {
+    fn at(&self, u: &[f64]) -> Result<WithSlope, Error> {
         (self.0)(u).ok_or_else(|| Error::msg("end of the run"))
     }
 }

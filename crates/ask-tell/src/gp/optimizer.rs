@@ -2,10 +2,9 @@
 
 use super::search::Room;
 use super::training::{Model, Training};
-use crate::GridPoint;
 use crate::proposed::Proposed;
 use crate::sobol::SobolSequence;
-use crate::{Grid, Observation, Optimizer, StopReason};
+use crate::{Grid, GridPoint, Observation, Optimizer, StopReason};
 
 /// Default least standard deviation of the noise, in objective units: that of a value rounded
 /// to steps of 0.1, 0.1 / sqrt(12).
@@ -15,21 +14,18 @@ const WHOLE: usize = 250;
 
 /// Bayesian optimization over a grid. **Maximises.**
 ///
-/// - *First design*: `d + 1` points of a scrambled Sobol sequence, at least 3, `d` the number of
-///   axes with more than one level.
+/// - *First design*: a scrambled Sobol sequence, one point more than free axes, at least 3.
 /// - *Then*: the unseen point with the largest log expected improvement over the best posterior
-///   mean at an observed point. Hyperparameters are refitted when new values were told.
-/// - *Constraints*: each has a model of its own. What is maximised is the improvement over the
-///   best feasible point times the probability of feasibility; that probability alone while no
-///   feasible point is known.
-/// - *Several objectives*: each has a model of its own (not warped); what is maximised is the
-///   expected hypervolume improvement over the front of the posterior means.
+///   mean at an observed point.
+/// - *Constraints*: the improvement over the best feasible point times the probability of
+///   feasibility; that alone while no feasible point is known.
+/// - *Several objectives* (not warped): the expected hypervolume improvement over the front of the
+///   posterior means.
 /// - *Beyond 250 points* processes of the nearest ones stand for the whole, and hyperparameters are
 ///   refitted, to 200 of the points, at each twentieth more: the cost then grows little.
 /// - *Batches*, and points asked and not yet told: kriging believer.
 /// - *No value* (`None`, NaN, infinite) is taught as the worst value seen so far.
-/// - Whenever the model has nothing to say (no values, no finite acquisition), the
-///   Sobol sequence goes on, and after it unseen points are drawn at random.
+/// - Where the model has nothing to say, the Sobol sequence goes on, and after it random points.
 #[derive(Debug, Clone)]
 pub(crate) struct GpOptimizer {
     proposed: Proposed,

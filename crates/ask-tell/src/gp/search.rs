@@ -2,11 +2,10 @@
 
 use super::lbfgs::{Limits, minimise};
 use super::trained::Trained;
-use crate::Grid;
-use crate::GridPoint;
 use crate::proposed::Proposed;
 use crate::sobol::SobolSequence;
 use crate::stream::stream;
+use crate::{Grid, GridPoint};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use std::collections::BTreeMap;

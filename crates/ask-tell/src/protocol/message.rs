@@ -44,14 +44,6 @@ pub const LONGEST_LINE: u64 = 4 << 20;
 /// Most numbers that one ask, or the batch that it is taken from, may have.
 pub(super) const MOST_NUMBERS: usize = 1_000_000;
 
-/// One entry of a tell.
-pub(super) enum Told {
-    /// Of a point that was asked.
-    Asked(PointValue),
-    /// Of a point that was measured before, and never asked.
-    Known(KnownValue),
-}
-
 /// The value of a point that was never asked.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -88,7 +80,7 @@ struct TellLine {
 pub(super) enum Line {
     Header(Header),
     Ask(usize),
-    Tell(Vec<Told>),
+    Tell(Vec<PointValue>, Vec<KnownValue>),
 }
 
 impl Line {
@@ -104,19 +96,19 @@ impl Line {
         } else if has("tell") {
             objects(&value, "tell")?;
             let line: TellLine = read(value, "tell")?;
-            line.tell.into_iter().map(told).collect::<Result<_, _>>().map(Line::Tell)
+            let (mut asked, mut known) = (Vec::new(), Vec::new());
+            for entry in line.tell {
+                match entry.get("values") {
+                    None => asked.push(read(entry, "tell")?),
+                    Some(_) => known.push(read(entry, "tell")?),
+                }
+            }
+            Ok(Line::Tell(asked, known))
         } else {
             Err("not a known line; a line is {\"parameters\":[..],..}, {\"ask\":n} or \
                  {\"tell\":[..]}"
                 .to_owned())
         }
-    }
-}
-
-fn told(entry: Value) -> Result<Told, String> {
-    match entry.get("values") {
-        None => read(entry, "tell").map(Told::Asked),
-        Some(_) => read(entry, "tell").map(Told::Known),
     }
 }
 

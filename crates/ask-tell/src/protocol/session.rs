@@ -3,7 +3,6 @@
 use super::batch::Batch;
 use super::message::{
     Direction, Header, KnownValue, LARGEST_BATCH, LONGEST_LINE, Line, MOST_NUMBERS, PointValue,
-    Told,
 };
 use super::parameter::Parameter;
 use crate::{Grid, GridPoint, Observation, Optimizer, OptimizerKind, StopReason, build};
@@ -71,7 +70,7 @@ impl Session {
                 \"optimizer\":..,\"seed\":..,\"direction\":..}"
                 .to_owned()),
             (Line::Ask(n), Some(begun)) => begun.ask(n).map(Some),
-            (Line::Tell(told), Some(begun)) => begun.tell(told).map(Some),
+            (Line::Tell(asked, known), Some(begun)) => begun.tell(asked, known).map(Some),
         }
     }
 }
@@ -145,15 +144,8 @@ impl Begun {
         Ok(json!({"asked": asked.into_iter().map(one).collect::<Vec<_>>()}))
     }
 
-    fn tell(&mut self, told: Vec<Told>) -> Result<Value, String> {
-        let count = told.len();
-        let (mut asked, mut known) = (Vec::new(), Vec::new());
-        for told in told {
-            match told {
-                Told::Asked(value) => asked.push(value),
-                Told::Known(value) => known.push(value),
-            }
-        }
+    fn tell(&mut self, asked: Vec<PointValue>, known: Vec<KnownValue>) -> Result<Value, String> {
+        let count = asked.len() + known.len();
         self.batch.check(&asked)?;
         let known = self.known(known)?;
         let was_open = !self.batch.complete();

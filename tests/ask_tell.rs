@@ -71,12 +71,8 @@ fn header(optimizer: &str, direction: &str, batch: Option<usize>) -> Value {
         {"name": "x", "low": -5, "high": 5},
         {"name": "n", "low": 1, "high": 9, "step": 2},
     ]);
-    let mut header = json!({"parameters": parameters, "optimizer": optimizer, "seed": 1,
-                            "direction": direction});
-    if let Some(batch) = batch {
-        header["batch"] = json!(batch);
-    }
-    header
+    json!({"parameters": parameters, "optimizer": optimizer, "seed": 1, "direction": direction,
+           "batch": batch})
 }
 
 fn bowl(point: &Value) -> f64 {

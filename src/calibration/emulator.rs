@@ -104,7 +104,7 @@ impl Emulator {
         let y: Vec<f64> = known.iter().map(|run| (run.range_mm - mean_mm) / sd_mm).collect();
         let floor = (ROUNDING_MM / sd_mm).powi(2);
         let effort = FitEffort { evaluations: EVALUATIONS, restarts: true };
-        let process = Gp::new(&x, &y, floor, fit(&x, &y, floor, None, effort))?;
+        let process = Gp::new(&x, &y, floor, &fit(&x, &y, floor, None, effort))?;
         let mut emulator = Emulator {
             process,
             mean_mm,

@@ -47,7 +47,7 @@ impl Model {
         let values: Vec<f64> = y.iter().map(|y| (y - mean) / sd).collect();
         let floor = (NOISE / sd).powi(2);
         let theta = fit(&x, &values, floor, None, FitEffort::for_observations(x.len()));
-        Some(Model { gp: Gp::new(&x, &values, floor, theta)?, mean, sd })
+        Some(Model { gp: Gp::new(&x, &values, floor, &theta)?, mean, sd })
     }
 
     /// Mean and standard deviation at a point of the unit cube, in the unit of the value.

@@ -1,7 +1,6 @@
 //! An optimizer that is given the values of chosen points.
 
-use super::{Observation, Optimizer, StopReason};
-use crate::GridPoint;
+use super::{GridPoint, Observation, Optimizer, StopReason};
 use std::collections::VecDeque;
 
 /// Asks another optimizer for a number of points first, so that it has its own first design, then
@@ -61,14 +60,13 @@ impl Optimizer for Informed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Grid;
-    use crate::gp::GpOptimizer;
+    use crate::{Grid, OptimizerKind, build};
 
     #[test]
     fn chosen_points_come_once_after_the_first_ones_and_are_told() {
         let grid = Grid::new(vec![5, 5]);
         let chosen = [[0, 0], [4, 4], [0, 0], [2, 3]].map(|levels| GridPoint(levels.to_vec()));
-        let inner = Box::new(GpOptimizer::new(grid, 1));
+        let inner = build(OptimizerKind::Gp, grid, 1);
         let mut optimizer = Informed::new(inner, 3, chosen.clone());
         let mut seen = Vec::new();
         loop {

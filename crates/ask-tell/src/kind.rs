@@ -2,8 +2,11 @@
 
 use super::cmaes::CmaEsOptimizer;
 use super::gp::{DEFAULT_NOISE_FLOOR, GpOptimizer};
-use super::{Grid, GridSearch, Optimizer, RandomSearch, SobolSearch};
+use super::lattice::lattice;
+use super::sequence::Sequence;
+use super::{Grid, Optimizer, SobolSequence};
 use std::fmt;
+use std::iter::empty;
 use std::str::FromStr;
 
 /// The optimizers a study can be run with.
@@ -60,24 +63,14 @@ impl fmt::Display for OptimizerKind {
     }
 }
 
-/// A name that is none of [`OptimizerKind::ALL`].
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown optimizer '{name}'; valid names are {}", valid_names())]
-pub struct UnknownOptimizer {
-    /// The name as given.
-    pub name: String,
-}
-
-fn valid_names() -> String {
-    OptimizerKind::ALL.map(OptimizerKind::name).join(", ")
-}
-
 impl FromStr for OptimizerKind {
-    type Err = UnknownOptimizer;
+    type Err = String;
 
-    fn from_str(name: &str) -> Result<Self, UnknownOptimizer> {
-        let found = Self::ALL.into_iter().find(|kind| kind.name() == name);
-        found.ok_or_else(|| UnknownOptimizer { name: name.to_owned() })
+    fn from_str(name: &str) -> Result<Self, String> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
+            let valid = Self::ALL.map(Self::name).join(", ");
+            format!("unknown optimizer '{name}'; valid names are {valid}")
+        })
     }
 }
 
@@ -95,11 +88,15 @@ pub fn build_for(
     noise_floors: &[f64],
 ) -> Box<dyn Optimizer + Send> {
     match kind {
-        OptimizerKind::Gp => Box::new(GpOptimizer::with_noise_floors(grid, seed, noise_floors)),
+        OptimizerKind::Gp => Box::new(GpOptimizer::new(grid, seed, noise_floors)),
         OptimizerKind::CmaEs => Box::new(CmaEsOptimizer::new(grid, seed)),
-        OptimizerKind::Random => Box::new(RandomSearch::new(grid, seed)),
-        OptimizerKind::Sobol => Box::new(SobolSearch::new(grid, seed)),
-        OptimizerKind::Grid => Box::new(GridSearch::new(grid)),
+        OptimizerKind::Random => Box::new(Sequence::new(grid, seed, empty())),
+        OptimizerKind::Sobol => {
+            let cube = SobolSequence::new(grid.dimension(), seed, 0, "sobol scramble");
+            let cells = grid.clone();
+            Box::new(Sequence::new(grid, seed, cube.map(move |unit| cells.cell(&unit))))
+        }
+        OptimizerKind::Grid => Box::new(Sequence::new(grid.clone(), 0, lattice(grid))),
     }
 }
 
@@ -112,7 +109,7 @@ mod tests {
         for kind in OptimizerKind::ALL {
             assert_eq!(kind.to_string().parse(), Ok(kind));
         }
-        let error = "bayes".parse::<OptimizerKind>().unwrap_err().to_string();
+        let error = "bayes".parse::<OptimizerKind>().unwrap_err();
         assert_eq!(
             error,
             "unknown optimizer 'bayes'; valid names are gp, cma-es, random, sobol, grid"

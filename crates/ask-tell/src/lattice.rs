@@ -1,54 +1,24 @@
 //! Full factorial search, coarse to fine.
 
-use super::{Grid, Observation, Optimizer, Proposed, StopReason};
-use crate::GridPoint;
+use super::{Grid, GridPoint};
 
 /// Stages after which every axis of at most 2^32 levels shows all of them.
 const LAST_STAGE: u32 = 32;
 
-/// Walks nested lattices: stage `s` is the product of up to `2^s + 1` evenly spaced levels of
-/// each axis, so stage 0 is the centre, stage 1 adds the corners and mid-sides, and the last
-/// stage is the whole grid. Points of an earlier stage are not visited again.
+/// Nested lattices: stage `s` is the product of up to `2^s + 1` evenly spaced levels of each axis,
+/// so stage 0 is the centre, stage 1 adds the corners and mid-sides, and the last stage is the
+/// whole grid. Points of an earlier stage come again.
 ///
 /// Within a stage the points are visited at a stride near the golden section of their number
 /// (and coprime to it), a Korobov lattice in the digits of the index: any prefix of a stage is
-/// spread over the cube. There is no randomness: the seed changes nothing.
-#[derive(Debug, Clone)]
-pub struct GridSearch {
-    proposed: Proposed,
-    stage: u32,
-    axes: Vec<Vec<u32>>,
-    visited: u128,
-}
-
-impl GridSearch {
-    /// A grid search over `grid`.
-    pub fn new(grid: Grid) -> Self {
-        let axes = stage_levels(&grid, 0);
-        GridSearch { proposed: Proposed::new(grid, 0), stage: 0, axes, visited: 0 }
-    }
-
-    fn next(&mut self) -> Option<GridPoint> {
-        while !self.proposed.exhausted() {
-            let size = self.axes.iter().fold(1u128, |n, a| n.saturating_mul(a.len() as u128));
-            let stride = coprime_stride(size);
-            while self.visited < size {
-                let index = mul_mod(self.visited, stride, size);
-                self.visited += 1;
-                let point = decode(index, &self.axes);
-                if self.proposed.insert(&point) {
-                    return Some(point);
-                }
-            }
-            if self.stage == LAST_STAGE {
-                return self.proposed.next_unseen();
-            }
-            self.stage += 1;
-            self.visited = 0;
-            self.axes = stage_levels(self.proposed.grid(), self.stage);
-        }
-        None
-    }
+/// spread over the cube.
+pub(super) fn lattice(grid: Grid) -> impl Iterator<Item = GridPoint> + Send {
+    (0..=LAST_STAGE).flat_map(move |stage| {
+        let axes = stage_levels(&grid, stage);
+        let size = axes.iter().fold(1u128, |n, a| n.saturating_mul(a.len() as u128));
+        let stride = coprime_stride(size);
+        (0..size).map(move |visited| decode(mul_mod(visited, stride, size), &axes))
+    })
 }
 
 /// The levels of each axis that stage `stage` shows, ascending.
@@ -99,25 +69,14 @@ fn mul_mod(a: u128, b: u128, m: u128) -> u128 {
     if b % 2 == 1 { twice.wrapping_add(a % m) % m } else { twice }
 }
 
-impl Optimizer for GridSearch {
-    fn ask(&mut self, n: usize) -> Vec<GridPoint> {
-        (0..n).map_while(|_| self.next()).collect()
-    }
-
-    fn tell(&mut self, observations: &[Observation]) {
-        for observation in observations {
-            self.proposed.insert(&observation.point);
-        }
-    }
-
-    fn stop(&self) -> Option<StopReason> {
-        self.proposed.stop()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{OptimizerKind, build};
+
+    fn first(levels: Vec<u32>, n: usize) -> Vec<GridPoint> {
+        build(OptimizerKind::Grid, Grid::new(levels), 0).ask(n)
+    }
 
     #[test]
     fn stages_are_nested_for_every_number_of_levels() {
@@ -134,7 +93,7 @@ mod tests {
 
     #[test]
     fn nine_points_are_the_three_by_three_lattice() {
-        let mut points = GridSearch::new(Grid::new(vec![21, 41])).ask(9);
+        let mut points = first(vec![21, 41], 9);
         assert_eq!(points[0], GridPoint(vec![10, 20]));
         points.sort();
         let expected: Vec<_> =
@@ -144,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_prefix_of_a_stage_covers_every_quadrant() {
-        let points = GridSearch::new(Grid::new(vec![1001, 1001])).ask(40);
+        let points = first(vec![1001, 1001], 40);
         for (left, low) in [(true, true), (true, false), (false, true), (false, false)] {
             let inside = |p: &&GridPoint| (p.0[0] < 500) == left && (p.0[1] < 500) == low;
             assert!(points.iter().filter(inside).count() >= 5);
@@ -153,6 +112,6 @@ mod tests {
 
     #[test]
     fn a_grid_beyond_counting_still_gives_points() {
-        assert_eq!(GridSearch::new(Grid::new(vec![1_000_000; 40])).ask(100).len(), 100);
+        assert_eq!(first(vec![1_000_000; 40], 100).len(), 100);
     }
 }

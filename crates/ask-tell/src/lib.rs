@@ -16,17 +16,14 @@ mod polish;
 pub mod process;
 mod proposed;
 pub mod protocol;
-mod random;
+mod sequence;
 mod sobol;
 pub mod stream;
 
 pub use informed::Informed;
-pub use kind::{OptimizerKind, UnknownOptimizer, build, build_for};
-pub use lattice::GridSearch;
+pub use kind::{OptimizerKind, build, build_for};
 pub use polish::Polished;
-pub use proposed::Proposed;
-pub use random::RandomSearch;
-pub use sobol::{SobolSearch, SobolSequence};
+pub use sobol::SobolSequence;
 
 use serde::{Deserialize, Serialize};
 
@@ -84,13 +81,38 @@ impl Grid {
     }
 
     /// The axes with more than one level.
-    pub fn free_axes(&self) -> Vec<usize> {
+    pub(crate) fn free_axes(&self) -> Vec<usize> {
         (0..self.dimension()).filter(|&axis| self.levels[axis] > 1).collect()
+    }
+
+    /// Coordinates of a grid point on the free axes.
+    pub(crate) fn free_unit(&self, point: &GridPoint) -> Vec<f64> {
+        let axes = self.unit(point).into_iter().zip(&self.levels);
+        axes.filter(|&(_, &levels)| levels > 1).map(|(unit, _)| unit).collect()
+    }
+
+    /// All points in lexicographic order.
+    pub(crate) fn points(&self) -> impl Iterator<Item = GridPoint> {
+        let first = GridPoint(vec![0; self.dimension()]);
+        std::iter::successors(Some(first), |point| self.after(point))
+    }
+
+    /// The next point in lexicographic order.
+    pub(crate) fn after(&self, point: &GridPoint) -> Option<GridPoint> {
+        let mut next = point.clone();
+        for (k, &n) in next.0.iter_mut().zip(&self.levels).rev() {
+            if *k + 1 < n {
+                *k += 1;
+                return Some(next);
+            }
+            *k = 0;
+        }
+        None
     }
 
     /// The grid point nearest to a point of R^n, one coordinate for each free axis, folded onto
     /// the cube by reflection at its faces (`x -> |x - 2 round(x / 2)|`).
-    pub fn folded(&self, x: &[f64]) -> GridPoint {
+    pub(crate) fn folded(&self, x: &[f64]) -> GridPoint {
         let mut unit = vec![0.5; self.dimension()];
         for (axis, x) in self.free_axes().into_iter().zip(x) {
             unit[axis] = (x - 2.0 * (x / 2.0).round()).abs();
@@ -105,7 +127,7 @@ impl Grid {
     }
 }
 
-/// What an optimizer is told of one point it asked for.
+/// Result of one point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
     /// The point.

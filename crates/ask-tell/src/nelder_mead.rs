@@ -1,8 +1,7 @@
 //! Nelder-Mead about the best point told, on a grid.
 
-use super::{Grid, Observation, Proposed, StopReason};
-use crate::GridPoint;
-use std::collections::BTreeMap;
+use super::{Grid, GridPoint, Observation};
+use crate::proposed::Costs;
 
 /// Edge of the first simplex, in edges of the cube; each run begins with half of it.
 const EDGE: f64 = 0.1;
@@ -22,9 +21,7 @@ const BARREN_RUNS: u32 = 3;
 /// - A batch holds the point needed first and the other moves of the same simplex.
 #[derive(Debug, Clone)]
 pub(super) struct NelderMead {
-    proposed: Proposed,
-    /// Negated merits; infinite for points without one.
-    values: BTreeMap<GridPoint, f64>,
+    pub costs: Costs,
     /// Asked and not told.
     pending: Vec<GridPoint>,
     /// Vertices on the free axes; empty if nothing told has a value.
@@ -38,8 +35,7 @@ impl NelderMead {
     /// Starts at the best of what others have `told`.
     pub fn new(grid: Grid, told: &[Observation]) -> Self {
         let mut search = NelderMead {
-            proposed: Proposed::new(grid, 0),
-            values: BTreeMap::new(),
+            costs: Costs::new(grid, 0),
             pending: Vec::new(),
             simplex: Vec::new(),
             runs: 0,
@@ -57,7 +53,7 @@ impl NelderMead {
         // Two moves may end on one grid point.
         let mut left = n;
         points.retain(|point| {
-            let new = left > 0 && self.proposed.insert(point);
+            let new = left > 0 && self.costs.proposed.insert(point);
             left -= usize::from(new);
             new
         });
@@ -70,23 +66,11 @@ impl NelderMead {
 
     /// The values of the points asked.
     pub fn tell(&mut self, observations: &[Observation]) {
-        for o in observations {
-            if !self.proposed.grid().contains(&o.point) {
-                continue;
-            }
-            let value = o.merit().filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
-            self.proposed.insert(&o.point);
-            self.values.insert(o.point.clone(), value);
-        }
+        self.costs.tell(observations);
         // A run would wait for ever for what was asked and not told.
         for point in self.pending.drain(..) {
-            self.values.entry(point).or_insert(f64::INFINITY);
+            self.costs.of.entry(point).or_insert(f64::INFINITY);
         }
-    }
-
-    /// Whether every point of the grid was proposed.
-    pub fn stop(&self) -> Option<StopReason> {
-        self.proposed.stop()
     }
 
     /// Goes on until a value is missing; the points wanted then, the needed one first.
@@ -108,14 +92,11 @@ impl NelderMead {
     /// with more room, at least one level away.
     fn restart(&mut self) {
         self.barren_iterations = 0;
-        let grid = self.proposed.grid();
-        let finite = self.values.iter().filter(|(_, value)| value.is_finite());
-        let Some((best, _)) = finite.min_by(|a, b| a.1.total_cmp(b.1)) else { return };
-        let (unit, free) = (grid.unit(best), grid.free_axes());
-        let start: Vec<f64> = free.iter().map(|&axis| unit[axis]).collect();
+        let grid = self.costs.proposed.grid();
+        let Some(start) = self.costs.best() else { return };
         let edge = EDGE * 0.5f64.powi(self.runs);
         self.simplex = vec![start.clone()];
-        for (i, &axis) in free.iter().enumerate() {
+        for (i, axis) in grid.free_axes().into_iter().enumerate() {
             let step = edge.max(1.0 / f64::from(grid.levels()[axis] - 1));
             let mut vertex = start.clone();
             vertex[i] += if start[i] > 0.5 { -step } else { step };
@@ -126,8 +107,8 @@ impl NelderMead {
 
     /// One iteration, or the points whose values it needs.
     fn iterate(&mut self) -> Result<(), Vec<GridPoint>> {
-        let point = |x: &Vec<f64>| self.proposed.grid().folded(x);
-        let value = |x: &Vec<f64>| self.values.get(&point(x)).copied();
+        let point = |x: &Vec<f64>| self.costs.proposed.grid().folded(x);
+        let value = |x: &Vec<f64>| self.costs.of.get(&point(x)).copied();
         let unknown: Vec<GridPoint> =
             self.simplex.iter().filter(|x| value(x).is_none()).map(point).collect();
         if !unknown.is_empty() {

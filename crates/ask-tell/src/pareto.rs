@@ -61,9 +61,12 @@ pub struct Cell {
 /// While et al. 2006, IEEE Trans. Evol. Comput. 10:29, with the complement kept).
 /// Points that are not above the reference in every component count for nothing.
 pub fn undominated(points: &[Vec<f64>], reference: &[f64]) -> Vec<Cell> {
+    slices(&above(points, reference), reference)
+}
+
+fn above<'a>(points: &'a [Vec<f64>], reference: &[f64]) -> Vec<&'a [f64]> {
     let above = |point: &&Vec<f64>| point.iter().zip(reference).all(|(p, r)| p > r);
-    let points: Vec<&[f64]> = points.iter().filter(above).map(Vec::as_slice).collect();
-    slices(&points, reference)
+    points.iter().filter(above).map(Vec::as_slice).collect()
 }
 
 fn slices(points: &[&[f64]], reference: &[f64]) -> Vec<Cell> {
@@ -72,17 +75,11 @@ fn slices(points: &[&[f64]], reference: &[f64]) -> Vec<Cell> {
         let free = Cell { low: Vec::new(), high: Vec::new() };
         return if points.is_empty() { vec![free] } else { Vec::new() };
     };
-    let last = lower.len();
-    let mut cuts: Vec<f64> = points.iter().map(|point| point[last]).collect();
-    cuts.push(floor);
-    cuts.sort_by(f64::total_cmp);
-    cuts.dedup();
+    let cuts = cuts(points, lower.len(), floor);
     let mut cells = Vec::new();
     for (i, &low) in cuts.iter().enumerate() {
         let high = cuts.get(i + 1).copied().unwrap_or(f64::INFINITY);
-        let reaching: Vec<&[f64]> =
-            points.iter().filter(|point| point[last] >= high).copied().collect();
-        for mut cell in slices(&reaching, lower) {
+        for mut cell in slices(&reaching(points, lower.len(), high), lower) {
             cell.low.push(low);
             cell.high.push(high);
             cells.push(cell);
@@ -91,28 +88,31 @@ fn slices(points: &[&[f64]], reference: &[f64]) -> Vec<Cell> {
     cells
 }
 
+/// The floor and all values along an axis, ascending.
+fn cuts(points: &[&[f64]], axis: usize, floor: f64) -> Vec<f64> {
+    let mut cuts: Vec<f64> = points.iter().map(|point| point[axis]).collect();
+    cuts.push(floor);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    cuts
+}
+
+fn reaching<'a>(points: &[&'a [f64]], axis: usize, high: f64) -> Vec<&'a [f64]> {
+    points.iter().filter(|point| point[axis] >= high).copied().collect()
+}
+
 /// Volume between the reference and the points: what they dominate above it.
 pub fn hypervolume(points: &[Vec<f64>], reference: &[f64]) -> f64 {
-    let above = |point: &&Vec<f64>| point.iter().zip(reference).all(|(p, r)| p > r);
-    let points: Vec<&[f64]> = points.iter().filter(above).map(Vec::as_slice).collect();
-    volume(&points, reference)
+    volume(&above(points, reference), reference)
 }
 
 fn volume(points: &[&[f64]], reference: &[f64]) -> f64 {
     let Some((&floor, lower)) = reference.split_last() else {
         return if points.is_empty() { 0.0 } else { 1.0 };
     };
-    let last = lower.len();
-    let mut cuts: Vec<f64> = points.iter().map(|point| point[last]).collect();
-    cuts.push(floor);
-    cuts.sort_by(f64::total_cmp);
-    cuts.dedup();
-    let slice = |pair: &[f64]| {
-        let reaching: Vec<&[f64]> =
-            points.iter().filter(|point| point[last] >= pair[1]).copied().collect();
-        (pair[1] - pair[0]) * volume(&reaching, lower)
-    };
-    cuts.windows(2).map(slice).sum()
+    let slice =
+        |pair: &[f64]| (pair[1] - pair[0]) * volume(&reaching(points, lower.len(), pair[1]), lower);
+    cuts(points, lower.len(), floor).windows(2).map(slice).sum()
 }
 
 #[cfg(test)]
@@ -182,15 +182,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn dominated_points_change_no_volume() {
-        let all = points(1, 30, 3);
-        let best: Vec<Vec<f64>> = front(&all).into_iter().map(|i| all[i].clone()).collect();
-        assert!(best.len() < all.len());
-        let reference = [-0.1; 3];
-        let (a, b) = (hypervolume(&all, &reference), hypervolume(&best, &reference));
-        assert!((a - b).abs() < 1e-12 && a > 0.0);
     }
 }

@@ -1,17 +1,16 @@
 //! The points an optimizer has already proposed, and a way to any that are left.
 
-use super::{Grid, StopReason};
-use crate::GridPoint;
+use super::{Grid, GridPoint, Observation, StopReason};
 use crate::stream::stream;
 use rand::RngExt;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Random draws tried before the lattice is walked in order.
 const DRAWS: usize = 64;
 
 /// The memory that keeps an optimizer from proposing a point twice.
 #[derive(Debug, Clone)]
-pub struct Proposed {
+pub(crate) struct Proposed {
     grid: Grid,
     seed: u64,
     points: BTreeSet<GridPoint>,
@@ -22,26 +21,18 @@ pub struct Proposed {
 impl Proposed {
     /// Nothing proposed yet; `seed` names the stream of [`next_unseen`](Self::next_unseen).
     pub fn new(grid: Grid, seed: u64) -> Self {
-        let cursor = Some(GridPoint(vec![0; grid.dimension()]));
+        let cursor = grid.points().next();
         Proposed { grid, seed, points: BTreeSet::new(), cursor }
     }
 
-    /// The grid.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// Number of points proposed.
     pub fn len(&self) -> u64 {
         self.points.len() as u64
     }
 
-    /// Whether nothing has been proposed.
-    pub fn is_empty(&self) -> bool {
-        self.points.is_empty()
-    }
-
-    /// Whether `point` has been proposed.
     pub fn contains(&self, point: &GridPoint) -> bool {
         self.points.contains(point)
     }
@@ -56,7 +47,6 @@ impl Proposed {
         self.len() >= self.grid.size()
     }
 
-    /// The stop reason that goes with [`exhausted`](Self::exhausted).
     pub fn stop(&self) -> Option<StopReason> {
         self.exhausted().then_some(StopReason::GridExhausted)
     }
@@ -76,24 +66,42 @@ impl Proposed {
             }
         }
         while let Some(point) = self.cursor.take() {
-            self.cursor = self.successor(&point);
+            self.cursor = self.grid.after(&point);
             if self.points.insert(point.clone()) {
                 return Some(point);
             }
         }
         None
     }
+}
 
-    fn successor(&self, point: &GridPoint) -> Option<GridPoint> {
-        let mut next = point.clone();
-        for (k, &n) in next.0.iter_mut().zip(self.grid.levels()).rev() {
-            if *k + 1 < n {
-                *k += 1;
-                return Some(next);
+/// The points proposed, and the negated merits of those told: infinite where there is none.
+#[derive(Debug, Clone)]
+pub(crate) struct Costs {
+    pub proposed: Proposed,
+    pub of: BTreeMap<GridPoint, f64>,
+}
+
+impl Costs {
+    pub fn new(grid: Grid, seed: u64) -> Self {
+        Costs { proposed: Proposed::new(grid, seed), of: BTreeMap::new() }
+    }
+
+    pub fn tell(&mut self, observations: &[Observation]) {
+        for o in observations {
+            if self.proposed.grid.contains(&o.point) {
+                let cost = o.merit().filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
+                self.proposed.insert(&o.point);
+                self.of.insert(o.point.clone(), cost);
             }
-            *k = 0;
         }
-        None
+    }
+
+    /// The free axes of the cheapest point.
+    pub fn best(&self) -> Option<Vec<f64>> {
+        let finite = self.of.iter().filter(|(_, cost)| cost.is_finite());
+        let (best, _) = finite.min_by(|a, b| a.1.total_cmp(b.1))?;
+        Some(self.proposed.grid.free_unit(best))
     }
 }
 
@@ -110,15 +118,5 @@ mod tests {
         }
         assert_eq!(all.len(), 35);
         assert_eq!(proposed.stop(), Some(StopReason::GridExhausted));
-    }
-
-    #[test]
-    fn points_off_the_grid_are_not_marked() {
-        let mut proposed = Proposed::new(Grid::new(vec![2, 2]), 0);
-        assert!(!proposed.insert(&GridPoint(vec![2, 0])));
-        assert!(!proposed.insert(&GridPoint(vec![0])));
-        assert!(
-            proposed.insert(&GridPoint(vec![1, 1])) && !proposed.insert(&GridPoint(vec![1, 1]))
-        );
     }
 }

@@ -1,7 +1,5 @@
-//! Owen-scrambled Sobol points, snapped to the grid.
+//! Owen-scrambled Sobol points.
 
-use super::{Grid, Observation, Optimizer, Proposed, StopReason};
-use crate::GridPoint;
 use crate::stream::stream;
 use rand::Rng;
 
@@ -46,54 +44,10 @@ impl Iterator for SobolSequence {
     }
 }
 
-/// Proposes the cells a scrambled Sobol sequence visits, each once; when the sequence has
-/// ended, the points that are left.
-#[derive(Debug, Clone)]
-pub struct SobolSearch {
-    proposed: Proposed,
-    sequence: SobolSequence,
-}
-
-impl SobolSearch {
-    /// A Sobol search over `grid`; `seed` chooses the scramble.
-    pub fn new(grid: Grid, seed: u64) -> Self {
-        let sequence = SobolSequence::new(grid.dimension(), seed, 0, "sobol scramble");
-        SobolSearch { proposed: Proposed::new(grid, seed), sequence }
-    }
-
-    fn next(&mut self) -> Option<GridPoint> {
-        if self.proposed.exhausted() {
-            return None;
-        }
-        for unit in self.sequence.by_ref() {
-            let point = self.proposed.grid().cell(&unit);
-            if self.proposed.insert(&point) {
-                return Some(point);
-            }
-        }
-        self.proposed.next_unseen()
-    }
-}
-
-impl Optimizer for SobolSearch {
-    fn ask(&mut self, n: usize) -> Vec<GridPoint> {
-        (0..n).map_while(|_| self.next()).collect()
-    }
-
-    fn tell(&mut self, observations: &[Observation]) {
-        for observation in observations {
-            self.proposed.insert(&observation.point);
-        }
-    }
-
-    fn stop(&self) -> Option<StopReason> {
-        self.proposed.stop()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Grid, OptimizerKind, build};
 
     #[test]
     fn the_first_sixteen_points_fall_in_sixteen_cells() {
@@ -118,7 +72,7 @@ mod tests {
     #[test]
     fn the_sequence_ends_and_the_search_does_not() {
         assert_eq!(SobolSequence::new(1, 1, 0, "test").count(), 1 << 16);
-        let mut search = SobolSearch::new(Grid::new(vec![70_000]), 1);
+        let mut search = build(OptimizerKind::Sobol, Grid::new(vec![70_000]), 1);
         assert_eq!(search.ask(70_000).len(), 70_000);
         assert_eq!(search.ask(1), vec![]);
     }

@@ -2,7 +2,7 @@
 
 use super::functions::Function;
 use super::landscape::Landscape;
-use ask_tell::cmaes::{Restarts, Solution, StartBox, Strategy, Tolerances};
+use ask_tell::cmaes::{Restarts, Solution, StartBox, Tolerances};
 use ask_tell::{Grid, GridPoint, Observation, Optimizer};
 
 /// Levels per axis of the grids on which the functions are searched.
@@ -106,11 +106,10 @@ pub(super) fn cma_evaluations(function: Function, n: usize, seed: u64) -> Option
         high: vec![4.0; n],
         sigma: 2.0,
         min_std: Vec::new(),
-        active: true,
         max_lambda: 1 << 14,
         tolerances: Tolerances::default(),
     };
-    let mut cma = Restarts::new(Strategy::Bipop, start, seed);
+    let mut cma = Restarts::new(start, seed);
     let mut evaluations = 0;
     while evaluations < CMA_LIMIT {
         let mut told = Vec::new();
@@ -130,19 +129,19 @@ pub(super) fn cma_evaluations(function: Function, n: usize, seed: u64) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ask_tell::GridSearch;
+    use ask_tell::{OptimizerKind, build};
 
     #[test]
     fn a_landscape_is_found_at_the_first_design_a_step_below_its_best() {
         let text = "a,range_mm\n1,0.5\n2,\n3,1.9\n4,0.7\n5,2.0\n";
         let landscape = Landscape::parse(text, "l.csv").unwrap();
         let problem = GridProblem::of_landscape("l", landscape);
-        let mut order = GridSearch::new(problem.grid.clone());
+        let mut order = build(OptimizerKind::Grid, problem.grid.clone(), 0);
         let points: Vec<u32> =
             std::iter::from_fn(|| order.ask(1).pop()).map(|point| point.0[0]).collect();
         let first = points.iter().position(|&k| k == 2 || k == 4).unwrap() + 1;
-        let mut again = GridSearch::new(problem.grid.clone());
-        assert_eq!(problem.evaluations(&mut again), Some(first));
+        let mut again = build(OptimizerKind::Grid, problem.grid.clone(), 0);
+        assert_eq!(problem.evaluations(&mut *again), Some(first));
     }
 
     #[test]
@@ -150,7 +149,7 @@ mod tests {
         let landscape = Landscape::parse("a,range_mm\n1,0.5\n2,3.0\n", "l.csv").unwrap();
         let mut problem = GridProblem::of_landscape("l", landscape);
         problem.target = 4.0;
-        let mut search = GridSearch::new(problem.grid.clone());
-        assert_eq!(problem.evaluations(&mut search), None);
+        let mut search = build(OptimizerKind::Grid, problem.grid.clone(), 0);
+        assert_eq!(problem.evaluations(&mut *search), None);
     }
 }

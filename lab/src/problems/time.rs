@@ -1,8 +1,7 @@
 //! Processor time of a suggestion of the Gaussian process.
 
 use super::functions::Function;
-use ask_tell::gp::GpOptimizer;
-use ask_tell::{Grid, Observation, Optimizer};
+use ask_tell::{Grid, Observation, OptimizerKind, build};
 use std::time::Instant;
 
 /// Timed evaluations.
@@ -25,7 +24,7 @@ pub fn suggestion_times() -> Vec<SuggestionTime> {
 fn suggestion_time(levels: Vec<u32>) -> SuggestionTime {
     let origin = Instant::now();
     let grid = Grid::new(levels.clone());
-    let mut optimizer = GpOptimizer::new(grid.clone(), 0);
+    let mut optimizer = build(OptimizerKind::Gp, grid.clone(), 0);
     let mut times_ms = Vec::new();
     for evaluation in 1..=*TIMED.end() {
         let begun = seconds(origin);

@@ -1,7 +1,8 @@
 //! One run of CMA-ES on R^n by ask and tell.
 
 use super::parameters::Parameters;
-use super::stop::{History, Stop, Tolerances};
+use super::restarts::StartBox;
+use super::stop::History;
 use crate::stream::stream;
 use libm::{exp, pow, sqrt};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -13,24 +14,17 @@ const CONDITION: f64 = 1e14;
 /// Iterations after which an eigen decomposition is given up (it takes a few per axis).
 const EIGEN_ITERATIONS: usize = 1000;
 
-/// Where and how a run starts.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Start {
-    /// Initial mean m.
-    pub mean: Vec<f64>,
-    /// Initial step size sigma, above 0.
-    pub sigma: f64,
-    /// Population size lambda.
+/// Difference of one run from the others.
+#[derive(Debug, Clone)]
+pub(super) struct Plan {
     pub lambda: usize,
-    /// Negative weights for the worse half.
-    pub active: bool,
-    /// Least standard deviation per coordinate, units of x; empty or 0 for none.
-    pub min_std: Vec<f64>,
-    /// When to stop.
-    pub tolerances: Tolerances,
+    /// On the step size of the start.
+    pub sigma_factor: f64,
+    /// Generations, beside the general limit.
+    pub limit: u64,
 }
 
-/// A candidate and its value, smaller is better. NaN counts as positive infinity.
+/// A candidate and its value, smaller is better; NaN counts as positive infinity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
     /// The candidate as asked.
@@ -41,11 +35,14 @@ pub struct Solution {
 
 /// CMA-ES: **minimises**. State in the tutorial's symbols.
 #[derive(Debug, Clone)]
-pub struct CmaEs {
+pub(super) struct CmaEs {
     n: usize,
-    start: Start,
-    parameters: Parameters,
-    mean: DVector<f64>,
+    start: StartBox,
+    /// Step size of the start.
+    first_sigma: f64,
+    max_generations: u64,
+    pub parameters: Parameters,
+    pub mean: DVector<f64>,
     sigma: f64,
     /// Covariance matrix C; only the lower triangle is kept up.
     c: DMatrix<f64>,
@@ -55,7 +52,8 @@ pub struct CmaEs {
     d: DVector<f64>,
     p_sigma: DVector<f64>,
     p_c: DVector<f64>,
-    generation: u64,
+    /// Generations told.
+    pub generation: u64,
     history: History,
     seed: u64,
     purpose: String,
@@ -63,14 +61,23 @@ pub struct CmaEs {
 }
 
 impl CmaEs {
-    /// A run that draws its samples from the streams `(seed, sample number, purpose)`.
-    pub fn new(start: Start, seed: u64, purpose: &str) -> Self {
-        let n = start.mean.len();
+    /// Number `run` of the runs that draw from the streams of `seed`.
+    pub fn new(start: &StartBox, seed: u64, run: u64, plan: Plan) -> Self {
+        let mut random = stream(seed, run, "cma-es start");
+        let uniform = |(l, h): (&f64, &f64)| l + (h - l) * random.random::<f64>();
+        let mean: Vec<f64> = start.low.iter().zip(&start.high).map(uniform).collect();
+        let (n, dim) = (mean.len(), mean.len() as f64);
+        // pycma's limit: far above what a run that still makes progress needs.
+        let general = (100.0 + 150.0 * (dim + 3.0) * (dim + 3.0) / sqrt(plan.lambda as f64)) as u64;
+        let sigma = start.sigma * plan.sigma_factor;
         let mut run = CmaEs {
             n,
-            parameters: Parameters::new(n, start.lambda, start.active),
-            mean: DVector::from_column_slice(&start.mean),
-            sigma: start.sigma,
+            start: start.clone(),
+            first_sigma: sigma,
+            max_generations: general.min(plan.limit),
+            parameters: Parameters::new(n, plan.lambda),
+            mean: DVector::from_vec(mean),
+            sigma,
             c: DMatrix::identity(n, n),
             b: DMatrix::identity(n, n),
             d: DVector::repeat(n, 1.0),
@@ -79,43 +86,17 @@ impl CmaEs {
             generation: 0,
             history: History::default(),
             seed,
-            purpose: purpose.to_owned(),
+            purpose: format!("cma-es sample of run {run}"),
             samples: 0,
-            start,
         };
         run.keep_min_std();
         run.decompose();
         run
     }
 
-    /// The constants in use.
-    pub fn parameters(&self) -> &Parameters {
-        &self.parameters
-    }
-
-    /// The mean m of the distribution.
-    pub fn mean(&self) -> &[f64] {
-        self.mean.as_slice()
-    }
-
-    /// The step size sigma.
-    pub fn sigma(&self) -> f64 {
-        self.sigma
-    }
-
-    /// Moves the mean, before the first sample.
-    pub fn begin_at(&mut self, mean: &[f64]) {
-        self.mean = DVector::from_column_slice(mean);
-    }
-
     /// Standard deviation of coordinate `i`, units of x.
-    pub fn std(&self, i: usize) -> f64 {
+    fn std(&self, i: usize) -> f64 {
         self.sigma * sqrt(self.c[(i, i)].max(0.0))
-    }
-
-    /// Generations told.
-    pub fn generation(&self) -> u64 {
-        self.generation
     }
 
     /// Draws one candidate, `x = m + sigma B D z` (38) to (40).
@@ -124,11 +105,6 @@ impl CmaEs {
         self.samples += 1;
         let scaled = self.d.map(|d| d * random.sample::<f64, _>(StandardNormal));
         (&self.mean + self.sigma * (&self.b * scaled)).as_slice().to_vec()
-    }
-
-    /// Draws a generation of lambda candidates.
-    pub fn ask(&mut self) -> Vec<Vec<f64>> {
-        (0..self.parameters.lambda).map(|_| self.sample()).collect()
     }
 
     /// Updates the distribution with a generation. A generation of another size than lambda is
@@ -146,12 +122,17 @@ impl CmaEs {
         let p = if ranked.len() == self.parameters.lambda {
             self.parameters.clone()
         } else {
-            Parameters::new(self.n, ranked.len(), self.start.active)
+            Parameters::new(self.n, ranked.len())
         };
         let step = |s: &&Solution| (DVector::from_column_slice(&s.x) - &self.mean) / self.sigma;
         let steps: Vec<DVector<f64>> = ranked.iter().map(step).collect();
         self.generation += 1;
-        let mean_step = self.recombine(&p, &steps);
+        // (41) and (42) with `c_m = 1`.
+        let mut mean_step = DVector::zeros(self.n);
+        for (&w, y) in p.weights[..p.mu].iter().zip(&steps) {
+            mean_step.axpy(w, y, 1.0);
+        }
+        self.mean.axpy(self.sigma, &mean_step, 1.0);
         let h_sigma = self.update_paths(&p, &mean_step);
         self.update_covariance(&p, &steps, h_sigma);
         // (44); the exponent is limited to 1 as in the tutorial's example code.
@@ -159,16 +140,6 @@ impl CmaEs {
         self.sigma *= exp((p.c_sigma / p.d_sigma * surplus).min(1.0));
         self.keep_min_std();
         self.decompose();
-    }
-
-    /// Moves the mean (42) with `c_m = 1` and returns the step in units of sigma (41).
-    fn recombine(&mut self, p: &Parameters, steps: &[DVector<f64>]) -> DVector<f64> {
-        let mut mean_step = DVector::zeros(self.n);
-        for (&w, y) in p.weights[..p.mu].iter().zip(steps) {
-            mean_step.axpy(w, y, 1.0);
-        }
-        self.mean.axpy(self.sigma, &mean_step, 1.0);
-        mean_step
     }
 
     /// Updates both paths (43), (45) and returns `h_sigma`.
@@ -237,47 +208,33 @@ impl CmaEs {
         }
     }
 
-    /// Why the run should end, if it should.
-    pub fn stop(&self) -> Option<Stop> {
-        let tol = &self.start.tolerances;
+    /// Whether the run should end: appendix B.3 of the tutorial.
+    pub fn ended(&self) -> bool {
         if self.generation == 0 {
-            return None;
+            return false;
         }
-        let finite = self.sigma.is_finite() && self.sigma > 0.0;
-        if !finite || !self.mean.iter().chain(&self.c).all(|v| v.is_finite()) {
-            return Some(Stop::NotFinite);
-        }
-        if let Some(stop) = self.history.stop(self.n, self.parameters.lambda, tol) {
-            return Some(stop);
-        }
-        if let Some(stop) = self.distribution_stop(tol) {
-            return Some(stop);
-        }
-        let limit = tol.max_generations.is_some_and(|limit| self.generation >= limit);
-        limit.then_some(Stop::MaxGenerations)
+        let finite = self.sigma.is_finite()
+            && self.sigma > 0.0
+            && self.mean.iter().chain(&self.c).all(|v| v.is_finite());
+        !finite
+            || self.history.ended(self.n, self.parameters.lambda, &self.start.tolerances)
+            || self.distribution_ended()
+            || self.generation >= self.max_generations
     }
 
-    fn distribution_stop(&self, tol: &Tolerances) -> Option<Stop> {
-        let axes = 0..self.n;
+    /// The tutorial's TolX, TolXUp, ConditionCov, NoEffectAxis and NoEffectCoord.
+    fn distribution_ended(&self) -> bool {
+        let (tol, mut axes) = (&self.start.tolerances, 0..self.n);
         let small = |i: usize| self.std(i) < tol.x && (self.sigma * self.p_c[i]).abs() < tol.x;
-        if axes.clone().all(small) {
-            return Some(Stop::TolX);
-        }
-        if axes.clone().any(|i| self.std(i) > tol.x_up * self.start.sigma) {
-            return Some(Stop::TolXUp);
-        }
         let longest = self.d.iter().copied().fold(0.0, f64::max);
         let shortest = self.d.iter().copied().fold(f64::INFINITY, f64::min);
-        if longest > sqrt(CONDITION) * shortest {
-            return Some(Stop::ConditionCov);
-        }
         // One axis a generation, in turn, as the tutorial has it.
         let axis = (self.generation % self.n.max(1) as u64) as usize;
         let along = |i: usize| 0.1 * self.sigma * self.d[axis] * self.b[(i, axis)];
-        if axes.clone().all(|i| self.mean[i] == self.mean[i] + along(i)) {
-            return Some(Stop::NoEffectAxis);
-        }
-        let dead = axes.clone().any(|i| self.mean[i] == self.mean[i] + 0.2 * self.std(i));
-        dead.then_some(Stop::NoEffectCoord)
+        axes.clone().all(small)
+            || axes.clone().any(|i| self.std(i) > tol.x_up * self.first_sigma)
+            || longest > sqrt(CONDITION) * shortest
+            || axes.clone().all(|i| self.mean[i] == self.mean[i] + along(i))
+            || axes.any(|i| self.mean[i] == self.mean[i] + 0.2 * self.std(i))
     }
 }

@@ -1,11 +1,10 @@
 //! CMA-ES on a grid.
 
 use super::core::Solution;
-use super::restarts::{Restarts, StartBox, Strategy};
+use super::restarts::{Restarts, StartBox};
 use super::stop::Tolerances;
-use crate::GridPoint;
-use crate::{Grid, Observation, Optimizer, Proposed, StopReason};
-use std::collections::BTreeMap;
+use crate::proposed::Costs;
+use crate::{Grid, GridPoint, Observation, Optimizer, StopReason};
 
 /// Initial step size in units of the cube's edge (the tutorial advises 0.3 of the range).
 const SIGMA: f64 = 0.3;
@@ -32,22 +31,15 @@ const EXTRA_DRAWS: u32 = 50;
 /// - *Batches* that end within a generation enlarge it: the distribution is updated with all its
 ///   candidates and the constants of its true size.
 #[derive(Debug, Clone)]
-pub struct CmaEsOptimizer {
-    proposed: Proposed,
+pub(crate) struct CmaEsOptimizer {
+    costs: Costs,
     restarts: Restarts,
-    generation: Vec<Candidate>,
-    /// Negated values; infinite for points without one.
-    values: BTreeMap<GridPoint, f64>,
+    /// Candidates, and the grid points they stand for.
+    generation: Vec<(Vec<f64>, GridPoint)>,
     /// Whether the present generation proposed a new point.
     fruitful: bool,
     barren_generations: u32,
     barren_restarts: u32,
-}
-
-#[derive(Debug, Clone)]
-struct Candidate {
-    x: Vec<f64>,
-    point: GridPoint,
 }
 
 impl CmaEsOptimizer {
@@ -60,53 +52,39 @@ impl CmaEsOptimizer {
             high: vec![1.0; free.len()],
             sigma: SIGMA,
             min_std: free.iter().map(step).collect(),
-            active: true,
             max_lambda: (grid.size() / 10).clamp(8, 512) as usize,
             // On a grid equal values are common and no sign of convergence.
-            tolerances: Tolerances {
-                fun: 0.0,
-                fun_hist: 0.0,
-                x: 0.0,
-                x_up: 1e2,
-                max_generations: None,
-            },
+            tolerances: Tolerances { fun: 0.0, fun_hist: 0.0, x: 0.0, x_up: 1e2 },
         };
         CmaEsOptimizer {
-            restarts: Restarts::new(Strategy::Bipop, start, seed),
-            proposed: Proposed::new(grid, seed),
+            restarts: Restarts::new(start, seed),
+            costs: Costs::new(grid, seed),
             generation: Vec::new(),
-            values: BTreeMap::new(),
             fruitful: false,
             barren_generations: 0,
             barren_restarts: 0,
         }
     }
 
-    fn draw(&mut self) -> Candidate {
-        let x = self.restarts.sample();
-        let point = self.proposed.grid().folded(&x);
-        Candidate { x, point }
-    }
-
     /// The next unseen candidate of the search, or `None` if it has none to offer.
     fn next(&mut self) -> Option<GridPoint> {
-        let lambda = |s: &Self| s.restarts.current().parameters().lambda;
         let mut extra = 0;
         while self.barren_restarts < BARREN_RESTARTS && extra < EXTRA_DRAWS {
-            let full = self.generation.len() >= lambda(self);
-            if full && self.generation.iter().all(|c| self.values.contains_key(&c.point)) {
+            let full = self.generation.len() >= self.restarts.current.parameters.lambda;
+            if full && self.generation.iter().all(|(_, point)| self.costs.of.contains_key(point)) {
                 self.finish_generation();
                 continue;
             }
-            let candidate = self.draw();
-            let new = self.proposed.insert(&candidate.point);
+            let x = self.restarts.current.sample();
+            let point = self.costs.proposed.grid().folded(&x);
+            let new = self.costs.proposed.insert(&point);
             // A full generation that waits for values grows by new points only.
             if new || !full {
-                self.generation.push(candidate.clone());
+                self.generation.push((x, point.clone()));
             }
             if new {
                 self.fruitful = true;
-                return Some(candidate.point);
+                return Some(point);
             }
             extra += u32::from(full);
         }
@@ -114,10 +92,7 @@ impl CmaEsOptimizer {
     }
 
     fn finish_generation(&mut self) {
-        let solution = |c: Candidate| {
-            let value = self.values.get(&c.point).copied().unwrap_or(f64::INFINITY);
-            Solution { x: c.x, value }
-        };
+        let solution = |(x, point)| Solution { x, value: self.costs.of[&point] };
         let told: Vec<Solution> =
             std::mem::take(&mut self.generation).into_iter().map(solution).collect();
         self.restarts.tell(&told);
@@ -138,9 +113,9 @@ impl CmaEsOptimizer {
 impl Optimizer for CmaEsOptimizer {
     fn ask(&mut self, n: usize) -> Vec<GridPoint> {
         let mut points = Vec::new();
-        while points.len() < n && !self.proposed.exhausted() {
-            let found = if self.restarts.current().mean().is_empty() { None } else { self.next() };
-            let Some(point) = found.or_else(|| self.proposed.next_unseen()) else { break };
+        while points.len() < n && !self.costs.proposed.exhausted() {
+            let found = if self.restarts.current.mean.is_empty() { None } else { self.next() };
+            let Some(point) = found.or_else(|| self.costs.proposed.next_unseen()) else { break };
             self.barren_restarts = 0;
             points.push(point);
         }
@@ -148,29 +123,20 @@ impl Optimizer for CmaEsOptimizer {
     }
 
     fn tell(&mut self, observations: &[Observation]) {
-        for o in observations {
-            if !self.proposed.grid().contains(&o.point) {
-                continue;
-            }
-            let value = o.merit().filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
-            self.proposed.insert(&o.point);
-            self.values.insert(o.point.clone(), value);
-        }
+        self.costs.tell(observations);
         // Known results before the first ask: the search begins at the best of them.
-        if self.generation.is_empty() && self.restarts.current().generation() == 0 {
-            let finite = self.values.iter().filter(|(_, value)| value.is_finite());
-            if let Some((point, _)) = finite.min_by(|a, b| a.1.total_cmp(b.1)) {
-                let (grid, unit) = (self.proposed.grid(), self.proposed.grid().unit(point));
-                let mean = grid.free_axes().into_iter().map(|axis| unit[axis]).collect();
-                self.restarts.begin_at(mean);
-            }
+        if self.generation.is_empty()
+            && self.restarts.current.generation == 0
+            && let Some(best) = self.costs.best()
+        {
+            self.restarts.current.mean = best.into();
         }
         // A candidate that was asked and not told would keep its generation waiting for ever.
-        self.generation.retain(|c| self.values.contains_key(&c.point));
+        self.generation.retain(|(_, point)| self.costs.of.contains_key(point));
     }
 
     fn stop(&self) -> Option<StopReason> {
-        self.proposed.stop()
+        self.costs.proposed.stop()
     }
 }
 

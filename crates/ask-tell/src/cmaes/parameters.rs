@@ -3,39 +3,32 @@
 use libm::{log, sqrt};
 
 /// The constants of a run, in the tutorial's symbols.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Parameters {
-    /// Population size lambda.
+#[derive(Debug, Clone)]
+pub(super) struct Parameters {
     pub lambda: usize,
-    /// Number of parents mu: the candidates with positive weight.
+    /// Number of parents: the candidates with positive weight.
     pub mu: usize,
-    /// Recombination weights `w_1 .. w_lambda`; the positive ones sum to one.
+    /// `w_1 .. w_lambda`; the positive ones sum to one.
     pub weights: Vec<f64>,
-    /// Variance effective selection mass of the positive weights.
     pub mu_eff: f64,
-    /// Learning rate of the path for the step size.
     pub c_sigma: f64,
-    /// Damping of the step size.
     pub d_sigma: f64,
-    /// Learning rate of the path for the covariance matrix.
     pub c_c: f64,
-    /// Learning rate of the rank-one update.
     pub c_1: f64,
-    /// Learning rate of the rank-mu update.
     pub c_mu: f64,
     /// Expected length of a standard normal vector, E||N(0, I)||.
     pub chi_n: f64,
 }
 
 /// The default population size, `4 + floor(3 ln n)` (48).
-pub fn default_lambda(n: usize) -> usize {
+pub(super) fn default_lambda(n: usize) -> usize {
     4 + (3.0 * log(n.max(1) as f64)) as usize
 }
 
 impl Parameters {
-    /// The defaults for dimension `n` and population `lambda` (at least 2 is used).
-    /// With `active`, the worse half gets negative weights (53); without, zero.
-    pub fn new(n: usize, lambda: usize, active: bool) -> Self {
+    /// The defaults for dimension `n` and population `lambda` (at least 2 is used); the worse
+    /// half gets negative weights (53).
+    pub fn new(n: usize, lambda: usize) -> Self {
         let (lambda, dim) = (lambda.max(2), n.max(1) as f64);
         let raw: Vec<f64> =
             (1..=lambda).map(|i| log((lambda as f64 + 1.0) / 2.0) - log(i as f64)).collect();
@@ -53,7 +46,7 @@ impl Parameters {
 
         let sum_positive: f64 = positive.iter().sum();
         let sum_negative: f64 = -negative.iter().sum::<f64>();
-        let scale = if active && c_mu > 0.0 && sum_negative > 0.0 {
+        let scale = if c_mu > 0.0 && sum_negative > 0.0 {
             let alpha_mu = 1.0 + c_1 / c_mu;
             let alpha_mu_eff = 1.0 + 2.0 * mu_eff_minus / (mu_eff + 2.0);
             let alpha_pos_def = (1.0 - c_1 - c_mu) / (dim * c_mu);
@@ -88,7 +81,7 @@ mod tests {
     #[test]
     fn constants_for_ten_dimensions_worked_by_hand() {
         // lambda = 10, mu = 5: w' = ln 5.5 - ln i.
-        let p = Parameters::new(10, default_lambda(10), true);
+        let p = Parameters::new(10, default_lambda(10));
         assert_eq!((p.lambda, p.mu), (10, 5));
         let raw: Vec<f64> = (1..=5).map(|i| 5.5_f64.ln() - f64::from(i).ln()).collect();
         let sum: f64 = raw.iter().sum();
@@ -107,12 +100,10 @@ mod tests {
     fn negative_weights_obey_the_three_bounds() {
         for n in [1, 2, 5, 20] {
             for lambda in [4, 6, 8, 30, 200] {
-                let p = Parameters::new(n, lambda, true);
+                let p = Parameters::new(n, lambda);
                 let sum: f64 = -p.weights.iter().filter(|w| **w < 0.0).sum::<f64>();
                 assert!(sum <= 1.0 + p.c_1 / p.c_mu + 1e-12);
                 assert!(sum * n as f64 * p.c_mu <= 1.0 - p.c_1 - p.c_mu + 1e-12);
-                let plain = Parameters::new(n, lambda, false);
-                assert!(plain.weights.iter().all(|w| *w >= 0.0));
             }
         }
     }
@@ -120,7 +111,7 @@ mod tests {
     #[test]
     fn tiny_populations_have_usable_constants() {
         for lambda in 0..5 {
-            let p = Parameters::new(1, lambda, true);
+            let p = Parameters::new(1, lambda);
             assert!(p.lambda >= 2 && p.weights.iter().all(|w| w.is_finite()));
             assert!(p.c_mu >= 0.0 && p.c_1 + p.c_mu <= 1.0);
         }

@@ -1,60 +1,21 @@
-//! Named reasons to end a run: appendix B.3 of the tutorial.
+//! Reasons to end a run that lie in its values: appendix B.3 of the tutorial.
 
-use std::fmt;
-
-/// Why a run ended, in the tutorial's names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stop {
-    /// The values of the last generation and the best values of the recent ones lie within
-    /// [`Tolerances::fun`].
-    TolFun,
-    /// The best values of the recent generations lie within [`Tolerances::fun_hist`].
-    TolFunHist,
-    /// More than a third of a generation shares its best value, several times.
-    EqualFunValues,
-    /// All standard deviations and steps of the path are below [`Tolerances::x`].
-    TolX,
-    /// A standard deviation grew by more than [`Tolerances::x_up`]: the step size was far too
-    /// small or the function has no minimum.
-    TolXUp,
-    /// The condition number of C is above 1e14.
-    ConditionCov,
-    /// A tenth of a standard deviation along a principal axis does not change the mean.
-    NoEffectAxis,
-    /// A fifth of a standard deviation in a coordinate does not change the mean.
-    NoEffectCoord,
-    /// Neither best nor median values have improved for long.
-    Stagnation,
-    /// The limit of generations set by the caller was reached.
-    MaxGenerations,
-    /// The state is no longer finite.
-    NotFinite,
-}
-
-impl fmt::Display for Stop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{self:?}")
-    }
-}
-
-/// Limits of the stop reasons; the defaults are pycma's.
+/// Limits of a run in the tutorial's names; the defaults are pycma's.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tolerances {
-    /// [`Stop::TolFun`], in objective units.
+    /// TolFun: range of the last generation and of the best recent values.
     pub fun: f64,
-    /// [`Stop::TolFunHist`], in objective units.
+    /// TolFunHist: range of the best recent values.
     pub fun_hist: f64,
-    /// [`Stop::TolX`], in units of x.
+    /// TolX: largest standard deviation and step of the path, in units of x.
     pub x: f64,
-    /// [`Stop::TolXUp`], a factor on the initial step size.
+    /// TolXUp: growth of a standard deviation, a factor on the initial step size.
     pub x_up: f64,
-    /// [`Stop::MaxGenerations`]; `None` for no limit.
-    pub max_generations: Option<u64>,
 }
 
 impl Default for Tolerances {
     fn default() -> Self {
-        Tolerances { fun: 1e-11, fun_hist: 1e-12, x: 1e-11, x_up: 1e3, max_generations: None }
+        Tolerances { fun: 1e-11, fun_hist: 1e-12, x: 1e-11, x_up: 1e3 }
     }
 }
 
@@ -81,21 +42,14 @@ impl History {
         self.flat = if best == third { self.flat + 1 } else { 0 };
     }
 
-    /// The stop reason that the values alone give.
-    pub(super) fn stop(&self, n: usize, lambda: usize, tol: &Tolerances) -> Option<Stop> {
+    /// The tutorial's TolFun, TolFunHist, EqualFunValues and Stagnation.
+    pub(super) fn ended(&self, n: usize, lambda: usize, tol: &Tolerances) -> bool {
         let recent_length = 10 + (30 * n).div_ceil(lambda);
         let recent = &self.best[self.best.len().saturating_sub(recent_length)..];
+        let (small, recent_range) = (self.last_range < tol.fun, range(recent));
         // Some history is needed, or one generation on a plateau would end a run.
-        if recent.len() > 9 && self.last_range < tol.fun && range(recent) < tol.fun {
-            return Some(Stop::TolFun);
-        }
-        if recent.len() > 9 && range(recent) < tol.fun_hist {
-            return Some(Stop::TolFunHist);
-        }
-        if self.flat > 3 {
-            return Some(Stop::EqualFunValues);
-        }
-        self.stagnated(n, lambda).then_some(Stop::Stagnation)
+        let unmoved = small && recent_range < tol.fun || recent_range < tol.fun_hist;
+        recent.len() > 9 && unmoved || self.flat > 3 || self.stagnated(n, lambda)
     }
 
     /// The tutorial's rule: the medians of the newest and the oldest 30 % of a window of the
@@ -132,14 +86,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn flat_and_infinite_values_are_named() {
+    fn flat_and_infinite_values_end_a_run() {
         let tol = Tolerances { fun: 0.0, fun_hist: 0.0, ..Tolerances::default() };
         for value in [1.0, f64::INFINITY] {
             let mut history = History::default();
-            for _ in 0..4 {
+            for generation in 0..4 {
+                assert!(!history.ended(2, 6, &tol), "{generation}");
                 history.push(&[value; 6]);
             }
-            assert_eq!(history.stop(2, 6, &tol), Some(Stop::EqualFunValues));
+            assert!(history.ended(2, 6, &tol));
         }
     }
 
@@ -150,6 +105,6 @@ mod tests {
             let wave = f64::from(generation % 7);
             history.push(&[wave, wave + 1.0, wave + 2.0, wave + 3.0]);
         }
-        assert_eq!(history.stop(2, 6, &Tolerances::default()), Some(Stop::Stagnation));
+        assert!(history.ended(2, 6, &Tolerances::default()));
     }
 }

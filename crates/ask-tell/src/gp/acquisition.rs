@@ -9,7 +9,7 @@ const DIRECT: f64 = -1.5;
 
 /// `log E max(f - best, 0)` for `f` normal with that mean and standard deviation:
 /// `log_h((mean - best) / std) + log(std)`. Minus infinity where it has no value.
-pub fn log_expected_improvement(mean: f64, std: f64, best: f64) -> f64 {
+pub(super) fn log_expected_improvement(mean: f64, std: f64, best: f64) -> f64 {
     let value =
         if std > 0.0 { log_h((mean - best) / std) + log(std) } else { log((mean - best).max(0.0)) };
     if value.is_nan() { f64::NEG_INFINITY } else { value }
@@ -21,7 +21,7 @@ pub fn log_expected_improvement(mean: f64, std: f64, best: f64) -> f64 {
 /// it is `log phi(x) + log(1 - x R(x))`. Laplace's continued fraction
 /// `R(x) = 1 / (x + K)`, `K = 1 / (x + 2 / (x + 3 / (x + ...)))`, turns the difference
 /// into `K / (x + K)`: nothing cancels, down to `z = -1e150`.
-pub fn log_h(z: f64) -> f64 {
+fn log_h(z: f64) -> f64 {
     let log_density = -0.5 * z * z - 0.5 * log(2.0 * PI);
     if z > DIRECT {
         return log(exp(log_density) + z * 0.5 * erfc(-z * FRAC_1_SQRT_2));
@@ -53,7 +53,7 @@ pub fn log_normal_cdf(z: f64) -> f64 {
 
 /// Log of the probability that a normal number with that mean and standard deviation is at
 /// least `threshold`.
-pub fn log_probability_above(mean: f64, std: f64, threshold: f64) -> f64 {
+pub(super) fn log_probability_above(mean: f64, std: f64, threshold: f64) -> f64 {
     if std > 0.0 {
         return log_normal_cdf((mean - threshold) / std);
     }
@@ -67,7 +67,7 @@ pub fn log_probability_above(mean: f64, std: f64, threshold: f64) -> f64 {
 /// Within one cell the components are independent, and the length of `[low, min(f, high)]` is
 /// the improvement over `low` less that over `high`: so the expectation is a sum over the cells
 /// of products of differences of expected improvements, all taken in logarithms.
-pub fn log_expected_volume(moments: &[(f64, f64)], cells: &[Cell]) -> f64 {
+pub(super) fn log_expected_volume(moments: &[(f64, f64)], cells: &[Cell]) -> f64 {
     let side = |(&(mean, std), (&low, &high)): (&(f64, f64), (&f64, &f64))| {
         let whole = log_expected_improvement(mean, std, low);
         if high == f64::INFINITY || whole == f64::NEG_INFINITY {

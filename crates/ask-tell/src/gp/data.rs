@@ -1,10 +1,10 @@
-//! From told values to what the model is trained on.
+//! Values in the units of a model.
 
 use super::warp::warp;
 
 /// Values in the model's units: mean 0, variance 1.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Standardised {
+pub(super) struct Standardised {
     /// One value per observation.
     pub values: Vec<f64>,
     /// The noise floor as a variance in the same units, in [1e-8, 1].
@@ -18,7 +18,7 @@ pub struct Standardised {
 /// A missing value, and one that is not finite, counts as the worst finite one: the model learns
 /// that the place is bad, but not a number out of all proportion. Constant values become zeros.
 /// `None` if no value is finite.
-pub fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<Standardised> {
+pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<Standardised> {
     let finite = || values.iter().flatten().copied().filter(|v| v.is_finite());
     let worst = finite().reduce(f64::min)?;
     // Dividing by the largest first keeps sums of huge values finite.
@@ -46,10 +46,16 @@ impl Standardised {
     /// the noise floor at the scale's average slope; unchanged if there is none. The zero has
     /// no meaning then.
     pub fn warped(self) -> Self {
-        let Some(warped) = warp(&self.values) else { return self };
-        let noise_floor = (self.noise_floor * warped.slope * warped.slope).clamp(1e-8, 1.0);
-        Standardised { values: warped.values, noise_floor, zero: f64::NAN }
+        let Some((values, slope)) = warp(&self.values) else { return self };
+        let noise_floor = (self.noise_floor * slope * slope).clamp(1e-8, 1.0);
+        Standardised { values, noise_floor, zero: f64::NAN }
     }
+}
+
+/// `count` of `n` places, evenly; all if there are no more.
+pub(super) fn spread(n: usize, count: usize) -> impl Iterator<Item = usize> {
+    let count = count.min(n);
+    (0..count).map(move |k| k * n / count)
 }
 
 #[cfg(test)]
@@ -86,5 +92,11 @@ mod tests {
         }
         assert_eq!(standardise(&[None, Some(f64::NAN)], 0.1), None);
         assert_eq!(standardise(&[], 0.1), None);
+    }
+
+    #[test]
+    fn places_are_spread_evenly_and_come_once() {
+        assert_eq!(spread(10, 3).collect::<Vec<_>>(), [0, 3, 6]);
+        assert_eq!(spread(3, 10).collect::<Vec<_>>(), [0, 1, 2]);
     }
 }

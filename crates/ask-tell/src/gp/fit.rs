@@ -61,8 +61,9 @@ pub fn fit(
         starts.extend([mode.clone(), shifted(-1.0, -5.0), shifted(1.0, -12.0)]);
     }
     let negated = |theta: &[f64]| {
-        let p = log_posterior(x, y, noise_floor, &Hyperparameters::from_slice(theta))?;
-        Some((-p.value, p.gradient.iter().map(|g| -g).collect()))
+        let theta = Hyperparameters::from_slice(theta);
+        let (value, gradient) = log_posterior(x, y, noise_floor, &theta)?;
+        Some((-value, gradient.iter().map(|g| -g).collect()))
     };
     let found = starts.iter().filter_map(|start| minimise(negated, start, &limits));
     let best = found.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(mode, |(theta, _)| theta);

@@ -13,21 +13,21 @@ pub struct Hyperparameters {
 
 impl Hyperparameters {
     /// As one vector: length scales, signal, noise.
-    pub fn to_vec(&self) -> Vec<f64> {
+    pub(super) fn to_vec(&self) -> Vec<f64> {
         let mut theta = self.log_length.clone();
         theta.extend([self.log_signal, self.log_noise]);
         theta
     }
 
     /// From one vector of at least two numbers.
-    pub fn from_slice(theta: &[f64]) -> Self {
-        let d = theta.len().saturating_sub(2);
-        let at = |i: usize| theta.get(i).copied().unwrap_or(0.0);
-        Hyperparameters { log_length: theta[..d].to_vec(), log_signal: at(d), log_noise: at(d + 1) }
+    pub(super) fn from_slice(theta: &[f64]) -> Self {
+        let d = theta.len() - 2;
+        let log_length = theta[..d].to_vec();
+        Hyperparameters { log_length, log_signal: theta[d], log_noise: theta[d + 1] }
     }
 
     /// `x` in units of the length scales.
-    pub fn scale(&self, x: &[f64]) -> Vec<f64> {
+    pub(super) fn scale(&self, x: &[f64]) -> Vec<f64> {
         x.iter().zip(&self.log_length).map(|(x, l)| x * libm::exp(-l)).collect()
     }
 }

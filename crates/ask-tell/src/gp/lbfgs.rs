@@ -6,7 +6,7 @@
 use argmin::core::{CostFunction, Error, Executor, Gradient};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::f64::consts::FRAC_PI_2;
 
 /// Pairs of steps and changes of the gradient that are kept.
@@ -17,6 +17,9 @@ const FIRST_STEP: f64 = 0.3;
 const OFF_THE_FACE: f64 = 0.1;
 /// Relative change of the value that ends it.
 const LEAST_GAIN: f64 = 1e-7;
+
+/// A value and its derivatives.
+type WithSlope = (f64, Vec<f64>);
 
 /// The box and the budget.
 #[derive(Debug, Clone, Copy)]
@@ -30,7 +33,7 @@ pub(super) struct Limits<'a> {
 /// Minimises `f` (value and gradient, `None` outside its domain) from `start`; returns the best
 /// point met and its value, or `None` if `f` has no value at the start.
 pub(super) fn minimise(
-    f: impl Fn(&[f64]) -> Option<(f64, Vec<f64>)>,
+    f: impl Fn(&[f64]) -> Option<WithSlope>,
     start: &[f64],
     limits: &Limits,
 ) -> Option<(Vec<f64>, f64)> {
@@ -55,83 +58,60 @@ pub(super) fn minimise(
     if !unit.is_finite() {
         return Some((x, value));
     }
-    let progress = RefCell::new(Progress {
-        left: limits.evaluations.saturating_sub(1),
-        at: start.clone(),
-        value: unit * value,
-        slope: slope.iter().map(|g| unit * g).collect(),
-        best: (x, value),
-    });
-    let problem = Scaled { f: in_angles, unit, progress: &progress };
+    let scaled = |value: f64, slope: Vec<f64>| -> WithSlope {
+        (unit * value, slope.iter().map(|g| unit * g).collect())
+    };
+    let tolerance = LEAST_GAIN * unit * value.abs().max(1.0);
+    let best = RefCell::new((x, value));
+    // argmin asks for value and slope of one point one after the other.
+    let last = RefCell::new((start.clone(), scaled(value, slope)));
+    let left = Cell::new(limits.evaluations.saturating_sub(1));
+    let evaluate = |u: &[f64]| {
+        if last.borrow().0 != u {
+            left.set(left.get().checked_sub(1)?);
+            let (x, value, slope) = in_angles(u)?;
+            if value < best.borrow().1 {
+                best.replace((x, value));
+            }
+            last.replace((u.to_vec(), scaled(value, slope)));
+        }
+        Some(last.borrow().1.clone())
+    };
     let line_search = MoreThuenteLineSearch::new();
-    let solver = LBFGS::new(line_search, MEMORY)
-        .with_tolerance_cost(LEAST_GAIN * unit * value.abs().max(1.0))
-        .ok()?;
+    let solver = LBFGS::new(line_search, MEMORY).with_tolerance_cost(tolerance).ok()?;
     // It ends by an error when the budget is spent; the best point is known all the same.
-    let _ = Executor::new(problem, solver)
+    let _ = Executor::new(Scaled(&evaluate), solver)
         .configure(|state| state.param(start).max_iters(limits.evaluations as u64))
         .timer(false)
         .run();
-    Some(progress.into_inner().best)
+    Some(best.into_inner())
 }
 
-/// What was evaluated: argmin asks for value and slope of one point one after the other.
-struct Progress {
-    left: usize,
-    /// The last point, in angles.
-    at: Vec<f64>,
-    value: f64,
-    slope: Vec<f64>,
-    best: (Vec<f64>, f64),
-}
+/// The function in angles, in units in which the first slope has the length of the first step;
+/// nothing when the evaluations are spent, or a point has no value.
+struct Scaled<'a>(&'a dyn Fn(&[f64]) -> Option<WithSlope>);
 
-/// The function in angles, in units in which the first slope has the length of the first step.
-struct Scaled<'a, F> {
-    f: F,
-    unit: f64,
-    progress: &'a RefCell<Progress>,
-}
-
-/// Ends a run.
-#[derive(Debug, thiserror::Error)]
-#[error("the evaluations are spent, or a point has no value")]
-struct End;
-
-impl<F: Fn(&[f64]) -> Option<(Vec<f64>, f64, Vec<f64>)>> Scaled<'_, F> {
-    fn evaluate(&self, u: &[f64]) -> Result<(), Error> {
-        let mut progress = self.progress.borrow_mut();
-        if progress.at == u {
-            return Ok(());
-        }
-        progress.left = progress.left.checked_sub(1).ok_or_else(|| Error::new(End))?;
-        let (x, value, slope) = (self.f)(u).ok_or_else(|| Error::new(End))?;
-        if value < progress.best.1 {
-            progress.best = (x, value);
-        }
-        progress.at = u.to_vec();
-        progress.value = self.unit * value;
-        progress.slope = slope.iter().map(|g| self.unit * g).collect();
-        Ok(())
+impl Scaled<'_> {
+    fn at(&self, u: &[f64]) -> Result<WithSlope, Error> {
+        (self.0)(u).ok_or_else(|| Error::msg("end of the run"))
     }
 }
 
-impl<F: Fn(&[f64]) -> Option<(Vec<f64>, f64, Vec<f64>)>> CostFunction for Scaled<'_, F> {
+impl CostFunction for Scaled<'_> {
     type Param = Vec<f64>;
     type Output = f64;
 
     fn cost(&self, u: &Vec<f64>) -> Result<f64, Error> {
-        self.evaluate(u)?;
-        Ok(self.progress.borrow().value)
+        Ok(self.at(u)?.0)
     }
 }
 
-impl<F: Fn(&[f64]) -> Option<(Vec<f64>, f64, Vec<f64>)>> Gradient for Scaled<'_, F> {
+impl Gradient for Scaled<'_> {
     type Param = Vec<f64>;
     type Gradient = Vec<f64>;
 
     fn gradient(&self, u: &Vec<f64>) -> Result<Vec<f64>, Error> {
-        self.evaluate(u)?;
-        Ok(self.progress.borrow().slope.clone())
+        Ok(self.at(u)?.1)
     }
 }
 
@@ -158,7 +138,7 @@ mod tests {
     fn it_keeps_to_its_budget() {
         for evaluations in 1..20 {
             let limits = Limits { low: &[-5.0, -5.0], high: &[5.0, 5.0], evaluations };
-            let count = std::cell::Cell::new(0);
+            let count = Cell::new(0);
             let counted = |x: &[f64]| {
                 count.set(count.get() + 1);
                 rosenbrock(x)

@@ -5,15 +5,6 @@ use crate::process::factor::inverse;
 use crate::process::{Process, distance2, matern52, matern52_slope};
 use nalgebra::DMatrix;
 
-/// Value and gradient at one setting of the hyperparameters.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Posterior {
-    /// Log marginal likelihood plus log priors, up to a constant.
-    pub value: f64,
-    /// Derivatives in the order of [`Hyperparameters::to_vec`].
-    pub gradient: Vec<f64>,
-}
-
 /// Mean and standard deviation of the normal prior of each log hyperparameter.
 ///
 /// Length scales: Hvarfner et al. 2024 (arXiv 2402.02229), whose log-normal prior grows with
@@ -26,17 +17,18 @@ pub(super) fn priors(dimension: usize) -> Vec<(f64, f64)> {
     priors
 }
 
-/// Log posterior of `theta` for points `x` of the unit cube with standardised values `y`.
+/// Log posterior of `theta`, up to a constant, for points `x` of the unit cube with standardised
+/// values `y`, and its gradient in the order of [`Hyperparameters::to_vec`].
 /// The constant mean is integrated out under a flat prior (the restricted likelihood;
 /// Rasmussen and Williams 2006, section 2.7): its least squares value taken for true, smooth
 /// data would be sure of what lies beyond them.
 /// `None` if the covariance is not positive definite.
-pub fn log_posterior(
+pub(super) fn log_posterior(
     x: &[Vec<f64>],
     y: &[f64],
     noise_floor: f64,
     theta: &Hyperparameters,
-) -> Option<Posterior> {
+) -> Option<(f64, Vec<f64>)> {
     let (n, d) = (y.len(), theta.log_length.len());
     let scaled: Vec<Vec<f64>> = x.iter().map(|p| theta.scale(p)).collect();
     let (signal, noise) = (libm::exp(theta.log_signal), libm::exp(theta.log_noise));
@@ -51,12 +43,12 @@ pub fn log_posterior(
     }
     let process = Process::new(k.clone(), &vec![[1.0]; n], y)?;
     let (alpha, [to_mean], [precision]) =
-        (process.weights(), &process.linear_mean().weights, process.linear_mean().pivots);
+        (process.weights(), &process.mean.weights, process.mean.pivots);
     let w = to_mean / precision.max(f64::MIN_POSITIVE).sqrt();
     let mut value = process.log_likelihood();
 
     // d value / d theta = 1/2 sum_ij (alpha_i alpha_j + w_i w_j - (K^-1)_ij) dK_ij / d theta.
-    let inverse = inverse(process.factor());
+    let inverse = inverse(&process.factor);
     let mut gradient = vec![0.0; d + 2];
     let (mut through_k, mut trace) = (0.0, 0.0);
     for j in 0..n {
@@ -79,7 +71,7 @@ pub fn log_posterior(
         value -= 0.5 * z * z;
         *g -= z / std;
     }
-    value.is_finite().then_some(Posterior { value, gradient })
+    value.is_finite().then_some((value, gradient))
 }
 
 #[cfg(test)]
@@ -101,13 +93,13 @@ mod tests {
             let at = |theta: &[f64]| {
                 log_posterior(&x, &y, 1e-4, &Hyperparameters::from_slice(theta)).unwrap()
             };
-            let gradient = at(&theta).gradient;
+            let gradient = at(&theta).1;
             for i in 0..4 {
                 let h = 1e-5;
                 let (mut up, mut down) = (theta, theta);
                 up[i] += h;
                 down[i] -= h;
-                let difference = (at(&up).value - at(&down).value) / (2.0 * h);
+                let difference = (at(&up).0 - at(&down).0) / (2.0 * h);
                 let error = (gradient[i] - difference).abs() / difference.abs().max(1.0);
                 assert!(error < 1e-6, "{i}: {} and {difference}", gradient[i]);
             }
@@ -118,7 +110,7 @@ mod tests {
     fn the_value_is_that_of_a_two_point_process_worked_by_hand() {
         let theta = Hyperparameters { log_length: vec![0.0], log_signal: 0.0, log_noise: -40.0 };
         let x = [vec![0.0], vec![1.0]];
-        let value = |y: [f64; 2]| log_posterior(&x, &y, 0.1, &theta).unwrap().value;
+        let value = |y: [f64; 2]| log_posterior(&x, &y, 0.1, &theta).unwrap().0;
         // The mean of (1, -1) is 0; K = [[1.1, k], [k, 1.1]] has (1, -1) as an eigenvector.
         let k = matern52(1.0);
         let difference = value([1.0, -1.0]) - value([0.0, 0.0]);

@@ -22,14 +22,13 @@ mod model;
 mod neighbours;
 mod optimizer;
 mod search;
-mod spread;
 mod trained;
 mod training;
 mod warp;
 
-pub use acquisition::{log_expected_improvement, log_expected_volume, log_h, log_normal_cdf};
+pub use acquisition::log_normal_cdf;
 pub use fit::{FitEffort, fit};
 pub use hyperparameters::Hyperparameters;
-pub use likelihood::{Posterior, log_posterior};
 pub use model::Gp;
-pub use optimizer::{DEFAULT_NOISE_FLOOR, GpOptimizer};
+pub use optimizer::DEFAULT_NOISE_FLOOR;
+pub(crate) use optimizer::GpOptimizer;

@@ -5,17 +5,49 @@ use crate::process::factor::half_solved;
 use crate::process::{Process, matern52, matern52_slope};
 use nalgebra::{DMatrix, DVector};
 
+/// Points in length scales.
+#[derive(Debug, Clone)]
+pub(super) struct Scaled {
+    /// One over each length scale.
+    pub inverse_length: Vec<f64>,
+    /// By axis: `columns[a][i]` is coordinate `a` of point `i`.
+    columns: Vec<Vec<f64>>,
+}
+
+impl Scaled {
+    pub fn new(x: &[Vec<f64>], theta: &Hyperparameters) -> Self {
+        let inverse_length: Vec<f64> = theta.log_length.iter().map(|l| libm::exp(-l)).collect();
+        let column = |(a, i): (usize, &f64)| x.iter().map(|p| p[a] * i).collect();
+        let columns = inverse_length.iter().enumerate().map(column).collect();
+        Scaled { inverse_length, columns }
+    }
+
+    fn scale(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().zip(&self.inverse_length).map(|(x, i)| x * i).collect()
+    }
+
+    pub fn push(&mut self, x: &[f64]) {
+        let scaled = self.scale(x);
+        self.columns.iter_mut().zip(scaled).for_each(|(column, x)| column.push(x));
+    }
+
+    /// Squared distances of a point from all.
+    pub fn distances2(&self, x: &[f64]) -> Vec<f64> {
+        let mut r2 = vec![0.0; self.columns.first().map_or(0, Vec::len)];
+        for (column, x) in self.columns.iter().zip(self.scale(x)) {
+            r2.iter_mut().zip(column).for_each(|(r2, c)| *r2 += (c - x) * (c - x));
+        }
+        r2
+    }
+}
+
 /// A Gaussian process conditioned on observations. Inputs in the unit cube, outputs in the
 /// units of the training values.
 #[derive(Debug, Clone)]
 pub struct Gp {
-    theta: Hyperparameters,
-    /// One over each length scale.
-    inverse_length: Vec<f64>,
     signal: f64,
     noise: f64,
-    /// Scaled inputs by axis: `columns[a][i]` is coordinate `a` of observation `i`.
-    columns: Vec<Vec<f64>>,
+    points: Scaled,
     /// About a constant mean.
     process: Process<1>,
 }
@@ -39,19 +71,17 @@ impl Gp {
         x: &[Vec<f64>],
         y: &[f64],
         noise_floor: f64,
-        theta: Hyperparameters,
+        theta: &Hyperparameters,
     ) -> Option<Self> {
         let signal = libm::exp(theta.log_signal);
-        let inverse_length: Vec<f64> = theta.log_length.iter().map(|l| libm::exp(-l)).collect();
-        let scaled = |(a, i): (usize, &f64)| x.iter().map(|p| p[a] * i).collect();
-        let columns: Vec<Vec<f64>> = inverse_length.iter().enumerate().map(scaled).collect();
-        let covariance = lower_covariance(&columns, signal, y.len());
+        let points = Scaled::new(x, theta);
+        let covariance = lower_covariance(&points.columns, signal, y.len());
         let mut noise = noise_floor + libm::exp(theta.log_noise);
         for _ in 0..8 {
             let mut noisy = covariance.clone();
             (0..y.len()).for_each(|i| noisy[(i, i)] += noise);
             if let Some(process) = Process::new(noisy, &vec![ONE; y.len()], y) {
-                return Some(Gp { theta, inverse_length, signal, noise, columns, process });
+                return Some(Gp { signal, noise, points, process });
             }
             noise = (noise * 10.0).max(1e-8 * signal);
         }
@@ -59,48 +89,37 @@ impl Gp {
     }
 
     /// Observations and believed points together.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.process.len()
-    }
-
-    /// Whether it is conditioned on nothing.
-    pub fn is_empty(&self) -> bool {
-        self.process.is_empty()
-    }
-
-    /// The hyperparameters.
-    pub fn hyperparameters(&self) -> &Hyperparameters {
-        &self.theta
     }
 
     /// Posterior mean and variance of the function (without noise) at a point; the variance
     /// holds that of the constant mean (ordinary kriging).
     pub fn predict(&self, x: &[f64]) -> (f64, f64) {
         let k = self.covariances(x);
-        (self.mean_at(&k), self.variance_at(&k))
+        (self.process.mean(&k, &ONE), self.process.variance(&k, &ONE, self.signal))
     }
 
     /// Posterior mean of the function at a point.
     pub fn mean(&self, x: &[f64]) -> f64 {
-        self.mean_at(&self.covariances(x))
+        self.process.mean(&self.covariances(x), &ONE)
     }
 
     /// Takes the posterior mean at `x` for observed (kriging believer). The mean stays as it is,
     /// the variance falls. Nothing changes if `x` cannot be told from points already there.
-    pub fn believe(&mut self, x: &[f64]) {
+    pub(super) fn believe(&mut self, x: &[f64]) {
         let k = self.covariances(x);
         if self.process.believe(&k, &ONE, self.signal + self.noise) {
-            let scaled = self.scale(x);
-            self.columns.iter_mut().zip(scaled).for_each(|(c, x)| c.push(x));
+            self.points.push(x);
         }
     }
 
     /// The posterior at a point with its derivatives.
     pub(super) fn sloped(&self, x: &[f64]) -> Sloped {
-        let scaled = self.scale(x);
-        let r2 = distances2(&self.columns, &scaled);
+        let points = &self.points;
+        let r2 = points.distances2(x);
         let k = covariances(&r2, self.signal);
-        let (factor, constant) = (self.process.factor(), self.process.linear_mean());
+        let (factor, constant) = (&self.process.factor, &self.process.mean);
         let half = half_solved(factor, &k);
         let variance = self.process.variance_of(&k, &ONE, self.signal, &half);
         let mut solved = half;
@@ -110,42 +129,29 @@ impl Gp {
         let by_k = -2.0 * (solved + leaning * to_mean);
         let mut slopes = (Vec::new(), Vec::new());
         for ((column, x), inverse_length) in
-            self.columns.iter().zip(&scaled).zip(&self.inverse_length)
+            points.columns.iter().zip(points.scale(x)).zip(&points.inverse_length)
         {
             let slope = |(c, r2): (&f64, &f64)| -2.0 * (x - c) * matern52_slope(*r2);
             let slope = DVector::from_iterator(self.len(), column.iter().zip(&r2).map(slope));
             slopes.0.push(self.signal * inverse_length * slope.dot(self.process.weights()));
             slopes.1.push(self.signal * inverse_length * slope.dot(&by_k));
         }
-        let mean = self.mean_at(&k);
+        let mean = self.process.mean(&k, &ONE);
         Sloped { mean, variance, mean_slope: slopes.0, variance_slope: slopes.1 }
     }
 
-    /// Posterior mean from the covariances `k` of a candidate.
-    pub(super) fn mean_at(&self, k: &DVector<f64>) -> f64 {
-        self.process.mean(k, &ONE)
-    }
-
-    /// A bound on the posterior variance that needs no triangular solution: that given the most
-    /// correlated observation alone, and that of the mean.
-    pub(super) fn variance_bound(&self, k: &DVector<f64>) -> f64 {
+    /// Posterior mean, and a bound on the variance that needs no triangular solution: that given
+    /// the most correlated observation alone, and that of the mean.
+    pub(super) fn bound(&self, x: &[f64]) -> (f64, f64) {
+        let k = self.covariances(x);
         let largest = k.iter().copied().fold(0.0, f64::max);
         let given = self.signal - largest * largest / (self.signal + self.noise);
-        given + self.process.linear_mean().variance(k, &ONE)
-    }
-
-    /// Posterior variance from the covariances `k` of a candidate.
-    pub(super) fn variance_at(&self, k: &DVector<f64>) -> f64 {
-        self.process.variance(k, &ONE, self.signal)
+        (self.process.mean(&k, &ONE), given + self.process.mean.variance(&k, &ONE))
     }
 
     /// Covariances of a point of the unit cube with all observations.
-    pub(super) fn covariances(&self, x: &[f64]) -> DVector<f64> {
-        covariances(&distances2(&self.columns, &self.scale(x)), self.signal)
-    }
-
-    fn scale(&self, x: &[f64]) -> Vec<f64> {
-        x.iter().zip(&self.inverse_length).map(|(x, i)| x * i).collect()
+    fn covariances(&self, x: &[f64]) -> DVector<f64> {
+        covariances(&self.points.distances2(x), self.signal)
     }
 }
 
@@ -161,15 +167,6 @@ fn lower_covariance(columns: &[Vec<f64>], signal: f64, n: usize) -> DMatrix<f64>
         lower.iter_mut().for_each(|r2| *r2 = signal * matern52(*r2));
     }
     covariance
-}
-
-/// Squared distances of a scaled point from the observations.
-pub(super) fn distances2(columns: &[Vec<f64>], scaled: &[f64]) -> Vec<f64> {
-    let mut r2 = vec![0.0; columns.first().map_or(0, Vec::len)];
-    for (column, x) in columns.iter().zip(scaled) {
-        r2.iter_mut().zip(column).for_each(|(r2, c)| *r2 += (c - x) * (c - x));
-    }
-    r2
 }
 
 /// Covariances at these squared distances.
@@ -188,13 +185,13 @@ mod tests {
     fn model() -> Gp {
         let x: Vec<Vec<f64>> = (0..9).map(|i| vec![f64::from(i) / 8.0]).collect();
         let y: Vec<f64> = x.iter().map(|p| (6.0 * p[0]).sin()).collect();
-        Gp::new(&x, &y, 1e-8, theta()).unwrap()
+        Gp::new(&x, &y, 1e-8, &theta()).unwrap()
     }
 
     #[test]
     fn one_observation_is_worked_by_hand() {
         let theta = Hyperparameters { log_length: vec![0.0], ..theta() };
-        let gp = Gp::new(&[vec![0.0]], &[2.0], 0.5, theta).unwrap();
+        let gp = Gp::new(&[vec![0.0]], &[2.0], 0.5, &theta).unwrap();
         // The constant mean takes the value, with a variance of 1.5; that of the rest is
         // 1 - k^2 / 1.5, and k / 1.5 of the mean is known from the value itself.
         let (mean, variance) = gp.predict(&[1.0]);
@@ -237,8 +234,8 @@ mod tests {
         for x in [0.03, 0.2, 0.77, 1.0] {
             let at = |x: f64| gp.predict(&[x]);
             let (mean, variance) = at(x);
-            let k = gp.covariances(&[x]);
-            assert!((gp.mean_at(&k) - mean).abs() < 1e-12 && gp.variance_bound(&k) >= variance);
+            let bound = gp.bound(&[x]);
+            assert!((bound.0 - mean).abs() < 1e-12 && bound.1 >= variance);
             let sloped = gp.sloped(&[x]);
             assert!(
                 (sloped.mean - mean).abs() < 1e-12 && (sloped.variance - variance).abs() < 1e-12
@@ -259,8 +256,8 @@ mod tests {
     #[test]
     fn duplicates_are_survived_and_nan_is_refused() {
         let x = vec![vec![0.5]; 6];
-        assert!(Gp::new(&x, &[1.0, 2.0, 1.0, 2.0, 0.0, 1.0], 0.0, theta()).is_some());
-        assert!(Gp::new(&x, &[f64::NAN; 6], 1e-8, theta()).is_none());
-        assert!(Gp::new(&[], &[], 1e-8, theta()).is_some_and(|gp| gp.is_empty()));
+        assert!(Gp::new(&x, &[1.0, 2.0, 1.0, 2.0, 0.0, 1.0], 0.0, &theta()).is_some());
+        assert!(Gp::new(&x, &[f64::NAN; 6], 1e-8, &theta()).is_none());
+        assert!(Gp::new(&[], &[], 1e-8, &theta()).is_some_and(|gp| gp.len() == 0));
     }
 }

@@ -1,22 +1,12 @@
 //! Processes of the points about a place, where one of all points would cost too much.
 
-use super::data::Standardised;
+use super::data::{Standardised, spread};
 use super::hyperparameters::Hyperparameters;
-use super::model::{Gp, distances2};
-use super::spread::spread;
-use super::trained::{Goal, Margin, Trained};
+use super::model::{Gp, Scaled};
+use super::trained::{Goal, Trained};
 
 /// Neighbours of a place of which a rough answer will do.
 pub(super) const FEW: usize = 24;
-
-/// One objective or constraint: its values, and how they vary.
-#[derive(Debug, Clone)]
-pub(super) struct Process {
-    /// In the model's units; of believed points, too.
-    pub data: Standardised,
-    /// Fitted to some of them.
-    pub theta: Hyperparameters,
-}
 
 /// All that is known, for models of a part of it (the local approximation of Gramacy and
 /// Apley 2015, J. Comput. Graph. Stat. 24:561, with the nearest points in place of chosen ones).
@@ -24,60 +14,53 @@ pub(super) struct Process {
 pub(super) struct Neighbours {
     /// The points, free axes alone.
     pub x: Vec<Vec<f64>>,
-    /// One over each length scale of the first objective.
-    inverse_length: Vec<f64>,
-    /// The points in these lengths, by axis.
-    columns: Vec<Vec<f64>>,
-    /// Those of the objectives.
-    pub objectives: Vec<Process>,
-    /// Those of the constraints.
-    pub margins: Vec<Process>,
-    /// What is looked for.
+    /// The points in the length scales of the first objective.
+    scaled: Scaled,
+    /// Values of the objectives, then of the constraints; of believed points, too.
+    pub data: Vec<Standardised>,
+    thetas: Vec<Hyperparameters>,
+    /// Values from which on the constraints are kept.
+    pub zeros: Vec<f64>,
     pub goal: Goal,
 }
 
 impl Neighbours {
-    /// Of the values of the processes at `x`; any point is looked for.
-    pub fn new(x: Vec<Vec<f64>>, objectives: Vec<Process>, margins: Vec<Process>) -> Self {
-        let inverse = |first: &Process| -> Vec<f64> {
-            first.theta.log_length.iter().map(|l| libm::exp(-l)).collect()
-        };
-        let inverse_length = objectives.first().map(inverse).unwrap_or_default();
-        let column = |(a, i): (usize, &f64)| x.iter().map(|x| x[a] * i).collect();
-        let columns = inverse_length.iter().enumerate().map(column).collect();
-        Neighbours { x, inverse_length, columns, objectives, margins, goal: Goal::Feasible }
+    /// Of the values at `x`, at least one objective's; any point is looked for.
+    pub fn new(
+        x: Vec<Vec<f64>>,
+        data: Vec<Standardised>,
+        thetas: Vec<Hyperparameters>,
+        zeros: Vec<f64>,
+    ) -> Self {
+        let scaled = Scaled::new(&x, &thetas[0]);
+        Neighbours { x, scaled, data, thetas, zeros, goal: Goal::Feasible }
     }
 
     /// The models of the `count` points nearest to a place and of a third as many spread over the
     /// others in the order in which they came: those nearest to an optimum crowd it, and know
     /// nothing of the slopes around. `None` if a model cannot be made.
     pub fn about(&self, place: &[f64], count: usize) -> Option<Trained> {
-        let chosen = self.chosen(place, count);
+        self.of(&self.chosen(place, count))
+    }
+
+    /// The models of these points.
+    pub fn of(&self, chosen: &[usize]) -> Option<Trained> {
         let x: Vec<Vec<f64>> = chosen.iter().map(|&i| self.x[i].clone()).collect();
-        let model = |process: &Process| {
-            let y: Vec<f64> = chosen.iter().map(|&i| process.data.values[i]).collect();
-            Gp::new(&x, &y, process.data.noise_floor, process.theta.clone())
+        let model = |(data, theta): (&Standardised, &Hyperparameters)| {
+            let y: Vec<f64> = chosen.iter().map(|&i| data.values[i]).collect();
+            Gp::new(&x, &y, data.noise_floor, theta)
         };
-        let margin =
-            |process: &Process| Some(Margin { gp: model(process)?, zero: process.data.zero });
-        Some(Trained {
-            objectives: self.objectives.iter().map(model).collect::<Option<_>>()?,
-            margins: self.margins.iter().map(margin).collect::<Option<_>>()?,
-            goal: self.goal.clone(),
-        })
+        let models = self.data.iter().zip(&self.thetas).map(model).collect::<Option<_>>()?;
+        Some(Trained { models, zeros: self.zeros.clone(), goal: self.goal.clone() })
     }
 
     /// Takes the means at a point for observed there, as [`Trained::believe`].
     pub fn believe(&mut self, x: &[f64]) {
         let Some(mut near) = self.about(x, FEW) else { return };
-        let scaled = self.scale(x);
-        self.columns.iter_mut().zip(scaled).for_each(|(column, x)| column.push(x));
+        self.scaled.push(x);
         self.x.push(x.to_vec());
-        for (process, gp) in self.objectives.iter_mut().zip(&near.objectives) {
-            process.data.values.push(gp.mean(x));
-        }
-        for (process, margin) in self.margins.iter_mut().zip(&near.margins) {
-            process.data.values.push(margin.gp.mean(x));
+        for (data, gp) in self.data.iter_mut().zip(&near.models) {
+            data.values.push(gp.mean(x));
         }
         near.believe(x);
         self.goal = near.goal;
@@ -86,7 +69,7 @@ impl Neighbours {
     /// Half the edges of a box about a place in which the nearest `count` points say enough.
     pub fn reach(&self, place: &[f64], count: usize) -> Vec<f64> {
         let far = self.by_distance(place, count).last().map_or(0.0, |&(r2, _)| r2.sqrt());
-        self.inverse_length.iter().map(|i| 0.5 * far / i).collect()
+        self.scaled.inverse_length.iter().map(|i| 0.5 * far / i).collect()
     }
 
     /// Ascending.
@@ -100,18 +83,14 @@ impl Neighbours {
 
     /// The nearest points with their squared distances, the farthest of them last.
     fn by_distance(&self, place: &[f64], count: usize) -> Vec<(f64, usize)> {
-        let r2 = distances2(&self.columns, &self.scale(place));
-        let mut near: Vec<(f64, usize)> = r2.into_iter().zip(0..).collect();
+        let mut near: Vec<(f64, usize)> =
+            self.scaled.distances2(place).into_iter().zip(0..).collect();
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         if (1..near.len()).contains(&count) {
             near.select_nth_unstable_by(count - 1, order);
             near.truncate(count);
         }
         near
-    }
-
-    fn scale(&self, x: &[f64]) -> Vec<f64> {
-        x.iter().zip(&self.inverse_length).map(|(x, i)| x * i).collect()
     }
 }
 
@@ -126,14 +105,14 @@ mod tests {
         let data = Standardised { values, noise_floor: 1e-6, zero: 0.0 };
         let theta =
             Hyperparameters { log_length: vec![-1.0, 0.0], log_signal: 0.0, log_noise: -12.0 };
-        Neighbours::new(x, vec![Process { data, theta }], Vec::new())
+        Neighbours::new(x, vec![data], vec![theta], Vec::new())
     }
 
     #[test]
     fn neighbours_of_a_place_say_there_what_all_points_say() {
         let known = known();
         let place = [0.4, 0.5];
-        let of = |count| known.about(&place, count).unwrap().objectives[0].predict(&place);
+        let of = |count| known.about(&place, count).unwrap().models[0].predict(&place);
         let (whole, near) = (of(60), of(24));
         assert!((whole.0 - near.0).abs() < 0.02, "{whole:?} {near:?}");
         // What is left out is not known: the variance can only be larger.
@@ -157,8 +136,7 @@ mod tests {
     fn a_believed_point_is_known_with_its_mean() {
         let mut known = known();
         let place = [0.11, 0.93];
-        let at =
-            |known: &Neighbours| known.about(&place, 30).unwrap().objectives[0].predict(&place);
+        let at = |known: &Neighbours| known.about(&place, 30).unwrap().models[0].predict(&place);
         let before = at(&known);
         known.believe(&place);
         let after = at(&known);

@@ -1,11 +1,10 @@
 //! The optimizer around the model.
 
-use super::model::Gp;
 use super::search::Room;
 use super::training::{Model, Training};
-use crate::GridPoint;
+use crate::proposed::Proposed;
 use crate::sobol::SobolSequence;
-use crate::{Grid, Observation, Optimizer, Proposed, StopReason};
+use crate::{Grid, GridPoint, Observation, Optimizer, StopReason};
 
 /// Default least standard deviation of the noise, in objective units: that of a value rounded
 /// to steps of 0.1, 0.1 / sqrt(12).
@@ -15,27 +14,25 @@ const WHOLE: usize = 250;
 
 /// Bayesian optimization over a grid. **Maximises.**
 ///
-/// - *First design*: `d + 1` points of a scrambled Sobol sequence, at least 3, `d` the number of
-///   axes with more than one level.
+/// - *First design*: a scrambled Sobol sequence, one point more than free axes, at least 3.
 /// - *Then*: the unseen point with the largest log expected improvement over the best posterior
-///   mean at an observed point. Hyperparameters are refitted when new values were told.
-/// - *Constraints*: each has a model of its own. What is maximised is the improvement over the
-///   best feasible point times the probability of feasibility; that probability alone while no
-///   feasible point is known.
-/// - *Several objectives*: each has a model of its own (not warped); what is maximised is the
-///   expected hypervolume improvement over the front of the posterior means.
+///   mean at an observed point.
+/// - *Constraints*: the improvement over the best feasible point times the probability of
+///   feasibility; that alone while no feasible point is known.
+/// - *Several objectives* (not warped): the expected hypervolume improvement over the front of the
+///   posterior means.
 /// - *Beyond 250 points* processes of the nearest ones stand for the whole, and hyperparameters are
 ///   refitted, to 200 of the points, at each twentieth more: the cost then grows little.
 /// - *Batches*, and points asked and not yet told: kriging believer.
 /// - *No value* (`None`, NaN, infinite) is taught as the worst value seen so far.
-/// - Whenever the model has nothing to say (no values, no finite acquisition), the
-///   Sobol sequence goes on, and after it unseen points are drawn at random.
+/// - Where the model has nothing to say, the Sobol sequence goes on, and after it random points.
 #[derive(Debug, Clone)]
-pub struct GpOptimizer {
+pub(crate) struct GpOptimizer {
     proposed: Proposed,
     training: Training,
     seed: u64,
-    free: Vec<usize>,
+    /// Axes with more than one level.
+    free: u64,
     design: SobolSequence,
     told: Vec<Observation>,
     /// Asked and not told.
@@ -46,43 +43,23 @@ pub struct GpOptimizer {
 }
 
 impl GpOptimizer {
-    /// With the default noise floor.
-    pub fn new(grid: Grid, seed: u64) -> Self {
-        Self::with_noise_floors(grid, seed, &[DEFAULT_NOISE_FLOOR])
-    }
-
     /// `noise_floors`: least standard deviation of the noise of each objective, in its units;
     /// what is missing or not a positive number counts as zero.
-    pub fn with_noise_floors(grid: Grid, seed: u64, noise_floors: &[f64]) -> Self {
-        let free = grid.free_axes();
+    pub fn new(grid: Grid, seed: u64, noise_floors: &[f64]) -> Self {
         GpOptimizer {
+            free: grid.free_axes().len() as u64,
             design: SobolSequence::new(grid.dimension(), seed, 0, "gp design"),
             proposed: Proposed::new(grid, seed),
             training: Training::new(noise_floors),
             seed,
-            free,
             told: Vec::new(),
             pending: Vec::new(),
             model: None,
         }
     }
 
-    /// The model of the first objective of all that was told, `None` while there is none, or
-    /// none of all.
-    pub fn model(&self) -> Option<&Gp> {
-        match &self.model {
-            Some((Model::Whole(trained), _)) => trained.objectives.first(),
-            _ => None,
-        }
-    }
-
-    fn design_size(&self) -> u64 {
-        (self.free.len() as u64 + 1).max(3)
-    }
-
     fn unit(&self, point: &GridPoint) -> Vec<f64> {
-        let unit = self.proposed.grid().unit(point);
-        self.free.iter().map(|&a| unit[a]).collect()
+        self.proposed.grid().free_unit(point)
     }
 
     /// Fits and conditions the models for an ask of `n` points, unless that was done for these
@@ -92,31 +69,9 @@ impl GpOptimizer {
         let fits = |(model, _): &(Model, _)| matches!(model, Model::Whole(_)) == whole;
         if !self.model.as_ref().is_some_and(fits) {
             let x: Vec<Vec<f64>> = self.told.iter().map(|o| self.unit(&o.point)).collect();
-            self.model = match whole {
-                true => self.training.whole(&self.told, &x),
-                false => self.training.local(&self.told, x),
-            };
+            self.model = self.training.model(&self.told, x, whole);
         }
         self.model.clone()
-    }
-
-    fn suggest(&self, model: &Model, incumbents: &[GridPoint]) -> Option<GridPoint> {
-        let (proposed, free, seed) = (&self.proposed, &self.free, self.seed);
-        model.suggest(Room { proposed, free, incumbents, seed })
-    }
-
-    /// The next cell of the Sobol sequence, or any unseen point.
-    fn fill(&mut self) -> Option<GridPoint> {
-        for unit in self.design.by_ref() {
-            let point = self.proposed.grid().cell(&unit);
-            if !self.proposed.contains(&point) {
-                return Some(point);
-            }
-            if self.proposed.exhausted() {
-                return None;
-            }
-        }
-        None
     }
 }
 
@@ -126,7 +81,7 @@ impl Optimizer for GpOptimizer {
         let mut model: Option<(Model, Vec<GridPoint>)> = None;
         while points.len() < n && !self.proposed.exhausted() {
             let mut found = None;
-            if self.proposed.len() >= self.design_size() && !self.free.is_empty() {
+            if self.proposed.len() >= (self.free + 1).max(3) && self.free > 0 {
                 if model.is_none() {
                     model = self.train(n);
                     if let Some((model, _)) = &mut model {
@@ -135,9 +90,17 @@ impl Optimizer for GpOptimizer {
                         }
                     }
                 }
-                found = model.as_ref().and_then(|(m, starts)| self.suggest(m, starts));
+                let (proposed, seed) = (&self.proposed, self.seed);
+                found = model.as_ref().and_then(|(model, incumbents)| {
+                    model.suggest(Room { proposed, incumbents, seed })
+                });
             }
-            let found = found.or_else(|| self.fill()).filter(|p| self.proposed.insert(p));
+            if found.is_none() {
+                let grid = self.proposed.grid();
+                let mut cells = self.design.by_ref().map(|unit| grid.cell(&unit));
+                found = cells.find(|point| !self.proposed.contains(point));
+            }
+            let found = found.filter(|point| self.proposed.insert(point));
             let Some(point) = found.or_else(|| self.proposed.next_unseen()) else { break };
             if let Some((model, _)) = &mut model {
                 model.believe(&self.unit(&point));

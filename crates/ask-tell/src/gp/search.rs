@@ -2,10 +2,10 @@
 
 use super::lbfgs::{Limits, minimise};
 use super::trained::Trained;
-use crate::GridPoint;
+use crate::proposed::Proposed;
 use crate::sobol::SobolSequence;
 use crate::stream::stream;
-use crate::{Grid, Proposed};
+use crate::{Grid, GridPoint};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use std::collections::BTreeMap;
@@ -25,8 +25,6 @@ const MOST_SLOPES: usize = 40;
 #[derive(Clone, Copy)]
 pub(super) struct Room<'a> {
     pub proposed: &'a Proposed,
-    /// Axes with more than one level: the model's axes.
-    pub free: &'a [usize],
     /// Good points to start from, best first.
     pub incumbents: &'a [GridPoint],
     /// Names the streams.
@@ -46,7 +44,8 @@ impl Search<'_> {
     /// The unseen grid point found with the largest acquisition; `None` if no unseen point
     /// was met or none has a finite one.
     pub fn maximise(&self) -> Option<GridPoint> {
-        let (size, known) = (self.room.grid().size(), self.trained.len() * self.trained.models());
+        let (size, known) =
+            (self.room.grid().size(), self.trained.len() * self.trained.models.len());
         if size <= EXHAUSTIVE && size.saturating_mul(known as u64) <= EXHAUSTIVE_WORK {
             return self.exhaustive();
         }
@@ -54,11 +53,12 @@ impl Search<'_> {
     }
 
     /// Every unseen point, exactly: log expected improvement grows with the variance, so a bound
-    /// of the variance bounds it, and constraints only take away from it. Points are taken by falling bound until the bound is
-    /// below the best found, and few need the triangular solve.
+    /// of the variance bounds it, and constraints only take away from it. Points are taken by
+    /// falling bound until it is below the best found, and few need the triangular solve.
     fn exhaustive(&self) -> Option<GridPoint> {
-        let unseen = self.room.every_point().filter(|point| !self.room.proposed.contains(point));
-        let bound = |point: GridPoint| (self.trained.bound(&self.room.unit(&point)), point);
+        let unseen = self.room.grid().points().filter(|point| !self.room.proposed.contains(point));
+        let bound =
+            |point: GridPoint| (self.trained.bound(&self.room.grid().free_unit(&point)), point);
         let mut bounds: Vec<(f64, GridPoint)> = unseen.map(bound).collect();
         // Equal bounds stay in lexicographic order: the sort is stable.
         bounds.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -68,7 +68,7 @@ impl Search<'_> {
             if bound <= record {
                 break;
             }
-            let value = self.trained.acquisition(&self.room.unit(&point));
+            let value = self.trained.acquisition(&self.room.grid().free_unit(&point));
             if value > record {
                 best = Some((value, point));
             }
@@ -79,7 +79,7 @@ impl Search<'_> {
     /// Sobol points and perturbations of the incumbents, the best of them improved by L-BFGS
     /// within the cube and by single levels about the grid point nearest to where it ends.
     fn sampled(&self) -> Option<GridPoint> {
-        let (n, models) = (self.trained.len(), self.trained.models().max(1));
+        let (n, models) = (self.trained.len(), self.trained.models.len());
         // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
         let budget = (6_000_000 / models / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
         let mut memory = Memory::new();
@@ -89,52 +89,44 @@ impl Search<'_> {
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         ranked.truncate(STARTS);
         let share = (budget - budget / 3) / ranked.len().max(1);
+        let axes = self.room.grid().free_axes().len();
+        let evaluations = (share / 2 / COST_OF_SLOPE).min(MOST_SLOPES);
+        let limits = Limits { low: &vec![0.0; axes], high: &vec![1.0; axes], evaluations };
         for (_, point) in ranked {
-            let top = self.ascend(&point, (share / 2 / COST_OF_SLOPE).min(MOST_SLOPES));
+            let top = self.ascend(&point, &limits);
             self.step_uphill(top, share / 2, &mut memory);
         }
         self.room.best_unseen(memory).map(|(point, _)| point)
     }
 
-    /// The grid point nearest to where L-BFGS ends within the cube.
-    fn ascend(&self, from: &GridPoint, evaluations: usize) -> GridPoint {
-        let axes = self.room.free.len();
-        let limits = Limits { low: &vec![0.0; axes], high: &vec![1.0; axes], evaluations };
-        self.ascend_within(from, &limits)
-    }
-
     /// The grid point nearest to where L-BFGS ends within a box.
-    pub(super) fn ascend_within(&self, from: &GridPoint, limits: &Limits) -> GridPoint {
+    pub fn ascend(&self, from: &GridPoint, limits: &Limits) -> GridPoint {
         let negated = |x: &[f64]| {
             let (value, slope) = self.trained.sloped_acquisition(x)?;
             Some((-value, slope.into_iter().map(|g| -g).collect()))
         };
-        let Some((top, _)) = minimise(negated, &self.room.unit(from), limits) else {
+        let Some((top, _)) = minimise(negated, &self.room.grid().free_unit(from), limits) else {
             return from.clone();
         };
         self.room.grid().folded(&top)
     }
 
     pub fn value(&self, point: &GridPoint, memory: &mut Memory) -> f64 {
-        if let Some(&value) = memory.get(point) {
-            return value;
-        }
-        let value = self.trained.acquisition(&self.room.unit(point));
-        memory.insert(point.clone(), value);
-        value
+        let acquisition = || self.trained.acquisition(&self.room.grid().free_unit(point));
+        *memory.entry(point.clone()).or_insert_with(acquisition)
     }
 
     /// Single levels along each axis while they improve and `budget` lasts. Leaves every point
     /// it tried in `memory`.
     pub fn step_uphill(&self, mut at: GridPoint, mut budget: usize, memory: &mut Memory) {
         let mut value = self.value(&at, memory);
-        let mut axes_left = self.room.free.len();
-        for &axis in self.room.free.iter().cycle() {
+        let free = self.room.grid().free_axes();
+        let mut axes_left = free.len();
+        for &axis in free.iter().cycle() {
+            let levels = self.room.grid().levels()[axis];
             let beside = [at.0[axis].checked_add(1), at.0[axis].checked_sub(1)];
             let mut improved = false;
-            for level in
-                beside.into_iter().flatten().filter(|&k| k < self.room.grid().levels()[axis])
-            {
+            for level in beside.into_iter().flatten().filter(|&k| k < levels) {
                 if budget == 0 {
                     return;
                 }
@@ -147,7 +139,7 @@ impl Search<'_> {
                     break;
                 }
             }
-            axes_left = if improved { self.room.free.len() } else { axes_left - 1 };
+            axes_left = if improved { free.len() } else { axes_left - 1 };
             if axes_left == 0 {
                 return;
             }
@@ -160,30 +152,11 @@ impl Room<'_> {
         self.proposed.grid()
     }
 
-    /// The model's coordinates of a point.
-    pub fn unit(&self, point: &GridPoint) -> Vec<f64> {
-        let unit = self.grid().unit(point);
-        self.free.iter().map(|&a| unit[a]).collect()
-    }
-
     /// The unseen point of the largest finite value.
     pub fn best_unseen(&self, memory: Memory) -> Option<(GridPoint, f64)> {
         let unseen = memory.into_iter().filter(|(p, _)| !self.proposed.contains(p));
         let finite = unseen.filter(|(_, v)| *v > f64::NEG_INFINITY);
         finite.reduce(|a, b| if b.1 > a.1 { b } else { a })
-    }
-
-    /// Every point in lexicographic order.
-    pub fn every_point(&self) -> impl Iterator<Item = GridPoint> {
-        let mut next = Some(GridPoint(vec![0; self.grid().dimension()]));
-        std::iter::from_fn(move || {
-            let point = next.take()?;
-            let mut after = point.clone();
-            if advance(&mut after, self.grid().levels()) {
-                next = Some(after);
-            }
-            Some(point)
-        })
     }
 
     /// Sobol points and perturbations of the incumbents, half and half; ascending.
@@ -208,18 +181,6 @@ impl Room<'_> {
     }
 }
 
-/// The next point in lexicographic order; false, and the first point again, after the last.
-fn advance(point: &mut GridPoint, levels: &[u32]) -> bool {
-    for (k, &n) in point.0.iter_mut().zip(levels).rev() {
-        if *k + 1 < n {
-            *k += 1;
-            return true;
-        }
-        *k = 0;
-    }
-    false
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::hyperparameters::Hyperparameters;
@@ -235,24 +196,21 @@ mod tests {
         let y: Vec<f64> = x.iter().map(|p| (7.0 * p[0]).sin() * (5.0 * p[1]).cos()).collect();
         let theta =
             Hyperparameters { log_length: vec![-1.2, -1.0], log_signal: 0.0, log_noise: -12.0 };
-        let gp = Gp::new(&x, &y, 1e-6, theta).unwrap();
+        let gp = Gp::new(&x, &y, 1e-6, &theta).unwrap();
         let mut proposed = Proposed::new(Grid::new(vec![31, 1, 29]), 0);
         for k in 0..15 {
             proposed.insert(&GridPoint(vec![2 * k, 0, k]));
         }
         let best = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let free = [0, 2];
-        let trained =
-            Trained { objectives: vec![gp], margins: Vec::new(), goal: Goal::Improve(best) };
-        let (proposed, free) = (&proposed, &free);
-        let room = Room { proposed, free, incumbents: &[], seed: 0 };
+        let trained = Trained { models: vec![gp], zeros: Vec::new(), goal: Goal::Improve(best) };
+        let proposed = &proposed;
+        let room = Room { proposed, incumbents: &[], seed: 0 };
         let search = Search { trained: &trained, room };
         let found = search.exhaustive().unwrap();
         let mut memory = BTreeMap::new();
         let value = search.value(&found, &mut memory);
         assert!(!proposed.contains(&found));
-        let mut point = GridPoint(vec![0; 3]);
-        while advance(&mut point, proposed.grid().levels()) {
+        for point in proposed.grid().points() {
             let other = search.value(&point, &mut memory);
             assert!(proposed.contains(&point) || other <= value + 1e-9);
         }

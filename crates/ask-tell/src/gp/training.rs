@@ -1,17 +1,14 @@
 //! From what was told to models.
 
-use super::data::{Standardised, standardise};
+use super::data::{Standardised, spread, standardise};
 use super::fit::{FitEffort, fit};
 use super::hyperparameters::Hyperparameters;
-use super::local_search::LocalSearch;
-use super::model::Gp;
-use super::neighbours::{FEW, Neighbours, Process};
+use super::local_search;
+use super::neighbours::{FEW, Neighbours};
 use super::search::{Room, Search};
-use super::spread::spread;
-use super::trained::{Front, Goal, Margin, Trained};
-use crate::GridPoint;
-use crate::Observation;
+use super::trained::{Front, Goal, Trained};
 use crate::pareto::front;
+use crate::{GridPoint, Observation};
 
 /// Points around which the acquisition is searched more closely.
 const INCUMBENTS: usize = 4;
@@ -47,7 +44,7 @@ impl Model {
     pub fn suggest(&self, room: Room) -> Option<GridPoint> {
         match self {
             Model::Whole(trained) => Search { trained, room }.maximise(),
-            Model::Local(known) => LocalSearch { known, room }.maximise(),
+            Model::Local(known) => local_search::maximise(known, room),
         }
     }
 }
@@ -72,63 +69,60 @@ impl Training {
         Training { noise_floors, thetas: Vec::new(), fitted: 0 }
     }
 
-    /// The models of what was `told` at `x`, and good points to start a search from, best first.
-    pub fn whole(
-        &mut self,
-        told: &[Observation],
-        x: &[Vec<f64>],
-    ) -> Option<(Model, Vec<GridPoint>)> {
-        let (objectives, constraints) = self.standardised(told)?;
-        let thetas = self.fitted(x, objectives.iter().chain(&constraints), None);
-        let model = |(data, theta): (&Standardised, &Hyperparameters)| {
-            Gp::new(x, &data.values, data.noise_floor, theta.clone())
-        };
-        let (of_objectives, of_constraints) = thetas.split_at(objectives.len());
-        let margin = |(data, theta): (&Standardised, &Hyperparameters)| {
-            Some(Margin { gp: model((data, theta))?, zero: data.zero })
-        };
-        let mut trained = Trained {
-            objectives: objectives.iter().zip(of_objectives).map(model).collect::<Option<_>>()?,
-            margins: constraints.iter().zip(of_constraints).map(margin).collect::<Option<_>>()?,
-            goal: Goal::Feasible,
-        };
-        (self.thetas, self.fitted) = (thetas, x.len());
-        let (goal, starts) = goal_of_whole(&trained, told, x)?;
-        trained.goal = goal;
-        Some((Model::Whole(trained), starts))
-    }
-
-    /// The same with models of the neighbours of a place.
-    pub fn local(
+    /// Models of what was `told` at `x`, of the whole of it or of the neighbours of a place, and
+    /// good points to start a search from, best first.
+    pub fn model(
         &mut self,
         told: &[Observation],
         x: Vec<Vec<f64>>,
+        whole: bool,
     ) -> Option<(Model, Vec<GridPoint>)> {
-        let (objectives, constraints) = self.standardised(told)?;
-        let models = objectives.len() + constraints.len();
-        let due = x.len() <= FITTED || x.len() >= self.fitted + self.fitted / REFIT;
-        if due || self.thetas.len() != models {
-            let some = some_of(&objectives, x.len());
-            let all = objectives.iter().chain(&constraints);
-            self.thetas = self.fitted(&x, all, some.as_deref());
-            self.fitted = x.len();
+        let (data, zeros) = self.standardised(told)?;
+        let (n, constrained) = (x.len(), !zeros.is_empty());
+        let due = whole || n <= FITTED || n >= self.fitted + self.fitted / REFIT;
+        if due || self.thetas.len() != data.len() {
+            let (some, effort) = match whole || n <= FITTED {
+                true => ((0..n).collect(), FitEffort::for_observations(n)),
+                false => (some_of(&data[0].values), EFFORT),
+            };
+            self.thetas = self.fitted(&x, &data, &some, effort);
+            self.fitted = n;
         }
-        let process = |(data, theta): (Standardised, &Hyperparameters)| Process {
-            data,
-            theta: theta.clone(),
+        let mut known = Neighbours::new(x, data, self.thetas.clone(), zeros);
+        if whole {
+            let mut trained = known.of(&(0..n).collect::<Vec<_>>())?;
+            let (x, objectives) = (&known.x, &trained.models[..trained.objectives()]);
+            let margin = |i: usize| trained.acquisition(&x[i]);
+            let leaders = |feasible| best_first(|i| objectives[0].mean(&x[i]), feasible);
+            let means = |i: usize| objectives.iter().map(|gp| gp.mean(&x[i])).collect();
+            let (goal, starts) = goal(told, constrained, margin, leaders, means)?;
+            trained.goal = goal;
+            return Some((Model::Whole(trained), starts));
+        }
+        // Told values are taken for means where there are many.
+        let (objectives, margins) = known.data.split_at(known.data.len() - known.zeros.len());
+        let margin = |i: usize| {
+            let margins =
+                margins.iter().zip(&known.zeros).map(|(data, zero)| data.values[i] - zero);
+            margins.fold(f64::INFINITY, f64::min)
         };
-        let (of_objectives, of_constraints) = self.thetas.split_at(objectives.len());
-        let objectives = objectives.into_iter().zip(of_objectives).map(process).collect();
-        let constraints = constraints.into_iter().zip(of_constraints).map(process).collect();
-        let mut known = Neighbours::new(x, objectives, constraints);
-        let (goal, starts) = goal_of_neighbours(&known, told)?;
+        let mean = |i: usize| {
+            let near = known.about(&known.x[i], FEW);
+            near.map_or(f64::NEG_INFINITY, |near| near.models[0].mean(&known.x[i]))
+        };
+        let leaders = |feasible: Vec<usize>| {
+            let among = best_first(|i| objectives[0].values[i], feasible);
+            best_first(mean, among.into_iter().take(LEADERS).map(|(_, i)| i))
+        };
+        let means = |i: usize| objectives.iter().map(|data| data.values[i]).collect();
+        let (goal, starts) = goal(told, constrained, margin, leaders, means)?;
         known.goal = goal;
         Some((Model::Local(known), starts))
     }
 
-    /// Values of the objectives and margins of the constraints in the models' units; `None` if
-    /// nothing has a value.
-    fn standardised(&self, told: &[Observation]) -> Option<(Vec<Standardised>, Vec<Standardised>)> {
+    /// Values of the objectives, then margins of the constraints in the models' units, and the
+    /// zeros of these; `None` if nothing has a value.
+    fn standardised(&self, told: &[Observation]) -> Option<(Vec<Standardised>, Vec<f64>)> {
         let count = |of: fn(&Observation) -> usize| told.iter().map(of).max().unwrap_or(0);
         let (objectives, constraints) = (count(|o| o.values.len()), count(|o| o.violations.len()));
         if objectives == 0 {
@@ -145,118 +139,75 @@ impl Training {
                 told.iter().map(|o| o.violations.get(i).map(|v| -v)).collect();
             standardise(&values, 0.0)
         };
-        let objectives = (0..objectives).map(objective).collect::<Option<_>>()?;
-        Some((objectives, (0..constraints).map(margin).collect::<Option<_>>()?))
+        let all = (0..objectives).map(objective).chain((0..constraints).map(margin));
+        let data = all.collect::<Option<Vec<_>>>()?;
+        let zeros = data[objectives..].iter().map(|data| data.zero).collect();
+        Some((data, zeros))
     }
 
-    /// Hyperparameters of each, fitted from those it had before, to `some` of its values or all.
-    fn fitted<'a>(
+    /// Hyperparameters of each, fitted to some of its values from those it had before.
+    fn fitted(
         &self,
         x: &[Vec<f64>],
-        data: impl Iterator<Item = &'a Standardised>,
-        some: Option<&[usize]>,
+        data: &[Standardised],
+        some: &[usize],
+        effort: FitEffort,
     ) -> Vec<Hyperparameters> {
+        let x: Vec<Vec<f64>> = some.iter().map(|&i| x[i].clone()).collect();
         let of = |(i, data): (usize, &Standardised)| {
-            let warm = self.thetas.get(i);
-            let Some(some) = some else {
-                let effort = FitEffort::for_observations(x.len());
-                return fit(x, &data.values, data.noise_floor, warm, effort);
-            };
-            let x: Vec<Vec<f64>> = some.iter().map(|&i| x[i].clone()).collect();
             let y: Vec<f64> = some.iter().map(|&i| data.values[i]).collect();
-            fit(&x, &y, data.noise_floor, warm, EFFORT)
+            fit(&x, &y, data.noise_floor, self.thetas.get(i), effort)
         };
-        data.enumerate().map(of).collect()
+        data.iter().enumerate().map(of).collect()
     }
 }
 
-/// Which of `n` values are fitted to: the largest of the first objective, about which the search
-/// goes on, and as many evenly of all; `None` for all.
-fn some_of(objectives: &[Standardised], n: usize) -> Option<Vec<usize>> {
-    if n <= FITTED {
-        return None;
-    }
-    let mut some: Vec<usize> = spread(n, FITTED / 2).collect();
-    some.extend(leaders(&objectives.first()?.values, |_| true).take(FITTED / 2));
+/// Which of many values are fitted to: the largest, about which the search goes on, and as many
+/// evenly of all.
+fn some_of(values: &[f64]) -> Vec<usize> {
+    let n = values.len();
+    let leaders = best_first(|i| values[i], 0..n).into_iter().take(FITTED / 2);
+    let mut some: Vec<usize> = spread(n, FITTED / 2).chain(leaders.map(|(_, i)| i)).collect();
     some.sort_unstable();
     some.dedup();
-    Some(some)
-}
-
-/// Places of the values that count, the largest value first.
-fn leaders(values: &[f64], counts: impl Fn(usize) -> bool) -> impl Iterator<Item = usize> {
-    let mut places: Vec<usize> = (0..values.len()).filter(|&i| counts(i)).collect();
-    places.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-    places.into_iter()
+    some
 }
 
 /// Places with their numbers, the largest number first.
-fn best_first(of: impl Fn(usize) -> f64, among: impl Iterator<Item = usize>) -> Vec<(f64, usize)> {
-    let mut ranked: Vec<(f64, usize)> = among.map(|i| (of(i), i)).collect();
+fn best_first(
+    of: impl Fn(usize) -> f64,
+    among: impl IntoIterator<Item = usize>,
+) -> Vec<(f64, usize)> {
+    let mut ranked: Vec<(f64, usize)> = among.into_iter().map(|i| (of(i), i)).collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     ranked
 }
 
-/// What is looked for by what was told at `x`, and good points to start from.
-fn goal_of_whole(
-    trained: &Trained,
+/// The goal by what was told, and good points to start from. `margin` tells how likely a place
+/// keeps the constraints; `leaders` ranks places by the means of the only objective; `means` are
+/// those of all objectives.
+fn goal(
     told: &[Observation],
-    x: &[Vec<f64>],
+    constrained: bool,
+    margin: impl Fn(usize) -> f64,
+    leaders: impl Fn(Vec<usize>) -> Vec<(f64, usize)>,
+    means: impl Fn(usize) -> Vec<f64>,
 ) -> Option<(Goal, Vec<GridPoint>)> {
-    let known = known(told, trained.margins.is_empty());
-    let points = |ranked: Vec<(f64, usize)>| {
-        ranked.iter().take(INCUMBENTS).map(|&(_, i)| told[i].point.clone()).collect()
-    };
-    if known.is_empty() {
-        let ranked = best_first(|i| trained.log_feasible(&x[i]), 0..x.len());
-        return Some((Goal::Feasible, points(ranked)));
-    }
-    if let [gp] = &trained.objectives[..] {
-        let ranked = best_first(|i| gp.predict(&x[i]).0, known.into_iter());
-        return Some((Goal::Improve(ranked.first()?.0), points(ranked)));
-    }
-    let means = |x: &Vec<f64>| trained.objectives.iter().map(|gp| gp.predict(x).0).collect();
-    Some(volume(&x.iter().map(means).collect::<Vec<_>>(), &known, told))
-}
-
-/// The same of neighbours, whose told values are taken for means where there are many.
-fn goal_of_neighbours(known: &Neighbours, told: &[Observation]) -> Option<(Goal, Vec<GridPoint>)> {
-    let feasible = self::known(told, known.margins.is_empty());
+    let all = 0..told.len();
+    let feasible: Vec<usize> =
+        all.clone().filter(|&i| !constrained || told[i].feasible()).collect();
     let point = |i: usize| told[i].point.clone();
-    if feasible.is_empty() {
-        let margin = |i: usize| {
-            let margins = known.margins.iter().map(|p| p.data.values[i] - p.data.zero);
-            margins.fold(f64::INFINITY, f64::min)
-        };
-        let ranked = best_first(margin, 0..told.len());
-        return Some((
-            Goal::Feasible,
-            ranked.iter().take(INCUMBENTS).map(|r| point(r.1)).collect(),
-        ));
+    if !feasible.is_empty() && told.iter().any(|o| o.values.len() > 1) {
+        let all: Vec<Vec<f64>> = all.map(means).collect();
+        let among: Vec<Vec<f64>> = feasible.iter().map(|&i| all[i].clone()).collect();
+        let starts = front(&among).into_iter().map(|i| point(feasible[i])).collect();
+        return Some((Goal::Volume(Front::new(&among, &all)), starts));
     }
-    if let [objective] = &known.objectives[..] {
-        let among = best_first(|i| objective.data.values[i], feasible.into_iter());
-        let mean = |i: usize| {
-            let x = &known.x[i];
-            known.about(x, FEW).and_then(|near| Some(near.objectives.first()?.mean(x)))
-        };
-        let leaders = among.iter().take(LEADERS).map(|&(_, i)| i);
-        let ranked = best_first(|i| mean(i).unwrap_or(f64::NEG_INFINITY), leaders);
-        let starts = ranked.iter().take(INCUMBENTS).map(|r| point(r.1)).collect();
-        return Some((Goal::Improve(ranked.first()?.0), starts));
-    }
-    let means = |i: usize| known.objectives.iter().map(|p| p.data.values[i]).collect();
-    Some(volume(&(0..told.len()).map(means).collect::<Vec<_>>(), &feasible, told))
-}
-
-/// Which points may be the best: the feasible ones.
-fn known(told: &[Observation], unconstrained: bool) -> Vec<usize> {
-    (0..told.len()).filter(|&i| unconstrained || told[i].feasible()).collect()
-}
-
-/// Volume beyond the front of the means of the feasible points, and its points.
-fn volume(all: &[Vec<f64>], feasible: &[usize], told: &[Observation]) -> (Goal, Vec<GridPoint>) {
-    let among: Vec<Vec<f64>> = feasible.iter().map(|&i| all[i].clone()).collect();
-    let starts = front(&among).into_iter().map(|i| told[feasible[i]].point.clone()).collect();
-    (Goal::Volume(Front::new(&among, all)), starts)
+    let (goal, ranked) = if feasible.is_empty() {
+        (Goal::Feasible, best_first(margin, all))
+    } else {
+        let ranked = leaders(feasible);
+        (Goal::Improve(ranked.first()?.0), ranked)
+    };
+    Some((goal, ranked.into_iter().take(INCUMBENTS).map(|(_, i)| point(i)).collect()))
 }

@@ -5,39 +5,31 @@
 //! normal is chosen by maximum likelihood. The transformation rises strictly, so
 //! the order of the values is kept.
 
-use super::spread::spread;
+use super::data::spread;
 use libm::{exp, log, log1p, pow};
-
-/// Values in the warped scale, again with mean 0 and variance 1.
-pub(super) struct Warped {
-    /// One per value given.
-    pub values: Vec<f64>,
-    /// Geometric mean of the slope of the transformation, the rescaling included.
-    pub slope: f64,
-}
 
 /// Values by which the exponent is chosen, at most.
 const CHOOSING: usize = 250;
 
 /// Warps standardised values with the best of the exponents -1, -0.9 .. 3 (1 changes nothing).
-/// `None` if no exponent gives finite values that differ.
-pub(super) fn warp(values: &[f64]) -> Option<Warped> {
+/// The new values have mean 0 and variance 1 again; with them comes the geometric mean of the slope
+/// of the whole transformation. `None` if no exponent gives finite values that differ.
+pub(super) fn warp(values: &[f64]) -> Option<(Vec<f64>, f64)> {
     let sample: Vec<f64> = spread(values.len(), CHOOSING).map(|i| values[i]).collect();
     let mut best: Option<(f64, f64)> = None;
     for step in 0..=40 {
         let lambda = f64::from(step - 10) / 10.0;
-        let (likelihood, _) = warped(&sample, lambda);
-        let better = best.is_none_or(|(record, _)| likelihood > record);
-        if likelihood.is_finite() && better {
+        let (likelihood, ..) = warped(&sample, lambda);
+        if likelihood.is_finite() && best.is_none_or(|(record, _)| likelihood > record) {
             best = Some((likelihood, lambda));
         }
     }
-    let (likelihood, warped) = warped(values, best?.1);
-    likelihood.is_finite().then_some(warped)
+    let (likelihood, values, slope) = warped(values, best?.1);
+    likelihood.is_finite().then_some((values, slope))
 }
 
-/// The values under one exponent, and the log likelihood of it.
-fn warped(values: &[f64], lambda: f64) -> (f64, Warped) {
+/// Log likelihood of one exponent, the values under it, and the mean slope.
+fn warped(values: &[f64], lambda: f64) -> (f64, Vec<f64>, f64) {
     let n = values.len() as f64;
     // log of the transformation's slope is (lambda - 1) times this, summed over the values.
     let log_slope: f64 = values.iter().map(|y| y.signum() * log1p(y.abs())).sum();
@@ -48,7 +40,7 @@ fn warped(values: &[f64], lambda: f64) -> (f64, Warped) {
     let deviation = variance.sqrt();
     let values = bent.iter().map(|t| (t - mean) / deviation).collect();
     let slope = exp((lambda - 1.0) * log_slope / n) / deviation;
-    (likelihood, Warped { values, slope })
+    (likelihood, values, slope)
 }
 
 fn yeo_johnson(y: f64, lambda: f64) -> f64 {
@@ -82,10 +74,10 @@ mod tests {
         let mean = raw.iter().sum::<f64>() / 30.0;
         let deviation = (raw.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 30.0).sqrt();
         let standard: Vec<f64> = raw.iter().map(|v| (v - mean) / deviation).collect();
-        let warped = warp(&standard).unwrap();
+        let (values, slope) = warp(&standard).unwrap();
         let skew = |v: &[f64]| v.iter().map(|t| t.powi(3)).sum::<f64>() / 30.0;
-        assert!(skew(&standard) > 1.0 && skew(&warped.values).abs() < 0.5);
-        assert!(warped.slope > 0.0 && warped.slope.is_finite());
+        assert!(skew(&standard) > 1.0 && skew(&values).abs() < 0.5);
+        assert!(slope > 0.0 && slope.is_finite());
     }
 
     #[test]

@@ -59,8 +59,8 @@ use nalgebra::{DMatrix, DVector};
 pub struct Process<const P: usize> {
     /// The terms at the points, by term: `H'`.
     terms: [DVector<f64>; P],
-    factor: Factor,
-    mean: LinearMean<P>,
+    pub(crate) factor: Factor,
+    pub(crate) mean: LinearMean<P>,
     coefficients: [f64; P],
     /// `K^-1 (y - H' beta)`; 0 for believed points.
     weights: DVector<f64>,
@@ -99,16 +99,11 @@ impl<const P: usize> Process<P> {
     }
 
     /// Values and believed points together.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.weights.len()
     }
 
-    /// Whether it is conditioned on nothing.
-    pub fn is_empty(&self) -> bool {
-        self.weights.is_empty()
-    }
-
-    /// Mean at a point of covariances `k`, as many as [`len`](Self::len), and terms `h`.
+    /// Mean at a point of covariances `k` with the values and terms `h`.
     pub fn mean(&self, k: &DVector<f64>, h: &[f64; P]) -> f64 {
         h.iter().zip(&self.coefficients).map(|(h, b)| h * b).sum::<f64>() + k.dot(&self.weights)
     }
@@ -148,7 +143,7 @@ impl<const P: usize> Process<P> {
         self.quadratic / (self.len() as f64 - P as f64)
     }
 
-    /// `K^-1 b`, of as many numbers as [`len`](Self::len).
+    /// `K^-1 b`, of as many numbers as values.
     pub fn solve(&self, b: &DVector<f64>) -> DVector<f64> {
         self.factor.solve(b)
     }
@@ -168,14 +163,6 @@ impl<const P: usize> Process<P> {
         self.mean = LinearMean::new(&self.factor, &self.terms);
         self.weights = self.weights.push(0.0);
         true
-    }
-
-    pub(crate) fn factor(&self) -> &Factor {
-        &self.factor
-    }
-
-    pub(crate) fn linear_mean(&self) -> &LinearMean<P> {
-        &self.mean
     }
 
     /// `log |K|`.

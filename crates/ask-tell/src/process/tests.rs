@@ -62,5 +62,5 @@ fn what_cannot_be_conditioned_on_is_refused() {
     assert!(Process::new(covariance(0.0), &alike[..6], &values()).is_none());
     assert!(Process::new(covariance(0.0), &X.map(|x| [x]), &[f64::NAN; 7]).is_none());
     assert!(Process::new(-covariance(0.0), &X.map(|x| [x]), &values()).is_none());
-    assert!(Process::<1>::new(DMatrix::zeros(0, 0), &[], &[]).is_some_and(|p| p.is_empty()));
+    assert!(Process::<1>::new(DMatrix::zeros(0, 0), &[], &[]).is_some_and(|p| p.len() == 0));
 }

@@ -1,9 +1,7 @@
 //! The points of one batch on their way out and their values on the way back.
 
-use super::AskTellError;
 use super::message::PointValue;
-use crate::GridPoint;
-use crate::Observation;
+use crate::{GridPoint, Observation};
 use std::collections::BTreeMap;
 
 /// A batch: the optimizer proposes it whole and is told of it whole and in order; in between
@@ -43,30 +41,34 @@ impl Batch {
         asked
     }
 
-    /// The ids asked and not told.
-    pub fn untold(&self) -> Vec<u64> {
+    /// The points asked and not told: `id 3`, or `ids 3, 4 and 17 more`.
+    pub fn untold(&self) -> String {
+        const SHOWN: usize = 8;
         let asked = self.first..self.first + self.asked as u64;
-        asked.filter(|id| !self.values.contains_key(id)).collect()
+        let ids: Vec<u64> = asked.filter(|id| !self.values.contains_key(id)).collect();
+        let shown: Vec<String> = ids.iter().take(SHOWN).map(u64::to_string).collect();
+        let (word, shown) = (if ids.len() == 1 { "id" } else { "ids" }, shown.join(", "));
+        match ids.len().saturating_sub(SHOWN) {
+            0 => format!("{word} {shown}"),
+            more => format!("{word} {shown} and {more} more"),
+        }
     }
 
     /// Whether these can all be told.
-    pub fn check(&self, told: &[PointValue]) -> Result<(), AskTellError> {
-        let mut seen: Vec<u64> = Vec::with_capacity(told.len());
+    pub fn check(&self, told: &[PointValue]) -> Result<(), String> {
+        let twice = |id| Err(format!("tell: id {id} is told twice; each id is told once"));
         for PointValue { id, .. } in told {
             if *id >= self.first + self.asked as u64 {
-                return Err(AskTellError::UnknownId(*id));
+                return Err(format!("tell: id {id} was not asked"));
             }
             // All ids before this batch have their values.
             if *id < self.first || self.values.contains_key(id) {
-                return Err(AskTellError::ToldTwice(*id));
+                return twice(*id);
             }
-            seen.push(*id);
         }
-        seen.sort_unstable();
-        match seen.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(AskTellError::ToldTwice(pair[0])),
-            None => Ok(()),
-        }
+        let mut ids: Vec<u64> = told.iter().map(|told| told.id).collect();
+        ids.sort_unstable();
+        ids.windows(2).find(|pair| pair[0] == pair[1]).map_or(Ok(()), |pair| twice(pair[0]))
     }
 
     /// Keeps the value (larger is better) of a point that [`check`](Self::check) passed; gives
@@ -79,7 +81,6 @@ impl Batch {
     /// All points with their values, in order.
     pub fn observations(&self) -> Vec<Observation> {
         let value = |id| self.values.get(&id).copied().flatten();
-        let numbered = (self.first..).zip(&self.points);
-        numbered.map(|(id, point)| Observation::new(point.clone(), value(id))).collect()
+        self.points().map(|(id, point)| Observation::new(point.clone(), value(id))).collect()
     }
 }

@@ -1,39 +1,31 @@
 //! The lines as they are read.
 
-use super::AskTellError;
 use super::parameter::ParameterLine;
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Most points of one batch, and most that can be asked at once.
-pub const LARGEST_BATCH: usize = 10_000;
+pub(super) const LARGEST_BATCH: usize = 10_000;
 
 /// The first line.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Header {
-    /// What is to be found.
+pub(super) struct Header {
     pub parameters: Vec<ParameterLine>,
-    /// Name of the optimizer, as for `--optimizer`.
     pub optimizer: String,
-    /// Seed of everything random.
     pub seed: u64,
-    /// Whether small or large values are wanted.
     pub direction: Direction,
     /// Points the optimizer proposes at a time; `None`: as many as each ask asks for.
-    #[serde(default)]
     pub batch: Option<usize>,
 }
 
 /// Which values are better.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Direction {
-    /// Small ones.
+pub(super) enum Direction {
     Minimize,
-    /// Large ones.
     Maximize,
 }
 
@@ -50,42 +42,26 @@ impl Direction {
 /// Most bytes of a line: every line of fewer than 10000 points is far shorter.
 pub const LONGEST_LINE: u64 = 4 << 20;
 /// Most numbers that one ask, or the batch that it is taken from, may have.
-pub const MOST_NUMBERS: usize = 1_000_000;
-
-/// One entry of a tell.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Told {
-    /// Of a point that was asked.
-    Asked(PointValue),
-    /// Of a point that was measured before, and never asked.
-    Known(KnownValue),
-}
+pub(super) const MOST_NUMBERS: usize = 1_000_000;
 
 /// The value of a point that was never asked.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct KnownValue {
-    /// A value for each parameter.
+pub(super) struct KnownValue {
     pub values: BTreeMap<String, f64>,
     /// Its value; `null` if the evaluation failed. It may not be left out.
-    #[serde(deserialize_with = "must_be_given")]
+    #[serde(deserialize_with = "Option::deserialize")]
     pub value: Option<f64>,
 }
 
 /// The value of one point.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PointValue {
-    /// Which point.
+pub(super) struct PointValue {
     pub id: u64,
     /// Its value; `null` if the evaluation failed. It may not be left out.
-    #[serde(deserialize_with = "must_be_given")]
+    #[serde(deserialize_with = "Option::deserialize")]
     pub value: Option<f64>,
-}
-
-/// Without this a missing value would read as null.
-fn must_be_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    Option::deserialize(deserializer)
 }
 
 #[derive(Deserialize)]
@@ -104,13 +80,13 @@ struct TellLine {
 pub(super) enum Line {
     Header(Header),
     Ask(usize),
-    Tell(Vec<Told>),
+    Tell(Vec<PointValue>, Vec<KnownValue>),
 }
 
 impl Line {
-    pub fn parse(text: &str) -> Result<Line, AskTellError> {
-        let value: Value = serde_json::from_str(text)
-            .map_err(|error| AskTellError::Syntax(format!("not a line of JSON: {error}")))?;
+    pub fn parse(text: &str) -> Result<Line, String> {
+        let value: Value =
+            serde_json::from_str(text).map_err(|error| format!("not a line of JSON: {error}"))?;
         let has = |key| value.get(key).is_some();
         if has("parameters") {
             objects(&value, "parameters")?;
@@ -120,33 +96,31 @@ impl Line {
         } else if has("tell") {
             objects(&value, "tell")?;
             let line: TellLine = read(value, "tell")?;
-            line.tell.into_iter().map(told).collect::<Result<_, _>>().map(Line::Tell)
+            let (mut asked, mut known) = (Vec::new(), Vec::new());
+            for entry in line.tell {
+                match entry.get("values") {
+                    None => asked.push(read(entry, "tell")?),
+                    Some(_) => known.push(read(entry, "tell")?),
+                }
+            }
+            Ok(Line::Tell(asked, known))
         } else {
-            Err(AskTellError::UnknownLine)
+            Err("not a known line; a line is {\"parameters\":[..],..}, {\"ask\":n} or \
+                 {\"tell\":[..]}"
+                .to_owned())
         }
-    }
-}
-
-fn told(entry: Value) -> Result<Told, AskTellError> {
-    match entry.get("values") {
-        None => read(entry, "tell").map(Told::Asked),
-        Some(_) => read(entry, "tell").map(Told::Known),
     }
 }
 
 /// A list in place of an object would be read field by field.
-fn objects(line: &Value, kind: &str) -> Result<(), AskTellError> {
+fn objects(line: &Value, kind: &str) -> Result<(), String> {
     let entries = line.get(kind).and_then(Value::as_array);
     match entries.is_none_or(|entries| entries.iter().all(Value::is_object)) {
         true => Ok(()),
-        false => {
-            let problem = format!("in the `{kind}` line: every entry must be an object, in braces");
-            Err(AskTellError::Syntax(problem))
-        }
+        false => Err(format!("in the `{kind}` line: every entry must be an object, in braces")),
     }
 }
 
-fn read<T: DeserializeOwned>(value: Value, kind: &str) -> Result<T, AskTellError> {
-    serde_json::from_value(value)
-        .map_err(|error| AskTellError::Syntax(format!("in the `{kind}` line: {error}")))
+fn read<T: DeserializeOwned>(value: Value, kind: &str) -> Result<T, String> {
+    serde_json::from_value(value).map_err(|error| format!("in the `{kind}` line: {error}"))
 }

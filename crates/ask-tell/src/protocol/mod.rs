@@ -5,12 +5,9 @@
 
 mod batch;
 mod decimal;
-mod error;
 mod message;
 mod parameter;
 mod session;
 
-pub use error::AskTellError;
-pub use message::{Direction, Header, KnownValue, LARGEST_BATCH, LONGEST_LINE, PointValue, Told};
-pub use parameter::{Parameter, ParameterLine};
-pub use session::{Best, Session};
+pub use message::LONGEST_LINE;
+pub use session::Session;

@@ -1,6 +1,5 @@
 //! A parameter, and the levels an optimizer sees of it.
 
-use super::AskTellError;
 use super::decimal::Decimal;
 use serde::Deserialize;
 
@@ -14,28 +13,20 @@ const MOST_STEPS: f64 = 1e9;
 const WHOLE: f64 = 1e-6;
 
 /// A parameter as the first line names it.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ParameterLine {
-    /// Its name in the points asked.
+pub(super) struct ParameterLine {
     pub name: String,
-    /// Smallest value.
     pub low: f64,
-    /// Largest value.
     pub high: f64,
     /// Values are `low + k step`; without it any value to 1e-9 of the span.
-    #[serde(default)]
     pub step: Option<f64>,
 }
 
 /// A checked parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Parameter {
-    /// Its name.
-    pub name: String,
-    low: f64,
-    high: f64,
-    step: Option<f64>,
+#[derive(Debug)]
+pub(super) struct Parameter {
+    pub line: ParameterLine,
     steps: u32,
     /// `low` and the step, where their sums have few enough digits.
     exact: Option<(Decimal, Decimal)>,
@@ -43,11 +34,8 @@ pub struct Parameter {
 
 impl Parameter {
     /// Checks a parameter.
-    pub fn new(line: &ParameterLine) -> Result<Parameter, AskTellError> {
-        let fail = |problem| {
-            let name = line.name.clone();
-            Err(AskTellError::Parameter { name, problem })
-        };
+    pub fn new(line: ParameterLine) -> Result<Parameter, String> {
+        let fail = |problem| Err(format!("parameter `{}`: {problem}", line.name));
         let span = line.high - line.low;
         if line.name.is_empty() {
             return fail("a name must have at least one character");
@@ -73,7 +61,7 @@ impl Parameter {
         if line.step.is_some() && steps == 0 && span > 0.0 {
             return fail("step must not be larger than high - low");
         }
-        let (low, high, step) = (line.low, line.high, line.step);
+        let (low, high) = (line.low, line.high);
         // Rounding to binary numbers must not make one of two neighbours.
         let largest = low.abs().max(high.abs());
         if steps > 0 && span / f64::from(steps) < 4.0 * (largest.next_up() - largest) {
@@ -81,7 +69,7 @@ impl Parameter {
         }
         let exact = || {
             let first = Decimal::of(low)?;
-            let step = match step {
+            let step = match line.step {
                 Some(step) => Decimal::of(step)?,
                 None => Decimal::of(high)?.plus(-1, first)?.over_ten_to(FINE_DIGITS),
             };
@@ -89,7 +77,7 @@ impl Parameter {
             first.plus(i128::from(steps), step)?;
             Some((first, step))
         };
-        Ok(Parameter { name: line.name.clone(), low, high, step, steps, exact: exact() })
+        Ok(Parameter { exact: exact(), line, steps })
     }
 
     /// Number of distinct values.
@@ -100,34 +88,34 @@ impl Parameter {
     /// The value of a level: the last is `high` itself.
     pub fn value(&self, level: u32) -> f64 {
         if level == 0 {
-            return self.low;
+            return self.line.low;
         }
         if level >= self.steps {
-            return self.high;
+            return self.line.high;
         }
         let exact = || {
             let (low, step) = self.exact?;
             Some(low.plus(i128::from(level), step)?.nearest())
         };
-        let value = exact().unwrap_or_else(|| self.low + f64::from(level) * self.width());
-        value.clamp(self.low, self.high)
+        let value = exact().unwrap_or_else(|| self.line.low + f64::from(level) * self.width());
+        value.clamp(self.line.low, self.line.high)
     }
 
     fn width(&self) -> f64 {
-        self.step.unwrap_or((self.high - self.low) / f64::from(self.steps.max(1)))
+        self.line.step.unwrap_or((self.line.high - self.line.low) / f64::from(self.steps.max(1)))
     }
 
     /// The level with this value: the nearest where no step is named.
     pub fn level(&self, value: f64) -> Option<u32> {
-        if !(self.low..=self.high).contains(&value) {
+        if !(self.line.low..=self.line.high).contains(&value) {
             return None;
         }
         // The width may be subnormal, and is 0 where low is high.
         let width = self.width();
-        let level = if width > 0.0 { ((value - self.low) / width).round() } else { 0.0 };
+        let level = if width > 0.0 { ((value - self.line.low) / width).round() } else { 0.0 };
         let level = (level as u32).min(self.steps);
         let off = (self.value(level) - value).abs();
-        (self.step.is_none() || off <= WHOLE * self.width()).then_some(level)
+        (self.line.step.is_none() || off <= WHOLE * self.width()).then_some(level)
     }
 }
 
@@ -141,7 +129,7 @@ mod tests {
 
     #[test]
     fn values_read_as_they_would_be_written() {
-        let axis = Parameter::new(&line(0.1, 0.9, Some(0.1))).unwrap();
+        let axis = Parameter::new(line(0.1, 0.9, Some(0.1))).unwrap();
         assert_eq!(axis.levels(), 9);
         let values: Vec<f64> = (0..9).map(|k| axis.value(k)).collect();
         assert_eq!(values, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]);
@@ -149,11 +137,11 @@ mod tests {
 
     #[test]
     fn without_a_step_the_grid_is_fine_and_both_ends_are_on_it() {
-        let axis = Parameter::new(&line(-2.0, 3.0, None)).unwrap();
+        let axis = Parameter::new(line(-2.0, 3.0, None)).unwrap();
         assert_eq!(axis.levels(), 1_000_000_001);
         assert_eq!((axis.value(0), axis.value(1_000_000_000)), (-2.0, 3.0));
         assert_eq!((axis.value(1), axis.value(500_000_000)), (-1.999999995, 0.5));
-        assert_eq!(Parameter::new(&line(4.0, 4.0, None)).unwrap().levels(), 1);
+        assert_eq!(Parameter::new(line(4.0, 4.0, None)).unwrap().levels(), 1);
     }
 
     #[test]
@@ -165,7 +153,7 @@ mod tests {
             (1e300, 3e300, Some(4e291)),
             (-7.0, 1e6, None),
         ] {
-            let axis = Parameter::new(&line(low, high, step)).unwrap();
+            let axis = Parameter::new(line(low, high, step)).unwrap();
             let levels = axis.levels();
             let some = (0..levels.min(50)).chain(levels.saturating_sub(50)..levels);
             let values: Vec<f64> = some.clone().map(|k| axis.value(k)).collect();
@@ -180,7 +168,7 @@ mod tests {
                 assert_eq!(axis.level(value), Some(k), "{low} {value}");
             }
         }
-        let whole = Parameter::new(&line(0.0, 9.0, Some(3.0))).unwrap();
+        let whole = Parameter::new(line(0.0, 9.0, Some(3.0))).unwrap();
         assert_eq!([6.0, 5.0, -3.0, 12.0].map(|v| whole.level(v)), [Some(2), None, None, None]);
     }
 
@@ -197,7 +185,7 @@ mod tests {
             (line(1e15, 1e15 + 1.0, None), "too small beside"),
             (line(0.3, 0.3 + 1e-12, None), "too small beside"),
         ] {
-            let error = Parameter::new(&wrong).unwrap_err().to_string();
+            let error = Parameter::new(wrong).unwrap_err();
             assert!(error.contains(word) && error.contains("`x`"), "{error}");
         }
     }

@@ -1,25 +1,21 @@
 //! A conversation: what has been said, and the answer to the next line.
 
-use super::AskTellError;
 use super::batch::Batch;
 use super::message::{
-    Direction, Header, KnownValue, LARGEST_BATCH, Line, MOST_NUMBERS, PointValue, Told,
+    Direction, Header, KnownValue, LARGEST_BATCH, LONGEST_LINE, Line, MOST_NUMBERS, PointValue,
 };
 use super::parameter::Parameter;
-use crate::GridPoint;
-use crate::{Grid, Observation, Optimizer, OptimizerKind, StopReason, build};
+use crate::{Grid, GridPoint, Observation, Optimizer, OptimizerKind, StopReason, build};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The best point told so far.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Best {
-    /// Its id; `None` of one that was never asked.
-    pub id: Option<u64>,
-    /// The point.
-    pub point: GridPoint,
-    /// Its value as it was told.
-    pub value: f64,
+struct Best {
+    /// `None` of one that was never asked.
+    id: Option<u64>,
+    point: GridPoint,
+    /// As it was told.
+    value: f64,
 }
 
 /// A conversation with one optimizer, begun or not.
@@ -51,56 +47,64 @@ impl Session {
     /// The answer to a line, itself a line of JSON without its end; the first line, if it is
     /// good, has none. A line answered with an `error` has changed nothing.
     pub fn answer(&mut self, line: &str) -> Option<String> {
-        let answer = self.take(line);
-        answer
-            .unwrap_or_else(|error| Some(json!({"error": error.to_string()})))
-            .map(|v| v.to_string())
+        let answer = self.take(line).unwrap_or_else(|error| Some(json!({"error": error})));
+        answer.map(|answer| answer.to_string())
     }
 
-    /// The answer to a line that is longer than [`LONGEST_LINE`](super::LONGEST_LINE) bytes.
+    /// The answer to a line that is longer than [`LONGEST_LINE`] bytes.
     pub fn too_long() -> String {
-        json!({"error": AskTellError::TooLong.to_string()}).to_string()
+        let error = format!("the line is longer than {LONGEST_LINE} bytes, the most of a line");
+        json!({"error": error}).to_string()
     }
 
-    fn take(&mut self, line: &str) -> Result<Option<Value>, AskTellError> {
+    fn take(&mut self, line: &str) -> Result<Option<Value>, String> {
         match (Line::parse(line)?, &mut self.begun) {
             (Line::Header(header), None) => {
-                self.begun = Some(Begun::new(&header)?);
+                self.begun = Some(Begun::new(header)?);
                 Ok(None)
             }
-            (Line::Header(_), Some(_)) => Err(AskTellError::BegunAlready),
-            (_, None) => Err(AskTellError::NotBegun),
+            (Line::Header(_), Some(_)) => {
+                Err("the parameters are given already; for others start another process".to_owned())
+            }
+            (_, None) => Err("the first line must be {\"parameters\":[..],\
+                \"optimizer\":..,\"seed\":..,\"direction\":..}"
+                .to_owned()),
             (Line::Ask(n), Some(begun)) => begun.ask(n).map(Some),
-            (Line::Tell(told), Some(begun)) => begun.tell(&told).map(Some),
+            (Line::Tell(asked, known), Some(begun)) => begun.tell(asked, known).map(Some),
         }
     }
 }
 
-fn few_enough(points: usize, parameters: usize) -> Result<(), AskTellError> {
+fn few_enough(points: usize, parameters: usize) -> Result<(), String> {
     match points.saturating_mul(parameters) {
         numbers if numbers <= MOST_NUMBERS => Ok(()),
-        _ => Err(AskTellError::TooManyNumbers { points, parameters }),
+        _ => Err(format!(
+            "{points} points of {parameters} parameters are more than {MOST_NUMBERS} numbers, the \
+             most at once"
+        )),
     }
 }
 
 impl Begun {
-    fn new(header: &Header) -> Result<Self, AskTellError> {
+    fn new(header: Header) -> Result<Self, String> {
         if header.parameters.is_empty() {
-            return Err(AskTellError::NoParameters);
+            return Err("parameters: is empty; there must be at least one".to_owned());
         }
         let mut names = BTreeSet::new();
         if let Some(twice) = header.parameters.iter().find(|p| !names.insert(&p.name)) {
-            let (name, problem) = (twice.name.clone(), "is given twice; each name may stand once");
-            return Err(AskTellError::Parameter { name, problem });
+            let name = &twice.name;
+            return Err(format!("parameter `{name}`: is given twice; each name may stand once"));
         }
         if let Some(size) = header.batch.filter(|size| !(1..=LARGEST_BATCH).contains(size)) {
-            return Err(AskTellError::Batch(size));
+            return Err(format!("batch: {size} is not between 1 and {LARGEST_BATCH}"));
         }
-        let axes = header.parameters.iter().map(Parameter::new).collect::<Result<Vec<_>, _>>()?;
-        let kind: OptimizerKind = header.optimizer.parse()?;
+        let axes =
+            header.parameters.into_iter().map(Parameter::new).collect::<Result<Vec<_>, _>>()?;
+        let kind: OptimizerKind =
+            header.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
         let (found, most) = (axes.len(), kind.most_parameters());
         if found > most {
-            return Err(AskTellError::TooManyParameters { found, optimizer: kind, most });
+            return Err(format!("parameters: there are {found}; {kind} takes {most} at most"));
         }
         few_enough(header.batch.unwrap_or(1), found)?;
         let grid = Grid::new(axes.iter().map(Parameter::levels).collect());
@@ -116,15 +120,20 @@ impl Begun {
         })
     }
 
-    fn ask(&mut self, n: usize) -> Result<Value, AskTellError> {
+    fn ask(&mut self, n: usize) -> Result<Value, String> {
         if n > LARGEST_BATCH {
-            return Err(AskTellError::AskedTooMany(n));
+            return Err(format!(
+                "ask: {n} is more than {LARGEST_BATCH}, the most that can be asked at once"
+            ));
         }
         few_enough(n, self.axes.len())?;
         let mut asked = self.batch.hand_out(n);
         if asked.is_empty() && n > 0 {
             if !self.batch.complete() {
-                return Err(AskTellError::Untold(self.batch.untold()));
+                let ids = self.batch.untold();
+                return Err(format!(
+                    "ask: tell the values of {ids} first (null for one that failed)"
+                ));
             }
             let points = self.optimizer.ask(self.size.unwrap_or(n));
             self.batch = self.batch.next(points);
@@ -135,14 +144,10 @@ impl Begun {
         Ok(json!({"asked": asked.into_iter().map(one).collect::<Vec<_>>()}))
     }
 
-    fn tell(&mut self, told: &[Told]) -> Result<Value, AskTellError> {
-        let asked = told.iter().filter_map(|told| match told {
-            Told::Asked(asked) => Some(asked.clone()),
-            Told::Known(_) => None,
-        });
-        let asked: Vec<PointValue> = asked.collect();
+    fn tell(&mut self, asked: Vec<PointValue>, known: Vec<KnownValue>) -> Result<Value, String> {
+        let count = asked.len() + known.len();
         self.batch.check(&asked)?;
-        let known = self.known(told)?;
+        let known = self.known(known)?;
         let was_open = !self.batch.complete();
         for (point, value) in known {
             self.keep_best(None, &point, value);
@@ -163,32 +168,32 @@ impl Begun {
         let best = self.best.as_ref().map(
             |best| json!({"id": best.id, "values": self.values(&best.point), "value": best.value}),
         );
-        Ok(json!({"told": told.len(), "best": best, "stop": self.stop()}))
+        Ok(json!({"told": count, "best": best, "stop": self.stop()}))
     }
 
     /// The points told by their values, which must be new.
-    fn known(&self, told: &[Told]) -> Result<Vec<(GridPoint, Option<f64>)>, AskTellError> {
+    fn known(&self, told: Vec<KnownValue>) -> Result<Vec<(GridPoint, Option<f64>)>, String> {
         let mut found: BTreeSet<GridPoint> = BTreeSet::new();
         let mut known = Vec::new();
-        for entry in told {
-            let Told::Known(KnownValue { values, value }) = entry else { continue };
-            let point = self.point(values)?;
-            match self.seen.get(&point) {
-                Some(Some(id)) => {
-                    return Err(AskTellError::KnownAlready(format!("is asked as id {id}")));
+        for KnownValue { values, value } in told {
+            let point = self.point(&values)?;
+            let seen = match self.seen.get(&point) {
+                Some(Some(id)) => format!("asked as id {id}"),
+                None if found.insert(point.clone()) => {
+                    known.push((point, value));
+                    continue;
                 }
-                None if found.insert(point.clone()) => known.push((point, *value)),
-                _ => return Err(AskTellError::KnownAlready("is known".to_owned())),
-            }
+                _ => "known".to_owned(),
+            };
+            return Err(format!("tell: a point is told by its values though it is {seen}"));
         }
         Ok(known)
     }
 
     /// The grid point of values by name.
-    fn point(&self, values: &BTreeMap<String, f64>) -> Result<GridPoint, AskTellError> {
-        let fail =
-            |name: &str, problem| Err(AskTellError::KnownValues { name: name.to_owned(), problem });
-        let named = |name: &str| self.axes.iter().any(|axis| axis.name == name);
+    fn point(&self, values: &BTreeMap<String, f64>) -> Result<GridPoint, String> {
+        let fail = |name: &str, problem| Err(format!("tell: `{name}` {problem}"));
+        let named = |name: &str| self.axes.iter().any(|axis| axis.line.name == name);
         if values.len() > self.axes.len()
             && let Some(name) = values.keys().find(|name| !named(name))
         {
@@ -196,9 +201,9 @@ impl Begun {
         }
         let mut levels = Vec::with_capacity(self.axes.len());
         for axis in &self.axes {
-            match values.get(&axis.name).map(|&value| axis.level(value)) {
-                None => return fail(&axis.name, "is missing"),
-                Some(None) => return fail(&axis.name, "must be low + k step, up to high"),
+            match values.get(&axis.line.name).map(|&value| axis.level(value)) {
+                None => return fail(&axis.line.name, "is missing"),
+                Some(None) => return fail(&axis.line.name, "must be low + k step, up to high"),
                 Some(Some(level)) => levels.push(level),
             }
         }
@@ -229,6 +234,6 @@ impl Begun {
 
     fn values(&self, point: &GridPoint) -> Map<String, Value> {
         let values = self.axes.iter().zip(&point.0);
-        values.map(|(axis, &level)| (axis.name.clone(), json!(axis.value(level)))).collect()
+        values.map(|(axis, &level)| (axis.line.name.clone(), json!(axis.value(level)))).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! What those need of the command line who call the library from elsewhere: `--executor`'s words as
 //! requests, and what is printed.
 
-use super::{Failure, recommended, resume, study, summary};
+use super::{Failure, recommended, study, summary};
 use crate::session::{AnyStudy, Ended};
 use crate::study::StudyRecord;
 use clap::{Args, Parser};
@@ -34,7 +34,7 @@ pub struct Asked {
 pub fn asked(words: &[String]) -> Result<Asked, Failure> {
     let (study, run) = match words {
         [first, rest @ ..] if first == "resume" => {
-            let arguments: resume::Arguments = read(rest)?;
+            let arguments: study::ResumeArguments = read(rest)?;
             (AnyStudy::Resumed(arguments.request()), arguments.run)
         }
         words => {

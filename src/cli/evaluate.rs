@@ -1,6 +1,5 @@
 //! `optimize evaluate`: the tolerance window of one finger.
 
-use super::arguments::{FingerArguments, RepeatArguments, SetupArguments};
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
@@ -16,20 +15,7 @@ use serde_json::{Value, json};
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
-    #[command(flatten)]
-    finger: FingerArguments,
-    /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
-    #[arg(long)]
-    walk: bool,
-    /// Success rate and robust range under these errors, too: typical, or the path of a file
-    #[arg(long, value_name = "NAME")]
-    uncertainty: Option<String>,
-    /// Seed of the drawn errors: those of the study with this seed
-    #[arg(long, value_name = "N", default_value_t = 0, requires = "uncertainty")]
-    seed: u64,
-    #[command(flatten)]
-    repeat: RepeatArguments,
+    request: EvaluateRequest,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -37,16 +23,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let request = EvaluateRequest {
-        setup: arguments.setup.request(),
-        finger: arguments.finger.request(),
-        walk: arguments.walk,
-        uncertainty: arguments.uncertainty.clone(),
-        seed: arguments.seed,
-        repeat: arguments.repeat.request(),
-        by_ribs: true,
-    };
-    let found = request.run(&NEVER)?;
+    let found = arguments.request.run(&NEVER)?;
     if arguments.json { print_json(&json(&found)) } else { print(&words::wrapped(&text(&found))) }
 }
 

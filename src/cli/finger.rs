@@ -1,8 +1,7 @@
 //! `optimize finger`: what a finger's ribs say of its stiffness.
 
-use super::arguments::setting;
 use super::{Failure, print, print_json};
-use crate::session::{DEFAULT_FINGER, RibsRequest};
+use crate::session::RibsRequest;
 use crate::study::write_file;
 use clap::Args;
 use finray::geometry::Geometry;
@@ -25,21 +24,8 @@ const LARGEST_LOAD_N: f64 = 1000.0;
 /// it with --finger-model computed.
 #[derive(Debug, Clone, Args)]
 pub struct Arguments {
-    /// Infill density, percent
-    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
-    density: f64,
-    /// Infill direction, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    direction: f64,
-    /// Finger: finray9, or the path of a finger file
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
-    finger: String,
-    /// Where the first rib lies, mm [default: the finger file's]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    phase_mm: Option<f64>,
-    /// A number of the finger file, as finger.skin.thickness_mm=0.8; may be given several times
-    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
-    set: Vec<(String, f64)>,
+    #[command(flatten)]
+    request: RibsRequest,
     /// Draw the finger, at rest and under a force on its pad
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
@@ -96,8 +82,7 @@ struct AcrossRow {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { density, direction, finger, phase_mm, set, .. } = arguments.clone();
-    let (geometry, computed) = RibsRequest { density, direction, finger, phase_mm, set }.run()?;
+    let (geometry, computed) = arguments.request.run()?;
     if let Some(file) = &arguments.svg {
         write_file(file, &picture::svg(&geometry, arguments.load_n).map_err(Failure::input)?)?;
     }

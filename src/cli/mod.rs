@@ -18,7 +18,6 @@ mod progress;
 mod recommended;
 mod repeat;
 mod report;
-mod resume;
 mod sensitivity;
 mod stiffness;
 mod study;
@@ -104,7 +103,7 @@ impl Args for StudyOrNone {
 enum Command {
     /// Continue a study after an interruption or a crash
     #[command(after_help = "Example: optimize resume results/usb-gp-seed0")]
-    Resume(resume::Arguments),
+    Resume(study::ResumeArguments),
     /// Write the tables and plots of a study again
     #[command(after_help = "Example: optimize report results/usb-gp-seed0")]
     Report(report::Arguments),
@@ -217,12 +216,14 @@ fn survive_size_limit() {
 fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => match cli.study.0 {
-            Some(arguments) => study::run(&arguments),
+            Some(arguments) => study::to_its_end(arguments.request().open(None)?, &arguments.run),
             None => Err(Failure::usage(
                 "give --task NAME and --budget N, or a subcommand; see `optimize --help`",
             )),
         },
-        Some(Command::Resume(arguments)) => resume::run(&arguments),
+        Some(Command::Resume(arguments)) => {
+            study::to_its_end(arguments.request().open()?, &arguments.run)
+        }
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
         Some(Command::Trial(arguments)) => trial::run(&arguments),

@@ -1,11 +1,10 @@
 //! `optimize trial`: one simulated insertion.
 
-use super::arguments::{FilmArguments, FingerArguments, RepeatArguments, SetupArguments};
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
 use crate::answer::words::number;
-use crate::session::{TrialDone, TrialRequest, given_offset};
+use crate::session::{TrialDone, TrialRequest};
 use clap::Args;
 use insertion::evaluation::grid_mm;
 use insertion::outcome::Outcome;
@@ -16,20 +15,7 @@ use serde_json::{Value, json};
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
-    #[command(flatten)]
-    finger: FingerArguments,
-    /// Shift of the start along y, mm
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0,
-          value_parser = offset)]
-    offset_mm: f64,
-    #[command(flatten)]
-    repeat: RepeatArguments,
-    #[command(flatten)]
-    film: FilmArguments,
-    /// Draw plug, fingertips and socket at the end of each phase
-    #[arg(long, value_name = "FILE.svg")]
-    svg: Option<std::path::PathBuf>,
+    request: TrialRequest,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -37,16 +23,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let request = TrialRequest {
-        setup: arguments.setup.request(),
-        finger: arguments.finger.request(),
-        offset_mm: arguments.offset_mm,
-        repeat: arguments.repeat.request(),
-        every_s: None,
-        film: arguments.film.request(),
-        svg: arguments.svg.clone(),
-    };
-    let done = request.run(&NEVER)?;
+    let done = arguments.request.run(&NEVER)?;
     if arguments.json {
         return print_json(&json(&done));
     }
@@ -112,8 +89,4 @@ fn text(trial: &Trial) -> String {
         ));
     }
     text
-}
-
-fn offset(text: &str) -> Result<f64, String> {
-    given_offset(text.parse().unwrap_or(f64::NAN))
 }

@@ -70,6 +70,11 @@ pub(super) fn within<T: PartialOrd + fmt::Display>(
     }
 }
 
+/// A range as clap takes it of numbers narrower than its own.
+pub(crate) fn wide<T: Copy + Into<i64>>(range: &RangeInclusive<T>) -> RangeInclusive<i64> {
+    (*range.start()).into()..=(*range.end()).into()
+}
+
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
         let bad_input = error.is_bad_input();

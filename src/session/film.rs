@@ -14,11 +14,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is made of a recorded trial.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct FilmRequest {
-    /// Page that plays it (`.html`), or table of every millisecond (`.csv`).
+    /// Record the trial: a page that plays it, or a table of every millisecond
+    #[arg(long, value_name = "FILE.html|.csv", value_parser = recordable)]
     pub record: Option<PathBuf>,
-    /// Drawing of force against depth.
+    /// Draw force against depth
+    #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
 }
 
@@ -67,11 +69,13 @@ impl FilmRequest {
     }
 }
 
+fn recordable(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    filmable(&file).map(|()| file)
+}
+
 /// Whether a trial can be recorded into a file of this name.
-///
-/// # Errors
-/// What its name must end with.
-pub fn filmable(file: &Path) -> Result<(), String> {
+fn filmable(file: &Path) -> Result<(), String> {
     match extension(file).as_deref() {
         Some("html" | "csv") => Ok(()),
         _ => Err("its name must end with .html or .csv, which says what is written".into()),

@@ -1,6 +1,7 @@
 //! What a study answers, found once from its record: terminal, page, JSON and Python say it, and
 //! compute nothing of their own. Lengths in mm, forces in N.
 
+pub mod lines;
 mod recommended;
 pub mod words;
 

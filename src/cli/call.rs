@@ -55,7 +55,7 @@ fn read<T: Args>(words: &[String]) -> Result<T, Failure> {
 
 /// What the command prints of a study that has ended.
 pub fn text(Ended { dir, record, ending, known, .. }: &Ended, json: bool) -> String {
-    summary::words(dir, record, *ending, *known, json)
+    summary::printed(dir, record, *ending, *known, json)
 }
 
 /// The `recommended` design of `--json`; of several objectives the first of the front. Null

@@ -3,11 +3,11 @@
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
+use crate::answer::lines;
 use crate::answer::words::{mm, number};
-use crate::session::{Chosen, EvaluateRequest, Evaluated};
+use crate::session::{EvaluateRequest, Evaluated};
 use crate::study::ByRibs;
 use clap::Args;
-use insertion::evaluation::Evaluation;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};
 
@@ -44,26 +44,25 @@ pub fn json(found: &Evaluated) -> Value {
 }
 
 fn text(found: &Evaluated) -> String {
-    let bands = found.bands.as_ref().map(repeat::bands_text).unwrap_or_default();
-    let computed = found.by_ribs.iter().flat_map(words::by_ribs).collect::<String>();
-    let window = window(&found.chosen, &found.evaluation);
-    format!("{window}{computed}{bands}time          {:.1} s\n", found.wall_s)
-}
-
-fn window(chosen: &Chosen, evaluation: &Evaluation) -> String {
+    let Evaluated { chosen, evaluation, .. } = found;
     let [c1, c2, c3, c4] = evaluation.failure_counts;
-    let mut lines = vec![
-        format!("task          {}", chosen.specimen.task.name),
+    let mut rest = vec![("range".to_owned(), mm(evaluation.window.range_mm()))];
+    rest.extend(lines::window(evaluation));
+    let failures = format!(
+        "{c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",
+        evaluation.diverged, evaluation.trials
+    );
+    rest.push(("failures".to_owned(), failures));
+    rest.push(("peak force".to_owned(), number(evaluation.peak_force_n, 1, "N")));
+    rest.extend(lines::taught(evaluation.taught));
+    rest.extend(lines::drawn(evaluation));
+    rest.extend(found.by_ribs.iter().flat_map(lines::by_ribs));
+    format!(
+        "task          {}\n{}{}{}time          {:.1} s\n",
+        chosen.specimen.task.name,
         chosen::text(chosen),
-        format!("range         {}", mm(evaluation.window.range_mm())),
-        words::window(evaluation),
-        format!(
-            "failures      {c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",
-            evaluation.diverged, evaluation.trials
-        ),
-        format!("peak force    {}", number(evaluation.peak_force_n, 1, "N")),
-    ];
-    lines.extend(words::taught(evaluation.taught));
-    lines.extend(words::drawn_text(evaluation));
-    lines.join("\n") + "\n"
+        words::lines(rest),
+        found.bands.as_ref().map(repeat::bands_text).unwrap_or_default(),
+        found.wall_s
+    )
 }

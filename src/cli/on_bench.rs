@@ -1,50 +1,8 @@
-//! What is said of a study with measurements: which of its fingers is the best on the bench.
+//! The JSON of a study with measurements: which of its fingers is the best on the bench.
 
-use super::words;
 use crate::study::{OnBench, StudyRecord};
-use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use serde_json::{Value, json};
-
-/// What the terminal leads with.
-pub fn lines(found: &OnBench) -> Vec<String> {
-    let Some(best) = found.best.first() else { return Vec::new() };
-    let mut lines = vec![
-        format!("best on bench {}", best.design.labelled()),
-        format!(
-            "bench range   {:.1} mm (80 %: {:.1} to {:.1}); the best of all {} fingers with \
-             probability {:.1} %",
-            best.range_mm,
-            best.low_mm,
-            best.high_mm,
-            found.fingers,
-            100.0 * best.probability_best
-        ),
-        simulated(&found.simulated),
-        format!("measured      {}", trust(found)),
-    ];
-    lines.extend(found.warnings.iter().map(|words| format!("warning       {words}")));
-    lines
-}
-
-fn simulated(evaluation: &Evaluation) -> String {
-    let range = Measure::Range.value(evaluation);
-    let range = range.map_or("no range".to_owned(), |range| Measure::Range.show(range));
-    let window = words::window(evaluation);
-    format!("simulated     {range}; {}", window.split_once(' ').map_or("", |(_, text)| text.trim()))
-}
-
-fn trust(found: &OnBench) -> String {
-    let trust = &found.trust;
-    let count = found.measured;
-    let Some(deviation) = trust.mean_deviation_percent else { return format!("{count} fingers") };
-    let rank = trust.spearman.map_or("-".to_owned(), |rank| format!("{rank:+.2}"));
-    format!(
-        "{count} fingers; each predicted without it: {deviation:.1} % off, Spearman {rank}, {} of {} \
-         in the interval",
-        trust.inside, trust.fingers
-    )
-}
 
 /// The finger that is the best on the bench; the numbers without `bench` are simulated.
 pub fn recommended(record: &StudyRecord, found: &OnBench) -> Value {

@@ -1,8 +1,8 @@
 //! What is printed of a whole study.
 
 use super::terminal::merge;
-use super::words::wrapped;
-use super::{Failure, on_bench, print, recommended};
+use super::{Failure, print, recommended, words};
+use crate::answer::lines;
 use crate::answer::words::{evaluated, volume_unit};
 use crate::answer::{Answer, Front, Nearest, NothingInserts, WalkedDesign};
 use crate::study::{Ending, Recorded, StudyRecord};
@@ -17,11 +17,11 @@ pub fn show(
     known: u64,
     as_json: bool,
 ) -> Result<(), Failure> {
-    print(&words(dir, record, ending, known, as_json))
+    print(&printed(dir, record, ending, known, as_json))
 }
 
 /// What is printed.
-pub fn words(
+pub fn printed(
     dir: &Path,
     record: &StudyRecord,
     ending: Ending,
@@ -47,37 +47,37 @@ fn text(dir: &Path, answer: &Answer, ending: Ending, known: u64) -> String {
         Ending::BudgetSpent | Ending::Interrupted => "",
     };
     let (task, method) = (config.task_name(), config.method());
-    let mut lines = vec![format!("{task} with {method}: {done} evaluations{end}")];
+    let mut text = format!("{task} with {method}: {done} evaluations{end}\n");
     let first = record.first_current();
     if first > 0 {
-        lines.push(format!(
-            "segment       {}, from evaluation {first}: the settings changed, and only these count",
+        text += &format!(
+            "segment       {}, from evaluation {first}: the settings changed, and only these count\n",
             record.segments.len(),
-        ));
+        );
     }
     if let Some(bench) = &record.on_bench {
-        lines.extend(on_bench::lines(bench));
-        lines.push("by simulation alone:".to_owned());
+        text += &words::lines(lines::on_bench(bench));
+        text += "by simulation alone:\n";
     }
-    match (&answer.nothing_inserts, &answer.recommended, &answer.front) {
-        (Some(nothing), ..) => lines.push(unusable(nothing)),
-        (None, Some(_), Some(front)) => lines.extend(front_lines(record, front)),
-        (None, Some(found), None) => lines.extend(recommended::lines(answer, found)),
-        (None, None, _) => lines.push(none(answer)),
-    }
+    text += &match (&answer.nothing_inserts, &answer.recommended, &answer.front) {
+        (Some(nothing), ..) => unusable(nothing),
+        (None, Some(_), Some(front)) => front_text(record, front),
+        (None, Some(found), None) => words::lines(lines::recommended(answer, found)),
+        (None, None, _) => none(answer),
+    };
     if known > 0 {
-        lines.push(format!("cache         {known} evaluations were known from other studies"));
+        text += &format!("cache         {known} evaluations were known from other studies\n");
     }
     let page = dir.join(crate::session::PAGE);
     let place = format!("study         {} (see {})\n", dir.display(), page.display());
-    wrapped(&(lines.join("\n") + "\n")) + &place
+    words::wrapped(&text) + &place
 }
 
 /// That a task is of no use as it is.
 fn unusable(NothingInserts { task, nearest }: &NothingInserts) -> String {
     format!(
         "no design inserts at the nominal start of {task}, so none is recommended\n\
-         nearest       {}",
+         nearest       {}\n",
         evaluated(nearest)
     )
 }
@@ -85,20 +85,20 @@ fn unusable(NothingInserts { task, nearest }: &NothingInserts) -> String {
 /// Why no design is recommended.
 fn none(answer: &Answer) -> String {
     let Some(Nearest { design, constraints }) = &answer.nearest else {
-        return "no evaluation gave a value".to_owned();
+        return "no evaluation gave a value\n".to_owned();
     };
     format!(
-        "no design keeps all constraints, so none is recommended\nnearest       {}: {}",
+        "no design keeps all constraints, so none is recommended\nnearest       {}: {}\n",
         evaluated(design),
         constraints.join("; ")
     )
 }
 
-fn front_lines(record: &StudyRecord, Front { designs, volume }: &Front) -> Vec<String> {
+fn front_text(record: &StudyRecord, Front { designs, volume }: &Front) -> String {
     let objectives = &record.config.objective;
     let line = |recorded: &&Recorded| {
         let values = objectives.show(recorded.feasible().unwrap_or_default());
-        format!("              {values}: {}", evaluated(recorded))
+        format!("              {values}: {}\n", evaluated(recorded))
     };
     let size = match designs.len() {
         1 => "one design is the best in all objectives".to_owned(),
@@ -106,15 +106,13 @@ fn front_lines(record: &StudyRecord, Front { designs, volume }: &Front) -> Vec<S
             format!("{count} designs; none is at least as good as another in all objectives")
         }
     };
-    let mut lines = vec![format!("front         {size}")];
-    lines.extend(designs.iter().map(line));
-    lines.push(format!(
-        "hypervolume   {:.3} {} from the reference {}",
+    format!(
+        "front         {size}\n{}hypervolume   {:.3} {} from the reference {}\n",
+        designs.iter().map(line).collect::<String>(),
         volume.hypervolume,
         volume_unit(objectives),
         objectives.show(&volume.reference)
-    ));
-    lines
+    )
 }
 
 fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
@@ -217,7 +215,7 @@ mod tests {
             let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference").join(task);
             let expected = std::fs::read_to_string(dir.join("summary.txt")).unwrap();
             let record = StudyRecord::load(&dir).unwrap();
-            let lines = words(&dir, &record, Ending::BudgetSpent, 0, false);
+            let lines = printed(&dir, &record, Ending::BudgetSpent, 0, false);
             let (lines, _) = lines.split_once("study   ").unwrap();
             assert_eq!(lines, expected, "{task}");
         }

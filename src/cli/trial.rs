@@ -3,6 +3,7 @@
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
+use crate::answer::lines;
 use crate::answer::words::number;
 use crate::session::{TrialDone, TrialRequest};
 use clap::Args;
@@ -28,11 +29,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return print_json(&json(&done));
     }
     let repeats = done.repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
-    let start = words::taught(done.taught).map_or(String::new(), |line| line + "\n");
+    let start = words::lines(lines::taught(done.taught));
     let wrote = done.written.iter().map(|file| format!("wrote         {}\n", file.display()));
     let wrote: String = wrote.collect();
     let chosen = chosen::text(&done.chosen);
-    print(&format!("{chosen}\n{start}{}{repeats}{wrote}", text(&done.trial)))
+    print(&format!("{chosen}{start}{}{repeats}{wrote}", text(&done.trial)))
 }
 
 /// What `--json` prints.

@@ -2,7 +2,6 @@
 //! what was measured. Nothing here simulates, and nothing reads or writes files.
 
 mod again;
-mod answer;
 mod bench;
 mod best;
 mod chart;

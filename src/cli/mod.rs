@@ -136,10 +136,13 @@ enum Command {
     Calibrate(calibrate::Arguments),
     #[command(after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2")]
     Next(next::Arguments),
-    #[command(after_help = "Example: optimize measure check published")]
+    #[command(subcommand, after_help = "Example: optimize measure check published")]
     Measure(measure::Arguments),
-    #[command(after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 \
-                            --out scene.xml")]
+    #[command(
+        subcommand,
+        after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 \
+                            --out scene.xml"
+    )]
     Export(export::Arguments),
     /// Optimize anything: JSON lines on standard input and output
     #[command(
@@ -150,6 +153,7 @@ enum Command {
     #[command(after_help = "Example: optimize tasks --json")]
     Tasks(tasks::Arguments),
     #[command(
+        subcommand,
         after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 \
                             --body 12x6.5x20"
     )]

@@ -25,8 +25,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = arguments.request.run(&NEVER)?;
     if let Some(path) = &arguments.svg {
-        let svg = shown::svg(&found).map_err(|error| Failure::running(error.to_string()))?;
-        write_file(path, &svg)?;
+        write_file(path, &shown::svg(&found)?)?;
     }
     if arguments.json { print_json(&shown::json(&found)) } else { print(&shown::text(&found)) }
 }

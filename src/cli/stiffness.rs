@@ -24,8 +24,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let model = arguments.request.model()?;
     if let Some(path) = &arguments.svg {
-        let svg = stiffness::svg(&model).map_err(|error| Failure::running(error.to_string()))?;
-        write_file(path, &svg)?;
+        write_file(path, &stiffness::svg(&model)?)?;
     }
     if arguments.json {
         return print_json(&stiffness::json(&model));

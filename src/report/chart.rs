@@ -28,7 +28,7 @@ pub(super) fn sheet(
             .and_then(|()| draw(&area))
             .and_then(|()| area.present().map_err(message))
     };
-    drawn.map_err(|problem| ReportError::Draw { plot, problem })?;
+    drawn.map_err(|problem| ReportError { plot, problem })?;
     Ok(svg)
 }
 

@@ -12,57 +12,6 @@ pub const TOLERANCE_MM: f64 = 0.1;
 /// Values are multiples of 0.1 mm but for rounding.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// Why studies cannot be compared.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CompareError {
-    /// None was given.
-    #[error("give at least one study to compare")]
-    Nothing,
-    /// Two studies measure different things.
-    #[error(
-        "{first} and {second} cannot be compared: the first has the {what} {ours}, the second \
-         {theirs}; compare studies of the same {what}"
-    )]
-    Different {
-        /// One study.
-        first: String,
-        /// The other.
-        second: String,
-        /// What differs.
-        what: String,
-        /// Its value in the first.
-        ours: String,
-        /// Its value in the second.
-        theirs: String,
-    },
-    /// One study twice would count twice.
-    #[error("{first} and {second} are the same study ({optimizer}, seed {seed}); give it once")]
-    Same {
-        /// One study.
-        first: String,
-        /// The other.
-        second: String,
-        /// Their optimizer.
-        optimizer: String,
-        /// Their seed.
-        seed: u64,
-    },
-    /// The target would mean nothing.
-    #[error(
-        "{name} has the objective {objective}; only studies of one objective in mm that is to be \
-         large can be compared: range, centred-range or robust-range"
-    )]
-    Objective {
-        /// The study.
-        name: String,
-        /// Its objective.
-        objective: String,
-    },
-    /// No study holds a value.
-    #[error("no evaluation of these studies has a value: there is nothing to compare")]
-    NoValue,
-}
-
 /// Studies of one optimizer with different seeds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OptimizerGroup {
@@ -117,30 +66,32 @@ impl OptimizerGroup {
 ///
 /// # Errors
 /// If they measure different things, or one is given twice, or none has a value.
-pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, CompareError> {
-    let (first, _) = studies.split_first().ok_or(CompareError::Nothing)?;
+pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> {
+    let (first, _) = studies.split_first().ok_or("give at least one study to compare")?;
     studies.iter().try_for_each(|study| alike(first, study))?;
     let objective = &first.1.config.objective;
     if !objective.single().is_some_and(|measure| measure.key() == "mm" && measure.sense() > 0.0) {
-        let (name, objective) = (first.0.clone(), objective.to_string());
-        return Err(CompareError::Objective { name, objective });
+        return Err(format!(
+            "{} has the objective {objective}; only studies of one objective in mm that is to be \
+             large can be compared: range, centred-range or robust-range",
+            first.0
+        ));
     }
     let mut groups: BTreeMap<(String, u64), Vec<&(String, StudyRecord)>> = BTreeMap::new();
     for study in studies {
-        let config = &study.1.config;
-        let group = groups.entry((config.method(), config.batch)).or_default();
+        let (config, method) = (&study.1.config, study.1.config.method());
+        let group = groups.entry((method.clone(), config.batch)).or_default();
         if let Some(same) = group.iter().find(|other| other.1.config.seed == config.seed) {
-            return Err(CompareError::Same {
-                first: same.0.clone(),
-                second: study.0.clone(),
-                optimizer: config.method(),
-                seed: config.seed,
-            });
+            return Err(format!(
+                "{} and {} are the same study ({method}, seed {}); give it once",
+                same.0, study.0, config.seed
+            ));
         }
         group.push(study);
     }
     let best = studies.iter().filter_map(|(_, record)| record.best()?.value()).reduce(f64::max);
-    let best_known_mm = best.ok_or(CompareError::NoValue)?;
+    let best_known_mm =
+        best.ok_or("no evaluation of these studies has a value: there is nothing to compare")?;
     let target_mm = best_known_mm - TOLERANCE_MM;
     let group = |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| {
         let records: Vec<&StudyRecord> = studies.iter().map(|(_, record)| record).collect();
@@ -178,14 +129,14 @@ fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
 fn alike(
     (first, ours): &(String, StudyRecord),
     (second, theirs): &(String, StudyRecord),
-) -> Result<(), CompareError> {
+) -> Result<(), String> {
     let mut parts = problem(&ours.config).into_iter().zip(problem(&theirs.config));
     match parts.find(|(ours, theirs)| ours != theirs) {
         None => Ok(()),
-        Some(((what, ours), (_, theirs))) => {
-            let (first, second, what) = (first.clone(), second.clone(), what.to_owned());
-            Err(CompareError::Different { first, second, what, ours, theirs })
-        }
+        Some(((what, ours), (_, theirs))) => Err(format!(
+            "{first} and {second} cannot be compared: the first has the {what} {ours}, the second \
+             {theirs}; compare studies of the same {what}"
+        )),
     }
 }
 

@@ -13,8 +13,12 @@ use maud::Markup;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-/// The plot, `size` pixels.
-pub(super) fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError> {
+/// Value of each evaluation and best so far (of several objectives the hypervolume) against the
+/// number of evaluations, on a white ground; `size` pixels.
+///
+/// # Errors
+/// If the drawing library refuses.
+pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError> {
     sheet("the convergence", size, |area| draw(area, record))
 }
 

@@ -12,9 +12,12 @@ use crate::study::{Recorded, StudyRecord};
 use maud::{Markup, html};
 use plotters::prelude::*;
 
-/// The first objective against the second, all evaluations, `size` pixels; `None` if there is
-/// one objective only or nothing has values.
-pub(super) fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
+/// The first two objectives of all evaluations and the front, on a white ground, `size` pixels;
+/// `None` if there is one objective only or nothing has values.
+///
+/// # Errors
+/// If the drawing library refuses.
+pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
     let several = record.config.objective.single().is_none();
     let any = record.evaluations.iter().any(|recorded| recorded.score.is_some());
     if !several || !any {

@@ -1,5 +1,6 @@
 //! Why a request failed, and the exit code that says so.
 
+use crate::report::ReportError;
 use crate::study::StudyError;
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -80,6 +81,12 @@ impl From<StudyError> for Failure {
         let bad_input = error.is_bad_input();
         let error = anyhow::Error::new(error);
         if bad_input { Failure::Input(error) } else { Failure::Run(error) }
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        Failure::Run(error.into())
     }
 }
 

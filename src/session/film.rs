@@ -57,8 +57,7 @@ impl FilmRequest {
             write(file, &film)?;
         }
         if let Some(file) = &self.plot {
-            let svg = replay::curve_svg(&film);
-            write_file(file, &svg.map_err(|error| Failure::running(error.to_string()))?)?;
+            write_file(file, &replay::curve_svg(&film)?)?;
         }
         Ok(Some(recording))
     }

@@ -22,19 +22,17 @@ pub fn rewrite(dir: &Path) -> Result<StudyRecord, Failure> {
 
 /// The page among a report's files.
 pub const PAGE: &str = "report.html";
+/// Pixels of a plot in a file of its own.
+const FILE: (u32, u32) = (880, 480);
 
 /// Writes all that is made of a study into its folder: table, plot and page.
 pub(super) fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(), Failure> {
-    let drawn = |error: report::ReportError| Failure::running(error.to_string());
     write_evaluations_csv(dir, record)?;
-    write_own_file(&dir.join("convergence.svg"), &report::convergence_svg(record).map_err(drawn)?)?;
-    if let Some(front) = report::front_svg(record).map_err(drawn)? {
+    write_own_file(&dir.join("convergence.svg"), &report::convergence_svg(record, FILE)?)?;
+    if let Some(front) = report::front_svg(record, FILE)? {
         write_own_file(&dir.join("front.svg"), &front)?;
     }
-    write_own_file(
-        &dir.join(PAGE),
-        &report::page(record, model, &beside(dir, record)).map_err(drawn)?,
-    )?;
+    write_own_file(&dir.join(PAGE), &report::page(record, model, &beside(dir, record))?)?;
     Ok(())
 }
 

@@ -6,17 +6,11 @@ mod new;
 mod show;
 
 use super::Failure;
-use clap::{Args, Subcommand};
+use clap::Subcommand;
 
 /// Make, show and check a task
-#[derive(Debug, Args)]
-pub struct Arguments {
-    #[command(subcommand)]
-    command: Command,
-}
-
 #[derive(Debug, Subcommand)]
-enum Command {
+pub enum Arguments {
     /// Write a commented task file from a few dimensions, or like another task
     #[command(
         after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 \
@@ -38,10 +32,10 @@ enum Command {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.command {
-        Command::New(arguments) => new::run(arguments),
-        Command::Show(arguments) => show::run(arguments),
-        Command::Check(arguments) => check::run(arguments),
-        Command::Import(arguments) => import::run(arguments),
+    match arguments {
+        Arguments::New(arguments) => new::run(arguments),
+        Arguments::Show(arguments) => show::run(arguments),
+        Arguments::Check(arguments) => check::run(arguments),
+        Arguments::Import(arguments) => import::run(arguments),
     }
 }

@@ -35,7 +35,6 @@ pub struct Arguments {
     quiet: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { setup, measurements, calibration, .. } = arguments;
     let request = calibration.request(setup.clone(), measurements);

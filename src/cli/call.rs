@@ -7,7 +7,6 @@ use crate::study::StudyRecord;
 use clap::{Args, Parser};
 use serde_json::Value;
 
-/// The words of one command.
 #[derive(Parser)]
 #[command(no_binary_name = true)]
 struct Words<T: Args> {

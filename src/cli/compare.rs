@@ -22,7 +22,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
     let studies = arguments.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;

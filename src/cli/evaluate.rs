@@ -31,14 +31,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 pub fn json(found: &Evaluated) -> Value {
     let mut fields = chosen::json(&found.chosen);
     merge(&mut fields, json!(found.evaluation));
-    merge(&mut fields, json!({"wall_s": found.wall_s}));
+    fields["wall_s"] = json!(found.wall_s);
     if let Some(bands) = &found.bands {
-        merge(&mut fields, json!({"bands": repeat::bands_json(bands)}));
+        fields["bands"] = repeat::bands_json(bands);
     }
     match &found.by_ribs {
         None => (),
-        Some(ByRibs::Measured(tasks)) => merge(&mut fields, json!({"computed": tasks.first()})),
-        Some(ByRibs::Refused(why)) => merge(&mut fields, json!({"computed": {"refused": why}})),
+        Some(ByRibs::Measured(tasks)) => fields["computed"] = json!(tasks.first()),
+        Some(ByRibs::Refused(why)) => fields["computed"] = json!({"refused": why}),
     }
     fields
 }

@@ -44,7 +44,6 @@ fn load(text: &str) -> Result<[f64; 2], String> {
         .ok_or_else(|| format!("is no force y,z of 0.001 to {LARGEST_LOAD_N} N; as -5,0"))
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (geometry, computed) = arguments.request.run()?;
     if let Some(file) = &arguments.svg {

@@ -45,7 +45,6 @@ fn cost(text: &str) -> Result<f64, String> {
     NextRequest::given_cost(text.parse().unwrap_or(f64::NAN))
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let calibration = &arguments.calibration;
     let request = NextRequest {

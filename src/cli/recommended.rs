@@ -1,7 +1,6 @@
 //! The recommendation of a study as JSON.
 
 use super::on_bench;
-use super::terminal::merge;
 use crate::answer::{Answer, Recommended};
 use crate::study::{ByRibs, StudyRecord};
 use serde_json::{Value, json};
@@ -27,7 +26,8 @@ pub fn json(answer: &Answer) -> Value {
     let equivalent = one.and_then(|found| found.as_good.as_ref()).map(|as_good| as_good.designs);
     // One decimal, without the noise of the subtraction.
     let spread = answer.spread_mm.map(|[low, high]| ((high - low) * 1e6).round() / 1e6);
-    merge(&mut fields, json!({ "equivalent_designs": equivalent, "spread_mm": spread }));
+    fields["equivalent_designs"] = json!(equivalent);
+    fields["spread_mm"] = json!(spread);
     fields
 }
 
@@ -45,13 +45,13 @@ fn recommended(record: &StudyRecord, found: &Recommended) -> Value {
         "peak_force_n": found.peak_force_n,
     });
     // What springs computed from its ribs make of the design, task by task.
-    let computed = found.by_ribs.map(|found| match found {
-        ByRibs::Measured(tasks) => json!({"computed": { "tasks": tasks }}),
-        ByRibs::Refused(why) => json!({"computed": { "refused": why }}),
-    });
-    computed.into_iter().for_each(|computed| merge(&mut fields, computed));
+    match found.by_ribs {
+        Some(ByRibs::Measured(tasks)) => fields["computed"] = json!({ "tasks": tasks }),
+        Some(ByRibs::Refused(why)) => fields["computed"] = json!({ "refused": why }),
+        None => (),
+    }
     if record.config.several_tasks() {
-        merge(&mut fields, json!({"tasks": record.config.tasks}));
+        fields["tasks"] = json!(record.config.tasks);
     }
     fields
 }

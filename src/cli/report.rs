@@ -12,7 +12,6 @@ pub struct Arguments {
     dir: PathBuf,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let count = rewrite(&arguments.dir)?.evaluations.len();
     let page = arguments.dir.join(PAGE);

@@ -21,7 +21,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = arguments.request.run(&NEVER)?;
     if let Some(path) = &arguments.svg {

@@ -2,7 +2,7 @@
 
 use super::arguments::RunArguments;
 use super::progress::Progress;
-use super::{Failure, say, summary};
+use super::{Failure, print, say, summary};
 use crate::session::{Ended, OpenStudy, ResumeRequest, StudyRequest};
 use clap::Args;
 use std::path::Path;
@@ -45,7 +45,7 @@ pub fn to_its_end(open: OpenStudy, arguments: &RunArguments) -> Result<(), Failu
     let mut progress = Progress::new(open.study(), arguments.quiet, arguments.json);
     let Ended { dir, record, ending, known, unusable } =
         open.run(&stop, &mut |event| progress.see(event))?;
-    summary::show(&dir, &record, ending, known, arguments.json)?;
+    print(&summary::printed(&dir, &record, ending, known, arguments.json))?;
     unusable.map_or(Ok(()), Err)
 }
 

@@ -1,26 +1,15 @@
 //! What is printed of a whole study.
 
 use super::terminal::merge;
-use super::{Failure, print, recommended, words};
+use super::{recommended, words};
 use crate::answer::lines;
 use crate::answer::words::{evaluated, volume_unit};
-use crate::answer::{Answer, Front, Nearest, NothingInserts, WalkedDesign};
+use crate::answer::{Answer, Front, Nearest};
 use crate::study::{Ending, Recorded, StudyRecord};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Prints the result of a study, `known` evaluations of which were in the cache.
-pub fn show(
-    dir: &Path,
-    record: &StudyRecord,
-    ending: Ending,
-    known: u64,
-    as_json: bool,
-) -> Result<(), Failure> {
-    print(&printed(dir, record, ending, known, as_json))
-}
-
-/// What is printed.
+/// What is printed of a study, `known` evaluations of which were in the cache.
 pub fn printed(
     dir: &Path,
     record: &StudyRecord,
@@ -31,7 +20,7 @@ pub fn printed(
     let answer = Answer::of(record);
     if as_json {
         let mut fields = to_json(&answer, ending, known);
-        merge(&mut fields, json!({"study": dir}));
+        fields["study"] = json!(dir);
         return format!("{fields}\n");
     }
     text(dir, &answer, ending, known)
@@ -73,8 +62,7 @@ fn text(dir: &Path, answer: &Answer, ending: Ending, known: u64) -> String {
     words::wrapped(&text) + &place
 }
 
-/// That a task is of no use as it is.
-fn unusable(NothingInserts { task, nearest }: &NothingInserts) -> String {
+fn unusable((task, nearest): &(&str, &Recorded)) -> String {
     format!(
         "no design inserts at the nominal start of {task}, so none is recommended\n\
          nearest       {}\n",
@@ -82,7 +70,6 @@ fn unusable(NothingInserts { task, nearest }: &NothingInserts) -> String {
     )
 }
 
-/// Why no design is recommended.
 fn none(answer: &Answer) -> String {
     let Some(Nearest { design, constraints }) = &answer.nearest else {
         return "no evaluation gave a value\n".to_owned();
@@ -142,35 +129,29 @@ fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
     });
     merge(&mut fields, recommended::json(answer));
     if !answer.walked.is_empty() {
-        let one = |&WalkedDesign { design, firm_range_mm }: &WalkedDesign| {
+        let one = |&(design, firm_range_mm): &(&Recorded, f64)| {
             let mut fields = recorded_json(record, design);
-            merge(&mut fields, json!({ "firm_range_mm": firm_range_mm }));
+            fields["firm_range_mm"] = json!(firm_range_mm);
             fields
         };
-        let walked: Vec<Value> = answer.walked.iter().map(one).collect();
-        merge(&mut fields, json!({"walked": walked}));
+        fields["walked"] = answer.walked.iter().map(one).collect();
     }
     if record.segments.len() > 1 {
-        merge(&mut fields, json!({"segments": record.segments}));
+        fields["segments"] = json!(record.segments);
     }
     if !config.constraints.is_empty() {
-        let limits = json!({"constraints": config.constraints, "feasible": answer.feasible});
-        merge(&mut fields, limits);
+        fields["constraints"] = json!(config.constraints);
+        fields["feasible"] = json!(answer.feasible);
     }
     if let Some(aggregate) = &config.aggregate {
-        merge(&mut fields, json!({"aggregate": aggregate}));
+        fields["aggregate"] = json!(aggregate);
     }
     if let Some(Front { designs, volume }) = &answer.front {
-        let front: Vec<Value> = designs.iter().map(|r| recorded_json(record, r)).collect();
-        let keys = config.objective.keys();
-        let reference: serde_json::Map<_, _> =
-            keys.into_iter().zip(volume.reference.iter().map(|&value| json!(value))).collect();
-        let found = json!({
-            "front": front,
-            "hypervolume": volume.hypervolume,
-            "hypervolume_reference": reference,
-        });
-        merge(&mut fields, found);
+        fields["front"] = designs.iter().map(|r| recorded_json(record, r)).collect();
+        fields["hypervolume"] = json!(volume.hypervolume);
+        let reference = volume.reference.iter().map(|&value| json!(value));
+        fields["hypervolume_reference"] =
+            config.objective.keys().into_iter().zip(reference).collect();
     }
     fields
 }
@@ -186,7 +167,7 @@ pub fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
         let values = keys.zip(score.values.iter().map(|&value| json!(value)));
         merge(&mut fields, Value::Object(values.collect()));
         if !score.violations.is_empty() {
-            merge(&mut fields, json!({"violations": score.violations}));
+            fields["violations"] = json!(score.violations);
         }
     }
     merge(&mut fields, json!(recorded.design));
@@ -198,8 +179,7 @@ pub fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
             merge(&mut fields, json!(evaluation));
             fields
         };
-        let tasks: Vec<Value> = config.tasks().zip(recorded.tasks()).map(of).collect();
-        merge(&mut fields, json!({"tasks": tasks}));
+        fields["tasks"] = config.tasks().zip(recorded.tasks()).map(of).collect();
     }
     fields
 }

@@ -18,7 +18,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Prints what is shipped.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut text = String::new();
     let mut lists = serde_json::Map::new();

@@ -40,28 +40,30 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 pub fn json(done: &TrialDone) -> Value {
     let mut fields = chosen::json(&done.chosen);
     let trial = &done.trial;
-    merge(
-        &mut fields,
-        json!({
-            "offset_mm": done.offset_mm,
-            "outcome": trial.outcome.word(),
-            "failure": trial.outcome.failure(),
-            "depth_mm": trial.depth_mm,
-            "tilt_deg": trial.tilt_deg,
-            "peak_force_n": trial.peak_force_n,
-            "slip_mm": trial.slip_mm,
-            "simulated_s": trial.simulated_s,
-            "retried_at_half_step": trial.retried,
-            "phases": trial.phases,
-        }),
-    );
+    fields["offset_mm"] = json!(done.offset_mm);
+    merge(&mut fields, ended(trial));
+    fields["simulated_s"] = json!(trial.simulated_s);
+    fields["retried_at_half_step"] = json!(trial.retried);
+    fields["phases"] = json!(trial.phases);
     if let Some(taught) = done.taught {
-        merge(&mut fields, json!({ "taught_start_mm": grid_mm(taught) }));
+        fields["taught_start_mm"] = json!(grid_mm(taught));
     }
     if let Some(counts) = &done.repeats {
-        merge(&mut fields, json!({ "repeats": counts }));
+        fields["repeats"] = json!(counts);
     }
     fields
+}
+
+/// How a trial ended.
+pub(super) fn ended(trial: &Trial) -> Value {
+    json!({
+        "outcome": trial.outcome.word(),
+        "failure": trial.outcome.failure(),
+        "depth_mm": trial.depth_mm,
+        "tilt_deg": trial.tilt_deg,
+        "peak_force_n": trial.peak_force_n,
+        "slip_mm": trial.slip_mm,
+    })
 }
 
 fn text(trial: &Trial) -> String {

@@ -18,7 +18,6 @@ mod page;
 pub mod printer;
 mod provenance;
 mod published;
-pub mod quartiles;
 pub mod replay;
 pub mod sensitivity;
 mod shape;
@@ -33,7 +32,7 @@ mod windows;
 pub use compare_plot::svg as compare_svg;
 pub use convergence::svg as convergence_svg;
 pub use front::svg as front_svg;
-pub use page::{Beside, Replay, card, page};
+pub use page::{Beside, card, page};
 
 /// Why a plot could not be made: the drawing library refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

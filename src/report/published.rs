@@ -125,7 +125,7 @@ fn draw(area: &Area<'_>, clouds: [Vec<(f64, f64)>; 3]) -> Drawn {
     let mut chart = axes(area, "", x, AxisOf { label: "tolerable range (mm)", range })?;
     let [ours, simulation, bench] = clouds;
     points(&mut chart, ours, PointMark::dot(BLUE, 3), "this study (predicted stiffness)")?;
-    points(&mut chart, simulation, PointMark::triangle(ORANGE), "published simulation")?;
+    points(&mut chart, simulation, PointMark::ring(ORANGE, 5, 2), "published simulation")?;
     points(&mut chart, bench, PointMark::cross(GREEN, 5), "bench experiments")?;
     legend(&mut chart, SeriesLabelPosition::UpperLeft)
 }

@@ -2,8 +2,8 @@
 
 use super::Failure;
 use super::setup::surrogate_of;
-use crate::report::replay::PairEnd;
-use crate::report::{self, Beside, Replay, printer};
+use crate::report::replay::{ENDS, pair_file};
+use crate::report::{self, Beside, printer};
 use crate::study::{StudyRecord, write_evaluations_csv, write_own_file};
 use input::files::{self, LARGEST_OWN};
 use insertion::surrogate::Model;
@@ -41,9 +41,9 @@ fn beside(dir: &Path, record: &StudyRecord) -> Beside {
     let several = record.config.several_tasks();
     let of = |(at, task): (usize, &str)| {
         let on = if several { format!(" on {task}") } else { String::new() };
-        PairEnd::BOTH.map(|end| {
-            let page = files::read_own(&dir.join(end.file(at)), LARGEST_OWN).ok()?;
-            Some(Replay { label: format!("Play the {} end{on}", end.word()), page })
+        ENDS.map(|(end, _)| {
+            let page = files::read_own(&dir.join(pair_file(at, end)), LARGEST_OWN).ok()?;
+            Some((format!("Play the {end} end{on}"), page))
         })
     };
     let replays = record.config.tasks().enumerate().flat_map(of).flatten().collect();

@@ -46,7 +46,6 @@ enum Format {
     Prusaslicer,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let geometry = arguments.request.geometry()?;
     let (out, title) = (&arguments.out, export::title(&geometry));

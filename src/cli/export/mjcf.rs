@@ -20,7 +20,6 @@ pub struct Arguments {
     out: PathBuf,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (task, text) = arguments.request.mjcf()?;
     write_file(&arguments.out, &text)?;

@@ -17,7 +17,6 @@ pub enum Arguments {
     Finger(finger::Arguments),
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments {
         Arguments::Mjcf(arguments) => mjcf::run(arguments),

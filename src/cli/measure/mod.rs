@@ -20,7 +20,6 @@ pub enum Arguments {
     Check(check::Arguments),
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments {
         Arguments::Add(arguments) => add::run(arguments),

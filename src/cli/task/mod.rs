@@ -3,9 +3,9 @@
 mod check;
 mod import;
 mod new;
-mod show;
 
-use super::Failure;
+use super::{Failure, print};
+use crate::session::TaskSource;
 use clap::Subcommand;
 
 /// Make, show and check a task
@@ -19,7 +19,11 @@ pub enum Arguments {
     New(new::Arguments),
     /// Print a shipped task file
     #[command(after_help = "Example: optimize task show usb > mine.toml")]
-    Show(show::Arguments),
+    Show {
+        /// Task: ket8, ket12, rj45, usb
+        #[arg(value_name = "NAME")]
+        name: String,
+    },
     /// Look for what cannot work in a task file, draw it and try its nominal start
     ///
     /// Exit code 0 if nothing is wrong and the plug goes in, 2 otherwise.
@@ -30,11 +34,10 @@ pub enum Arguments {
     Import(import::Arguments),
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments {
         Arguments::New(arguments) => new::run(arguments),
-        Arguments::Show(arguments) => show::run(arguments),
+        Arguments::Show { name } => print(&TaskSource::Named(name.clone()).read()?.text),
         Arguments::Check(arguments) => check::run(arguments),
         Arguments::Import(arguments) => import::run(arguments),
     }

@@ -1,8 +1,8 @@
 //! An answer line by line, each a name and what it says: terminal and page show the same.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
-use super::{Alternative, Answer, AsGood, OnTask, Recommended, TaskOrder};
-use crate::study::{ByRibs, OnBench};
+use super::{Answer, AsGood, OnTask, Recommended, TaskOrder};
+use crate::study::{ByRibs, OnBench, Recorded};
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
@@ -84,14 +84,12 @@ fn equivalent(as_good: &AsGood, of: usize) -> Vec<Line> {
     if count < 2 {
         return vec![line("as good", format!("no other of {of} designs"))];
     }
-    let alternative = |&Alternative { reason, design, value, unit }: &Alternative| {
-        let label = design.design.labelled();
-        let text = format!("{label}: {value:.1} {unit} (evaluation {})", design.index);
-        (format!("  {reason}"), text)
-    };
     let text = format!("{count} of {of} designs are equivalent: choose by other needs");
     let mut lines = vec![line("as good", text)];
-    lines.extend(as_good.alternatives.iter().map(alternative));
+    for (reason, Recorded { design, index, .. }, value, unit) in &as_good.alternatives {
+        let text = format!("{}: {value:.1} {unit} (evaluation {index})", design.labelled());
+        lines.push((format!("  {reason}"), text));
+    }
     lines
 }
 

@@ -10,7 +10,7 @@ use crate::study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::Firm;
 
-pub use recommended::{Alternative, AsGood, OnTask, Recommended};
+pub use recommended::{AsGood, OnTask, Recommended};
 
 /// The answer of a study.
 #[derive(Debug, Clone)]
@@ -27,8 +27,9 @@ pub struct Answer<'a> {
     /// A task on which nothing inserts, so that the recommended design is of no use, and the design
     /// that comes nearest to inserting there.
     pub nothing_inserts: Option<(&'a str, &'a Recorded)>,
-    /// The design that violates the constraints least; `None` if none has values.
-    pub nearest: Option<Nearest<'a>>,
+    /// The design that violates the constraints least, and each constraint with its value, in
+    /// words; `None` if none has values.
+    pub nearest: Option<(&'a Recorded, Vec<String>)>,
     /// The designs that were walked, step by step, and repeated at their ends, best first; each with
     /// its firm range, mm, aggregated over the tasks.
     pub walked: Vec<(&'a Recorded, f64)>,
@@ -38,15 +39,6 @@ pub struct Answer<'a> {
     pub spread_mm: Option<[f64; 2]>,
     /// How our simulation orders fingers on the bench, for the tasks of which that is known.
     pub orders: Vec<TaskOrder<'a>>,
-}
-
-/// A design and how it keeps or violates the constraints.
-#[derive(Debug, Clone)]
-pub struct Nearest<'a> {
-    /// The design.
-    pub design: &'a Recorded,
-    /// Each constraint with the design's value, in words.
-    pub constraints: Vec<String>,
 }
 
 /// Designs none of which is at least as good as another in all objectives.
@@ -94,9 +86,9 @@ impl<'a> Answer<'a> {
             feasible: current.iter().filter(|recorded| recorded.feasible().is_some()).count(),
             recommended: Recommended::of(record),
             nothing_inserts,
-            nearest: nearest(current).map(|design| Nearest {
-                design,
-                constraints: config.constraints.iter().map(|c| c.words(&design.tasks())).collect(),
+            nearest: nearest(current).map(|design| {
+                let words = config.constraints.iter().map(|c| c.words(&design.tasks()));
+                (design, words.collect())
             }),
             walked: record.walked.iter().map(walked).collect(),
             front: config.objective.single().is_none().then(front),

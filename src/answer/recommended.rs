@@ -55,21 +55,9 @@ pub struct OnTask<'a> {
 pub struct AsGood<'a> {
     /// How many there are, with the recommended one.
     pub designs: usize,
-    /// Which to take for other reasons; none if there is no other.
-    pub alternatives: Vec<Alternative<'a>>,
-}
-
-/// A design to take for another reason than the objective.
-#[derive(Debug, Clone, Copy)]
-pub struct Alternative<'a> {
-    /// The reason: `least force`.
-    pub reason: &'static str,
-    /// The design.
-    pub design: &'a Recorded,
-    /// What is least or most of it.
-    pub value: f64,
-    /// The unit of that.
-    pub unit: &'static str,
+    /// Which to take for other reasons: the reason, the design, what is least or most of it and the
+    /// unit of that; none if there is no other.
+    pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
 }
 
 impl<'a> Recommended<'a> {
@@ -141,7 +129,7 @@ fn as_good<'a>(record: &StudyRecord, equivalent: &[&'a Recorded]) -> AsGood<'a> 
     ];
     let known = named.into_iter().filter_map(|(reason, found, unit)| {
         let &(design, value) = found.filter(|(_, value)| value.is_finite())?;
-        Some(Alternative { reason, design, value, unit })
+        Some((reason, design, value, unit))
     });
     AsGood { designs, alternatives: known.collect() }
 }

@@ -13,7 +13,6 @@ mod finger;
 mod manual;
 mod measure;
 mod next;
-mod on_bench;
 mod progress;
 mod recommended;
 mod repeat;

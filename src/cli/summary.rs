@@ -4,7 +4,7 @@ use super::terminal::merge;
 use super::{recommended, words};
 use crate::answer::lines;
 use crate::answer::words::{evaluated, volume_unit};
-use crate::answer::{Answer, Front, Nearest};
+use crate::answer::{Answer, Front};
 use crate::study::{Ending, Recorded, StudyRecord};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -71,7 +71,7 @@ fn unusable((task, nearest): &(&str, &Recorded)) -> String {
 }
 
 fn none(answer: &Answer) -> String {
-    let Some(Nearest { design, constraints }) = &answer.nearest else {
+    let Some((design, constraints)) = &answer.nearest else {
         return "no evaluation gave a value\n".to_owned();
     };
     format!(

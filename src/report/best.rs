@@ -4,7 +4,7 @@ use super::again;
 use super::elements::definitions;
 use crate::answer::lines::{self, Line};
 use crate::answer::words::{design, end, ends_mm, mm, outcome, span, stiffness};
-use crate::answer::{Answer, Nearest, OnTask, Recommended};
+use crate::answer::{Answer, OnTask, Recommended};
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
@@ -56,7 +56,7 @@ pub(super) fn section(answer: &Answer) -> Markup {
 
 fn none(answer: &Answer) -> Markup {
     let count = answer.designs;
-    let Some(Nearest { design: nearest, constraints }) = &answer.nearest else {
+    let Some((nearest, constraints)) = &answer.nearest else {
         return html! {
             p.warn {
                 "No design has a value: of " (count) " evaluations none gave one (none were run, \

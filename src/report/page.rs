@@ -33,23 +33,23 @@ pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<Stri
     let (config, title) = (&record.config, title(record));
     let sections = sections(&Answer::of(record), model, beside)?;
     let body = html! {
-                main {
-                    header {
-                        h1 { (title) }
-                        p.muted {
-                            "Robustness of a compliant finger in a connector insertion, by \
-                            contact simulation: " (record.evaluations.len()) " of "
-                            (config.evaluations()) " evaluations."
-                            @if let Some(note) = drawn::note(record) { " " (note) }
-                        }
-                    }
-                    nav aria-label="contents" {
-                        @for (id, title, _) in &sections { a href=(format!("#{id}")) { (title) } }
-                    }
-                    @for (id, title, body) in &sections {
-                        section id=(id) { h2 { (title) } (body) }
-                    }
+        main {
+            header {
+                h1 { (title) }
+                p.muted {
+                    "Robustness of a compliant finger in a connector insertion, by \
+                    contact simulation: " (record.evaluations.len()) " of "
+                    (config.evaluations()) " evaluations."
+                    @if let Some(note) = drawn::note(record) { " " (note) }
                 }
+            }
+            nav aria-label="contents" {
+                @for (id, title, _) in &sections { a href=(format!("#{id}")) { (title) } }
+            }
+            @for (id, title, body) in &sections {
+                section id=(id) { h2 { (title) } (body) }
+            }
+        }
     };
     Ok(document(&title, &style(), body))
 }

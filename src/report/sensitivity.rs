@@ -1,7 +1,7 @@
 //! Which input matters: table, JSON and chart.
 
 use super::ReportError;
-use super::chart::{Area, Drawn, font, message, sheet, tick, words};
+use super::chart::{Area, Drawn, message, sheet, tick, words};
 use super::theme::{BLUE, INK, LINES, MUTED};
 use crate::sensitivity::Interval;
 use crate::sensitivity::factors::Factor;
@@ -131,9 +131,7 @@ fn draw(area: &Area<'_>, found: &Found) -> Drawn {
         area.draw(&PathElement::new(ends, INK.rgb().stroke_width(2))).map_err(message)?;
         let name =
             format!("{} ({} to {})", short(&factor.key), tick(factor.low), tick(factor.high));
-        let small = font(13).color(&INK.rgb());
-        let small = small.pos(plotters::style::text_anchor::Pos::new(HPos::Right, VPos::Center));
-        area.draw_text(&name, &small, (LEFT - 8, y)).map_err(message)?;
+        area.draw_text(&name, &style(13, INK, HPos::Right), (LEFT - 8, y)).map_err(message)?;
         let value = format!("{:.2}", total.value);
         area.draw_text(&value, &style(14, INK, HPos::Left), (at(total.high) + 8, y))
             .map_err(message)?;

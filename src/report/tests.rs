@@ -4,9 +4,9 @@ use crate::study::{Provenance, Recorded, Segment, StudyConfig, StudyRecord, Timi
 use finray::printed::PrintedFinger;
 use input::shipped::FINGERS;
 use input::units::{MM, N_PER_MM};
+use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
 use insertion::evaluation::tolerance::{Search, evaluate};
-use insertion::evaluation::{Evaluation, Window};
 use insertion::finger::Finger;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
@@ -110,31 +110,9 @@ fn of_very_many_evaluations_the_best_and_some_are_drawn() {
 
 /// An evaluation whose nominal start already ends so.
 fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
-    let mut failure_counts = [0; 4];
-    if let Outcome::Failed(class) = nominal {
-        failure_counts[class as usize] = 1;
-    }
-    let window = Window {
-        nominal,
-        negative_steps: 0,
-        positive_steps: 0,
-        end_negative: Some(nominal),
-        end_positive: Some(nominal),
-    };
-    let evaluation = Evaluation {
-        window,
-        failure_counts,
-        diverged: u32::from(nominal == Outcome::Diverged),
-        trials: 1,
-        peak_force_n: 0.0,
-        slip_mm: 0.0,
-        simulated_s: 3.0,
-        end_shares: [0.0; 2],
-        taught: None,
-        success: None,
-        robust: None,
-    };
-    recorded(index, infill, evaluation)
+    let ends = Altered(move |_: &Grasp, _: f64, trial: Trial| Trial { outcome: nominal, ..trial });
+    let finger = Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM);
+    recorded(index, infill, evaluate(&ends, &finger, Search::Walk))
 }
 
 /// The page of a study, which is whole.

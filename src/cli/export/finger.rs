@@ -50,9 +50,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let geometry = arguments.request.geometry()?;
     let (out, title) = (&arguments.out, export::title(&geometry));
     match arguments.format {
-        Format::Stl => write_file(out, &finger(&geometry)?.stl(&title))?,
+        Format::Stl => write_file(out, &closed(Prism::finger(&geometry), &geometry)?.stl(&title))?,
         Format::ThreeMf => {
-            let bytes = finger(&geometry)?
+            let bytes = closed(Prism::finger(&geometry), &geometry)?
                 .three_mf(&title)
                 .map_err(|error| Failure::running(format!("{}: {error}", out.display())))?;
             write_file(out, &bytes)?;
@@ -64,10 +64,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Prusaslicer => return settings(out, &geometry, &slicer::prusaslicer(&geometry)),
     }
     print(&format!("wrote {title}: {}\n", out.display()))
-}
-
-fn finger(geometry: &Geometry) -> Result<Prism, Failure> {
-    closed(Prism::finger(geometry), geometry)
 }
 
 fn closed(

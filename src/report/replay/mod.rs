@@ -45,31 +45,31 @@ pub fn page(title: &str, films: &[Film]) -> String {
         title,
         include_str!("viewer.css"),
         html! {
-                h1 { (title) }
-                div.films {
-                    @for (i, film) in films.iter().enumerate() {
-                        figure {
-                            figcaption {
-                                span class=(format!("key{i}")) { (film.label) }
-                                span id=(format!("phase{i}")) {}
-                                b id=(format!("outcome{i}")) {}
-                            }
-                            canvas id=(format!("film{i}")) tabindex="0"
-                                aria-label="the trial in 3-D: arrow keys turn, plus and minus zoom" {}
+            h1 { (title) }
+            div.films {
+                @for (i, film) in films.iter().enumerate() {
+                    figure {
+                        figcaption {
+                            span class=(format!("key{i}")) { (film.label) }
+                            span id=(format!("phase{i}")) {}
+                            b id=(format!("outcome{i}")) {}
                         }
+                        canvas id=(format!("film{i}")) tabindex="0"
+                            aria-label="the trial in 3-D: arrow keys turn, plus and minus zoom" {}
                     }
                 }
-                (controls())
-                div #phases {}
-                div #curves {}
-                p.note {
-                    "Drag turns, the wheel or two fingers zoom, shift and drag moves up and down; a \
-                    click on a curve goes to that time. Red arrows: the socket presses the plug; blue: \
-                    the fingers do. The tips of the fingers are where they are; what lies between tip \
-                    and jaw is drawn for the eye, its bend as many times as large as the slider says."
-                }
-                script type="application/json" id="films" { (PreEscaped(embedded(&data.into()))) }
-                script { (PreEscaped(include_str!("viewer.js"))) }
+            }
+            (controls())
+            div #phases {}
+            div #curves {}
+            p.note {
+                "Drag turns, the wheel or two fingers zoom, shift and drag moves up and down; a \
+                click on a curve goes to that time. Red arrows: the socket presses the plug; blue: \
+                the fingers do. The tips of the fingers are where they are; what lies between tip \
+                and jaw is drawn for the eye, its bend as many times as large as the slider says."
+            }
+            script type="application/json" id="films" { (PreEscaped(embedded(&data.into()))) }
+            script { (PreEscaped(include_str!("viewer.js"))) }
         },
     )
 }

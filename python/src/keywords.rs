@@ -3,8 +3,8 @@
 use crate::errors::InputError;
 use clap::ValueEnum;
 use finger_opt::session::{
-    CacheRequest, EffortRequest, FilmRequest, FingerRequest, RepeatRequest, RunRequest,
-    SetupRequest, TaskSource,
+    CacheRequest, EffortRequest, FilmRequest, FingerModelRequest, FingerRequest, RepeatRequest,
+    RunRequest, SetupRequest, TaskSource,
 };
 use input::shipped::Source;
 use pyo3::exceptions::PyTypeError;
@@ -148,8 +148,10 @@ impl<'py> Keywords<'py> {
             robot: self.text("robot")?.unwrap_or(usual.robot),
             stiffness_data: self.text("stiffness_data")?,
             engine: self.choice("engine")?.unwrap_or(usual.engine),
-            finger_model: self.choice("finger_model")?,
-            finger: self.text("finger")?.unwrap_or(usual.finger),
+            finger_model: FingerModelRequest {
+                kind: self.choice("finger_model")?,
+                finger: self.text("finger")?.unwrap_or(usual.finger_model.finger),
+            },
             start: self.choice("start")?,
         })
     }

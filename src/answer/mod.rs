@@ -1,6 +1,7 @@
 //! What a study answers, found once from its record: terminal, page, JSON and Python say it, and
 //! compute nothing of their own. Lengths in mm, forces in N.
 
+pub mod lines;
 mod recommended;
 pub mod words;
 
@@ -9,7 +10,7 @@ use crate::study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::Firm;
 
-pub use recommended::{Alternative, AsGood, OnTask, Recommended};
+pub use recommended::{AsGood, OnTask, Recommended};
 
 /// The answer of a study.
 #[derive(Debug, Clone)]
@@ -23,45 +24,21 @@ pub struct Answer<'a> {
     /// The recommended design, or of a front its first; `None` if none has a value and keeps all
     /// constraints.
     pub recommended: Option<Recommended<'a>>,
-    /// That nothing inserts on a task, so that the recommended design is of no use.
-    pub nothing_inserts: Option<NothingInserts<'a>>,
-    /// The design that violates the constraints least; `None` if none has values.
-    pub nearest: Option<Nearest<'a>>,
-    /// The designs that were walked, best first; empty if none were.
-    pub walked: Vec<WalkedDesign<'a>>,
-    /// Front of several objectives; `None` for a single one.
+    /// A task on which nothing inserts, so that the recommended design is of no use, and the design
+    /// that comes nearest to inserting there.
+    pub nothing_inserts: Option<(&'a str, &'a Recorded)>,
+    /// The design that violates the constraints least, and each constraint with its value, in
+    /// words; `None` if none has values.
+    pub nearest: Option<(&'a Recorded, Vec<String>)>,
+    /// The designs that were walked, step by step, and repeated at their ends, best first; each with
+    /// its firm range, mm, aggregated over the tasks.
+    pub walked: Vec<(&'a Recorded, f64)>,
+    /// What several objectives leave to choose from; `None` for a single one.
     pub front: Option<Front<'a>>,
     /// The smallest and the largest range of the designs, mm; `None` if none has a range.
     pub spread_mm: Option<[f64; 2]>,
     /// How our simulation orders fingers on the bench, for the tasks of which that is known.
     pub orders: Vec<TaskOrder<'a>>,
-}
-
-/// A task on which no design inserts at the nominal start.
-#[derive(Debug, Clone, Copy)]
-pub struct NothingInserts<'a> {
-    /// Its name.
-    pub task: &'a str,
-    /// The design that comes nearest to inserting there.
-    pub nearest: &'a Recorded,
-}
-
-/// A design and how it keeps or violates the constraints.
-#[derive(Debug, Clone)]
-pub struct Nearest<'a> {
-    /// The design.
-    pub design: &'a Recorded,
-    /// Each constraint with the design's value, in words.
-    pub constraints: Vec<String>,
-}
-
-/// A design that was walked, step by step, and repeated at its ends.
-#[derive(Debug, Clone, Copy)]
-pub struct WalkedDesign<'a> {
-    /// The design, with the windows of the walk.
-    pub design: &'a Recorded,
-    /// Its firm range, mm, aggregated over the tasks.
-    pub firm_range_mm: f64,
 }
 
 /// Designs none of which is at least as good as another in all objectives.
@@ -95,14 +72,12 @@ impl<'a> Answer<'a> {
     pub fn of(record: &'a StudyRecord) -> Self {
         let (config, current) = (&record.config, record.current());
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
-        let nothing_inserts = record.unusable().map(|(task, nearest)| NothingInserts {
-            task: config.tasks().nth(task).unwrap_or_default(),
-            nearest,
-        });
+        let nothing_inserts = record
+            .unusable()
+            .map(|(task, nearest)| (config.tasks().nth(task).unwrap_or_default(), nearest));
         let walked = |walked: &'a Walked| {
             let firm: Vec<f64> = walked.firm.iter().map(Firm::range_mm).collect();
-            let firm_range_mm = record.aggregated(Measure::Range, &firm);
-            WalkedDesign { design: &walked.recorded, firm_range_mm }
+            (&walked.recorded, record.aggregated(Measure::Range, &firm))
         };
         let order = |(at, task)| Some(TaskOrder { task, order: order_on_bench(record, at)? });
         Answer {
@@ -111,9 +86,9 @@ impl<'a> Answer<'a> {
             feasible: current.iter().filter(|recorded| recorded.feasible().is_some()).count(),
             recommended: Recommended::of(record),
             nothing_inserts,
-            nearest: nearest(current).map(|design| Nearest {
-                design,
-                constraints: config.constraints.iter().map(|c| c.words(&design.tasks())).collect(),
+            nearest: nearest(current).map(|design| {
+                let words = config.constraints.iter().map(|c| c.words(&design.tasks()));
+                (design, words.collect())
             }),
             walked: record.walked.iter().map(walked).collect(),
             front: config.objective.single().is_none().then(front),

@@ -31,14 +31,9 @@ pub struct Recommended<'a> {
     pub tasks: Vec<OnTask<'a>>,
     /// Measurements with springs computed from its ribs, if there are any.
     pub by_ribs: Option<&'a ByRibs>,
-    /// Its range with those, mm.
-    pub by_ribs_range_mm: Option<f64>,
     /// The objective as the search had found it, where the walk found another value.
     pub searched: Option<f64>,
-    /// The widest range of the search, mm, where that is another design's, less firm when measured
-    /// again.
-    pub wider_mm: Option<f64>,
-    /// Designs that are as good; `None` of a front.
+    /// What is as good; `None` of a front.
     pub as_good: Option<AsGood<'a>>,
 }
 
@@ -60,21 +55,9 @@ pub struct OnTask<'a> {
 pub struct AsGood<'a> {
     /// Their number, with the recommended one.
     pub designs: usize,
-    /// Those to take for other reasons; none if there is no other.
-    pub alternatives: Vec<Alternative<'a>>,
-}
-
-/// A design to take for another reason than the objective.
-#[derive(Debug, Clone, Copy)]
-pub struct Alternative<'a> {
-    /// The reason: `least force`.
-    pub reason: &'static str,
-    /// The design.
-    pub design: &'a Recorded,
-    /// Its least or largest quantity.
-    pub value: f64,
-    /// The unit of that.
-    pub unit: &'static str,
+    /// Which to take for other reasons: the reason, the design, what is least or most of it and the
+    /// unit of that; none if there is no other.
+    pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
 }
 
 impl<'a> Recommended<'a> {
@@ -86,7 +69,6 @@ impl<'a> Recommended<'a> {
         let windows: Option<Vec<[f64; 2]>> =
             firm.and_then(|firm| firm.iter().map(Firm::window_mm).collect());
         let firm_ranges = found.as_ref().and_then(Recommendation::firm_ranges_mm);
-        let by_ribs = found.as_ref().and_then(|found| found.by_ribs);
         let on = |(at, (name, measured)): (usize, (&'a str, &'a Evaluation))| OnTask {
             name,
             measured,
@@ -105,10 +87,8 @@ impl<'a> Recommended<'a> {
             firm_window_mm: windows.map(|windows| common(windows.into_iter())),
             peak_force_n: record.measure(design, Measure::PeakForce),
             tasks: config.tasks().zip(&design.tasks).enumerate().map(on).collect(),
-            by_ribs,
-            by_ribs_range_mm: by_ribs.and_then(|found| range_mm(record, found)),
+            by_ribs: found.as_ref().and_then(|found| found.by_ribs),
             searched: searched(record, design),
-            wider_mm: wider_mm(record, design),
             as_good: found.as_ref().map(|found| as_good(record, &found.equivalent)),
         })
     }
@@ -125,23 +105,10 @@ fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
         .fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])
 }
 
-fn range_mm(record: &StudyRecord, by_ribs: &ByRibs) -> Option<f64> {
-    let ByRibs::Measured(tasks) = by_ribs else { return None };
-    let ranges: Vec<f64> = tasks.iter().map(|task| task.window.range_mm()).collect();
-    Some(record.aggregated(Measure::Range, &ranges))
-}
-
 fn searched(record: &StudyRecord, design: &Recorded) -> Option<f64> {
     let same = |recorded: &&Recorded| recorded.index == design.index;
     let before = record.current().iter().find(same)?.value()?;
     (Some(before) != design.value()).then_some(before)
-}
-
-fn wider_mm(record: &StudyRecord, design: &Recorded) -> Option<f64> {
-    let by_range = record.config.objective.single() == Some(Measure::Range);
-    let (own, [_, widest]) = (record.measure(design, Measure::Range)?, record.spread_mm()?);
-    // Half a step of the grid.
-    (by_range && !record.walked.is_empty() && widest > own + 0.05).then_some(widest)
 }
 
 fn as_good<'a>(record: &StudyRecord, equivalent: &[&'a Recorded]) -> AsGood<'a> {
@@ -160,7 +127,7 @@ fn as_good<'a>(record: &StudyRecord, equivalent: &[&'a Recorded]) -> AsGood<'a> 
     ];
     let known = named.into_iter().filter_map(|(reason, found, unit)| {
         let (design, value) = found.filter(|(_, value)| value.is_finite())?;
-        Some(Alternative { reason, design, value, unit })
+        Some((reason, design, value, unit))
     });
     AsGood { designs, alternatives: known.collect() }
 }

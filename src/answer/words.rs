@@ -3,7 +3,7 @@
 use crate::study::Recorded;
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
-use insertion::evaluation::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
+use insertion::evaluation::{RobustRange, SuccessRate, Window};
 use insertion::outcome::Outcome;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Estimate;
@@ -26,11 +26,6 @@ pub fn span([low_mm, high_mm]: [f64; 2]) -> String {
 /// Both ends of a window, mm.
 pub fn ends_mm(window: &Window) -> [f64; 2] {
     [window.negative_mm(), window.positive_mm()]
-}
-
-/// A taught start, `unit` behind it: `, start taught +0.3 mm`; empty of one that was not taught.
-pub fn taught(steps: Option<OffsetStep>, unit: &str) -> String {
-    steps.map_or(String::new(), |steps| format!(", start taught {:+.1}{unit}", grid_mm(steps)))
 }
 
 /// A stiffness with its standard deviation, N/mm.

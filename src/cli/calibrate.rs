@@ -1,10 +1,10 @@
 //! `optimize calibrate`: what few measurements say of every finger.
 
-use super::arguments::{CalibrationArguments, SetupArguments};
+use super::arguments::CalibrationArguments;
 use super::terminal::simulating;
 use super::{Failure, print, print_json};
 use crate::calibration::table;
-use crate::session::Calibrated;
+use crate::session::{Calibrated, SetupRequest};
 use crate::study::write_file;
 use clap::Args;
 use insertion::trial::NEVER;
@@ -18,7 +18,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
+    setup: SetupRequest,
     /// What was measured on the bench: published, or the path of a file
     #[arg(long, value_name = "FILE")]
     measurements: String,
@@ -35,10 +35,9 @@ pub struct Arguments {
     quiet: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { setup, measurements, calibration, .. } = arguments;
-    let request = calibration.request(setup.request(), measurements);
+    let request = calibration.request(setup.clone(), measurements);
     let quiet = arguments.quiet || arguments.json;
     let Calibrated { subjects, found } = request.run(&NEVER, &mut simulating(quiet))?;
     if let Some(out) = &arguments.out {

@@ -1,13 +1,12 @@
 //! What those need of the command line who call the library from elsewhere: `--executor`'s words as
 //! requests, and what is printed.
 
-use super::{Failure, recommended, resume, study, summary};
+use super::{Failure, recommended, study, summary};
 use crate::session::{AnyStudy, Ended};
 use crate::study::StudyRecord;
 use clap::{Args, Parser};
 use serde_json::Value;
 
-/// The words of one command.
 #[derive(Parser)]
 #[command(no_binary_name = true)]
 struct Words<T: Args> {
@@ -34,7 +33,7 @@ pub struct Asked {
 pub fn asked(words: &[String]) -> Result<Asked, Failure> {
     let (study, run) = match words {
         [first, rest @ ..] if first == "resume" => {
-            let arguments: resume::Arguments = read(rest)?;
+            let arguments: study::ResumeArguments = read(rest)?;
             (AnyStudy::Resumed(arguments.request()), arguments.run)
         }
         words => {
@@ -55,7 +54,7 @@ fn read<T: Args>(words: &[String]) -> Result<T, Failure> {
 
 /// What the command prints of a study that has ended.
 pub fn text(Ended { dir, record, ending, known, .. }: &Ended, json: bool) -> String {
-    summary::words(dir, record, *ending, *known, json)
+    summary::printed(dir, record, *ending, *known, json)
 }
 
 /// The `recommended` design of `--json`; of several objectives the first of the front. Null

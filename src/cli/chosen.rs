@@ -1,6 +1,7 @@
 //! What is said of the finger and the task of a trial or an evaluation.
 
 use super::words;
+use crate::answer::lines;
 use crate::session::Chosen;
 use input::units::{MM, N_PER_MM};
 use insertion::evaluation::evaluator::Specimen;
@@ -24,13 +25,13 @@ pub fn json(chosen: &Chosen) -> Value {
     })
 }
 
-/// What was set, and the stiffness, a line each.
+/// What was set, and the stiffness, in lines that are ended.
 pub fn text(chosen: &Chosen) -> String {
     let stiffness = &chosen.specimen.stiffness;
     let stiffness = match chosen.given {
-        false => words::stiffness(stiffness),
+        false => words::lines(lines::stiffness(stiffness)),
         true => format!(
-            "stiffness     compliance {} N/mm, assembly {} N/mm, as given",
+            "stiffness     compliance {} N/mm, assembly {} N/mm, as given\n",
             stiffness.compliance.mean / N_PER_MM,
             stiffness.assembly.mean / N_PER_MM
         ),
@@ -43,7 +44,7 @@ pub fn text(chosen: &Chosen) -> String {
     format!("{design}{stiffness}{finger}")
 }
 
-/// What the finger model made of it, if it is not the paper's; a line that begins anew.
+/// What the finger model made of it, if it is not the paper's.
 fn finger_text(chosen: &Chosen) -> String {
     let Specimen { finger, centre, .. } = &chosen.specimen;
     if chosen.finger_model == FingerModelKind::Paper {
@@ -56,8 +57,8 @@ fn finger_text(chosen: &Chosen) -> String {
         CentreFrom::Design => format!(", as {RCC_KEY} says, not computed"),
     };
     format!(
-        "\nfinger        computed: tilting {:.2} N m/rad, remote centre {ahead:.1} mm in front of \
-         the pad\n              and {below:.1} mm below the grasp point{given}",
+        "finger        computed: tilting {:.2} N m/rad, remote centre {ahead:.1} mm in front of \
+         the pad\n              and {below:.1} mm below the grasp point{given}\n",
         finger.rotation[0]
     )
 }

@@ -5,6 +5,7 @@ use crate::report::compare::{Comparison, TOLERANCE_MM, compare};
 use crate::report::compare_svg;
 use crate::study::{StudyRecord, write_file};
 use clap::Args;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Compare optimizers over studies of the same task and objective.
@@ -21,18 +22,15 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
     let studies = arguments.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
-    let comparison = compare(&studies).map_err(Failure::input)?;
+    let comparison = compare(&studies).map_err(Failure::usage)?;
     if let Some(file) = &arguments.svg {
-        let drawn = compare_svg(&comparison);
-        write_file(file, &drawn.map_err(|error| Failure::running(error.to_string()))?)?;
+        write_file(file, &compare_svg(&comparison)?)?;
     }
     if arguments.json {
-        let json = serde_json::to_value(&comparison);
-        return print_json(&json.map_err(|error| Failure::running(error.to_string()))?);
+        return print_json(&json!(comparison));
     }
     print(&table(&comparison))
 }

@@ -1,14 +1,13 @@
 //! `optimize evaluate`: the tolerance window of one finger.
 
-use super::arguments::{FingerArguments, RepeatArguments, SetupArguments};
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
+use crate::answer::lines;
 use crate::answer::words::{mm, number};
-use crate::session::{Chosen, EvaluateRequest, Evaluated};
+use crate::session::{EvaluateRequest, Evaluated};
 use crate::study::ByRibs;
 use clap::Args;
-use insertion::evaluation::Evaluation;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};
 
@@ -16,20 +15,7 @@ use serde_json::{Value, json};
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
-    #[command(flatten)]
-    finger: FingerArguments,
-    /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
-    #[arg(long)]
-    walk: bool,
-    /// Success rate and robust range under these errors, too: typical, or the path of a file
-    #[arg(long, value_name = "NAME")]
-    uncertainty: Option<String>,
-    /// Seed of the drawn errors: those of the study with this seed
-    #[arg(long, value_name = "N", default_value_t = 0, requires = "uncertainty")]
-    seed: u64,
-    #[command(flatten)]
-    repeat: RepeatArguments,
+    request: EvaluateRequest,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -37,16 +23,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let request = EvaluateRequest {
-        setup: arguments.setup.request(),
-        finger: arguments.finger.request(),
-        walk: arguments.walk,
-        uncertainty: arguments.uncertainty.clone(),
-        seed: arguments.seed,
-        repeat: arguments.repeat.request(),
-        by_ribs: true,
-    };
-    let found = request.run(&NEVER)?;
+    let found = arguments.request.run(&NEVER)?;
     if arguments.json { print_json(&json(&found)) } else { print(&words::wrapped(&text(&found))) }
 }
 
@@ -54,39 +31,38 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 pub fn json(found: &Evaluated) -> Value {
     let mut fields = chosen::json(&found.chosen);
     merge(&mut fields, json!(found.evaluation));
-    merge(&mut fields, json!({"wall_s": found.wall_s}));
+    fields["wall_s"] = json!(found.wall_s);
     if let Some(bands) = &found.bands {
-        merge(&mut fields, json!({"bands": repeat::bands_json(bands)}));
+        fields["bands"] = repeat::bands_json(bands);
     }
     match &found.by_ribs {
         None => (),
-        Some(ByRibs::Measured(tasks)) => merge(&mut fields, json!({"computed": tasks.first()})),
-        Some(ByRibs::Refused(why)) => merge(&mut fields, json!({"computed": {"refused": why}})),
+        Some(ByRibs::Measured(tasks)) => fields["computed"] = json!(tasks.first()),
+        Some(ByRibs::Refused(why)) => fields["computed"] = json!({"refused": why}),
     }
     fields
 }
 
 fn text(found: &Evaluated) -> String {
-    let bands = found.bands.as_ref().map(repeat::bands_text).unwrap_or_default();
-    let computed = found.by_ribs.iter().flat_map(words::by_ribs).collect::<String>();
-    let window = window(&found.chosen, &found.evaluation);
-    format!("{window}{computed}{bands}time          {:.1} s\n", found.wall_s)
-}
-
-fn window(chosen: &Chosen, evaluation: &Evaluation) -> String {
+    let Evaluated { chosen, evaluation, .. } = found;
     let [c1, c2, c3, c4] = evaluation.failure_counts;
-    let mut lines = vec![
-        format!("task          {}", chosen.specimen.task.name),
+    let mut rest = vec![("range".to_owned(), mm(evaluation.window.range_mm()))];
+    rest.extend(lines::window(evaluation));
+    let failures = format!(
+        "{c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",
+        evaluation.diverged, evaluation.trials
+    );
+    rest.push(("failures".to_owned(), failures));
+    rest.push(("peak force".to_owned(), number(evaluation.peak_force_n, 1, "N")));
+    rest.extend(lines::taught(evaluation.taught));
+    rest.extend(lines::drawn(evaluation));
+    rest.extend(found.by_ribs.iter().flat_map(lines::by_ribs));
+    format!(
+        "task          {}\n{}{}{}time          {:.1} s\n",
+        chosen.specimen.task.name,
         chosen::text(chosen),
-        format!("range         {}", mm(evaluation.window.range_mm())),
-        words::window(evaluation),
-        format!(
-            "failures      {c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",
-            evaluation.diverged, evaluation.trials
-        ),
-        format!("peak force    {}", number(evaluation.peak_force_n, 1, "N")),
-    ];
-    lines.extend(words::taught(evaluation.taught));
-    lines.extend(words::drawn_text(evaluation));
-    lines.join("\n") + "\n"
+        words::lines(rest),
+        found.bands.as_ref().map(repeat::bands_text).unwrap_or_default(),
+        found.wall_s
+    )
 }

@@ -1,18 +1,14 @@
 //! `optimize finger`: what a finger's ribs say of its stiffness.
 
-use super::arguments::setting;
 use super::{Failure, print, print_json};
-use crate::session::{DEFAULT_FINGER, RibsRequest};
+use crate::session::RibsRequest;
 use crate::study::write_file;
 use clap::Args;
-use finray::geometry::Geometry;
-use finray::mechanics::FingerStiffness;
 use finray::picture;
-use finray::printed::PrintedFinger;
 use finray::stiffness::PlanarStiffness;
 use input::units::{GRAM, MM, N_PER_MM};
 use nalgebra::Matrix3;
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// Largest force on the pad that is drawn, N: bends are those of small displacements.
@@ -25,21 +21,8 @@ const LARGEST_LOAD_N: f64 = 1000.0;
 /// it with --finger-model computed.
 #[derive(Debug, Clone, Args)]
 pub struct Arguments {
-    /// Infill density, percent
-    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
-    density: f64,
-    /// Infill direction, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    direction: f64,
-    /// Finger: finray9, or the path of a finger file
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
-    finger: String,
-    /// Where the first rib lies, mm [default: the finger file's]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    phase_mm: Option<f64>,
-    /// A number of the finger file, as finger.skin.thickness_mm=0.8; may be given several times
-    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
-    set: Vec<(String, f64)>,
+    #[command(flatten)]
+    request: RibsRequest,
     /// Draw the finger, at rest and under a force on its pad
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
@@ -61,88 +44,75 @@ fn load(text: &str) -> Result<[f64; 2], String> {
         .ok_or_else(|| format!("is no force y,z of 0.001 to {LARGEST_LOAD_N} N; as -5,0"))
 }
 
-/// The result as it is printed.
-#[derive(Serialize)]
-struct FingerRow {
-    finger: String,
-    infill_density_percent: f64,
-    infill_direction_deg: f64,
-    phase_mm: f64,
-    area_mm2: f64,
-    mass_g: f64,
-    pad: PlanarRow,
-    pad_and_roof: PlanarRow,
-    across: AcrossRow,
-}
-
-#[derive(Serialize)]
-struct PlanarRow {
-    compliance_n_per_mm: f64,
-    assembly_n_per_mm: f64,
-    tilting_nm_per_rad: f64,
-    centre_below_pad_mm: f64,
-    centre_from_pad_mm: f64,
-    coupling_yz: f64,
-    /// y, z, rx at the pad's middle: N/mm, N, N mm.
-    stiffness_matrix: [[f64; 3]; 3],
-}
-
-#[derive(Serialize)]
-struct AcrossRow {
-    depth_n_per_mm: f64,
-    about_y_nm_per_rad: f64,
-    about_z_nm_per_rad: f64,
-}
-
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { density, direction, finger, phase_mm, set, .. } = arguments.clone();
-    let (geometry, computed) = RibsRequest { density, direction, finger, phase_mm, set }.run()?;
+    let (geometry, computed) = arguments.request.run()?;
     if let Some(file) = &arguments.svg {
         write_file(file, &picture::svg(&geometry, arguments.load_n).map_err(Failure::input)?)?;
     }
-    let row = FingerRow::new(&geometry, &computed);
+    let (finger, design) = (&geometry.finger, &geometry.design);
+    let phase_mm = design.phase_mm.unwrap_or(finger.ribs.phase / MM);
+    let (area_mm2, mass_g) = (geometry.area() / (MM * MM), geometry.mass() / GRAM);
+    let (depth, cross) = (computed.cross.in_depth / N_PER_MM, &computed.cross);
     if arguments.json {
-        let value = serde_json::to_value(&row)
-            .map_err(|error| Failure::running(format!("cannot write the result: {error}")))?;
-        return print_json(&value);
-    }
-    print(&text(&row, &geometry.finger))
-}
-
-impl FingerRow {
-    fn new(geometry: &Geometry, computed: &FingerStiffness) -> Self {
-        let (design, cross) = (&geometry.design, &computed.cross);
-        FingerRow {
-            finger: geometry.finger.name.clone(),
-            infill_density_percent: design.density_percent,
-            infill_direction_deg: design.direction_deg,
-            phase_mm: design.phase_mm.unwrap_or(geometry.finger.ribs.phase / MM),
-            area_mm2: geometry.area() / (MM * MM),
-            mass_g: geometry.mass() / GRAM,
-            pad: PlanarRow::from(&computed.pad),
-            pad_and_roof: PlanarRow::from(&computed.pad_and_roof),
-            across: AcrossRow {
-                depth_n_per_mm: cross.in_depth / N_PER_MM,
-                about_y_nm_per_rad: cross.about_y,
-                about_z_nm_per_rad: cross.about_z,
+        return print_json(&json!({
+            "finger": finger.name,
+            "infill_density_percent": design.density_percent,
+            "infill_direction_deg": design.direction_deg,
+            "phase_mm": phase_mm,
+            "area_mm2": area_mm2,
+            "mass_g": mass_g,
+            "pad": planar_json(&computed.pad),
+            "pad_and_roof": planar_json(&computed.pad_and_roof),
+            "across": {
+                "depth_n_per_mm": depth,
+                "about_y_nm_per_rad": cross.about_y,
+                "about_z_nm_per_rad": cross.about_z,
             },
-        }
+        }));
     }
+    print(&format!(
+        "finger        {}, {} %, {}°, first rib at {phase_mm} mm\n\
+         material      {}, {} GPa ({})\n\
+         area, mass    {area_mm2:.1} mm2, {mass_g:.2} g\n\n\
+         the part      compliance assembly   tilting    centre    centre  coupling\n\
+         touches           N/mm      N/mm    Nm/rad  below, mm front, mm       y-z\n{}{}\n\
+         across        {depth:.1} N/mm in x, {:.2} Nm/rad about y, {:.2} about z\n",
+        finger.name,
+        design.density_percent,
+        design.direction_deg,
+        finger.material.name,
+        finger.material.modulus / 1e9,
+        finger.material.source,
+        planar_text("pad", &computed.pad),
+        planar_text("pad and roof", &computed.pad_and_roof),
+        cross.about_y,
+        cross.about_z,
+    ))
 }
 
-impl From<&PlanarStiffness> for PlanarRow {
-    fn from(stiffness: &PlanarStiffness) -> Self {
-        PlanarRow {
-            compliance_n_per_mm: stiffness.in_compliance() / N_PER_MM,
-            assembly_n_per_mm: stiffness.in_assembly() / N_PER_MM,
-            tilting_nm_per_rad: stiffness.tilting(),
-            centre_below_pad_mm: stiffness.centre_below_pad() / MM,
-            centre_from_pad_mm: stiffness.centre_in_front() / MM,
-            coupling_yz: stiffness.coupling_yz(),
-            stiffness_matrix: in_mm(stiffness.matrix()),
-        }
-    }
+fn planar_json(found: &PlanarStiffness) -> Value {
+    json!({
+        "compliance_n_per_mm": found.in_compliance() / N_PER_MM,
+        "assembly_n_per_mm": found.in_assembly() / N_PER_MM,
+        "tilting_nm_per_rad": found.tilting(),
+        "centre_below_pad_mm": found.centre_below_pad() / MM,
+        "centre_from_pad_mm": found.centre_in_front() / MM,
+        "coupling_yz": found.coupling_yz(),
+        // y, z, rx at the pad's middle: N/mm, N, N mm.
+        "stiffness_matrix": in_mm(found.matrix()),
+    })
+}
+
+fn planar_text(name: &str, found: &PlanarStiffness) -> String {
+    format!(
+        "{name:<13} {:>9.2} {:>9.1} {:>9.2} {:>9.1} {:>9.1} {:>9.2}\n",
+        found.in_compliance() / N_PER_MM,
+        found.in_assembly() / N_PER_MM,
+        found.tilting(),
+        found.centre_below_pad() / MM,
+        found.centre_in_front() / MM,
+        found.coupling_yz(),
+    )
 }
 
 /// N/m, N/rad and N m/rad as N/mm, N and N mm.
@@ -153,40 +123,4 @@ fn in_mm(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
         _ => 1.0,
     };
     std::array::from_fn(|i| std::array::from_fn(|j| matrix[(i, j)] * unit(i, j)))
-}
-
-fn text(row: &FingerRow, finger: &PrintedFinger) -> String {
-    let modulus = finger.material.modulus / 1e9;
-    let planar = |name: &str, planar: &PlanarRow| {
-        format!(
-            "{name:<13} {:>9.2} {:>9.1} {:>9.2} {:>9.1} {:>9.1} {:>9.2}\n",
-            planar.compliance_n_per_mm,
-            planar.assembly_n_per_mm,
-            planar.tilting_nm_per_rad,
-            planar.centre_below_pad_mm,
-            planar.centre_from_pad_mm,
-            planar.coupling_yz,
-        )
-    };
-    format!(
-        "finger        {}, {} %, {}°, first rib at {} mm\n\
-         material      {}, {modulus} GPa ({})\n\
-         area, mass    {:.1} mm2, {:.2} g\n\n\
-         the part      compliance assembly   tilting    centre    centre  coupling\n\
-         touches           N/mm      N/mm    Nm/rad  below, mm front, mm       y-z\n{}{}\n\
-         across        {:.1} N/mm in x, {:.2} Nm/rad about y, {:.2} about z\n",
-        row.finger,
-        row.infill_density_percent,
-        row.infill_direction_deg,
-        row.phase_mm,
-        finger.material.name,
-        finger.material.source,
-        row.area_mm2,
-        row.mass_g,
-        planar("pad", &row.pad),
-        planar("pad and roof", &row.pad_and_roof),
-        row.across.depth_n_per_mm,
-        row.across.about_y_nm_per_rad,
-        row.across.about_z_nm_per_rad,
-    )
 }

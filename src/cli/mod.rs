@@ -13,12 +13,10 @@ mod finger;
 mod manual;
 mod measure;
 mod next;
-mod on_bench;
 mod progress;
 mod recommended;
 mod repeat;
 mod report;
-mod resume;
 mod sensitivity;
 mod stiffness;
 mod study;
@@ -104,7 +102,7 @@ impl Args for StudyOrNone {
 enum Command {
     /// Continue a study after an interruption or a crash
     #[command(after_help = "Example: optimize resume results/usb-gp-seed0")]
-    Resume(resume::Arguments),
+    Resume(study::ResumeArguments),
     /// Write the tables and plots of a study again
     #[command(after_help = "Example: optimize report results/usb-gp-seed0")]
     Report(report::Arguments),
@@ -137,10 +135,13 @@ enum Command {
     Calibrate(calibrate::Arguments),
     #[command(after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2")]
     Next(next::Arguments),
-    #[command(after_help = "Example: optimize measure check published")]
+    #[command(subcommand, after_help = "Example: optimize measure check published")]
     Measure(measure::Arguments),
-    #[command(after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 \
-                            --out scene.xml")]
+    #[command(
+        subcommand,
+        after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 \
+                            --out scene.xml"
+    )]
     Export(export::Arguments),
     /// Optimize anything: JSON lines on standard input and output
     #[command(
@@ -151,6 +152,7 @@ enum Command {
     #[command(after_help = "Example: optimize tasks --json")]
     Tasks(tasks::Arguments),
     #[command(
+        subcommand,
         after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 \
                             --body 12x6.5x20"
     )]
@@ -217,12 +219,14 @@ fn survive_size_limit() {
 fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => match cli.study.0 {
-            Some(arguments) => study::run(&arguments),
+            Some(arguments) => study::to_its_end(arguments.request().open(None)?, &arguments.run),
             None => Err(Failure::usage(
                 "give --task NAME and --budget N, or a subcommand; see `optimize --help`",
             )),
         },
-        Some(Command::Resume(arguments)) => resume::run(&arguments),
+        Some(Command::Resume(arguments)) => {
+            study::to_its_end(arguments.request().open()?, &arguments.run)
+        }
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
         Some(Command::Trial(arguments)) => trial::run(&arguments),

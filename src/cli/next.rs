@@ -1,24 +1,15 @@
 //! `optimize next`: which finger to print next.
 
-use super::arguments::{CalibrationArguments, SetupArguments, wide};
+use super::arguments::CalibrationArguments;
 use super::terminal::simulating;
 use super::{Failure, print, print_json};
 use crate::calibration::next::Advice;
 use crate::calibration::subject::Subject;
 use crate::calibration::table::design_json;
-use crate::session::{Advised, Among, NextRequest};
-use clap::{Args, ValueEnum};
+use crate::session::{Advised, Among, NextRequest, SetupRequest, wide};
+use clap::Args;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};
-
-/// Fingers that may be printed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum AmongWord {
-    /// Those of the space
-    Space,
-    /// The 11 of the publication
-    Published,
-}
 
 /// Say which finger to print next, and when to stop printing.
 ///
@@ -27,7 +18,7 @@ enum AmongWord {
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
+    setup: SetupRequest,
     /// What was measured on the bench: published, or the path of a file
     #[arg(long, value_name = "FILE")]
     measurements: String,
@@ -36,7 +27,7 @@ pub struct Arguments {
     count: u16,
     /// Fingers that may be printed
     #[arg(long, value_enum, default_value = "space")]
-    among: AmongWord,
+    among: Among,
     /// Gain of range that is worth the print and the measurement, mm; below it: stop
     #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = cost)]
     print_cost_mm: f64,
@@ -54,16 +45,12 @@ fn cost(text: &str) -> Result<f64, String> {
     NextRequest::given_cost(text.parse().unwrap_or(f64::NAN))
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let calibration = &arguments.calibration;
     let request = NextRequest {
-        calibration: calibration.request(arguments.setup.request(), &arguments.measurements),
+        calibration: calibration.request(arguments.setup.clone(), &arguments.measurements),
         count: arguments.count,
-        among: match arguments.among {
-            AmongWord::Space => Among::Space,
-            AmongWord::Published => Among::Published,
-        },
+        among: arguments.among,
         print_cost_mm: arguments.print_cost_mm,
     };
     let quiet = arguments.quiet || arguments.json;

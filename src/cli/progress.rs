@@ -38,7 +38,6 @@ impl Progress {
         }
     }
 
-    /// Shows what happens.
     pub fn see(&mut self, event: Event<'_>) {
         match event {
             Event::Measured(recorded) => self.measured(recorded),
@@ -52,7 +51,6 @@ impl Progress {
         }
     }
 
-    /// One more evaluation is written down.
     fn measured(&mut self, recorded: &Recorded) {
         self.standing.add(recorded);
         let best = self.standing.best();

@@ -11,7 +11,6 @@ pub fn outcomes_text(counts: &BTreeMap<String, usize>) -> String {
     format!("repeats       {}\n", parts.join(", "))
 }
 
-/// The bands in two lines.
 pub fn bands_text(bands: &Bands) -> String {
     let width = |band: &Band| {
         band.width_mm().map_or("more than 2 mm".to_owned(), |width| format!("{width:.1} mm"))
@@ -35,7 +34,6 @@ pub fn bands_text(bands: &Bands) -> String {
     )
 }
 
-/// The same as JSON.
 pub fn bands_json(bands: &Bands) -> Value {
     json!({
         "negative_band_mm": bands.negative.width_mm(),

@@ -12,7 +12,6 @@ pub struct Arguments {
     dir: PathBuf,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let record = rewrite(&arguments.dir)?;
     record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));

@@ -1,28 +1,16 @@
 //! What is printed of a whole study.
 
 use super::terminal::merge;
-use super::words::wrapped;
-use super::{Failure, on_bench, print, recommended, say};
+use super::{recommended, words};
+use crate::answer::lines;
 use crate::answer::words::{evaluated, volume_unit};
-use crate::answer::{Answer, Front, Nearest, NothingInserts, WalkedDesign};
+use crate::answer::{Answer, Front};
 use crate::study::{Ending, Recorded, StudyRecord};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Prints the result of a study, `known` evaluations of which were in the cache.
-pub fn show(
-    dir: &Path,
-    record: &StudyRecord,
-    ending: Ending,
-    known: u64,
-    as_json: bool,
-) -> Result<(), Failure> {
-    record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));
-    print(&words(dir, record, ending, known, as_json))
-}
-
-/// What is printed.
-pub fn words(
+/// What is printed of a study, `known` evaluations of which were in the cache.
+pub fn printed(
     dir: &Path,
     record: &StudyRecord,
     ending: Ending,
@@ -32,7 +20,7 @@ pub fn words(
     let answer = Answer::of(record);
     if as_json {
         let mut fields = to_json(&answer, ending, known);
-        merge(&mut fields, json!({"study": dir}));
+        fields["study"] = json!(dir);
         return format!("{fields}\n");
     }
     text(dir, &answer, ending, known)
@@ -48,58 +36,56 @@ fn text(dir: &Path, answer: &Answer, ending: Ending, known: u64) -> String {
         Ending::BudgetSpent | Ending::Interrupted => "",
     };
     let (task, method) = (config.task_name(), config.method());
-    let mut lines = vec![format!("{task} with {method}: {done} evaluations{end}")];
+    let mut text = format!("{task} with {method}: {done} evaluations{end}\n");
     let first = record.first_current();
     if first > 0 {
-        lines.push(format!(
-            "segment       {}, from evaluation {first}: the settings changed, and only these count",
+        text += &format!(
+            "segment       {}, from evaluation {first}: the settings changed, and only these count\n",
             record.segments.len(),
-        ));
+        );
     }
     if let Some(bench) = &record.on_bench {
-        lines.extend(on_bench::lines(bench));
-        lines.push("by simulation alone:".to_owned());
+        text += &words::lines(lines::on_bench(bench));
+        text += "by simulation alone:\n";
     }
-    match (&answer.nothing_inserts, &answer.recommended, &answer.front) {
-        (Some(nothing), ..) => lines.push(unusable(nothing)),
-        (None, Some(_), Some(front)) => lines.extend(front_lines(record, front)),
-        (None, Some(found), None) => lines.extend(recommended::lines(answer, found)),
-        (None, None, _) => lines.push(none(answer)),
-    }
+    text += &match (&answer.nothing_inserts, &answer.recommended, &answer.front) {
+        (Some(nothing), ..) => unusable(nothing),
+        (None, Some(_), Some(front)) => front_text(record, front),
+        (None, Some(found), None) => words::lines(lines::recommended(answer, found)),
+        (None, None, _) => none(answer),
+    };
     if known > 0 {
-        lines.push(format!("cache         {known} evaluations were known from other studies"));
+        text += &format!("cache         {known} evaluations were known from other studies\n");
     }
     let page = dir.join(crate::session::PAGE);
     let place = format!("study         {} (see {})\n", dir.display(), page.display());
-    wrapped(&(lines.join("\n") + "\n")) + &place
+    words::wrapped(&text) + &place
 }
 
-/// That a task is of no use as it is.
-fn unusable(NothingInserts { task, nearest }: &NothingInserts) -> String {
+fn unusable((task, nearest): &(&str, &Recorded)) -> String {
     format!(
         "no design inserts at the nominal start of {task}, so none is recommended\n\
-         nearest       {}",
+         nearest       {}\n",
         evaluated(nearest)
     )
 }
 
-/// Why no design is recommended.
 fn none(answer: &Answer) -> String {
-    let Some(Nearest { design, constraints }) = &answer.nearest else {
-        return "no evaluation gave a value".to_owned();
+    let Some((design, constraints)) = &answer.nearest else {
+        return "no evaluation gave a value\n".to_owned();
     };
     format!(
-        "no design keeps all constraints, so none is recommended\nnearest       {}: {}",
+        "no design keeps all constraints, so none is recommended\nnearest       {}: {}\n",
         evaluated(design),
         constraints.join("; ")
     )
 }
 
-fn front_lines(record: &StudyRecord, Front { designs, volume }: &Front) -> Vec<String> {
+fn front_text(record: &StudyRecord, Front { designs, volume }: &Front) -> String {
     let objectives = &record.config.objective;
     let line = |recorded: &&Recorded| {
         let values = objectives.show(recorded.feasible().unwrap_or_default());
-        format!("              {values}: {}", evaluated(recorded))
+        format!("              {values}: {}\n", evaluated(recorded))
     };
     let size = match designs.len() {
         1 => "one design is the best in all objectives".to_owned(),
@@ -107,15 +93,13 @@ fn front_lines(record: &StudyRecord, Front { designs, volume }: &Front) -> Vec<S
             format!("{count} designs; none is at least as good as another in all objectives")
         }
     };
-    let mut lines = vec![format!("front         {size}")];
-    lines.extend(designs.iter().map(line));
-    lines.push(format!(
-        "hypervolume   {:.3} {} from the reference {}",
+    format!(
+        "front         {size}\n{}hypervolume   {:.3} {} from the reference {}\n",
+        designs.iter().map(line).collect::<String>(),
         volume.hypervolume,
         volume_unit(objectives),
         objectives.show(&volume.reference)
-    ));
-    lines
+    )
 }
 
 fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
@@ -145,35 +129,29 @@ fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
     });
     merge(&mut fields, recommended::json(answer));
     if !answer.walked.is_empty() {
-        let one = |&WalkedDesign { design, firm_range_mm }: &WalkedDesign| {
+        let one = |&(design, firm_range_mm): &(&Recorded, f64)| {
             let mut fields = recorded_json(record, design);
-            merge(&mut fields, json!({ "firm_range_mm": firm_range_mm }));
+            fields["firm_range_mm"] = json!(firm_range_mm);
             fields
         };
-        let walked: Vec<Value> = answer.walked.iter().map(one).collect();
-        merge(&mut fields, json!({"walked": walked}));
+        fields["walked"] = answer.walked.iter().map(one).collect();
     }
     if record.segments.len() > 1 {
-        merge(&mut fields, json!({"segments": record.segments}));
+        fields["segments"] = json!(record.segments);
     }
     if !config.constraints.is_empty() {
-        let limits = json!({"constraints": config.constraints, "feasible": answer.feasible});
-        merge(&mut fields, limits);
+        fields["constraints"] = json!(config.constraints);
+        fields["feasible"] = json!(answer.feasible);
     }
     if let Some(aggregate) = &config.aggregate {
-        merge(&mut fields, json!({"aggregate": aggregate}));
+        fields["aggregate"] = json!(aggregate);
     }
     if let Some(Front { designs, volume }) = &answer.front {
-        let front: Vec<Value> = designs.iter().map(|r| recorded_json(record, r)).collect();
-        let keys = config.objective.keys();
-        let reference: serde_json::Map<_, _> =
-            keys.into_iter().zip(volume.reference.iter().map(|&value| json!(value))).collect();
-        let found = json!({
-            "front": front,
-            "hypervolume": volume.hypervolume,
-            "hypervolume_reference": reference,
-        });
-        merge(&mut fields, found);
+        fields["front"] = designs.iter().map(|r| recorded_json(record, r)).collect();
+        fields["hypervolume"] = json!(volume.hypervolume);
+        let reference = volume.reference.iter().map(|&value| json!(value));
+        fields["hypervolume_reference"] =
+            config.objective.keys().into_iter().zip(reference).collect();
     }
     fields
 }
@@ -189,7 +167,7 @@ pub fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
         let values = keys.zip(score.values.iter().map(|&value| json!(value)));
         merge(&mut fields, Value::Object(values.collect()));
         if !score.violations.is_empty() {
-            merge(&mut fields, json!({"violations": score.violations}));
+            fields["violations"] = json!(score.violations);
         }
     }
     merge(&mut fields, json!(recorded.design));
@@ -201,8 +179,7 @@ pub fn recorded_json(record: &StudyRecord, recorded: &Recorded) -> Value {
             merge(&mut fields, json!(evaluation));
             fields
         };
-        let tasks: Vec<Value> = config.tasks().zip(recorded.tasks()).map(of).collect();
-        merge(&mut fields, json!({"tasks": tasks}));
+        fields["tasks"] = config.tasks().zip(recorded.tasks()).map(of).collect();
     }
     fields
 }
@@ -218,7 +195,7 @@ mod tests {
             let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference").join(task);
             let expected = std::fs::read_to_string(dir.join("summary.txt")).unwrap();
             let record = StudyRecord::load(&dir).unwrap();
-            let lines = words(&dir, &record, Ending::BudgetSpent, 0, false);
+            let lines = printed(&dir, &record, Ending::BudgetSpent, 0, false);
             let (lines, _) = lines.split_once("study   ").unwrap();
             assert_eq!(lines, expected, "{task}");
         }

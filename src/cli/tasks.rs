@@ -18,48 +18,35 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    list(arguments.json)
-}
-
-/// Prints what is shipped.
-pub fn list(json: bool) -> Result<(), Failure> {
     let mut text = String::new();
     let mut lists = serde_json::Map::new();
-    for (kind, entries) in lists_of_shipped()? {
+    let lists_of = [
+        ("tasks", described(TASKS, |file| Ok(Task::parse(file.text, file.file)?.description))),
+        ("spaces", described(SPACES, |file| Ok(Space::parse(file.text, file.file)?.description))),
+        ("robots", described(ROBOTS, |file| Ok(Robot::parse(file.text, file.file)?.description))),
+        (
+            "uncertainties",
+            described(UNCERTAINTIES, |file| {
+                Ok(Uncertainty::parse(file.text, file.file)?.description)
+            }),
+        ),
+    ];
+    for (kind, entries) in lists_of {
         text.push_str(&format!("{kind}\n"));
         let mut list = Vec::new();
-        for (name, description) in entries {
+        for (name, description) in entries.map_err(Failure::input)? {
             text.push_str(&format!("  {name:<10} {description}\n"));
             list.push(json!({"name": name, "description": description}));
         }
         lists.insert(kind.to_owned(), list.into());
     }
-    if json { print_json(&lists.into()) } else { print(&text) }
+    if arguments.json { print_json(&lists.into()) } else { print(&text) }
 }
 
-type Entries = Vec<(&'static str, String)>;
-
-fn lists_of_shipped() -> Result<[(&'static str, Entries); 4], Failure> {
-    let task = |file: &Shipped| Ok::<_, InputError>(Task::parse(file.text, file.file)?.description);
-    let space =
-        |file: &Shipped| Ok::<_, InputError>(Space::parse(file.text, file.file)?.description);
-    let robot =
-        |file: &Shipped| Ok::<_, InputError>(Robot::parse(file.text, file.file)?.description);
-    let uncertainty =
-        |file: &Shipped| Ok::<_, InputError>(Uncertainty::parse(file.text, file.file)?.description);
-    Ok([
-        ("tasks", described(TASKS, task).map_err(Failure::input)?),
-        ("spaces", described(SPACES, space).map_err(Failure::input)?),
-        ("robots", described(ROBOTS, robot).map_err(Failure::input)?),
-        ("uncertainties", described(UNCERTAINTIES, uncertainty).map_err(Failure::input)?),
-    ])
-}
-
-fn described<E>(
-    shipped: &[Shipped],
-    description: impl Fn(&Shipped) -> Result<String, E>,
-) -> Result<Entries, E> {
+fn described(
+    shipped: &'static [Shipped],
+    description: impl Fn(&Shipped) -> Result<String, InputError>,
+) -> Result<Vec<(&'static str, String)>, InputError> {
     shipped.iter().map(|file| Ok((file.name, description(file)?))).collect()
 }

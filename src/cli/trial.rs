@@ -1,11 +1,11 @@
 //! `optimize trial`: one simulated insertion.
 
-use super::arguments::{FilmArguments, FingerArguments, RepeatArguments, SetupArguments};
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
+use crate::answer::lines;
 use crate::answer::words::number;
-use crate::session::{TrialDone, TrialRequest, given_offset};
+use crate::session::{TrialDone, TrialRequest};
 use clap::Args;
 use insertion::evaluation::grid_mm;
 use insertion::outcome::Outcome;
@@ -16,20 +16,7 @@ use serde_json::{Value, json};
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
-    #[command(flatten)]
-    finger: FingerArguments,
-    /// Shift of the start along y, mm
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0,
-          value_parser = offset)]
-    offset_mm: f64,
-    #[command(flatten)]
-    repeat: RepeatArguments,
-    #[command(flatten)]
-    film: FilmArguments,
-    /// Draw plug, fingertips and socket at the end of each phase
-    #[arg(long, value_name = "FILE.svg")]
-    svg: Option<std::path::PathBuf>,
+    request: TrialRequest,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -37,53 +24,46 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let request = TrialRequest {
-        setup: arguments.setup.request(),
-        finger: arguments.finger.request(),
-        offset_mm: arguments.offset_mm,
-        repeat: arguments.repeat.request(),
-        every_s: None,
-        film: arguments.film.request(),
-        svg: arguments.svg.clone(),
-    };
-    let done = request.run(&NEVER)?;
+    let done = arguments.request.run(&NEVER)?;
     if arguments.json {
         return print_json(&json(&done));
     }
     let repeats = done.repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
-    let start = words::taught(done.taught).map_or(String::new(), |line| line + "\n");
+    let start = words::lines(lines::taught(done.taught));
     let wrote = done.written.iter().map(|file| format!("wrote         {}\n", file.display()));
     let wrote: String = wrote.collect();
     let chosen = chosen::text(&done.chosen);
-    print(&format!("{chosen}\n{start}{}{repeats}{wrote}", text(&done.trial)))
+    print(&format!("{chosen}{start}{}{repeats}{wrote}", text(&done.trial)))
 }
 
 /// What `--json` prints.
 pub fn json(done: &TrialDone) -> Value {
     let mut fields = chosen::json(&done.chosen);
     let trial = &done.trial;
-    merge(
-        &mut fields,
-        json!({
-            "offset_mm": done.offset_mm,
-            "outcome": trial.outcome.word(),
-            "failure": trial.outcome.failure(),
-            "depth_mm": trial.depth_mm,
-            "tilt_deg": trial.tilt_deg,
-            "peak_force_n": trial.peak_force_n,
-            "slip_mm": trial.slip_mm,
-            "simulated_s": trial.simulated_s,
-            "retried_at_half_step": trial.retried,
-            "phases": trial.phases,
-        }),
-    );
+    fields["offset_mm"] = json!(done.offset_mm);
+    merge(&mut fields, ended(trial));
+    fields["simulated_s"] = json!(trial.simulated_s);
+    fields["retried_at_half_step"] = json!(trial.retried);
+    fields["phases"] = json!(trial.phases);
     if let Some(taught) = done.taught {
-        merge(&mut fields, json!({ "taught_start_mm": grid_mm(taught) }));
+        fields["taught_start_mm"] = json!(grid_mm(taught));
     }
     if let Some(counts) = &done.repeats {
-        merge(&mut fields, json!({ "repeats": counts }));
+        fields["repeats"] = json!(counts);
     }
     fields
+}
+
+/// How a trial ended.
+pub(super) fn ended(trial: &Trial) -> Value {
+    json!({
+        "outcome": trial.outcome.word(),
+        "failure": trial.outcome.failure(),
+        "depth_mm": trial.depth_mm,
+        "tilt_deg": trial.tilt_deg,
+        "peak_force_n": trial.peak_force_n,
+        "slip_mm": trial.slip_mm,
+    })
 }
 
 fn text(trial: &Trial) -> String {
@@ -112,8 +92,4 @@ fn text(trial: &Trial) -> String {
         ));
     }
     text
-}
-
-fn offset(text: &str) -> Result<f64, String> {
-    given_offset(text.parse().unwrap_or(f64::NAN))
 }

@@ -1,12 +1,6 @@
-//! What is printed of an evaluation.
+//! Lines that fit a terminal.
 
-use crate::answer::words::{self, ends_mm, mm, span};
-use crate::study::ByRibs;
-use input::units::N_PER_MM;
-use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
-use insertion::outcome::Outcome;
-use insertion::surrogate::Prediction;
-use std::fmt::Write;
+use crate::answer::lines::Line;
 
 /// Columns of a terminal.
 const COLUMNS: usize = 80;
@@ -39,88 +33,9 @@ fn wrapped_line(line: &str) -> String {
     format!("{first}\n{rest}")
 }
 
-/// The window of an evaluation and what ended it.
-pub fn window(evaluation: &Evaluation) -> String {
-    let window = &evaluation.window;
-    if window.nominal != Outcome::Inserted {
-        return format!(
-            "window        none: the nominal start ends with {}",
-            end(Some(window.nominal))
-        );
-    }
-    format!(
-        "window        {} mm\nends          {} below, {} above",
-        span(ends_mm(window)),
-        end(window.end_negative),
-        end(window.end_positive)
-    )
-}
-
-fn end(outcome: Option<Outcome>) -> &'static str {
-    outcome.map_or("limit of the search", Outcome::label)
-}
-
-/// A difference of numbers with one decimal, without the noise of the subtraction.
-pub fn rounded(mm: f64) -> f64 {
-    (mm * 1e6).round() / 1e6
-}
-
-/// Predicted stiffness, its uncertainty, and whether it is an extrapolation; two lines.
-pub fn stiffness(prediction: &Prediction) -> String {
-    let mut text = String::from("stiffness    ");
-    for (axis, estimate) in
-        [("compliance", prediction.compliance), ("assembly", prediction.assembly)]
-    {
-        let (mean, sd) = (estimate.mean / N_PER_MM, estimate.sd / N_PER_MM);
-        // Writing to a String cannot fail.
-        let _ = write!(text, " {axis} {mean:.2} ± {sd:.2} N/mm,");
-    }
-    text.pop();
-    text.push_str("\n              ");
-    if prediction.inside_hull() {
-        text.push_str("inside the measured designs");
-    } else {
-        let distance = prediction.hull_distance;
-        let _ = write!(text, "{distance:.2} spans OUTSIDE the measured designs");
-    }
-    text
-}
-
-/// Success rate and robust range, a line each, as far as they were measured.
-pub fn drawn_text(evaluation: &Evaluation) -> Vec<String> {
-    let success = evaluation.success.as_ref().map(|success| {
-        let [rate, failures] = words::success(success);
-        format!("success rate  {rate}\n              failures {failures}")
-    });
-    let robust = evaluation.robust.as_ref();
-    let robust = robust.map(|robust| format!("robust range  {}", words::robust(robust)));
-    success.into_iter().chain(robust).collect()
-}
-
-/// What the finger tolerates with springs computed from its ribs, a line a task, each ended.
-pub fn by_ribs(found: &ByRibs) -> Vec<String> {
-    let line = |said: String| format!("from its ribs {said}\n");
-    let tasks = match found {
-        ByRibs::Refused(why) => return vec![line(why.clone())],
-        ByRibs::Measured(tasks) => tasks,
-    };
-    tasks.iter().map(|evaluation| line(tolerated(evaluation))).collect()
-}
-
-/// Range and window in one line, and from where they count.
-fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
-    if window.nominal != Outcome::Inserted {
-        return format!("none: its nominal start ends with {}", window.nominal.label());
-    }
-    let start = words::taught(*taught, "");
-    let (range, ends) = (mm(window.range_mm()), span(ends_mm(window)));
-    format!("{range} ({ends}{start}); --finger-model computed")
-}
-
-/// Where a taught start came to lie; `None` if it was not taught.
-pub fn taught(steps: Option<OffsetStep>) -> Option<String> {
-    let mm = grid_mm(steps?);
-    Some(format!("start         taught: {mm:+.1} mm from that of the task file"))
+/// A text of lines, each ended, what they say one below the other.
+pub fn lines(lines: impl IntoIterator<Item = Line>) -> String {
+    lines.into_iter().map(|(name, text)| format!("{name:<13} {text}\n")).collect()
 }
 
 #[cfg(test)]

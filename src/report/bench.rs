@@ -1,9 +1,9 @@
 //! What measurements say of the fingers on the bench: what a study with measurements leads with.
 
-use super::elements::table;
+use super::elements::{definitions, table};
+use crate::answer::lines;
 use crate::answer::words::{infill, interval, mm};
-use crate::study::{BenchFinger, OnBench, StudyRecord, Trust};
-use insertion::evaluation::objective::Measure;
+use crate::study::{BenchFinger, OnBench, StudyRecord};
 use insertion::outcome::FailureClass;
 use maud::{Markup, html};
 
@@ -14,43 +14,16 @@ const TABLE: &str = "bench_predictions.csv";
 pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let found = record.on_bench.as_ref()?;
     let best = found.best.first()?;
-    let simulated = Measure::Range.value(&found.simulated);
     Some(html! {
         p.big { (infill(&best.design)) }
-        p {
-            "is predicted to tolerate a start shifted by " b { (mm(best.range_mm)) }
-            " in all on the bench (80 % interval " (interval([best.low_mm, best.high_mm])) "). "
-            "It is the best of all " (found.fingers) " fingers with a probability of "
-            (format!("{:.1} %", 100.0 * best.probability_best))
-            ": neighbours share that. The simulation alone gives it "
-            (simulated.map_or("no window".to_owned(), mm)) "."
-        }
-        div.card {
-            p { (trust(found.measured, &found.trust)) }
-            @for warning in &found.warnings { p.warn { (warning) } }
-            p { a href=(TABLE) { "table of all predicted fingers" } }
-        }
+        (definitions(&lines::on_bench(found)))
+        p { a href=(TABLE) { "table of all predicted fingers" } }
         (table(
             &["finger", "range on the bench", "80 % interval", "is the best", "fails below | above"],
             &found.best.iter().map(row).collect::<Vec<_>>(),
         ))
         p { (how(found)) }
     })
-}
-
-/// How far the prediction is to be trusted.
-fn trust(measured: usize, trust: &Trust) -> String {
-    let fingers = match measured {
-        1 => "1 finger was measured".to_owned(),
-        count => format!("{count} fingers were measured"),
-    };
-    let Some(deviation) = trust.mean_deviation_percent else { return format!("{fingers}.") };
-    let rank = trust.spearman.map_or("no order".to_owned(), |rank| format!("Spearman {rank:+.2}"));
-    format!(
-        "{fingers}. Each predicted without it: {deviation:.1} % off on average, {rank}, {} of {} \
-         inside their 80 % intervals.",
-        trust.inside, trust.fingers
-    )
 }
 
 fn row(finger: &BenchFinger) -> Vec<String> {

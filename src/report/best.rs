@@ -1,10 +1,13 @@
-//! The best design in words.
+//! The best design in words: what it tolerates at a glance, and all lines of the terminal.
 
+use super::again;
 use super::elements::definitions;
-use super::{again, answer};
-use crate::answer::words::{design, outcome, robust, stiffness, success};
-use crate::answer::{Answer, Nearest, OnTask, Recommended};
+use crate::answer::lines::{self, Line};
+use crate::answer::words::{design, end, ends_mm, mm, outcome, span, stiffness};
+use crate::answer::{Answer, OnTask, Recommended};
+use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::outcome::Outcome;
 use maud::{Markup, html};
 
@@ -14,7 +17,18 @@ pub(super) fn section(answer: &Answer) -> Markup {
     let (best, objectives) = (found.design, &answer.record.config.objective);
     html! {
         p.big { (best.design.labelled()) }
-        (answer::card(answer, found))
+        div.card {
+            dl.figures {
+                @for [name, value, note] in figures(found) {
+                    div { dt { (name) } dd { b { (value) } } dd.muted { (note) } }
+                }
+            }
+            p {
+                a href="evaluations.csv" { "table of all evaluations" } ", "
+                a href="journal.jsonl" { "journal" } ", "
+                a href="convergence.svg" { "convergence" }
+            }
+        }
         @if answer.front.is_some() {
             p {
                 "has the best " (objectives.first().name()) ": "
@@ -31,7 +45,8 @@ pub(super) fn section(answer: &Answer) -> Markup {
                 result."
             }
         }
-        details { summary { "All its numbers" } (definitions(&facts(answer, found))) }
+        (definitions(&facts(answer, found)))
+        p { "Print and measure more than one: " code { "optimize next" } " says which." }
         p {
             "The same study again, in its folder: "
             code { @for word in again::words(answer.record) { span { (word) } " " } }
@@ -41,7 +56,7 @@ pub(super) fn section(answer: &Answer) -> Markup {
 
 fn none(answer: &Answer) -> Markup {
     let count = answer.designs;
-    let Some(Nearest { design: nearest, constraints }) = &answer.nearest else {
+    let Some((nearest, constraints)) = &answer.nearest else {
         return html! {
             p.warn {
                 "No design has a value: of " (count) " evaluations none gave one (none were run, \
@@ -72,54 +87,49 @@ fn unusable(task: &OnTask, on: &str) -> Markup {
     }
 }
 
-type Facts = Vec<(String, String)>;
-
-fn fact(name: &str, value: String) -> (String, String) {
-    (name.to_owned(), value)
-}
-
-/// What the card does not say.
-fn facts(answer: &Answer, found: &Recommended) -> Facts {
-    let (best, several) = (found.design, found.tasks.len() > 1);
-    let on_card = |measure| measure == Measure::Range && !several;
-    let objective = found.objective.filter(|(measure, _)| !on_card(*measure));
-    let show = |(measure, value): (Measure, f64)| format!("{measure} = {}", measure.show(value));
-    let mut facts: Facts = objective.map(|one| fact("objective", show(one))).into_iter().collect();
-    facts.extend(walked(answer, found));
-    facts.extend(found.constraints.iter().map(|(_, words)| fact("constraint", words.clone())));
+/// Numbers to be seen at a glance: name, value, and what is to be known of it.
+fn figures(found: &Recommended) -> Vec<[String; 3]> {
+    let mut figures = Vec::new();
+    if let Some(range) = found.firm_range_mm {
+        let window = found.firm_window_mm.filter(|_| found.tasks.len() == 1);
+        let window = window.map_or(String::new(), |window| format!("{} mm: ", span(window)));
+        let repeats =
+            format!("{REPEATS} of {REPEATS} repeats with friction, start and step varied");
+        figures.push(["firm range".to_owned(), mm(range), format!("{window}inserts in {repeats}")]);
+    }
     for task in &found.tasks {
-        facts.extend(several.then(|| fact("on the task", task.name.to_owned())));
-        facts.extend(of_task(task));
+        let (on, window) = (found.on(task), &task.measured.window);
+        let [below, above] = [window.end_negative, window.end_positive].map(end);
+        let note = format!("{} mm: {below} below, {above} above", span(ends_mm(window)));
+        figures.push([format!("range{on}"), mm(window.range_mm()), note]);
+        figures.extend(task.peak_force_n.map(|force| {
+            let note = "between plug and socket, over the inserted trials".to_owned();
+            [format!("peak force{on}"), format!("{force:.0} N"), note]
+        }));
     }
-    let of = format!("{} (the {} are counted from 0)", best.index, answer.record.evaluations.len());
-    facts.extend([
-        fact("compliance stiffness (y), one finger", stiffness(best.stiffness.compliance)),
-        fact("assembly stiffness (z), one finger", stiffness(best.stiffness.assembly)),
-        fact("evaluation", of),
+    let stiffness = &found.design.stiffness;
+    let source = if stiffness.inside_hull() { "interpolated between" } else { "extrapolated from" };
+    let along = stiffness.assembly.mean / N_PER_MM;
+    figures.push([
+        "stiffness of one finger".to_owned(),
+        format!("{:.1} N/mm", stiffness.compliance.mean / N_PER_MM),
+        format!("across the insertion, {along:.0} N/mm along it; {source} the measured designs"),
     ]);
-    facts
+    figures
 }
 
-/// That the best designs were walked, and what the search had found of this one, if that fell.
-fn walked(answer: &Answer, found: &Recommended) -> Option<(String, String)> {
-    let (measure, _) = found.objective.filter(|_| !answer.walked.is_empty())?;
-    let before =
-        found.searched.map(|value| format!("; the search had found {}", measure.show(value)));
-    let count = answer.walked.len();
-    Some(fact("walked", format!("step by step, as the best {count}{}", before.unwrap_or_default())))
-}
-
-/// What else was measured on one task.
-fn of_task(task: &OnTask) -> Facts {
-    let slip = Measure::Slip.value(task.measured);
-    let slip = slip.map(|slip| format!("{} (over the inserted trials)", Measure::Slip.show(slip)));
-    let mut facts: Facts =
-        slip.map(|slip| fact("largest slip in the grasp", slip)).into_iter().collect();
-    if let Some([rate, failures]) = task.measured.success.as_ref().map(success) {
-        facts.push(fact("success rate under drawn errors", rate));
-        facts.push(fact("failures under drawn errors", failures));
+/// The lines of the terminal, and what they do not say.
+fn facts(answer: &Answer, found: &Recommended) -> Vec<Line> {
+    let (best, count) = (found.design, answer.record.evaluations.len());
+    let mut facts = lines::recommended(answer, found);
+    let mut add = |name: &str, value: String| facts.push((name.to_owned(), value));
+    for task in &found.tasks {
+        if let Some(slip) = Measure::Slip.value(task.measured) {
+            add(&format!("largest slip in the grasp{}", found.on(task)), Measure::Slip.show(slip));
+        }
     }
-    let range = task.measured.robust.as_ref().map(robust);
-    facts.extend(range.map(|range| fact("robust range under drawn errors", range)));
+    add("compliance stiffness (y), one finger", stiffness(best.stiffness.compliance));
+    add("assembly stiffness (z), one finger", stiffness(best.stiffness.assembly));
+    add("evaluation", format!("{} (the {count} are counted from 0)", best.index));
     facts
 }

@@ -28,7 +28,7 @@ pub(super) fn sheet(
             .and_then(|()| draw(&area))
             .and_then(|()| area.present().map_err(message))
     };
-    drawn.map_err(|problem| ReportError::Draw { plot, problem })?;
+    drawn.map_err(|problem| ReportError { plot, problem })?;
     Ok(svg)
 }
 
@@ -38,28 +38,25 @@ pub(super) fn message(error: impl std::fmt::Display) -> String {
 }
 
 /// One axis: label with unit, and range.
-pub(super) struct AxisOf<'a> {
-    pub label: &'a str,
-    pub range: Range<f64>,
-}
+pub(super) type Axis<'a> = (&'a str, Range<f64>);
 
 /// Axes with a grid; `title` may be empty.
 pub(super) fn axes<'a, 'b>(
     area: &'a Area<'b>,
     title: &str,
-    x: AxisOf<'_>,
-    y: AxisOf<'_>,
+    x: Axis<'_>,
+    y: Axis<'_>,
 ) -> Result<Chart<'a, 'b>, String> {
     let mut builder = ChartBuilder::on(area);
     builder.margin(10).margin_right(18).x_label_area_size(48).y_label_area_size(62);
     if !title.is_empty() {
         builder.caption(title, font(19).color(&INK.rgb()));
     }
-    let mut chart = builder.build_cartesian_2d(x.range, y.range).map_err(message)?;
+    let mut chart = builder.build_cartesian_2d(x.1, y.1).map_err(message)?;
     chart
         .configure_mesh()
-        .x_desc(x.label)
-        .y_desc(y.label)
+        .x_desc(x.0)
+        .y_desc(y.0)
         .x_labels(7)
         .y_labels(7)
         .x_label_formatter(&|v| tick(*v))

@@ -1,7 +1,6 @@
 //! Studies of the same problem beside each other: optimizers against evaluations.
 
 use super::convergence::best_so_far;
-use super::quartiles::Quartiles;
 use crate::study::{StudyConfig, StudyRecord};
 use insertion::evaluation::objective::{Aggregate, Constraint};
 use serde::Serialize;
@@ -12,55 +11,36 @@ pub const TOLERANCE_MM: f64 = 0.1;
 /// Values are multiples of 0.1 mm but for rounding.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// Why studies cannot be compared.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CompareError {
-    /// None was given.
-    #[error("give at least one study to compare")]
-    Nothing,
-    /// Two studies measure different things.
-    #[error(
-        "{first} and {second} cannot be compared: the first has the {what} {ours}, the second \
-         {theirs}; compare studies of the same {what}"
-    )]
-    Different {
-        /// One study.
-        first: String,
-        /// The other.
-        second: String,
-        /// What differs.
-        what: String,
-        /// Its value in the first.
-        ours: String,
-        /// Its value in the second.
-        theirs: String,
-    },
-    /// One study twice would count twice.
-    #[error("{first} and {second} are the same study ({optimizer}, seed {seed}); give it once")]
-    Same {
-        /// One study.
-        first: String,
-        /// The other.
-        second: String,
-        /// Their optimizer.
-        optimizer: String,
-        /// Their seed.
-        seed: u64,
-    },
-    /// The target would mean nothing.
-    #[error(
-        "{name} has the objective {objective}; only studies of one objective in mm that is to be \
-         large can be compared: range, centred-range or robust-range"
-    )]
-    Objective {
-        /// The study.
-        name: String,
-        /// Its objective.
-        objective: String,
-    },
-    /// No study holds a value.
-    #[error("no evaluation of these studies has a value: there is nothing to compare")]
-    NoValue,
+/// Quartiles of studies; `None` where one is not known: a value that was not there yet, an
+/// evaluation that never came.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quartiles {
+    /// Lower quartile.
+    pub q25: Option<f64>,
+    /// Median.
+    pub median: Option<f64>,
+    /// Upper quartile.
+    pub q75: Option<f64>,
+}
+
+impl Quartiles {
+    /// By linear interpolation between the sorted values; `None` where that meets an infinity.
+    fn of(mut values: Vec<f64>) -> Self {
+        values.sort_by(f64::total_cmp);
+        let quantile = |share: f64| {
+            let place = share * values.len().checked_sub(1)? as f64;
+            let (low, high) = (values[place.floor() as usize], values[place.ceil() as usize]);
+            let part = place - place.floor();
+            let value = if part == 0.0 { low } else { low + part * (high - low) };
+            value.is_finite().then_some(value)
+        };
+        Quartiles { q25: quantile(0.25), median: quantile(0.5), q75: quantile(0.75) }
+    }
+
+    /// Lower quartile, median and upper quartile.
+    pub fn all(&self) -> [Option<f64>; 3] {
+        [self.q25, self.median, self.q75]
+    }
 }
 
 /// Studies of one optimizer with different seeds.
@@ -117,30 +97,32 @@ impl OptimizerGroup {
 ///
 /// # Errors
 /// If they measure different things, or one is given twice, or none has a value.
-pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, CompareError> {
-    let (first, _) = studies.split_first().ok_or(CompareError::Nothing)?;
+pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> {
+    let (first, _) = studies.split_first().ok_or("give at least one study to compare")?;
     studies.iter().try_for_each(|study| alike(first, study))?;
     let objective = &first.1.config.objective;
     if !objective.single().is_some_and(|measure| measure.key() == "mm" && measure.sense() > 0.0) {
-        let (name, objective) = (first.0.clone(), objective.to_string());
-        return Err(CompareError::Objective { name, objective });
+        return Err(format!(
+            "{} has the objective {objective}; only studies of one objective in mm that is to be \
+             large can be compared: range, centred-range or robust-range",
+            first.0
+        ));
     }
     let mut groups: BTreeMap<(String, u64), Vec<&(String, StudyRecord)>> = BTreeMap::new();
     for study in studies {
-        let config = &study.1.config;
-        let group = groups.entry((config.method(), config.batch)).or_default();
+        let (config, method) = (&study.1.config, study.1.config.method());
+        let group = groups.entry((method.clone(), config.batch)).or_default();
         if let Some(same) = group.iter().find(|other| other.1.config.seed == config.seed) {
-            return Err(CompareError::Same {
-                first: same.0.clone(),
-                second: study.0.clone(),
-                optimizer: config.method(),
-                seed: config.seed,
-            });
+            return Err(format!(
+                "{} and {} are the same study ({method}, seed {}); give it once",
+                same.0, study.0, config.seed
+            ));
         }
         group.push(study);
     }
     let best = studies.iter().filter_map(|(_, record)| record.best()?.value()).reduce(f64::max);
-    let best_known_mm = best.ok_or(CompareError::NoValue)?;
+    let best_known_mm =
+        best.ok_or("no evaluation of these studies has a value: there is nothing to compare")?;
     let target_mm = best_known_mm - TOLERANCE_MM;
     let group = |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| {
         let records: Vec<&StudyRecord> = studies.iter().map(|(_, record)| record).collect();
@@ -178,14 +160,14 @@ fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
 fn alike(
     (first, ours): &(String, StudyRecord),
     (second, theirs): &(String, StudyRecord),
-) -> Result<(), CompareError> {
+) -> Result<(), String> {
     let mut parts = problem(&ours.config).into_iter().zip(problem(&theirs.config));
     match parts.find(|(ours, theirs)| ours != theirs) {
         None => Ok(()),
-        Some(((what, ours), (_, theirs))) => {
-            let (first, second, what) = (first.clone(), second.clone(), what.to_owned());
-            Err(CompareError::Different { first, second, what, ours, theirs })
-        }
+        Some(((what, ours), (_, theirs))) => Err(format!(
+            "{first} and {second} cannot be compared: the first has the {what} {ours}, the second \
+             {theirs}; compare studies of the same {what}"
+        )),
     }
 }
 
@@ -208,4 +190,21 @@ fn curve(record: &StudyRecord) -> Vec<f64> {
     let none = record.evaluations.len() - known.len();
     let values = known.into_iter().map(|(_, value)| value);
     std::iter::repeat_n(f64::NEG_INFINITY, none).chain(values).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quartiles_interpolate_and_do_not_invent() {
+        let five = vec![5.0, 1.0, 3.0, 2.0, 4.0];
+        let quartiles = |values| Quartiles::of(values).all();
+        assert_eq!(quartiles(five), [Some(2.0), Some(3.0), Some(4.0)]);
+        assert_eq!(quartiles(vec![1.0, 2.0]), [Some(1.25), Some(1.5), Some(1.75)]);
+        assert_eq!(quartiles(vec![7.0, f64::INFINITY]), [None; 3]);
+        let late = vec![7.0, 9.0, f64::INFINITY];
+        assert_eq!(quartiles(late), [Some(8.0), Some(9.0), None]);
+        assert_eq!(quartiles(vec![]), [None; 3]);
+    }
 }

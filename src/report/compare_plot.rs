@@ -1,7 +1,7 @@
 //! The plot of a comparison.
 
 use super::ReportError;
-use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet};
+use super::chart::{Area, Drawn, around, axes, legend, message, sheet};
 use super::compare::{Comparison, OptimizerGroup, TOLERANCE_MM};
 use super::marks::{line, stairs};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
@@ -24,8 +24,8 @@ fn draw(area: &Area<'_>, comparison: &Comparison) -> Drawn {
     let range = around(values.flatten().chain([comparison.best_known_mm]), 0.06);
     let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
     let label = format!("{} (mm)", comparison.objective);
-    let x = AxisOf { label: "number of evaluations", range: 0.0..longest * 1.02 + 0.5 };
-    let mut chart = axes(area, &title, x, AxisOf { label: &label, range })?;
+    let x = ("number of evaluations", 0.0..longest * 1.02 + 0.5);
+    let mut chart = axes(area, &title, x, (&label, range))?;
     let coloured = || groups.iter().zip(COLOURS.iter().cycle());
     for (group, colour) in coloured().filter(|(group, _)| group.studies > 1) {
         let mut outline = quartile(group, 0);

@@ -1,7 +1,7 @@
 //! Best so far, and each value, against evaluations; of several objectives the hypervolume.
 
 use super::ReportError;
-use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet, words};
+use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
 use super::drawn::{drawn, turning};
 use super::elements::figure;
 use super::marks::{PointMark, line, points, stairs};
@@ -13,8 +13,12 @@ use maud::Markup;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-/// The plot, `size` pixels.
-pub(super) fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError> {
+/// Value of each evaluation and best so far (of several objectives the hypervolume) against the
+/// number of evaluations, on a white ground; `size` pixels.
+///
+/// # Errors
+/// If the drawing library refuses.
+pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError> {
     sheet("the convergence", size, |area| draw(area, record))
 }
 
@@ -67,12 +71,12 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     }
     let bottom = range.start.max(0.0);
     let last = count.max(2) as f64 - 1.0;
-    let x = AxisOf { label: "evaluation", range: -0.02 * last..1.02 * last };
+    let x = ("evaluation", -0.02 * last..1.02 * last);
     let (label, name) = match objectives.single() {
         Some(measure) => (measure.label(), "best so far"),
         None => (format!("hypervolume ({})", volume_unit(objectives)), "hypervolume so far"),
     };
-    let mut chart = axes(area, "", x, AxisOf { label: &label, range })?;
+    let mut chart = axes(area, "", x, (&label, range))?;
     if count == 0 {
         let style = words(17, MUTED, HPos::Center, VPos::Center);
         let note = Text::new("no evaluations yet", (0.5, 0.5), style);

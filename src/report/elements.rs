@@ -1,7 +1,27 @@
 //! What sections of the page are made of.
 
 use super::theme::inline;
-use maud::{Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// A page that fetches nothing.
+pub(super) fn document(title: &str, style: &str, body: Markup) -> String {
+    let policy =
+        "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(policy);
+                title { (title) }
+                style { (PreEscaped(style)) }
+            }
+            body { (body) }
+        }
+    };
+    page.into_string()
+}
 
 /// A list of names and values.
 pub(super) fn definitions(pairs: &[(String, String)]) -> Markup {

@@ -1,7 +1,7 @@
 //! Designs between which several objectives leave the choice.
 
 use super::ReportError;
-use super::chart::{Area, AxisOf, Drawn, around, axes, legend, sheet};
+use super::chart::{Area, Drawn, around, axes, legend, sheet};
 use super::drawn::drawn;
 use super::elements::{figure, table};
 use super::marks::{PointMark, line, points};
@@ -12,9 +12,12 @@ use crate::study::{Recorded, StudyRecord};
 use maud::{Markup, html};
 use plotters::prelude::*;
 
-/// The first objective against the second, all evaluations, `size` pixels; `None` if there is
-/// one objective only or nothing has values.
-pub(super) fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
+/// The first two objectives of all evaluations and the front, on a white ground, `size` pixels;
+/// `None` if there is one objective only or nothing has values.
+///
+/// # Errors
+/// If the drawing library refuses.
+pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
     let several = record.config.objective.single().is_none();
     let any = record.evaluations.iter().any(|recorded| recorded.score.is_some());
     if !several || !any {
@@ -43,8 +46,9 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     };
     let shown = drawn(record, &record.evaluations);
     let all = || shown.iter().filter_map(|&r| Some((r, point(r)?)));
-    let x = AxisOf { label: &first.label(), range: around(all().map(|(_, p)| p.0), 0.08) };
-    let y = AxisOf { label: &second.label(), range: around(all().map(|(_, p)| p.1), 0.16) };
+    let [first, second] = [first, second].map(|measure| measure.label());
+    let x = (first.as_str(), around(all().map(|(_, p)| p.0), 0.08));
+    let y = (second.as_str(), around(all().map(|(_, p)| p.1), 0.16));
     let mut chart = axes(area, "", x, y)?;
     let of = |feasible| all().filter(move |(r, _)| r.feasible().is_some() == feasible);
     points(&mut chart, of(true).map(|(_, p)| p), PointMark::dot(BLUE, 3), "each evaluation")?;

@@ -4,53 +4,38 @@ use super::chart::{Chart, Drawn, message};
 use super::theme::{Colour, MUTED};
 use plotters::prelude::*;
 
-/// How a point is marked: a shape of a size in pixels, and its style.
+/// How a point is marked: a circle or a cross of a size in pixels, and its style.
 #[derive(Clone, Copy)]
 pub(super) struct PointMark {
-    shape: PointShape,
+    cross: bool,
     size: i32,
     style: ShapeStyle,
-}
-
-#[derive(Clone, Copy)]
-enum PointShape {
-    Circle,
-    Triangle,
-    Cross,
 }
 
 impl PointMark {
     /// A filled circle through which others can be seen.
     pub fn dot(colour: Colour, size: i32) -> Self {
-        PointMark { shape: PointShape::Circle, size, style: colour.rgb().mix(0.55).filled() }
+        PointMark { cross: false, size, style: colour.rgb().mix(0.55).filled() }
     }
 
     /// A filled circle.
     pub fn disc(colour: Colour, size: i32) -> Self {
-        PointMark { shape: PointShape::Circle, size, style: colour.rgb().filled() }
+        PointMark { cross: false, size, style: colour.rgb().filled() }
     }
 
     /// An open circle.
     pub fn ring(colour: Colour, size: i32, width: u32) -> Self {
-        PointMark { shape: PointShape::Circle, size, style: colour.rgb().stroke_width(width) }
+        PointMark { cross: false, size, style: colour.rgb().stroke_width(width) }
     }
 
-    /// A triangle.
-    pub fn triangle(colour: Colour) -> Self {
-        let style = colour.rgb().stroke_width(2);
-        PointMark { shape: PointShape::Triangle, size: 6, style }
-    }
-
-    /// A cross.
     pub fn cross(colour: Colour, size: i32) -> Self {
-        PointMark { shape: PointShape::Cross, size, style: colour.rgb().stroke_width(2) }
+        PointMark { cross: true, size, style: colour.rgb().stroke_width(2) }
     }
 
     fn at<'a, C: Clone + 'static>(self, at: C) -> DynElement<'static, SVGBackend<'a>, C> {
-        match self.shape {
-            PointShape::Circle => Circle::new(at, self.size, self.style).into_dyn(),
-            PointShape::Triangle => TriangleMarker::new(at, self.size, self.style).into_dyn(),
-            PointShape::Cross => Cross::new(at, self.size, self.style).into_dyn(),
+        match self.cross {
+            true => Cross::new(at, self.size, self.style).into_dyn(),
+            false => Circle::new(at, self.size, self.style).into_dyn(),
         }
     }
 }

@@ -2,7 +2,6 @@
 //! what was measured. Nothing here simulates, and nothing reads or writes files.
 
 mod again;
-mod answer;
 mod bench;
 mod best;
 mod chart;
@@ -19,7 +18,6 @@ mod page;
 pub mod printer;
 mod provenance;
 mod published;
-pub mod quartiles;
 pub mod replay;
 pub mod sensitivity;
 mod shape;
@@ -31,38 +29,17 @@ mod tests;
 mod theme;
 mod windows;
 
-use crate::study::StudyRecord;
-
 pub use compare_plot::svg as compare_svg;
-pub use page::{Beside, Replay, card, page};
+pub use convergence::svg as convergence_svg;
+pub use front::svg as front_svg;
+pub use page::{Beside, card, page};
 
-/// Why a plot could not be made.
+/// Why a plot could not be made: the drawing library refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ReportError {
-    /// The drawing library refused.
-    #[error("cannot draw {plot}: {problem}")]
-    Draw {
-        /// The plot.
-        plot: &'static str,
-        /// The library's message.
-        problem: String,
-    },
-}
-
-/// `convergence.svg`: value of each evaluation and best so far (of several objectives the
-/// hypervolume) against the number of evaluations, on a white ground.
-///
-/// # Errors
-/// If the drawing library refuses.
-pub fn convergence_svg(record: &StudyRecord) -> Result<String, ReportError> {
-    convergence::svg(record, (880, 480))
-}
-
-/// `front.svg`: the first two objectives of all evaluations and the front, on a white ground;
-/// `None` if there is one objective only or nothing has values.
-///
-/// # Errors
-/// If the drawing library refuses.
-pub fn front_svg(record: &StudyRecord) -> Result<Option<String>, ReportError> {
-    front::svg(record, (880, 480))
+#[error("cannot draw {plot}: {problem}")]
+pub struct ReportError {
+    /// The plot.
+    plot: &'static str,
+    /// The library's message.
+    problem: String,
 }

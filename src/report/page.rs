@@ -1,5 +1,6 @@
 //! `report.html`: one file, a little script of its own, nothing fetched.
 
+use super::elements::document;
 use super::theme::variables;
 use super::{
     ReportError, bench, best, convergence, drawn, explore, front, limits, printer, provenance,
@@ -8,7 +9,7 @@ use super::{
 use crate::answer::Answer;
 use crate::study::StudyRecord;
 use insertion::surrogate::Model;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 /// Pixels of a plot in the page: narrow, so that its text stays readable when
 /// a phone shrinks it to fit.
@@ -17,19 +18,10 @@ const PLOT: (u32, u32) = (560, 400);
 /// What lies beside the page in the folder of a study.
 #[derive(Debug, Clone, Default)]
 pub struct Beside {
-    /// Its films.
-    pub replays: Vec<Replay>,
+    /// Its films: what a button says, and the page that plays it.
+    pub replays: Vec<(String, String)>,
     /// Whether the recommended finger's files for the printer are there.
     pub printable: bool,
-}
-
-/// A film that the study kept.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Replay {
-    /// What a button says.
-    pub label: String,
-    /// The page that plays it.
-    pub page: String,
 }
 
 /// The report of a study as a page that opens offline. `model` is the stiffness model of the
@@ -38,48 +30,33 @@ pub struct Replay {
 /// # Errors
 /// If the drawing library refuses.
 pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<String, ReportError> {
-    let config = &record.config;
-    let title = format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed);
+    let (config, title) = (&record.config, title(record));
     let sections = sections(&Answer::of(record), model, beside)?;
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                meta http-equiv="Content-Security-Policy" content=(super::replay::POLICY);
-                title { (title) }
-                style { (PreEscaped(style())) }
-            }
-            body {
-                main {
-                    header {
-                        h1 { (title) }
-                        p.muted {
-                            "Robustness of a compliant finger in a connector insertion, by \
-                            contact simulation: " (record.evaluations.len()) " of "
-                            (config.evaluations()) " evaluations."
-                            @if let Some(note) = drawn::note(record) { " " (note) }
-                        }
-                    }
-                    nav aria-label="contents" {
-                        @for (id, title, _) in &sections { a href=(format!("#{id}")) { (title) } }
-                    }
-                    @for (id, title, body) in &sections {
-                        section id=(id) { h2 { (title) } (body) }
-                    }
+    let body = html! {
+        main {
+            header {
+                h1 { (title) }
+                p.muted {
+                    "Robustness of a compliant finger in a connector insertion, by \
+                    contact simulation: " (record.evaluations.len()) " of "
+                    (config.evaluations()) " evaluations."
+                    @if let Some(note) = drawn::note(record) { " " (note) }
                 }
+            }
+            nav aria-label="contents" {
+                @for (id, title, _) in &sections { a href=(format!("#{id}")) { (title) } }
+            }
+            @for (id, title, body) in &sections {
+                section id=(id) { h2 { (title) } (body) }
             }
         }
     };
-    Ok(page.into_string())
+    Ok(document(&title, &style(), body))
 }
 
 /// The answer of a study as a piece of a page, for notebooks.
 pub fn card(record: &StudyRecord) -> String {
-    let config = &record.config;
-    let title = format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed);
+    let (config, title) = (&record.config, title(record));
     let card = html! {
         div.finger-opt {
             h3 { (title) }
@@ -92,6 +69,10 @@ pub fn card(record: &StudyRecord) -> String {
         }
     };
     card.into_string()
+}
+
+fn title(StudyRecord { config, .. }: &StudyRecord) -> String {
+    format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed)
 }
 
 type Section = (&'static str, String, Markup);
@@ -128,14 +109,14 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
 }
 
 /// Buttons that play the films; nothing without films.
-fn films(replays: &[Replay]) -> Option<Markup> {
+fn films(replays: &[(String, String)]) -> Option<Markup> {
     (!replays.is_empty()).then(|| {
         html! {
             p { "The last start that inserts beside the first that fails:" }
-            @for (i, replay) in replays.iter().enumerate() {
-                button type="button" data-film=(format!("film{i}")) { (replay.label) }
+            @for (i, (label, page)) in replays.iter().enumerate() {
+                button type="button" data-film=(format!("film{i}")) { (label) }
                 script type="application/json" id=(format!("film{i}")) {
-                    (PreEscaped(explore::embedded(&replay.page.as_str().into())))
+                    (PreEscaped(explore::embedded(&page.as_str().into())))
                 }
             }
             dialog #player aria-label="a film of two trials" {
@@ -165,7 +146,7 @@ fn each_task(
 fn style() -> String {
     let (light, dark) = (variables(false), variables(true));
     format!(
-        ":root{{{light}}}\n@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{}",
+        ":root{{color-scheme:light dark;{light}}}\n@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{}",
         include_str!("style.css")
     )
 }

@@ -1,7 +1,7 @@
 //! Our ranges beside the published ones, as a table and against compliance stiffness.
 
 use super::ReportError;
-use super::chart::{Area, AxisOf, Drawn, around, axes, legend, sheet};
+use super::chart::{Area, Drawn, around, axes, legend, sheet};
 use super::elements::{figure, table};
 use super::marks::{PointMark, points};
 use super::theme::{BLUE, GREEN, ORANGE};
@@ -118,14 +118,11 @@ fn draw(area: &Area<'_>, clouds: [Vec<(f64, f64)>; 3]) -> Drawn {
     range.start = 0.0;
     // Room for the legend above the points.
     range.end *= 1.3;
-    let x = AxisOf {
-        label: "compliance stiffness of one finger (N/mm)",
-        range: around(all().map(|p| p.0), 0.08),
-    };
-    let mut chart = axes(area, "", x, AxisOf { label: "tolerable range (mm)", range })?;
+    let x = ("compliance stiffness of one finger (N/mm)", around(all().map(|p| p.0), 0.08));
+    let mut chart = axes(area, "", x, ("tolerable range (mm)", range))?;
     let [ours, simulation, bench] = clouds;
     points(&mut chart, ours, PointMark::dot(BLUE, 3), "this study (predicted stiffness)")?;
-    points(&mut chart, simulation, PointMark::triangle(ORANGE), "published simulation")?;
+    points(&mut chart, simulation, PointMark::ring(ORANGE, 5, 2), "published simulation")?;
     points(&mut chart, bench, PointMark::cross(GREEN, 5), "bench experiments")?;
     legend(&mut chart, SeriesLabelPosition::UpperLeft)
 }

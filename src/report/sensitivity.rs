@@ -1,7 +1,7 @@
 //! Which input matters: table, JSON and chart.
 
 use super::ReportError;
-use super::chart::{Area, Drawn, font, message, sheet, tick, words};
+use super::chart::{Area, Drawn, message, sheet, tick, words};
 use super::theme::{BLUE, INK, LINES, MUTED};
 use crate::sensitivity::Interval;
 use crate::sensitivity::factors::Factor;
@@ -30,31 +30,20 @@ pub struct Found {
     pub without_window: usize,
 }
 
-/// One bar: the factor's place, what it is ranked by, and a second value beside it.
-struct Bar {
-    factor: usize,
-    by: Interval,
-    beside: f64,
-}
-
 impl Found {
     /// The inputs by how much they matter, most first.
-    fn bars(&self) -> Vec<Bar> {
-        let bar = |(factor, (by, beside)): (usize, (Interval, f64))| Bar { factor, by, beside };
-        let pairs = self.indices.iter().map(|indices| (indices.total, indices.first.value));
-        let mut bars: Vec<Bar> = pairs.enumerate().map(bar).collect();
-        bars.sort_by(|a, b| b.by.value.total_cmp(&a.by.value));
+    fn bars(&self) -> Vec<(&Factor, Indices)> {
+        let mut bars: Vec<_> = self.factors.iter().zip(self.indices.iter().copied()).collect();
+        bars.sort_by(|a, b| b.1.total.value.total_cmp(&a.1.total.value));
         bars
     }
 }
 
 /// The inputs by how much they matter, for other programs.
 pub fn json(found: &Found) -> Value {
-    let one = |bar: Bar| {
-        let Factor { key, low, high, .. } = &found.factors[bar.factor];
+    let one = |(Factor { key, low, high, .. }, Indices { first, total }): (&Factor, Indices)| {
         let mut fields = json!({"name": key, "low": low, "high": high});
         let mut set = |name: String, value: f64| fields[name] = json!(value);
-        let Indices { first, total } = found.indices[bar.factor];
         for (name, share) in [("first", first), ("total", total)] {
             set(name.to_owned(), share.value);
             set(format!("{name}_low"), share.low);
@@ -80,11 +69,10 @@ pub fn text(found: &Found) -> String {
         format!("{} of {}: which input matters, most first", found.objective, found.task),
         format!("{:<33} {:>10} {:>14} {:>8} {:>12}", "input", head[0], head[1], head[2], head[3]),
     ];
-    for bar in found.bars() {
-        let (beside, last) = (bar.beside, interval(found.indices[bar.factor].first));
-        let name = short(&found.factors[bar.factor].key);
-        let (value, of) = (bar.by.value, interval(bar.by));
-        lines.push(format!("{name:<33} {value:>10.2} {of:>14} {beside:>8.2} {last:>12}"));
+    for (factor, Indices { first, total }) in found.bars() {
+        let (name, of, last) = (short(&factor.key), interval(total), interval(first));
+        let (value, alone) = (total.value, first.value);
+        lines.push(format!("{name:<33} {value:>10.2} {of:>14} {alone:>8.2} {last:>12}"));
     }
     lines.push(
         "total: share of the variance that is left if all others are fixed; alone: share\n\
@@ -123,7 +111,7 @@ pub fn svg(found: &Found) -> Result<String, ReportError> {
 
 fn draw(area: &Area<'_>, found: &Found) -> Drawn {
     let bars = found.bars();
-    let largest = bars.iter().map(|bar| bar.by.high.max(bar.by.value)).fold(1e-9, f64::max);
+    let largest = bars.iter().map(|(_, of)| of.total.high.max(of.total.value)).fold(1e-9, f64::max);
     let pixels = f64::from(WIDTH as i32 - LEFT - 60) / largest;
     let at = |value: f64| LEFT + (value.max(0.0) * pixels).round() as i32;
     let title = format!("{} of {}: shares of the variance", found.objective, found.task);
@@ -131,24 +119,21 @@ fn draw(area: &Area<'_>, found: &Found) -> Drawn {
     let style = |size, colour, h| words(size, colour, h, VPos::Center);
     area.draw_text(&title, &style(20, INK, HPos::Left), (20, 24)).map_err(message)?;
     area.draw_text(note, &style(15, MUTED, HPos::Left), (20, 50)).map_err(message)?;
-    for (row, bar) in bars.iter().enumerate() {
+    for (row, (factor, Indices { first, total })) in bars.iter().enumerate() {
         let y = 86 + ROW * row as i32;
         let rectangle = |to: i32, half: i32, style: ShapeStyle| {
             Rectangle::new([(LEFT, y - half), (to, y + half)], style)
         };
-        area.draw(&rectangle(at(bar.by.value), 10, BLUE.rgb().mix(0.6).filled()))
+        area.draw(&rectangle(at(total.value), 10, BLUE.rgb().mix(0.6).filled()))
             .map_err(message)?;
-        area.draw(&rectangle(at(bar.beside), 5, INK.rgb().mix(0.7).filled())).map_err(message)?;
-        let ends = vec![(at(bar.by.low), y), (at(bar.by.high), y)];
+        area.draw(&rectangle(at(first.value), 5, INK.rgb().mix(0.7).filled())).map_err(message)?;
+        let ends = vec![(at(total.low), y), (at(total.high), y)];
         area.draw(&PathElement::new(ends, INK.rgb().stroke_width(2))).map_err(message)?;
-        let factor = &found.factors[bar.factor];
         let name =
             format!("{} ({} to {})", short(&factor.key), tick(factor.low), tick(factor.high));
-        let small = font(13).color(&INK.rgb());
-        let small = small.pos(plotters::style::text_anchor::Pos::new(HPos::Right, VPos::Center));
-        area.draw_text(&name, &small, (LEFT - 8, y)).map_err(message)?;
-        let value = format!("{:.2}", bar.by.value);
-        area.draw_text(&value, &style(14, INK, HPos::Left), (at(bar.by.high) + 8, y))
+        area.draw_text(&name, &style(13, INK, HPos::Right), (LEFT - 8, y)).map_err(message)?;
+        let value = format!("{:.2}", total.value);
+        area.draw_text(&value, &style(14, INK, HPos::Left), (at(total.high) + 8, y))
             .map_err(message)?;
     }
     let axis = vec![(LEFT, 66), (LEFT, 80 + ROW * bars.len() as i32 - ROW / 2)];

@@ -1,7 +1,7 @@
 //! The stiffness model as curves, with what was measured.
 
 use super::ReportError;
-use super::chart::{Area, AxisOf, Drawn, around, axes, legend, message, sheet, words};
+use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
 use super::marks::{PointMark, dashed, line, points};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
 use input::units::N_PER_MM;
@@ -33,18 +33,12 @@ pub fn svg(model: &Model) -> Result<String, ReportError> {
     })
 }
 
-/// What a panel has along its x axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum By {
-    Direction,
-    Density,
-}
-
-const PANELS: [(Axis, By); 4] = [
-    (Axis::Compliance, By::Direction),
-    (Axis::Compliance, By::Density),
-    (Axis::Assembly, By::Direction),
-    (Axis::Assembly, By::Density),
+/// Axis of stiffness, and whether a panel has the direction along x, not the density.
+const PANELS: [(Axis, bool); 4] = [
+    (Axis::Compliance, true),
+    (Axis::Compliance, false),
+    (Axis::Assembly, true),
+    (Axis::Assembly, false),
 ];
 
 /// Steps along a curve of a model that computes no finger.
@@ -52,51 +46,37 @@ const SAMPLES: u32 = 80;
 
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
-impl By {
-    /// `(value along x, value that tells the curves apart)` of a measurement.
-    fn of(self, m: &Measurement) -> (f64, f64) {
-        match self {
-            By::Direction => (m.direction_deg, m.density_percent),
-            By::Density => (m.density_percent, m.direction_deg),
-        }
-    }
-
-    fn predict(self, model: &Model, axis: Axis, x: f64, curve: f64) -> Result<Estimate, String> {
-        let found = match self {
-            By::Direction => model.predict(curve, x),
-            By::Density => model.predict(x, curve),
-        };
-        let Estimate { mean, sd } = found.map_err(message)?.axis(axis);
-        Ok(Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM })
-    }
-
-    /// Label of the x axis, and what a curve is called.
-    fn labels(self, curve: f64) -> (&'static str, String) {
-        match self {
-            By::Direction => ("infill direction (°)", format!("density {curve} %")),
-            By::Density => ("infill density (%)", format!("direction {curve}°")),
-        }
-    }
-}
-
-fn draw(area: &Area<'_>, model: &Model, axis: Axis, by: By) -> Drawn {
+fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn {
+    // Value along x, and value that tells the curves apart; the other way round as well.
+    let swapped = |(density, direction): (f64, f64)| match by_direction {
+        true => (direction, density),
+        false => (density, direction),
+    };
+    let of = |m: &Measurement| swapped((m.density_percent, m.direction_deg));
+    let predict = |x: f64, curve: f64| {
+        let (density, direction) = swapped((x, curve));
+        let Estimate { mean, sd } = model.predict(density, direction).map_err(message)?.axis(axis);
+        Ok::<_, String>((x, Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }))
+    };
+    let name = |curve: f64| match by_direction {
+        true => format!("density {curve} %"),
+        false => format!("direction {curve}°"),
+    };
     let measured = &model.measurements;
-    let limits = around(measured.iter().map(|m| by.of(m).0), 0.0);
+    let limits = around(measured.iter().map(|m| of(m).0), 0.0);
     let span = limits.end - limits.start;
     let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
-    let curves = levels(measured.iter().map(|m| by.of(m).1));
+    let curves = levels(measured.iter().map(|m| of(m).1));
     // Each place may take the mechanics of a finger, a third of a second: then only the ends and where
     // the other panel of the axis has its curves, so that both share them.
     let places: Vec<f64> = if model.ratios {
-        let levels = levels(measured.iter().map(|m| by.of(m).0));
+        let levels = levels(measured.iter().map(|m| of(m).0));
         [x.start].into_iter().chain(levels).chain([x.end]).collect()
     } else {
         let at = |i| x.start + (x.end - x.start) * f64::from(i) / f64::from(SAMPLES);
         (0..=SAMPLES).map(at).collect()
     };
-    let band = |&curve: &f64| {
-        places.iter().map(|&x| Ok((x, by.predict(model, axis, x, curve)?))).collect()
-    };
+    let band = |&curve: &f64| places.iter().map(|&x| predict(x, curve)).collect();
     let bands: Vec<Vec<(f64, Estimate)>> =
         curves.iter().map(band).collect::<Result<_, String>>()?;
     let tops = bands.iter().flatten().map(|(_, e)| e.mean + e.sd);
@@ -105,8 +85,8 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by: By) -> Drawn {
     y.start = 0.0;
     let top = y.end;
     let label = format!("stiffness in {} (N/mm)", axis.label());
-    let x_axis = AxisOf { label: by.labels(0.0).0, range: x };
-    let mut chart = axes(area, "", x_axis, AxisOf { label: &label, range: y })?;
+    let x_axis = (if by_direction { "infill direction (°)" } else { "infill density (%)" }, x);
+    let mut chart = axes(area, "", x_axis, (&label, y))?;
     for limit in [limits.start, limits.end] {
         dashed(&mut chart, [(limit, 0.0), (limit, top)])?;
     }
@@ -120,10 +100,10 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by: By) -> Drawn {
     }
     for ((band, colour), &curve) in bands.iter().zip(SERIES).zip(&curves) {
         let means = band.iter().map(|(x, e)| (*x, e.mean)).collect();
-        line(&mut chart, means, colour.rgb().stroke_width(2), by.labels(curve).1)?;
+        line(&mut chart, means, colour.rgb().stroke_width(2), name(curve))?;
     }
     for m in measured {
-        let (x, level) = by.of(m);
+        let (x, level) = of(m);
         let at = (x, m.stiffness(axis) / N_PER_MM);
         points(&mut chart, [at], mark(level, &curves), "")?;
     }

@@ -1,12 +1,12 @@
 use super::*;
 use crate::answer::words;
-use crate::study::{Provenance, Recorded, Segment, StudyConfig, Timing};
+use crate::study::{Provenance, Recorded, Segment, StudyConfig, StudyRecord, Timing};
 use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, STIFFNESS};
-use input::units::{MM, N_PER_MM};
+use input::units::N_PER_MM;
+use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
 use insertion::evaluation::tolerance::{Search, evaluate};
-use insertion::evaluation::{Evaluation, Window};
 use insertion::finger::Finger;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
@@ -30,14 +30,11 @@ fn model() -> &'static Model {
     })
 }
 
-fn provenance() -> Provenance {
+fn record(evaluations: Vec<Recorded>) -> StudyRecord {
     let hashes = BTreeMap::from([("task_1".to_owned(), "9f86d081884c7d65".repeat(4))]);
-    Provenance::new(EngineKind::Direct, hashes)
-}
-
-fn config(task: &str) -> StudyConfig {
-    StudyConfig {
-        tasks: vec![task.to_owned()],
+    let provenance = Provenance::new(EngineKind::Direct, hashes);
+    let config = StudyConfig {
+        tasks: vec!["usb".to_owned()],
         robot: "rigid".to_owned(),
         optimizer: "gp".to_owned(),
         objective: Objectives::of(Measure::Range),
@@ -51,16 +48,12 @@ fn config(task: &str) -> StudyConfig {
         batch: 4,
         asynchronous: false,
         conclusion: Default::default(),
-        provenance: provenance(),
+        provenance: provenance.clone(),
         space: Space::parse(include_str!("../../spaces/infill.toml"), "infill.toml").unwrap(),
-    }
-}
-
-fn record(task: &str, evaluations: Vec<Recorded>) -> StudyRecord {
-    let segments = vec![Segment { first: 0, provenance: provenance() }];
+    };
     StudyRecord {
-        config: config(task),
-        segments,
+        config,
+        segments: vec![Segment { first: 0, provenance }],
         evaluations,
         foreign: 0,
         walked: Vec::new(),
@@ -70,26 +63,25 @@ fn record(task: &str, evaluations: Vec<Recorded>) -> StudyRecord {
     }
 }
 
-/// A study of the closed-form rig over a coarse grid in a scattered order.
-fn study() -> StudyRecord {
-    let model = model();
-    let evaluations = (0..60u64).map(|index| {
-        let density = 10.0 + (index * 13 % 21) as f64;
-        let direction = (index * 29 % 41) as f64;
-        let stiffness = model.predict(density, direction).unwrap();
-        let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-        let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
-        recorded(index, [density, direction], stiffness, evaluation)
-    });
-    record("usb", evaluations.collect())
+fn html(study: &StudyRecord) -> String {
+    page(study, model(), &Beside::default()).unwrap()
 }
 
-fn recorded(
-    index: u64,
-    infill: [f64; 2],
-    stiffness: insertion::surrogate::Prediction,
-    evaluation: Evaluation,
-) -> Recorded {
+/// A study of the closed-form rig over a coarse grid in a scattered order.
+fn study() -> StudyRecord {
+    let infill = |index: u64| [10.0 + (index * 13 % 21) as f64, (index * 29 % 41) as f64];
+    record((0..60).map(|index| walked(index, infill(index))).collect())
+}
+
+/// An evaluation by the closed-form rig.
+fn walked(index: u64, infill: [f64; 2]) -> Recorded {
+    let stiffness = model().predict(infill[0], infill[1]).unwrap();
+    let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
+    recorded(index, infill, evaluate(&FakeRig::default(), &finger, Search::Walk))
+}
+
+fn recorded(index: u64, infill: [f64; 2], evaluation: Evaluation) -> Recorded {
+    let stiffness = model().predict(infill[0], infill[1]).unwrap();
     let score = Goals::of(Measure::Range).score(&[&evaluation]);
     let design = Design::infill(infill[0], infill[1]);
     let (tasks, timing) = (vec![evaluation], Timing::default());
@@ -103,7 +95,7 @@ fn of_very_many_evaluations_the_best_and_some_are_drawn() {
         let one = &few.evaluations[index as usize % few.evaluations.len()];
         Recorded { index, ..one.clone() }
     });
-    let many = record("usb", many.collect());
+    let many = record(many.collect());
     let shown = super::drawn::drawn(&many, &many.evaluations);
     assert!((4000..5100).contains(&shown.len()), "{}", shown.len());
     assert!(shown.windows(2).all(|pair| pair[0].index < pair[1].index));
@@ -115,45 +107,22 @@ fn of_very_many_evaluations_the_best_and_some_are_drawn() {
         values[..500].to_vec()
     };
     assert_eq!(widest(&shown), widest(&many.evaluations.iter().collect::<Vec<_>>()));
-    let page = super::page(&many, model(), &Beside::default()).unwrap();
+    let page = html(&many);
     assert!(page.contains("are drawn: the 500 best") && page.len() < 4_000_000, "{}", page.len());
-    assert!(!super::page(&few, model(), &Beside::default()).unwrap().contains("are drawn"));
+    assert!(!html(&few).contains("are drawn"));
 }
 
 /// An evaluation whose nominal start already ends so.
 fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
-    let mut failure_counts = [0; 4];
-    if let Outcome::Failed(class) = nominal {
-        failure_counts[class as usize] = 1;
-    }
-    let window = Window {
-        nominal,
-        negative_steps: 0,
-        positive_steps: 0,
-        end_negative: Some(nominal),
-        end_positive: Some(nominal),
-    };
-    let evaluation = Evaluation {
-        window,
-        failure_counts,
-        diverged: u32::from(nominal == Outcome::Diverged),
-        trials: 1,
-        peak_force_n: 0.0,
-        slip_mm: 0.0,
-        simulated_s: 3.0,
-        end_shares: [0.0; 2],
-        taught: None,
-        success: None,
-        robust: None,
-    };
-    recorded(index, infill, model().predict(infill[0], infill[1]).unwrap(), evaluation)
+    let ends = Altered(move |_: &Grasp, _: f64, trial: Trial| Trial { outcome: nominal, ..trial });
+    let finger = Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM);
+    recorded(index, infill, evaluate(&ends, &finger, Search::Walk))
 }
 
-const SECTIONS: [&str; 7] =
-    ["best", "convergence", "windows", "published", "failures", "limits", "provenance"];
-
-fn check_page(page: &str) {
-    for id in SECTIONS {
+/// The page of a study, which is whole.
+fn whole(study: &StudyRecord) -> String {
+    let page = html(study);
+    for id in ["best", "convergence", "windows", "published", "failures", "limits", "provenance"] {
         assert_eq!(page.matches(&format!("<section id=\"{id}\">")).count(), 1, "{id}");
     }
     for word in ["http:", "https:", "@import", "url(", "src=", "NaN", "inf "] {
@@ -166,13 +135,13 @@ fn check_page(page: &str) {
         assert_eq!(opened, page.matches(&format!("</{tag}>")).count(), "{tag}");
     }
     assert!(!page.contains("fill=\"#") && !page.contains("stroke=\"#"), "a fixed colour");
+    page
 }
 
 #[test]
 fn the_page_is_whole_and_its_numbers_are_the_records() {
     let study = study();
-    let html = page(&study, model(), &Beside::default()).unwrap();
-    check_page(&html);
+    let html = whole(&study);
     let best = study.best().unwrap();
     let window = &best.tasks[0].window;
     for number in [
@@ -197,27 +166,18 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
 
 #[test]
 fn a_measured_design_shows_our_value_beside_the_published_ones() {
-    let model = model();
-    let stiffness = model.predict(20.0, 20.0).unwrap();
-    let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-    let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
-    let ours = format!("<td>{:.1} mm (3 | 2)</td>", evaluation.window.range_mm());
-    let one = record("usb", vec![recorded(0, [20.0, 20.0], stiffness, evaluation)]);
-    let html = page(&one, model, &Beside::default()).unwrap();
-    check_page(&html);
+    let recorded = walked(0, [20.0, 20.0]);
+    let ours = format!("<td>{:.1} mm (3 | 2)</td>", recorded.tasks[0].window.range_mm());
+    let html = whole(&record(vec![recorded]));
     assert!(html.contains(&format!("<td>5</td><td>20 %, 20°</td>{ours}")), "{ours}");
     assert!(html.contains("<td>6</td><td>20 %, 40°</td><td></td>"));
 }
 
 #[test]
 fn a_best_design_outside_the_hull_is_warned_of() {
-    let model = model();
-    let stiffness = model.predict(10.0, 40.0).unwrap();
-    let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
-    let evaluation = evaluate(&FakeRig::default(), &finger, Search::Walk);
-    let one = record("usb", vec![recorded(0, [10.0, 40.0], stiffness, evaluation)]);
-    let distance = format!("by {:.2} of the measured span", stiffness.hull_distance);
-    assert!(page(&one, model, &Beside::default()).unwrap().contains(&distance), "{distance}");
+    let recorded = walked(0, [10.0, 40.0]);
+    let distance = format!("by {:.2} of the measured span", recorded.stiffness.hull_distance);
+    assert!(html(&record(vec![recorded])).contains(&distance), "{distance}");
 }
 
 #[test]
@@ -232,11 +192,10 @@ fn empty_failed_and_diverged_studies_still_have_a_page() {
             "fails at the nominal start: jammed (class 3)",
         ),
     ] {
-        let study = record("usb", evaluations);
-        let html = page(&study, model(), &Beside::default()).unwrap();
-        check_page(&html);
+        let study = record(evaluations);
+        let html = whole(&study);
         assert!(html.contains(words), "{words}");
-        assert!(convergence_svg(&study).unwrap().contains("evaluation"));
+        assert!(convergence_svg(&study, (880, 480)).unwrap().contains("evaluation"));
     }
 }
 
@@ -247,8 +206,7 @@ fn what_comes_from_files_is_escaped_and_unknown_tasks_are_told() {
     study.config.uncertainty = Some("<b>errors".to_owned());
     study.evaluations[0].design.0.insert("<i>key".to_owned(), 1.0);
     study.segments[0].provenance.input_sha256.insert("<u>".to_owned(), "<s>".to_owned());
-    let html = page(&study, model(), &Beside::default()).unwrap();
-    check_page(&html);
+    let html = whole(&study);
     for raw in ["<img", "<b>errors", "<i>", "<u>", "<s>"] {
         assert!(!html.contains(raw), "{raw}");
     }
@@ -268,33 +226,36 @@ fn fronts_constraints_and_tasks_have_their_places_on_the_page() {
         recorded.tasks.push(recorded.tasks[0].clone());
         recorded.score = goals.score(&recorded.tasks());
     }
-    let html = page(&study, model(), &Beside::default()).unwrap();
-    check_page(&html);
+    let html = whole(&study);
     assert!(html.contains("<h3>&lt;s&gt;other</h3>") && !html.contains("<s>other"));
     assert!(html.contains("keeps range&lt;=6") && html.contains("violates a constraint"));
     let front = study.front();
     let ranges: Vec<f64> = front.iter().filter_map(|recorded| recorded.value()).collect();
     assert!(ranges.is_sorted_by(|a, b| a > b) && ranges[0] <= 6.0, "{ranges:?}");
     assert!(html.contains(&format!("{} of 60 evaluated designs are on the front", front.len())));
-    assert!(front_svg(&study).unwrap().unwrap().contains("range (mm)"));
+    assert!(front_svg(&study, (880, 480)).unwrap().unwrap().contains("range (mm)"));
     let volumes = convergence::best_so_far(&study);
     assert!(volumes.len() == 60 && volumes.windows(2).all(|pair| pair[0].1 <= pair[1].1));
     for recorded in &mut study.evaluations {
         recorded.score.as_mut().unwrap().violations = vec![1.0 + recorded.index as f64];
     }
-    let html = page(&study, model(), &Beside::default()).unwrap();
+    let html = self::html(&study);
     assert!(html.contains("No design keeps all constraints, so none is recommended"));
     assert!(html.contains("evaluation 0 ("), "the one that violates least");
     assert!(study.best().is_none() && study.front().is_empty());
 }
 
+/// Evaluations are counted from 0, as in the journal and on the command line.
 #[test]
 fn convergence_never_falls_and_ends_at_the_best() {
     let study = study();
     let steps = convergence::best_so_far(&study);
     assert!(steps.windows(2).all(|pair| pair[0].1 <= pair[1].1));
-    assert_eq!(steps.last().map(|s| s.1), study.best().and_then(Recorded::value));
-    let svg = convergence_svg(&study).unwrap();
+    let best = study.best().unwrap();
+    assert_eq!((steps[0].0, steps.last().copied()), (0.0, Some((59.0, best.value().unwrap()))));
+    let fact = format!("<dt>evaluation</dt><dd>{} (the 60 are counted from 0)</dd>", best.index);
+    assert!(html(&study).contains(&fact), "{fact}");
+    let svg = convergence_svg(&study, (880, 480)).unwrap();
     for word in ["best so far", "range (mm)", "each evaluation"] {
         assert!(svg.contains(word), "{word}");
     }
@@ -329,23 +290,12 @@ fn other_spaces_have_a_page() {
             (DIRECTION_KEY.to_owned(), direction),
         ]));
     }
-    let html = page(&study, model(), &Beside::default()).unwrap();
-    check_page(&html);
+    whole(&study);
 }
 
-/// What the page says of its own limits holds for the searches, models and spaces there are.
 #[test]
 fn the_limits_are_those_of_what_was_done() {
-    // Ends at -4.0 and 1.8 mm with a gap at 0.2 mm: the default search steps over it.
-    let finger = Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM);
-    let gap =
-        Altered(|_: &Grasp, offset: f64, trial: Trial| match (offset - 0.2 * MM).abs() < 1e-9 {
-            true => Trial { outcome: Outcome::Failed(FailureClass::Jammed), ..trial },
-            false => trial,
-        });
-    let range = |search| evaluate(&gap, &finger, search).window.range_mm();
-    assert_eq!((range(Search::Strides), range(Search::Walk)), (5.8, 4.1));
-    let html = page(&study(), model(), &Beside::default()).unwrap();
+    let html = self::html(&study());
     for statement in [
         "the range is up to 0.2 mm wider",
         "it can step over a gap",
@@ -368,41 +318,10 @@ fn the_limits_are_those_of_what_was_done() {
     let text = include_str!("../../spaces/codesign.toml");
     codesign.config.space = Space::parse(text, "codesign.toml").unwrap();
     codesign.config.objective = Objectives::of(Measure::RobustRange);
-    let html = page(&codesign, model(), &Beside::default()).unwrap();
+    let html = self::html(&codesign);
     for statement in ["remote centre is a number of the design", "alone carries its error"] {
         assert!(html.contains(statement), "{statement}");
     }
-}
-
-/// Evaluations are counted from 0, as in the journal and on the command line.
-#[test]
-fn evaluations_are_counted_from_0() {
-    let study = study();
-    let steps = convergence::best_so_far(&study);
-    assert_eq!((steps[0].0, steps[steps.len() - 1].0), (0.0, 59.0));
-    let best = study.best().unwrap().index;
-    let fact = format!("<dt>evaluation</dt><dd>{best} (the 60 are counted from 0)</dd>");
-    assert!(page(&study, model(), &Beside::default()).unwrap().contains(&fact), "{fact}");
-}
-
-/// Every page and plot can be drawn; they are written to `$FINGER_OPT_LOOK`, if
-/// it is set, to be looked at.
-#[test]
-fn everything_can_be_drawn() {
-    let dir = std::env::var_os("FINGER_OPT_LOOK").map(std::path::PathBuf::from);
-    let write = |name: &str, text: String| {
-        assert!(!text.is_empty(), "{name}");
-        if let Some(dir) = &dir {
-            std::fs::write(dir.join(name), text).unwrap();
-        }
-    };
-    let jammed = Outcome::Failed(FailureClass::Jammed);
-    let failed = record("usb", vec![at_nominal(0, [10.0, 0.0], jammed)]);
-    write("report.html", page(&study(), model(), &Beside::default()).unwrap());
-    write("failed.html", page(&failed, model(), &Beside::default()).unwrap());
-    write("convergence.svg", convergence_svg(&study()).unwrap());
-    write("stiffness.svg", stiffness::svg(model()).unwrap());
-    write("stiffness.txt", stiffness::table(model()));
 }
 
 /// What is as shipped goes by its name, the rest by its copy; nothing that decides is left out.

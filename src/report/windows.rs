@@ -25,13 +25,9 @@ fn best(record: &StudyRecord) -> Vec<(&Recorded, &[f64])> {
 /// The windows on one task, by its place among the tasks, as a table; `explore.js` draws them.
 pub(super) fn section(record: &StudyRecord, task: usize) -> Markup {
     let best = best(record);
-    match best.is_empty() {
-        true => html! { p { "No evaluation has a value and keeps all constraints." } },
-        false => as_table(record, &best, task),
+    if best.is_empty() {
+        return html! { p { "No evaluation has a value and keeps all constraints." } };
     }
-}
-
-fn as_table(record: &StudyRecord, best: &[(&Recorded, &[f64])], task: usize) -> Markup {
     let row = |(r, found): &(&Recorded, &[f64])| {
         let window = &r.on(task)?.window;
         Some(vec![

@@ -14,22 +14,29 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Which finger to measure on which task, and how.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct EvaluateRequest {
     /// Task, robot, finger model; one task.
+    #[command(flatten)]
     pub setup: SetupRequest,
     /// The finger.
+    #[command(flatten)]
     pub finger: FingerRequest,
-    /// Whether to go step by step to the first failure.
+    /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
+    #[arg(long)]
     pub walk: bool,
-    /// Errors under which success rate and robust range are measured, too: a shipped name or a path.
+    /// Success rate and robust range under these errors, too: typical, or the path of a file
+    #[arg(long, value_name = "NAME")]
     pub uncertainty: Option<String>,
-    /// Seed of the drawn errors.
+    /// Seed of the drawn errors: those of the study with this seed
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "uncertainty")]
     pub seed: u64,
     /// Repeats at the window's ends.
+    #[command(flatten)]
     pub repeat: Option<RepeatRequest>,
     /// Whether to measure it once more from its ribs, unless a finger model was asked for: on which
     /// of the two the bench agrees depends on the task (`docs/notes/finger.md`).
+    #[arg(skip = true)]
     pub by_ribs: bool,
 }
 
@@ -81,7 +88,10 @@ impl EvaluateRequest {
     /// not insert; nothing if a finger model was asked for, if the finger is given by its springs, or
     /// if the engine has no such fingers.
     fn by_ribs(&self, setup: &Setup, stop: &AtomicBool) -> Result<Option<ByRibs>, Failure> {
-        if !self.by_ribs || self.setup.finger_model.is_some() || self.finger.springs_are_given() {
+        if !self.by_ribs
+            || self.setup.finger_model.kind.is_some()
+            || self.finger.springs_are_given()
+        {
             return Ok(None);
         }
         let Some(evaluator) = setup.by_ribs() else { return Ok(None) };

@@ -1,5 +1,6 @@
 //! Why a request failed, and the exit code that says so.
 
+use crate::report::ReportError;
 use crate::study::StudyError;
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -70,11 +71,22 @@ pub(super) fn within<T: PartialOrd + fmt::Display>(
     }
 }
 
+/// A range as clap takes it of numbers narrower than its own.
+pub(crate) fn wide<T: Copy + Into<i64>>(range: &RangeInclusive<T>) -> RangeInclusive<i64> {
+    (*range.start()).into()..=(*range.end()).into()
+}
+
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
         let bad_input = error.is_bad_input();
         let error = anyhow::Error::new(error);
         if bad_input { Failure::Input(error) } else { Failure::Run(error) }
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        Failure::Run(error.into())
     }
 }
 

@@ -2,7 +2,7 @@
 //! recommended window.
 
 use super::{Failure, Setup};
-use crate::report::replay::{self, Film, PairEnd};
+use crate::report::replay::{self, ENDS, Film, pair_file};
 use crate::study::{StudyRecord, write_file, write_own_file};
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::tolerance::offset;
@@ -14,11 +14,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is made of a recorded trial.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct FilmRequest {
-    /// Page that plays it (`.html`), or table of every millisecond (`.csv`).
+    /// Record the trial: a page that plays it, or a table of every millisecond
+    #[arg(long, value_name = "FILE.html|.csv", value_parser = recordable)]
     pub record: Option<PathBuf>,
-    /// Drawing of force against depth.
+    /// Draw force against depth
+    #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
 }
 
@@ -55,8 +57,7 @@ impl FilmRequest {
             write(file, &film)?;
         }
         if let Some(file) = &self.plot {
-            let svg = replay::curve_svg(&film);
-            write_file(file, &svg.map_err(|error| Failure::running(error.to_string()))?)?;
+            write_file(file, &replay::curve_svg(&film)?)?;
         }
         Ok(Some(recording))
     }
@@ -67,11 +68,13 @@ impl FilmRequest {
     }
 }
 
+fn recordable(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    filmable(&file).map(|()| file)
+}
+
 /// Whether a trial can be recorded into a file of this name.
-///
-/// # Errors
-/// What its name must end with.
-pub fn filmable(file: &Path) -> Result<(), String> {
+fn filmable(file: &Path) -> Result<(), String> {
     match extension(file).as_deref() {
         Some("html" | "csv") => Ok(()),
         _ => Err("its name must end with .html or .csv, which says what is written".into()),
@@ -111,8 +114,8 @@ pub(super) fn boundary(
 ) -> Result<(), Failure> {
     let found = record.recommendation();
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
-        for end in PairEnd::BOTH {
-            let file = dir.join(end.file(at));
+        for (end, outward) in ENDS {
+            let file = dir.join(pair_file(at, end));
             let pair = match found.as_ref().and_then(|found| Some((found, found.recorded.on(at)?)))
             {
                 None => None,
@@ -122,7 +125,7 @@ pub(super) fn boundary(
                         .evaluator
                         .specimen(template, &best.design, best.stiffness)
                         .map_err(Failure::input)?;
-                    pair(setup, &specimen, task, end, pool)?
+                    pair(setup, &specimen, task, (end, outward), pool)?
                 }
             };
             match pair {
@@ -146,17 +149,13 @@ fn pair(
     setup: &Setup,
     specimen: &Specimen,
     measured: &Evaluation,
-    end: PairEnd,
+    (end, outward): (&str, OffsetStep),
     pool: &ThreadPool,
 ) -> Result<Option<String>, Failure> {
     let window = &measured.window;
-    let (last, outward): (OffsetStep, OffsetStep) = match end {
-        PairEnd::Negative => (window.negative_steps, -1),
-        PairEnd::Positive => (window.positive_steps, 1),
-    };
-    let failed = match end {
-        PairEnd::Negative => window.end_negative,
-        PairEnd::Positive => window.end_positive,
+    let (last, failed) = match outward {
+        -1 => (window.negative_steps, window.end_negative),
+        _ => (window.positive_steps, window.end_positive),
     };
     if window.nominal != Outcome::Inserted || failed.is_none() {
         return Ok(None);
@@ -173,6 +172,6 @@ fn pair(
         recording,
     };
     let films = [film(&labels[0], &inside), film(&labels[1], &outside)];
-    let title = format!("{}: the {} end of the window", specimen.task.name, end.word());
+    let title = format!("{}: the {end} end of the window", specimen.task.name);
     Ok(Some(replay::page(&title, &films)))
 }

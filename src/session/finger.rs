@@ -12,29 +12,55 @@ use std::ops::RangeInclusive;
 /// Stiffnesses that a caller may give in place of an infill, N/mm.
 const STIFFNESS_N_PER_MM: RangeInclusive<f64> = 1e-6..=1e6;
 
-/// A stiffness in N/mm, from its text.
-///
-/// # Errors
-/// If it is none.
-pub fn given_stiffness(n_per_mm: f64) -> Result<f64, String> {
+fn stiffness(text: &str) -> Result<f64, String> {
+    given_stiffness(text.parse().unwrap_or(f64::NAN))
+}
+
+fn given_stiffness(n_per_mm: f64) -> Result<f64, String> {
     match STIFFNESS_N_PER_MM.contains(&n_per_mm) {
         true => Ok(n_per_mm),
         false => Err("a stiffness is a number above 0, 1e-6 to 1e6, in N/mm".to_owned()),
     }
 }
 
+/// A number by its key, as `KEY=VALUE`.
+pub(super) fn setting(text: &str) -> Result<(String, f64), String> {
+    let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse()));
+    match parts {
+        Some((key, Ok(value))) if !key.is_empty() => Ok((key.to_owned(), value)),
+        _ => Err("a setting is KEY=NUMBER, as in task.strategy.tilt_deg=8".to_owned()),
+    }
+}
+
 /// Which finger: by its infill, or by its springs.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct FingerRequest {
-    /// Infill density, percent.
+    /// Infill density, percent
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        required_unless_present = "stiffness_compliance",
+        allow_negative_numbers = true
+    )]
     pub density: Option<f64>,
-    /// Infill direction, degrees.
+    /// Infill direction, degrees
+    #[arg(
+        long,
+        value_name = "DEG",
+        required_unless_present = "stiffness_compliance",
+        allow_negative_numbers = true
+    )]
     pub direction: Option<f64>,
-    /// Stiffness in the compliance direction in place of the predicted one, N/mm.
+    /// Stiffness in the compliance direction, N/mm: bypasses the surrogate
+    #[arg(long, value_name = "K", requires = "stiffness_assembly", value_parser = stiffness,
+          allow_negative_numbers = true)]
     pub stiffness_compliance: Option<f64>,
-    /// Stiffness in the direction of assembly in place of the predicted one, N/mm.
+    /// Stiffness in the direction of assembly, N/mm: bypasses the surrogate
+    #[arg(long, value_name = "K", requires = "stiffness_compliance", value_parser = stiffness,
+          allow_negative_numbers = true)]
     pub stiffness_assembly: Option<f64>,
-    /// Numbers of the task or the finger by their keys, in the units that these carry.
+    /// A number of the task or the finger, as in spaces/codesign.toml; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, f64)>,
 }
 

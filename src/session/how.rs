@@ -1,6 +1,6 @@
 //! How something is computed, as opposed to what: threads, cache, effort.
 
-use super::failure::within;
+use super::failure::{wide, within};
 use super::{Failure, Setup};
 use crate::calibration::sampler::{Effort, Settings};
 use crate::study::{BenchEffort, Cache, Conclusion, IfChanged};
@@ -11,11 +11,11 @@ use std::path::PathBuf;
 /// Folder of the cache unless another is named.
 const CACHE: &str = "results/.cache";
 /// Threads there may be.
-pub const THREADS: RangeInclusive<u16> = 1..=1024;
+const THREADS: RangeInclusive<u16> = 1..=1024;
 /// Simulations per task that an emulator may be made of.
-pub const SIMULATIONS: RangeInclusive<u16> = 16..=4096;
+const SIMULATIONS: RangeInclusive<u16> = 16..=4096;
 /// Samples of a posterior there may be.
-pub const SAMPLES: RangeInclusive<u16> = 20..=20_000;
+const SAMPLES: RangeInclusive<u16> = 20..=20_000;
 /// Simulations and samples unless others are asked for.
 const EFFORT: BenchEffort = BenchEffort { simulations: 200, samples: 300 };
 /// Sweeps before sampling, and from one sample to the next.
@@ -23,11 +23,13 @@ const WARM_UP: usize = 300;
 const THIN: usize = 4;
 
 /// Where simulations are kept for others, if they are.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct CacheRequest {
-    /// The folder; unless it is given, `results/.cache` for engines that simulate.
+    /// Folder of evaluations that studies share; safe to delete [default: results/.cache]
+    #[arg(id = "cache", long = "cache", value_name = "DIR")]
     pub dir: Option<PathBuf>,
-    /// Whether to simulate anew and keep nothing.
+    /// Measure every design anew, and keep nothing
+    #[arg(id = "no_cache", long = "no-cache", conflicts_with = "cache")]
     pub off: bool,
 }
 
@@ -45,11 +47,14 @@ impl CacheRequest {
 
 /// How much is computed for a prediction of the bench; what is not given is 200 simulations and
 /// 300 samples, or as the study has it.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
 pub struct EffortRequest {
-    /// Simulations per task that the emulator is made of; one in eight measures its error.
+    /// Simulations per task that the emulator of a bench prediction is made of; one in eight
+    /// measures its error [default: 200, or as the study has it]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(wide(&SIMULATIONS)))]
     pub simulations: Option<u16>,
-    /// Samples of the posterior.
+    /// Samples of a bench prediction's posterior [default: 300, or as the study has it]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(wide(&SAMPLES)))]
     pub samples: Option<u16>,
 }
 
@@ -78,17 +83,23 @@ pub(super) fn settings(effort: BenchEffort, seed: u64) -> Settings {
 }
 
 /// How a study is run, as opposed to what it measures.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct RunRequest {
-    /// Threads; one per processor unless given. Changes no result.
+    /// Threads [default: one per processor]; changes no result
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(wide(&THREADS)))]
     pub threads: Option<u16>,
     /// Where evaluations are kept for other studies.
+    #[command(flatten)]
     pub cache: CacheRequest,
-    /// Whether to leave out what confirms the recommendation.
+    /// Leave out what confirms the recommendation: the best designs walked, and repeated at their ends
+    #[arg(long)]
     pub no_confirm: bool,
-    /// Whether to go on, in a new segment, with a study that was measured otherwise.
+    /// Go on with a study that was measured by another program version, engine setting or input
+    /// file, in a new segment; the best design is then taken from that
+    #[arg(long)]
     pub accept_changed: bool,
     /// How much is computed for the bench.
+    #[arg(skip)]
     pub effort: EffortRequest,
 }
 

@@ -17,11 +17,11 @@ use std::sync::atomic::AtomicBool;
 const DRAWS: usize = 4;
 
 /// Fingers that may be printed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Among {
-    /// Those of the space.
+    /// Those of the space
     Space,
-    /// The 11 of the publication.
+    /// The 11 of the publication
     Published,
 }
 

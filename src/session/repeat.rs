@@ -1,6 +1,6 @@
 //! Repeats of a trial or an evaluation: do small changes change the outcome?
 
-use super::failure::{not_stopped, within};
+use super::failure::{not_stopped, wide, within};
 use super::finger::Chosen;
 use super::{Failure, Setup};
 use insertion::evaluation::robustness::repeat::{Bands, Repeats};
@@ -12,14 +12,23 @@ use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
 /// How often may be repeated.
-pub const REPEATS: RangeInclusive<u32> = 2..=10_000;
+const REPEATS: RangeInclusive<u32> = 2..=10_000;
 
 /// How often to repeat, with friction within 10 %, start within 0.02 mm, and half the step by turns.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, clap::Args)]
 pub struct RepeatRequest {
-    /// How often.
+    /// Then N times more with friction within 10 %, start within 0.02 mm, and half the step by turns
+    #[arg(id = "repeat", long = "repeat", value_name = "N", required = false,
+          value_parser = clap::value_parser!(u32).range(wide(&REPEATS)))]
     pub count: u32,
-    /// Seed of the changes.
+    /// Seed of the repeats
+    #[arg(
+        id = "repeat_seed",
+        long = "repeat-seed",
+        value_name = "N",
+        default_value_t = 0,
+        requires = "repeat"
+    )]
     pub seed: u64,
 }
 

@@ -2,8 +2,8 @@
 
 use super::Failure;
 use super::setup::surrogate_of;
-use crate::report::replay::PairEnd;
-use crate::report::{self, Beside, Replay, printer};
+use crate::report::replay::{ENDS, pair_file};
+use crate::report::{self, Beside, printer};
 use crate::study::{StudyRecord, write_evaluations_csv, write_own_file};
 use input::files::{self, LARGEST_OWN};
 use insertion::surrogate::Model;
@@ -22,19 +22,17 @@ pub fn rewrite(dir: &Path) -> Result<StudyRecord, Failure> {
 
 /// The page among a report's files.
 pub const PAGE: &str = "report.html";
+/// Pixels of a plot in a file of its own.
+const FILE: (u32, u32) = (880, 480);
 
 /// Writes all that is made of a study into its folder: table, plot and page.
 pub(super) fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(), Failure> {
-    let drawn = |error: report::ReportError| Failure::running(error.to_string());
     write_evaluations_csv(dir, record)?;
-    write_own_file(&dir.join("convergence.svg"), &report::convergence_svg(record).map_err(drawn)?)?;
-    if let Some(front) = report::front_svg(record).map_err(drawn)? {
+    write_own_file(&dir.join("convergence.svg"), &report::convergence_svg(record, FILE)?)?;
+    if let Some(front) = report::front_svg(record, FILE)? {
         write_own_file(&dir.join("front.svg"), &front)?;
     }
-    write_own_file(
-        &dir.join(PAGE),
-        &report::page(record, model, &beside(dir, record)).map_err(drawn)?,
-    )?;
+    write_own_file(&dir.join(PAGE), &report::page(record, model, &beside(dir, record))?)?;
     Ok(())
 }
 
@@ -43,9 +41,9 @@ fn beside(dir: &Path, record: &StudyRecord) -> Beside {
     let several = record.config.several_tasks();
     let of = |(at, task): (usize, &str)| {
         let on = if several { format!(" on {task}") } else { String::new() };
-        PairEnd::BOTH.map(|end| {
-            let page = files::read_own(&dir.join(end.file(at)), LARGEST_OWN).ok()?;
-            Some(Replay { label: format!("Play the {} end{on}", end.word()), page })
+        ENDS.map(|(end, _)| {
+            let page = files::read_own(&dir.join(pair_file(at, end)), LARGEST_OWN).ok()?;
+            Some((format!("Play the {end} end{on}"), page))
         })
     };
     let replays = record.config.tasks().enumerate().flat_map(of).flatten().collect();

@@ -8,6 +8,7 @@ use insertion::finger::model::{FingerModelKind, FingerSource};
 use insertion::space::{Parameter, Space};
 use insertion::task::StartRule;
 use insertion::trial::engine::EngineKind;
+use std::convert::Infallible;
 use std::path::Path;
 
 /// Robot used unless another is named.
@@ -35,6 +36,10 @@ impl TaskSource {
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }
 
+    fn parsed(names: &str) -> Result<Vec<Self>, Infallible> {
+        Ok(Self::list(names))
+    }
+
     /// Its file, unchecked.
     ///
     /// # Errors
@@ -48,25 +53,42 @@ impl TaskSource {
 }
 
 /// What a trial, an evaluation, a calibration and a study have in common.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct SetupRequest {
-    /// At least one; only a study, a calibration and a setup by itself may have several.
-    pub tasks: Vec<TaskSource>,
-    /// A shipped space, or the path of a space file.
+    /// Task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas
+    // By its full path the whole list is one value of the option.
+    #[arg(long = "task", value_name = "NAME", value_parser = TaskSource::parsed)]
+    pub tasks: std::vec::Vec<TaskSource>,
+    /// Search space: infill, codesign, finger, or the path of a space file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]
     pub space: String,
-    /// A shipped robot, or the path of a robot file.
+    /// Robot: see `optimize tasks`, or the path of a robot file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     pub robot: String,
-    /// Path of stiffness measurements in place of those that the finger file names.
+    /// Your own stiffness measurements in place of the shipped ones
+    #[arg(long, value_name = "FILE.csv")]
     pub stiffness_data: Option<String>,
-    /// Contact engine.
+    /// Contact engine
+    #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
-    /// Where the springs of a finger come from that were not measured; unless it is given: the
-    /// paper, or the ribs for a space with numbers of a printed finger.
-    pub finger_model: Option<FingerModelKind>,
-    /// Finger file of computed fingers: a shipped one, or a path.
-    pub finger: String,
-    /// What becomes of the nominal start, in place of what the task files say.
+    /// Where the springs of a finger come from that were not measured.
+    #[command(flatten)]
+    pub finger_model: FingerModelRequest,
+    /// What becomes of the nominal start, in place of what the task file says
+    #[arg(long, value_enum)]
     pub start: Option<StartRule>,
+}
+
+/// Where the springs of a finger come from that were not measured.
+#[derive(Debug, Clone, clap::Args)]
+pub struct FingerModelRequest {
+    /// Where a finger's remote centre and unmeasured springs come from [default: paper; computed
+    /// for a space with numbers of the printed finger]
+    #[arg(long = "finger-model", value_enum)]
+    pub kind: Option<FingerModelKind>,
+    /// Finger file of --finger-model computed: finray9, or the path of one
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
+    pub finger: String,
 }
 
 impl Default for SetupRequest {
@@ -77,8 +99,7 @@ impl Default for SetupRequest {
             robot: DEFAULT_ROBOT.to_owned(),
             stiffness_data: None,
             engine: EngineKind::default(),
-            finger_model: None,
-            finger: DEFAULT_FINGER.to_owned(),
+            finger_model: FingerModelRequest { kind: None, finger: DEFAULT_FINGER.to_owned() },
             start: None,
         }
     }
@@ -104,26 +125,28 @@ impl SetupRequest {
         let space = find("space", SPACES, &self.space)?;
         let robot = find("robot", ROBOTS, &self.robot)?;
         let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
-        let fingers = Fingers::parse(self.finger_file(Some(&parsed))?)?;
+        let fingers = Fingers::parse(self.finger_model.file(Some(&parsed))?)?;
         let stiffness =
             stiffness_data(self.stiffness_data.as_deref(), &fingers.measured_finger()?)?;
         Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, self.engine)
     }
+}
 
+impl FingerModelRequest {
     /// What makes fingers where no space is searched.
     ///
     /// # Errors
     /// If the finger file cannot be used.
     pub fn fingers(&self) -> Result<FingerSource, Failure> {
-        Ok(Fingers::parse(self.finger_file(None)?)?.made())
+        Ok(Fingers::parse(self.file(None)?)?.made())
     }
 
     /// The finger file, if fingers are computed: as those of a space with numbers of a printed
     /// finger have to be.
-    fn finger_file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
+    fn file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
         let shape = |p: &&Parameter| is_shape(&p.key);
         let shaped = space.and_then(|space| space.parameters.iter().find(shape));
-        let kind = match (self.finger_model, shaped) {
+        let kind = match (self.kind, shaped) {
             (Some(FingerModelKind::Paper), Some(Parameter { key, .. })) => {
                 return Err(Failure::usage(format!(
                     "the space sets {key}, which --finger-model computed knows, paper does not"

@@ -2,6 +2,7 @@
 
 use super::Failure;
 use super::files::find;
+use super::finger::setting;
 use super::request::DEFAULT_FINGER;
 use crate::study::StudyRecord;
 use finray::geometry::Geometry;
@@ -12,17 +13,22 @@ use insertion::space::Design;
 use std::path::{Path, PathBuf};
 
 /// Which finger to compute.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct RibsRequest {
-    /// Infill density, percent.
+    /// Infill density, percent
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
     pub density: f64,
-    /// Infill direction, degrees.
+    /// Infill direction, degrees
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub direction: f64,
-    /// A shipped finger, or the path of a finger file.
+    /// Finger: finray9, or the path of a finger file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
     pub finger: String,
-    /// Where the first rib lies, mm; as the finger file says unless given.
+    /// Where the first rib lies, mm [default: the finger file's]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub phase_mm: Option<f64>,
-    /// Numbers of the finger file by their keys.
+    /// A number of the finger file, as finger.skin.thickness_mm=0.8; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, f64)>,
 }
 
@@ -47,17 +53,23 @@ impl RibsRequest {
 }
 
 /// Which finger to print: the best of a study, or of an infill.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct PrintRequest {
-    /// Folder of a study.
+    /// Folder of a study: its best design
+    #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"],
+          required_unless_present = "density")]
     pub dir: Option<PathBuf>,
-    /// Infill density, percent.
+    /// Infill density, percent
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, requires = "direction")]
     pub density: Option<f64>,
-    /// Infill direction, degrees.
+    /// Infill direction, degrees
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "density")]
     pub direction: Option<f64>,
-    /// A shipped finger, or the path of a finger file; the study's, or the shipped one, unless given.
+    /// Finger: finray9, or the path of a finger file [default: the study's, or finray9]
+    #[arg(long, value_name = "NAME")]
     pub finger: Option<String>,
-    /// Where the first rib lies, mm; as the finger file says unless given.
+    /// Where the first rib lies, mm [default: the finger file's]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub phase_mm: Option<f64>,
 }
 

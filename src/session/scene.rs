@@ -8,11 +8,13 @@ use insertion::evaluation::evaluator::Specimen;
 use insertion::trial::cell;
 
 /// Which scene to write.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct SceneRequest {
     /// Task, robot, finger model; one task.
+    #[command(flatten)]
     pub setup: SetupRequest,
     /// The finger.
+    #[command(flatten)]
     pub finger: FingerRequest,
 }
 

@@ -1,6 +1,6 @@
 //! Which unknown matters for the window.
 
-use super::failure::{not_stopped, within};
+use super::failure::{not_stopped, wide, within};
 use super::request::SetupRequest;
 use super::{Failure, Setup};
 use crate::report::sensitivity::Found;
@@ -12,25 +12,30 @@ use rayon::prelude::*;
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
+/// Rows there may be.
+const SAMPLES: RangeInclusive<u32> = 4..=10_000;
+
 /// What to vary, and what is looked at.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct SensitivityRequest {
     /// Task, robot, space, finger model; one task.
+    #[command(flatten)]
     pub setup: SetupRequest,
-    /// Range or centred range.
+    /// range or centred-range
+    #[arg(long, value_name = "NAME", default_value = "range")]
     pub objective: Measure,
-    /// Errors of the cell that are varied, too: a shipped name or a path; `None` for none.
-    pub uncertainty: Option<String>,
-    /// Rows of the sample: evaluations are this times (inputs + 2).
+    /// Errors of the cell that are varied, too: typical, none, or the path of a file
+    #[arg(long, value_name = "NAME", default_value = "typical")]
+    pub uncertainty: String,
+    /// Rows of the sample: evaluations are this times (inputs + 2)
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(wide(&SAMPLES)))]
     pub samples: u32,
-    /// Seed of the sample.
+    /// Seed of the sample
+    #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 }
 
 impl SensitivityRequest {
-    /// Rows there may be.
-    pub const SAMPLES: RangeInclusive<u32> = 4..=10_000;
-
     /// Simulates the sample and ranks the inputs.
     ///
     /// # Errors
@@ -41,10 +46,10 @@ impl SensitivityRequest {
             let problem = "has no value where nothing inserts; use range or centred-range";
             return Err(Failure::usage(format!("--objective {} {problem}", self.objective)));
         }
-        within("--samples", self.samples, &Self::SAMPLES)?;
+        within("--samples", self.samples, &SAMPLES)?;
         let mut setup = self.setup.setup()?;
-        if let Some(name) = &self.uncertainty {
-            setup = setup.under_named(name)?;
+        if self.uncertainty != "none" {
+            setup = setup.under_named(&self.uncertainty)?;
         }
         setup.only_task()?;
         let errors = setup.uncertainty.as_ref().map(|uncertainty| &uncertainty.errors);

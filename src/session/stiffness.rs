@@ -6,11 +6,13 @@ use super::request::DEFAULT_FINGER;
 use insertion::surrogate::Model;
 
 /// Which measurements the model is fitted to.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct StiffnessRequest {
-    /// Path of a table in place of the one that the finger file names.
+    /// Your own stiffness measurements in place of the shipped ones
+    #[arg(long, value_name = "FILE.csv")]
     pub stiffness_data: Option<String>,
-    /// Finger that was measured: a shipped one, or the path of a file.
+    /// Finger that was measured: finray9, or the path of a finger file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
     pub finger: String,
 }
 

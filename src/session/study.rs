@@ -15,62 +15,90 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// Seeds there are: TOML, in which studies keep theirs, has no larger whole numbers.
-pub const SEEDS: RangeInclusive<u64> = 0..=i64::MAX as u64;
+const SEEDS: RangeInclusive<u64> = 0..=i64::MAX as u64;
 /// Budgets there are.
-pub const BUDGETS: RangeInclusive<u64> = 1..=LARGEST_BUDGET;
+const BUDGETS: RangeInclusive<u64> = 1..=LARGEST_BUDGET;
 /// Length of a polish that is asked for without a number.
 pub const POLISH: u64 = 20;
 /// Lengths of a polish there are.
-pub const POLISHES: RangeInclusive<u64> = 0..=LARGEST_BUDGET;
+const POLISHES: RangeInclusive<u64> = 0..=LARGEST_BUDGET;
 /// Batches there are.
-pub const BATCHES: RangeInclusive<u64> = 1..=LARGEST_BATCH;
+const BATCHES: RangeInclusive<u64> = 1..=LARGEST_BATCH;
 /// Batch of a new study unless another is given.
 const DEFAULT_BATCH: u64 = 4;
 /// Errors used unless others are named.
 const DEFAULT_UNCERTAINTY: &str = "typical";
 
 /// Which study to begin or to go on with.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct StudyRequest {
     /// Tasks, robot, space, finger model.
+    #[command(flatten)]
     pub setup: SetupRequest,
-    /// Evaluations in all.
+    /// Evaluations in all; run the same command with a larger one to go on
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(BUDGETS))]
     pub budget: u64,
-    /// Then up to so many evaluations more, from the best design.
+    /// Then up to N evaluations more, by Nelder-Mead from the best design; the budget of
+    /// such a study cannot be raised
+    #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(POLISHES))]
     pub polish: u64,
-    /// Optimizer.
+    /// Optimizer: gp, cma-es, random, sobol or grid
+    #[arg(long, value_name = "NAME", default_value = "gp")]
     pub optimizer: OptimizerKind,
-    /// What is optimized.
+    /// What is optimized: range, centred-range, success-rate, robust-range, peak-force or slip;
+    /// two or three, by commas, give a front
+    #[arg(long, value_name = "NAME", default_value = "range")]
     pub objective: Objectives,
-    /// What a design must keep to.
+    /// What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'; may be given
+    /// several times
+    #[arg(long = "constraint", value_name = "LIMIT")]
     pub constraints: Vec<Constraint>,
-    /// Errors for success rate and robust range: a shipped name, or the path of a file.
+    /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
+    #[arg(long, value_name = "NAME")]
     pub uncertainty: Option<String>,
-    /// What was measured on the bench: a shipped name, or the path of a file.
+    /// What was measured on the bench, published or the path of a file: the study then ends with
+    /// the finger that is best there, predicted from all simulations and these measurements
+    #[arg(long, value_name = "FILE")]
     pub measurements: Option<String>,
-    /// What is made of the values of several tasks; the worst unless it is given.
+    /// What is made of the values of several tasks [default: min]
+    #[arg(long, value_enum)]
     pub aggregate: Option<AggregateKind>,
-    /// Weight of each task, if they are weighted.
+    /// Weight of each task, by commas, for --aggregate weighted
+    #[arg(long, value_name = "W,W..", value_delimiter = ',', allow_negative_numbers = true)]
     pub weights: Vec<f64>,
-    /// Seed; the same seed gives the same study.
+    /// Seed; the same seed gives the same study
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
+          value_parser = clap::value_parser!(u64).range(SEEDS))]
     pub seed: u64,
-    /// Designs at a time; unless it is given that of the study if it goes on, else the number of
-    /// workers, or 4.
+    /// Designs proposed and evaluated at a time; part of the study, unlike --threads [default: that
+    /// of the study if it goes on, else 4, with --executor the number of its workers]
+    #[arg(long, value_name = "N", allow_negative_numbers = true,
+          value_parser = clap::value_parser!(u64).range(BATCHES))]
     pub batch: Option<u64>,
-    /// Whether each result is told as it comes.
+    /// Tell each result as it comes and ask for one more design, so that no worker waits for the
+    /// slowest of a batch; the journal then depends on who was fast
+    #[arg(long = "async")]
     pub asynchronous: bool,
-    /// Folder; `results/<task>-<optimizer>-seed<seed>` unless it is given.
+    /// Folder of the study.
+    #[arg(
+        long,
+        value_name = "DIR",
+        help = "Folder of the study [default: results/<task>-<optimizer>-seed<seed>]"
+    )]
     pub out: Option<PathBuf>,
     /// How it is run.
+    #[arg(skip)]
     pub run: RunRequest,
 }
 
 /// Which study to go on with.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct ResumeRequest {
-    /// Its folder.
+    /// Folder of the study
     pub dir: PathBuf,
     /// How it is run.
+    #[arg(skip)]
     pub run: RunRequest,
 }
 

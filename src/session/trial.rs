@@ -17,11 +17,12 @@ use std::sync::atomic::AtomicBool;
 /// Largest offset accepted, mm: far outside any socket.
 const LARGEST_OFFSET_MM: f64 = 1000.0;
 
+fn offset(text: &str) -> Result<f64, String> {
+    given_offset(text.parse().unwrap_or(f64::NAN))
+}
+
 /// Whether the start may be shifted by so much, mm.
-///
-/// # Errors
-/// What would be right.
-pub fn given_offset(mm: f64) -> Result<f64, String> {
+fn given_offset(mm: f64) -> Result<f64, String> {
     // Written so that a NaN is outside.
     match mm.abs() <= LARGEST_OFFSET_MM {
         true => Ok(mm),
@@ -30,21 +31,29 @@ pub fn given_offset(mm: f64) -> Result<f64, String> {
 }
 
 /// Which insertion to simulate, and what to make of it.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct TrialRequest {
     /// Task, robot, finger model; one task.
+    #[command(flatten)]
     pub setup: SetupRequest,
     /// The finger.
+    #[command(flatten)]
     pub finger: FingerRequest,
-    /// Shift of the start along y, mm.
+    /// Shift of the start along y, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0,
+          value_parser = offset)]
     pub offset_mm: f64,
     /// Repeats at that offset.
+    #[command(flatten)]
     pub repeat: Option<RepeatRequest>,
     /// Simulated time between two samples of the course, s, if the course is asked for.
+    #[arg(skip)]
     pub every_s: Option<f64>,
     /// What is recorded.
+    #[command(flatten)]
     pub film: FilmRequest,
-    /// Drawing of plug, fingertips and socket at the end of each phase.
+    /// Draw plug, fingertips and socket at the end of each phase
+    #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
 }
 

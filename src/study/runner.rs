@@ -132,7 +132,7 @@ impl Runner<'_> {
 mod tests {
     use super::*;
     use crate::study::Study;
-    use ask_tell::{Grid, RandomSearch};
+    use ask_tell::{Grid, OptimizerKind, build};
     use insertion::evaluation::evaluator::Measured;
     use insertion::evaluation::template::Impossible;
     use insertion::space::Design;
@@ -154,9 +154,10 @@ mod tests {
         let mut study = Study::resume(dir.path()).unwrap();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
         let stop = AtomicBool::new(false);
-        let mut optimizer = RandomSearch::new(Grid::new(study.config.space.levels()), 0);
+        let grid = Grid::new(study.config.space.levels());
+        let mut optimizer = build(OptimizerKind::Random, grid, 0);
         let runner = Runner { evaluator: &Panics, pool: &pool, stop: &stop };
-        let run = AssertUnwindSafe(|| runner.run(&mut study, &mut optimizer, &mut |_| ()));
+        let run = AssertUnwindSafe(|| runner.run(&mut study, &mut *optimizer, &mut |_| ()));
         assert!(catch_unwind(run).is_err());
         drop(study);
         assert!(Study::resume(dir.path()).is_ok(), "journal and lock are as they should be");

@@ -4,9 +4,9 @@ use super::{Failure, print, print_json};
 use crate::prints::{self, Replayed, TOLD};
 use clap::Args;
 use finger_opt::calibration::sampler::{Effort, Settings};
-use finger_opt::cli::arguments::{CalibrationArguments, FingerModelArguments};
+use finger_opt::cli::arguments::CalibrationArguments;
 use finger_opt::cli::terminal::simulating;
-use finger_opt::session::{DEFAULT_ROBOT, Prepared, SetupRequest, TaskSource};
+use finger_opt::session::{DEFAULT_ROBOT, FingerModelRequest, Prepared, SetupRequest, TaskSource};
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
 use serde_json::json;
@@ -31,7 +31,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
     #[command(flatten)]
-    finger_model: FingerModelArguments,
+    finger_model: FingerModelRequest,
     /// Seeds that ours is averaged over
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=1000))]
     seeds: u64,
@@ -51,12 +51,13 @@ struct TaskReplay {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let setup = arguments.finger_model.of(SetupRequest {
+    let setup = SetupRequest {
         tasks: TaskSource::list(&arguments.task),
         robot: arguments.robot.clone(),
         engine: arguments.engine,
+        finger_model: arguments.finger_model.clone(),
         ..SetupRequest::default()
-    });
+    };
     let request = arguments.calibration.request(setup, "published");
     let mut watch = simulating(arguments.json);
     let prepared = request.prepare(&[], &NEVER, &mut watch)?;

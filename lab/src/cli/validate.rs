@@ -5,8 +5,7 @@ use crate::compare::fingers::Windows;
 use crate::compare::published as beside;
 use clap::{Args, ValueEnum};
 use finger_opt::calibration::published::{self, Origin};
-use finger_opt::cli::arguments::FingerModelArguments;
-use finger_opt::session::{self, DEFAULT_ROBOT, SetupRequest, TaskFile};
+use finger_opt::session::{self, DEFAULT_ROBOT, FingerModelRequest, TaskFile};
 use finger_opt::study::write_file;
 use input::shipped::TASKS;
 use insertion::evaluation::tolerance::Search;
@@ -57,7 +56,7 @@ pub struct Arguments {
     #[arg(long)]
     strides: bool,
     #[command(flatten)]
-    finger_model: FingerModelArguments,
+    finger_model: FingerModelRequest,
     /// What becomes of the nominal start, in place of what the task file says
     #[arg(long, value_enum)]
     start: Option<StartRule>,
@@ -77,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let robot = session::robot(&arguments.robot)?;
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
-    let fingers = arguments.finger_model.of(SetupRequest::default()).fingers()?;
+    let fingers = arguments.finger_model.fingers()?;
     let windows = Windows { fingers: &fingers, robot: &robot, engine: arguments.engine, search };
     let tables = windows.measure(&tasks, &arguments.fingers.designs()).map_err(Failure::input)?;
     for (name, text) in [

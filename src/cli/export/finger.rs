@@ -17,22 +17,8 @@ use std::path::{Path, PathBuf};
 /// fills with its own ribs.
 #[derive(Debug, Clone, Args)]
 pub struct Arguments {
-    /// Folder of a study: its best design
-    #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"],
-          required_unless_present = "density")]
-    dir: Option<PathBuf>,
-    /// Infill density, percent
-    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, requires = "direction")]
-    density: Option<f64>,
-    /// Infill direction, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "density")]
-    direction: Option<f64>,
-    /// Finger: finray9, or the path of a finger file [default: the study's, or finray9]
-    #[arg(long, value_name = "NAME")]
-    finger: Option<String>,
-    /// Where the first rib lies, mm [default: the finger file's]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    phase_mm: Option<f64>,
+    #[command(flatten)]
+    request: PrintRequest,
     /// What to write
     #[arg(long, value_enum)]
     format: Format,
@@ -60,16 +46,13 @@ enum Format {
     Prusaslicer,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { dir, density, direction, finger: named, phase_mm, .. } = arguments.clone();
-    let request = PrintRequest { dir, density, direction, finger: named, phase_mm };
-    let geometry = request.geometry()?;
+    let geometry = arguments.request.geometry()?;
     let (out, title) = (&arguments.out, export::title(&geometry));
     match arguments.format {
-        Format::Stl => write_file(out, &finger(&geometry)?.stl(&title))?,
+        Format::Stl => write_file(out, &closed(Prism::finger(&geometry), &geometry)?.stl(&title))?,
         Format::ThreeMf => {
-            let bytes = finger(&geometry)?
+            let bytes = closed(Prism::finger(&geometry), &geometry)?
                 .three_mf(&title)
                 .map_err(|error| Failure::running(format!("{}: {error}", out.display())))?;
             write_file(out, &bytes)?;
@@ -81,10 +64,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Prusaslicer => return settings(out, &geometry, &slicer::prusaslicer(&geometry)),
     }
     print(&format!("wrote {title}: {}\n", out.display()))
-}
-
-fn finger(geometry: &Geometry) -> Result<Prism, Failure> {
-    closed(Prism::finger(geometry), geometry)
 }
 
 fn closed(

@@ -1,6 +1,5 @@
 //! `optimize export mjcf`: the scene of a trial.
 
-use crate::cli::arguments::{FingerArguments, SetupArguments};
 use crate::cli::{Failure, print};
 use crate::session::SceneRequest;
 use crate::study::write_file;
@@ -15,18 +14,14 @@ use std::path::PathBuf;
 #[command(mut_arg("engine", |engine| engine.hide(true)))]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupArguments,
-    #[command(flatten)]
-    finger: FingerArguments,
+    request: SceneRequest,
     /// File to write
     #[arg(long, value_name = "FILE.xml")]
     out: PathBuf,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (setup, finger) = (arguments.setup.request(), arguments.finger.request());
-    let (task, text) = SceneRequest { setup, finger }.mjcf()?;
+    let (task, text) = arguments.request.mjcf()?;
     write_file(&arguments.out, &text)?;
     print(&format!("wrote {}: the scene of {task}, for MuJoCo\n", arguments.out.display()))
 }

@@ -4,17 +4,11 @@ mod finger;
 mod mjcf;
 
 use super::Failure;
-use clap::{Args, Subcommand};
+use clap::Subcommand;
 
 /// Write a scene for MuJoCo, or a finger for the printer
-#[derive(Debug, Args)]
-pub struct Arguments {
-    #[command(subcommand)]
-    what: What,
-}
-
 #[derive(Debug, Subcommand)]
-enum What {
+pub enum Arguments {
     #[command(after_help = "Example: optimize export mjcf --task usb --density 20 \
                             --direction 10 --out scene.xml")]
     Mjcf(mjcf::Arguments),
@@ -23,10 +17,9 @@ enum What {
     Finger(finger::Arguments),
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.what {
-        What::Mjcf(arguments) => mjcf::run(arguments),
-        What::Finger(arguments) => finger::run(arguments),
+    match arguments {
+        Arguments::Mjcf(arguments) => mjcf::run(arguments),
+        Arguments::Finger(arguments) => finger::run(arguments),
     }
 }

@@ -73,7 +73,6 @@ fn setting(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = &arguments.file;
     if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {

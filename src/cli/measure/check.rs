@@ -30,7 +30,6 @@ struct Known {
     bounds: usize,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let own = arguments.task.iter().map(|name| Ok(read_task(name)?.task.name));
     let own = own.collect::<Result<Vec<_>, Failure>>()?;

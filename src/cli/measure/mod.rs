@@ -5,20 +5,14 @@ mod check;
 
 use super::Failure;
 use crate::calibration::experiments::Experiment;
-use clap::{Args, Subcommand};
+use clap::Subcommand;
 
 /// Add measurements from the bench to a file, or check such a file.
 ///
 /// The file is `docs/guide/measuring.md`'s measurements.csv. Only the task, the infill and something that
 /// was measured are needed; a range alone is enough.
-#[derive(Debug, Args)]
-pub struct Arguments {
-    #[command(subcommand)]
-    what: What,
-}
-
 #[derive(Debug, Subcommand)]
-enum What {
+pub enum Arguments {
     #[command(after_help = "Example: optimize measure add bench.csv --task ket8 --density 20 \
                             --direction 0 --range-mm 5.7 --failure-negative 3 --failure-positive 3")]
     Add(Box<add::Arguments>),
@@ -26,11 +20,10 @@ enum What {
     Check(check::Arguments),
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.what {
-        What::Add(arguments) => add::run(arguments),
-        What::Check(arguments) => check::run(arguments),
+    match arguments {
+        Arguments::Add(arguments) => add::run(arguments),
+        Arguments::Check(arguments) => check::run(arguments),
     }
 }
 

@@ -1,6 +1,6 @@
 //! `optimize task check`: what is wrong with a task file, and whether its nominal start inserts.
 
-use super::super::{Failure, print, print_json};
+use super::super::{Failure, print, print_json, trial};
 use crate::connector::check::Problem;
 use crate::connector::picture;
 use crate::session::{DEFAULT_ROBOT, TaskCheck};
@@ -31,7 +31,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let checked = TaskCheck::named(&arguments.file, &arguments.robot, arguments.engine)?;
     let drawn = match (&arguments.svg, &checked.task) {
@@ -51,17 +50,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// `valid`, `problems` and `nominal`.
 pub fn json(checked: &TaskCheck) -> Value {
     let nominal = checked.nominal.as_ref().map(|(finger, trial, explanation)| {
-        json!({
-            "outcome": trial.outcome.word(),
-            "failure": trial.outcome.failure(),
-            "depth_mm": trial.depth_mm,
-            "tilt_deg": trial.tilt_deg,
-            "peak_force_n": trial.peak_force_n,
-            "slip_mm": trial.slip_mm,
-            "compliance_n_per_mm": finger.compliance / N_PER_MM,
-            "assembly_n_per_mm": finger.assembly / N_PER_MM,
-            "explanation": explanation,
-        })
+        let mut fields = trial::ended(trial);
+        fields["compliance_n_per_mm"] = json!(finger.compliance / N_PER_MM);
+        fields["assembly_n_per_mm"] = json!(finger.assembly / N_PER_MM);
+        fields["explanation"] = json!(explanation);
+        fields
     });
     json!({
         "valid": checked.problems.is_empty(),

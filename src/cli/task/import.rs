@@ -82,7 +82,6 @@ impl Unit {
     }
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
     if out.exists() {

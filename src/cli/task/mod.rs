@@ -3,20 +3,14 @@
 mod check;
 mod import;
 mod new;
-mod show;
 
-use super::Failure;
-use clap::{Args, Subcommand};
+use super::{Failure, print};
+use crate::session::TaskSource;
+use clap::Subcommand;
 
 /// Make, show and check a task
-#[derive(Debug, Args)]
-pub struct Arguments {
-    #[command(subcommand)]
-    command: Command,
-}
-
 #[derive(Debug, Subcommand)]
-enum Command {
+pub enum Arguments {
     /// Write a commented task file from a few dimensions, or like another task
     #[command(
         after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 \
@@ -25,7 +19,11 @@ enum Command {
     New(new::Arguments),
     /// Print a shipped task file
     #[command(after_help = "Example: optimize task show usb > mine.toml")]
-    Show(show::Arguments),
+    Show {
+        /// Task: ket8, ket12, rj45, usb
+        #[arg(value_name = "NAME")]
+        name: String,
+    },
     /// Look for what cannot work in a task file, draw it and try its nominal start
     ///
     /// Exit code 0 if nothing is wrong and the plug goes in, 2 otherwise.
@@ -36,12 +34,11 @@ enum Command {
     Import(import::Arguments),
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.command {
-        Command::New(arguments) => new::run(arguments),
-        Command::Show(arguments) => show::run(arguments),
-        Command::Check(arguments) => check::run(arguments),
-        Command::Import(arguments) => import::run(arguments),
+    match arguments {
+        Arguments::New(arguments) => new::run(arguments),
+        Arguments::Show { name } => print(&TaskSource::Named(name.clone()).read()?.text),
+        Arguments::Check(arguments) => check::run(arguments),
+        Arguments::Import(arguments) => import::run(arguments),
     }
 }

@@ -49,7 +49,6 @@ pub struct Arguments {
     engine: EngineKind,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let like = arguments.like.as_deref().map(read_task).transpose()?;
     let text = match (&like, arguments.plug.or(arguments.round)) {

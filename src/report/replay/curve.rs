@@ -2,7 +2,7 @@
 
 use super::Film;
 use crate::report::ReportError;
-use crate::report::chart::{Area, AxisOf, Drawn, around, axes, legend, sheet};
+use crate::report::chart::{Area, Drawn, around, axes, legend, sheet};
 use crate::report::marks::{PointMark, line, points};
 use crate::report::theme::{BLUE, MUTED, RED};
 use insertion::outcome::Outcome;
@@ -27,14 +27,14 @@ fn draw(area: &Area<'_>, film: &Film) -> Drawn {
         .map(|frame| (frame.depth_mm(), frame.force.norm()))
         .collect();
     let needed = film.task.success.depth / input::units::MM;
-    let x = AxisOf {
-        label: "depth of the plug's tip below the socket's top (mm)",
-        range: around(path.iter().map(|p| p.0).chain([needed]), 0.06),
-    };
+    let x = (
+        "depth of the plug's tip below the socket's top (mm)",
+        around(path.iter().map(|p| p.0).chain([needed]), 0.06),
+    );
     let mut force = around(path.iter().map(|p| p.1).chain([0.0]), 0.1);
     force.start = 0.0;
     let top = force.end;
-    let y = AxisOf { label: "force plug to socket (N)", range: force };
+    let y = ("force plug to socket (N)", force);
     let title = format!("{}, {}: {}", film.task.name, film.label, recording.trial.outcome.label());
     let mut chart = axes(area, &title, x, y)?;
     let success = vec![(needed, 0.0), (needed, top)];

@@ -4,13 +4,16 @@ mod curve;
 mod film;
 mod table;
 
+use super::elements::document;
+use super::explore::embedded;
 pub use curve::svg as curve_svg;
 pub use table::csv;
 
+use insertion::evaluation::OffsetStep;
 use insertion::finger::Pad;
 use insertion::task::Task;
 use insertion::trial::Recording;
-use maud::{DOCTYPE, PreEscaped, html};
+use maud::{PreEscaped, html};
 
 /// A recorded trial of a task, and what it is called.
 #[derive(Debug, Clone, Copy)]
@@ -25,84 +28,50 @@ pub struct Film<'a> {
     pub recording: &'a Recording,
 }
 
-/// An end of a window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PairEnd {
-    /// At the most negative offset.
-    Negative,
-    /// At the most positive one.
-    Positive,
+/// The ends of a window: what they are called, and the step outward.
+pub const ENDS: [(&str, OffsetStep); 2] = [("negative", -1), ("positive", 1)];
+
+/// Where a study keeps the pair at an end of its recommended design's window, by the place of the
+/// task; below its folder.
+pub fn pair_file(task: usize, end: &str) -> String {
+    format!("replay/{}-{end}.html", task + 1)
 }
-
-impl PairEnd {
-    /// Both ends.
-    pub const BOTH: [PairEnd; 2] = [PairEnd::Negative, PairEnd::Positive];
-
-    /// `negative` or `positive`.
-    pub fn word(self) -> &'static str {
-        match self {
-            PairEnd::Negative => "negative",
-            PairEnd::Positive => "positive",
-        }
-    }
-
-    /// Where a study keeps the pair of its recommended design, by the place of the task; below
-    /// its folder.
-    pub fn file(self, task: usize) -> String {
-        format!("replay/{}-{}.html", task + 1, self.word())
-    }
-}
-
-/// What nothing is fetched by: the page is whole.
-pub(super) const POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
 /// A page that plays films side by side. It opens offline: its script is our own, for nothing
 /// that draws in WebGL is as small (three.js has 700 kB, this 18).
 pub fn page(title: &str, films: &[Film]) -> String {
     let data: Vec<_> = films.iter().map(film::to_json).collect();
-    // What is inside a script element ends at the first `</`.
-    let data = serde_json::json!(data).to_string().replace('<', "\\u003c");
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                title { (title) }
-                style { (PreEscaped(include_str!("viewer.css"))) }
-            }
-            body {
-                h1 { (title) }
-                div.films {
-                    @for (i, film) in films.iter().enumerate() {
-                        figure {
-                            figcaption {
-                                span class=(format!("key{i}")) { (film.label) }
-                                span id=(format!("phase{i}")) {}
-                                b id=(format!("outcome{i}")) {}
-                            }
-                            canvas id=(format!("film{i}")) tabindex="0"
-                                aria-label="the trial in 3-D: arrow keys turn, plus and minus zoom" {}
+    document(
+        title,
+        include_str!("viewer.css"),
+        html! {
+            h1 { (title) }
+            div.films {
+                @for (i, film) in films.iter().enumerate() {
+                    figure {
+                        figcaption {
+                            span class=(format!("key{i}")) { (film.label) }
+                            span id=(format!("phase{i}")) {}
+                            b id=(format!("outcome{i}")) {}
                         }
+                        canvas id=(format!("film{i}")) tabindex="0"
+                            aria-label="the trial in 3-D: arrow keys turn, plus and minus zoom" {}
                     }
                 }
-                (controls())
-                div #phases {}
-                div #curves {}
-                p.note {
-                    "Drag turns, the wheel or two fingers zoom, shift and drag moves up and down; a \
-                    click on a curve goes to that time. Red arrows: the socket presses the plug; blue: \
-                    the fingers do. The tips of the fingers are where they are; what lies between tip \
-                    and jaw is drawn for the eye, its bend as many times as large as the slider says."
-                }
-                script type="application/json" id="films" { (PreEscaped(data)) }
-                script { (PreEscaped(include_str!("viewer.js"))) }
             }
-        }
-    };
-    page.into_string()
+            (controls())
+            div #phases {}
+            div #curves {}
+            p.note {
+                "Drag turns, the wheel or two fingers zoom, shift and drag moves up and down; a \
+                click on a curve goes to that time. Red arrows: the socket presses the plug; blue: \
+                the fingers do. The tips of the fingers are where they are; what lies between tip \
+                and jaw is drawn for the eye, its bend as many times as large as the slider says."
+            }
+            script type="application/json" id="films" { (PreEscaped(embedded(&data.into()))) }
+            script { (PreEscaped(include_str!("viewer.js"))) }
+        },
+    )
 }
 
 fn controls() -> maud::Markup {

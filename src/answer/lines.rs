@@ -1,0 +1,214 @@
+//! An answer line by line, each a name and what it says: terminal and page show the same.
+
+use super::words::{self, ends_mm, evaluated, interval, mm, span};
+use super::{Answer, AsGood, OnTask, Recommended, TaskOrder};
+use crate::study::{ByRibs, OnBench, Recorded};
+use input::units::N_PER_MM;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::firm::REPEATS;
+use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
+use insertion::outcome::Outcome;
+use insertion::surrogate::Prediction;
+
+/// A name, empty where the line above goes on, and what is said.
+pub type Line = (String, String);
+
+fn line(name: &str, text: impl Into<String>) -> Line {
+    (name.to_owned(), text.into())
+}
+
+/// The recommended finger, what it tolerates and how firm that is, what is as good, and whether
+/// it matters.
+pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
+    let config = &answer.record.config;
+    let mut lines = vec![line("best design", evaluated(found.design))];
+    lines.extend(found.firm_range_mm.map(|range_mm| {
+        let repeats = format!("{REPEATS} of {REPEATS} repeats, friction, start, step varied");
+        line("firm range", format!("{}: inserts in {repeats}", mm(range_mm)))
+    }));
+    if let Some((measure, value)) = found.objective {
+        let of =
+            config.aggregate.as_ref().map_or(String::new(), |a| format!(" ({a} of the tasks)"));
+        lines.push(line(measure.name(), format!("{}{of}", measure.show(value))));
+    }
+    let limits = found.constraints.iter();
+    lines.extend(limits.map(|(measure, words)| line("constraint", format!("{measure} {words}"))));
+    for task in &found.tasks {
+        if config.several_tasks() {
+            lines.push(line("task", task.name));
+        }
+        lines.extend(window(task.measured));
+        lines.extend(task.firm.map(|firm| match firm.window_mm() {
+            None => line("firm window", "none: a repeat fails even at the nominal start"),
+            Some(window) => line("firm window", format!("{} mm", span(window))),
+        }));
+        lines.extend(task.peak_force_n.map(|peak_n| {
+            let peak = Measure::PeakForce.show(peak_n);
+            let between = "between plug and socket, over the inserted trials";
+            line("peak force", format!("{peak} {between}"))
+        }));
+        lines.extend(drawn(task.measured));
+    }
+    lines.extend(found.by_ribs.iter().flat_map(|by_ribs| {
+        let lines = self::by_ribs(by_ribs);
+        let named = lines.len() > 1;
+        let name = |((name, text), task): (Line, &OnTask)| match named {
+            true => (name, format!("{text} on {}", task.name)),
+            false => (name, text),
+        };
+        lines.into_iter().zip(&found.tasks).map(name).collect::<Vec<_>>()
+    }));
+    lines.extend(stiffness(&found.design.stiffness));
+    if let Some((measure, _)) = found.objective.filter(|_| !answer.walked.is_empty()) {
+        let fell = found.searched.map_or(String::new(), |before| {
+            format!("; the search had given this one {}", measure.show(before))
+        });
+        let count = answer.walked.len();
+        lines.push(line("walked", format!("step by step: {count} designs{fell}")));
+    }
+    lines.extend(found.as_good.iter().flat_map(|as_good| equivalent(as_good, answer.designs)));
+    lines.extend(answer.spread_mm.map(|spread| {
+        let (designs, spread) = (answer.designs, interval(spread));
+        line("spread", format!("ranges of the {designs} designs: {spread}"))
+    }));
+    lines.extend(answer.orders.iter().map(robot));
+    if answer.orders.is_empty() {
+        lines.push(line("robot", "no bench experiment is known: print and measure the best few"));
+    }
+    lines
+}
+
+/// How many designs are as good, and which of them to take for other reasons.
+fn equivalent(as_good: &AsGood, of: usize) -> Vec<Line> {
+    let count = as_good.designs;
+    if count < 2 {
+        return vec![line("as good", format!("no other of {of} designs"))];
+    }
+    let text = format!("{count} of {of} designs are equivalent: choose by other needs");
+    let mut lines = vec![line("as good", text)];
+    for (reason, Recorded { design, index, .. }, value, unit) in &as_good.alternatives {
+        let text = format!("{}: {value:.1} {unit} (evaluation {index})", design.labelled());
+        lines.push((format!("  {reason}"), text));
+    }
+    lines
+}
+
+/// How the robot orders the designs, as far as that is known.
+fn robot(known: &TaskOrder) -> Line {
+    let TaskOrder { task, order } = known;
+    let chance = match known.beyond_chance() {
+        true => "",
+        false => "; no more than chance gives: measure the best few",
+    };
+    line(
+        "robot",
+        format!(
+            "on {task} {} ranked {} printed fingers {:+.2} like the bench (1: alike){chance}",
+            order.source.words(),
+            order.fingers,
+            order.spearman
+        ),
+    )
+}
+
+/// The finger that is the best on the bench, and how far that is to be trusted.
+pub fn on_bench(found: &OnBench) -> Vec<Line> {
+    let Some(best) = found.best.first() else { return Vec::new() };
+    let mut lines = vec![
+        line("best on bench", best.design.labelled()),
+        line(
+            "bench range",
+            format!(
+                "{:.1} mm (80 %: {:.1} to {:.1}); the best of all {} fingers with probability {:.1} %",
+                best.range_mm,
+                best.low_mm,
+                best.high_mm,
+                found.fingers,
+                100.0 * best.probability_best
+            ),
+        ),
+    ];
+    let range = Measure::Range.value(&found.simulated).map(mm);
+    let range = range.unwrap_or("no range".to_owned());
+    let mut simulated = window(&found.simulated);
+    simulated[0] = line("simulated", format!("{range}; {}", simulated[0].1));
+    lines.extend(simulated);
+    lines.push(line("measured", trust(found)));
+    lines.extend(found.warnings.iter().map(|words| line("warning", words)));
+    lines
+}
+
+fn trust(found: &OnBench) -> String {
+    let (trust, count) = (&found.trust, found.measured);
+    let Some(deviation) = trust.mean_deviation_percent else { return format!("{count} fingers") };
+    let rank = trust.spearman.map_or("-".to_owned(), |rank| format!("{rank:+.2}"));
+    format!(
+        "{count} fingers; each predicted without it: {deviation:.1} % off, Spearman {rank}, {} of {} \
+         in the interval",
+        trust.inside, trust.fingers
+    )
+}
+
+/// The window of an evaluation and what ended it.
+pub fn window(evaluation: &Evaluation) -> Vec<Line> {
+    let window = &evaluation.window;
+    let end = |outcome: Option<Outcome>| outcome.map_or("limit of the search", Outcome::label);
+    if window.nominal != Outcome::Inserted {
+        let nominal = end(Some(window.nominal));
+        return vec![line("window", format!("none: the nominal start ends with {nominal}"))];
+    }
+    let [below, above] = [window.end_negative, window.end_positive].map(end);
+    vec![
+        line("window", format!("{} mm", span(ends_mm(window)))),
+        line("ends", format!("{below} below, {above} above")),
+    ]
+}
+
+/// Predicted stiffness, its uncertainty, and whether it is an extrapolation.
+pub fn stiffness(prediction: &Prediction) -> [Line; 2] {
+    let [compliance, assembly] = [prediction.compliance, prediction.assembly].map(|estimate| {
+        format!("{:.2} ± {:.2} N/mm", estimate.mean / N_PER_MM, estimate.sd / N_PER_MM)
+    });
+    let hull = match prediction.inside_hull() {
+        true => "inside the measured designs".to_owned(),
+        false => format!("{:.2} spans OUTSIDE the measured designs", prediction.hull_distance),
+    };
+    [line("stiffness", format!("compliance {compliance}, assembly {assembly}")), line("", hull)]
+}
+
+/// Success rate and robust range, as far as they were measured.
+pub fn drawn(evaluation: &Evaluation) -> Vec<Line> {
+    let success = evaluation.success.as_ref().map(|success| {
+        let [rate, failures] = words::success(success);
+        [line("success rate", rate), line("", format!("failures {failures}"))]
+    });
+    let robust = evaluation.robust.as_ref().map(words::robust);
+    let robust = robust.map(|robust| line("robust range", robust));
+    success.into_iter().flatten().chain(robust).collect()
+}
+
+/// What the finger tolerates with springs computed from its ribs, task by task.
+pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
+    let tasks = match found {
+        ByRibs::Refused(why) => return vec![line("from its ribs", why)],
+        ByRibs::Measured(tasks) => tasks,
+    };
+    tasks.iter().map(|evaluation| line("from its ribs", tolerated(evaluation))).collect()
+}
+
+/// Range and window in one line, and from where they count.
+fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
+    if window.nominal != Outcome::Inserted {
+        return format!("none: its nominal start ends with {}", window.nominal.label());
+    }
+    let start =
+        taught.map_or(String::new(), |steps| format!(", start taught {:+.1}", grid_mm(steps)));
+    let (range, ends) = (mm(window.range_mm()), span(ends_mm(window)));
+    format!("{range} ({ends}{start}); --finger-model computed")
+}
+
+/// Where a taught start came to lie; `None` if it was not taught.
+pub fn taught(steps: Option<OffsetStep>) -> Option<Line> {
+    let mm = grid_mm(steps?);
+    Some(line("start", format!("taught: {mm:+.1} mm from that of the task file")))
+}

@@ -360,7 +360,6 @@ fn every_help_shows_an_example_and_the_shell_and_man_are_served() {
         ("cross-check --against mujoco", "`lab cross-check`"),
         ("bench", "`lab benchmark`"),
         ("bench optimizers --seeds 3", "`lab optimizers`"),
-        ("bench next", "`lab prints`"),
     ] {
         optimize(&old.split(' ').collect::<Vec<_>>()).fails(2, &["is now", new]);
     }

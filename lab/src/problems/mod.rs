@@ -6,13 +6,11 @@ mod functions;
 mod landscape;
 mod problem;
 mod runs;
-mod time;
 
 pub use functions::Function;
 pub use landscape::Landscape;
 pub use problem::GridProblem;
 pub use runs::{Runs, csv, markdown};
-pub use time::{suggestion_times, time_markdown};
 
 use ask_tell::{OptimizerKind, build};
 use problem::{CMA_DIMENSIONS, cma_evaluations, is_unbounded};

@@ -41,7 +41,9 @@ impl Agreement {
         let pairs: Vec<(f64, f64)> =
             readings.iter().filter_map(|(a, b)| Some((a.range_mm?, b.range_mm?))).collect();
         let ends = || {
-            let both = readings.iter().flat_map(|(a, b)| a.failures.into_iter().zip(b.failures));
+            let both = readings.iter().flat_map(|(a, b)| {
+                [(a.failure_negative, b.failure_negative), (a.failure_positive, b.failure_positive)]
+            });
             both.filter(|(_, reference)| reference.is_some())
         };
         let over = |measure: &dyn Fn(f64, f64) -> f64| {
@@ -66,8 +68,7 @@ impl Agreement {
     }
 }
 
-/// The paper's deviation: `|range - reference| / reference`, percent. It gives the last column of the paper's bench tables from the simulated
-/// and the bench range, to the 0.1 % by which those are rounded.
+/// The paper's deviation: `|range - reference| / reference`, percent.
 pub fn deviation_percent(range: f64, reference: f64) -> f64 {
     100.0 * (range - reference).abs() / reference
 }

@@ -381,7 +381,7 @@ fn a_study_of_other_sources_is_not_resumed() {
         fs::write(&path, read(&path).replace(&hash, &"0".repeat(64))).unwrap();
     }
     let path = studies.dir("s").join("journal.jsonl");
-    fs::write(&path, common::resealed(&read(&path))).unwrap();
+    fs::write(&path, common::sealed(&read(&path))).unwrap();
     let parts = ["source_sha256: the study has", "now has", "--accept-changed", "--out"];
     studies.resume("s").fails(2, &parts);
     studies.study("s", 6, &[]).fails(2, &parts);

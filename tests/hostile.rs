@@ -3,45 +3,18 @@
 
 mod common;
 
-use common::{Studies, command, optimize, read, run, sealed};
+use common::{SLOW, Studies, command, end, lines, optimize, read, run, sealed, start};
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, symlink};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
-
-/// Microseconds per trial: a study of a thousand evaluations takes longer than any test.
-const SLOW: (&str, &str) = ("FINGER_OPT_FAKE_DELAY_US", "300");
+use std::time::Duration;
 
 /// The binary by a line of shell, in which it is `"$0"`; gives exit code and output.
 fn shell(line: &str, arguments: &[&str]) -> common::Ran {
     let mut shell = Command::new("bash");
     shell.args(["-c", line, env!("CARGO_BIN_EXE_optimize")]).args(arguments);
     run(shell.stdin(Stdio::null()).env(SLOW.0, "20"))
-}
-
-fn start(command: &mut Command) -> Child {
-    let command = command.env(SLOW.0, SLOW.1).stdout(Stdio::null()).stderr(Stdio::piped());
-    command.spawn().expect("the command starts")
-}
-
-/// Waits for something, at most half a minute.
-fn wait_until(what: &str, mut done: impl FnMut() -> bool) {
-    let begun = Instant::now();
-    while !done() {
-        assert!(begun.elapsed() < Duration::from_secs(30), "{what}");
-        std::thread::sleep(Duration::from_millis(2));
-    }
-}
-
-fn lines(path: &Path) -> usize {
-    fs::read_to_string(path).unwrap_or_default().lines().count()
-}
-
-/// How a process ended: exit code and standard error.
-fn end(child: Child) -> (Option<i32>, String) {
-    let output = child.wait_with_output().expect("it ends");
-    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
 fn mkfifo(path: &Path) {
@@ -190,8 +163,7 @@ fn a_pipe_or_a_huge_file_in_place_of_an_own_one_neither_hangs_nor_fills_the_memo
 /// A running study of which `interfere` changes the journal or its folder: exit code and message.
 fn interfered(studies: &Studies, name: &str, interfere: impl Fn(&Path)) -> String {
     let dir = studies.dir(name);
-    let child = start(&mut studies.command(name, 100_000, &["--optimizer", "random"]));
-    wait_until("evaluations", || lines(&dir.join("journal.jsonl")) > 12);
+    let child = studies.begun(name, 100_000, &["--optimizer", "random"], 13);
     interfere(&dir);
     let (code, stderr) = end(child);
     assert_eq!(code, Some(1), "{name}: {stderr}");
@@ -243,21 +215,23 @@ fn a_journal_that_others_change_stops_the_study_and_is_saved() {
 }
 
 #[test]
-fn a_lock_that_is_removed_lets_no_second_writer_in() {
+fn a_second_writer_is_refused_even_if_the_lock_is_removed() {
     let studies = Studies::new();
-    let mut first = start(&mut studies.command("s", 100_000, &["--optimizer", "random"]));
-    let path = studies.dir("s").join("journal.jsonl");
-    wait_until("evaluations", || lines(&path) > 4);
+    let more = ["--optimizer", "random"];
+    let mut first = studies.begun("s", 100_000, &more, 5);
+    let owner = first.id().to_string();
+    studies.study("s", 100_000, &more).fails(1, &["another process", &owner, "--out"]);
+    optimize(&["report", studies.dir("s").to_str().unwrap()]).succeeds();
     fs::remove_file(studies.dir("s").join(".lock")).unwrap();
     studies.resume("s").fails(1, &["another process"]);
     first.kill().unwrap();
     first.wait().unwrap();
-    // Who locks a file that is no longer there has locked nothing: the second try does.
+    // The lock of a dead process blocks nobody. Who locks a file that is no longer there has locked
+    // nothing: the second try does.
     let inode = || fs::metadata(studies.dir("s").join(".lock")).unwrap().ino();
     let before = inode();
     let mut second = start(command(&["resume", "--quiet"]).arg(studies.dir("s")));
-    let known = lines(&path);
-    wait_until("evaluations", || lines(&path) > known);
+    studies.wait_for_lines("s", lines(&studies.dir("s").join("journal.jsonl")) + 1);
     assert_eq!(inode(), before);
     second.kill().unwrap();
     second.wait().unwrap();
@@ -511,8 +485,7 @@ fn clocks_that_disagree_change_no_journal() {
         [("ahead", now + 10 * year, "2099"), ("behind", now - 40 * year, "1999")]
     {
         let dir = studies.dir(name);
-        let mut killed = start(&mut studies.command(name, 22, &["--no-cache", "--threads", "1"]));
-        wait_until("half a study", || lines(&dir.join("journal.jsonl")) > 10);
+        let mut killed = studies.begun(name, 22, &["--no-cache", "--threads", "1"], 11);
         let _ = killed.kill();
         let _ = killed.wait();
         let journal = read(&dir.join("journal.jsonl"));

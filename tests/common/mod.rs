@@ -22,6 +22,11 @@ pub fn optimize(arguments: &[&str]) -> Ran {
     run(&mut command(arguments))
 }
 
+/// Runs a command line without spaces in its words.
+pub fn optimize_line(line: &str) -> Ran {
+    optimize(&line.split_whitespace().collect::<Vec<_>>())
+}
+
 /// Microseconds per trial: a study of 22 evaluations takes some tenths of a second, one of a thousand
 /// longer than any test.
 pub const SLOW: (&str, &str) = ("FINGER_OPT_FAKE_DELAY_US", "200");

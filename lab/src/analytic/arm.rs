@@ -1,11 +1,10 @@
 //! T11: deflection of the UR5e under a load at the TCP, on its published servos and under position
 //! control.
 //!
-//! At rest a force F displaces the TCP by `J K^-1 J^T F`, with the Jacobian J of
-//! the six joints and their gains K (Salisbury 1980, 19th IEEE Conf. Decision and
-//! Control). Once as in the trials, one body on a coupled 6x6 spring; and once as the chain that it
-//! stands for, six links with a sprung joint each (of the soft arm alone: the hinges of a chain give
-//! 0.8 um/N across their axes, which is nothing beside servos and 3 % beside gears).
+//! At rest a force F displaces the TCP by `J K^-1 J^T F`, with the Jacobian J of the six joints and
+//! their gains K (Salisbury 1980, 19th IEEE Conf. Decision and Control). Once as in the trials, one
+//! body on a coupled 6x6 spring; and once as six links with a sprung joint each (of the soft arm
+//! alone: the hinges give 0.8 um/N across their axes, which is 3 % beside gears).
 
 use super::build::{self, Measured, Wrench};
 use super::{CheckRow, Tolerance};
@@ -35,11 +34,10 @@ pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
 /// Rows of a shipped robot.
 fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
     let Some((arm, mounted)) = shipped(file) else { return Vec::new() };
-    let reduced = flange(&mounted);
-    if engine.supports(&reduced.scene).is_err() {
+    let mut models = vec![("coupled spring", flange(&mounted))];
+    if engine.supports(&models[0].1.scene).is_err() {
         return Vec::new();
     }
-    let mut models = vec![("coupled spring", reduced)];
     if file == SOFT {
         models.push(("joint chain", chain(&arm)));
     }
@@ -47,7 +45,8 @@ fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
     for (name, loaded) in models {
         for (axis, along) in ["x", "y", "z"].into_iter().enumerate() {
             let expected = compliance(&arm)[(axis, axis)] * FORCE / MM;
-            let measured = loaded.deflection(engine, axis).map(|by| by / MM);
+            let moved = loaded.moved(engine, axis, REST);
+            let measured = moved.map(|path| path.last().map_or(f64::NAN, |by| by[axis]) / MM);
             let quantity = format!("{words}, {name}, TCP along {along}");
             let close = Tolerance::Relative(0.01);
             rows.push(CheckRow::new("T11", quantity, expected, measured, "mm", close));
@@ -92,12 +91,6 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Deflection of the TCP under a force along an axis, at rest, m.
-    fn deflection(&self, engine: &dyn Engine, axis: usize) -> Measured {
-        let moved = self.moved(engine, axis, REST)?;
-        Ok(moved.last().map_or(f64::NAN, |moved| moved[axis]))
-    }
-
     /// Deflection of the TCP under a force along an axis after each step, m.
     ///
     /// # Errors

@@ -16,6 +16,8 @@ use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Length of a peg, m: that of a connector.
 const LENGTH: f64 = 20.0 * MM;
+/// Centre of mass of a peg, m.
+const CENTRE: Point3<f64> = Point3::new(0.0, 0.0, LENGTH / 2.0);
 /// Width of a peg in x, m.
 const DEPTH: f64 = 8.0 * MM;
 /// Thickness of the walls, m.
@@ -41,8 +43,7 @@ pub(super) const REFERENCE: Peg =
     Peg { width: 12.0 * MM, hole: 12.1 * MM, inside: 8.0 * MM, friction: 0.3, mass: 20.0 * GRAM };
 
 impl Peg {
-    /// Tilt in two-point contact, rad: the formula above, solved for t with the
-    /// angle and the length of the diagonal from the tip's corner to the rim.
+    /// Tilt in two-point contact, rad: the formula above, solved for t.
     pub fn tilt(&self) -> f64 {
         let diagonal = self.width.hypot(self.inside);
         self.inside.atan2(self.width) - (self.hole / diagonal).acos()
@@ -57,23 +58,13 @@ impl Peg {
         Pose::from_parts(Translation3::new(0.0, self.hole / 2.0 - corner.y, -rim.z), turn)
     }
 
-    /// Pose upright in the middle of the hole.
-    pub fn upright(&self) -> Pose {
-        Pose::translation(0.0, 0.0, -self.inside)
-    }
-
-    /// Centre of mass in the peg's frame.
-    pub fn centre(&self) -> Point3<f64> {
-        Point3::new(0.0, 0.0, LENGTH / 2.0)
-    }
-
     /// Weightless body of the peg.
     pub fn body(&self, pose: Pose) -> Body {
         let size = Vector3::new(DEPTH, self.width, LENGTH);
-        let middle = Pose::translation(0.0, 0.0, LENGTH / 2.0);
+        let middle = Pose::from(Translation3::from(CENTRE.coords));
         Body {
             name: "peg".into(),
-            motion: Motion::Carried(build::box_inertia(self.mass, size, self.centre())),
+            motion: Motion::Carried(build::box_inertia(self.mass, size, CENTRE)),
             pose,
             geoms: vec![build::cuboid("peg", size, middle)],
         }
@@ -109,7 +100,7 @@ impl Peg {
     ) -> Measured<()> {
         for _ in 0..build::steps(world, time) {
             let tip = world.pose(peg) * Point3::origin();
-            wrench.push(world, peg, self.centre(), tip);
+            wrench.push(world, peg, CENTRE, tip);
             world.step()?;
         }
         Ok(())
@@ -131,17 +122,15 @@ pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
     // judged at the length inside at which it came to rest.
     let inside = measured.map_or(peg.inside, |(_, inside)| inside);
     let expected = Peg { inside, ..peg }.tilt();
-    let row = |text: &str, expected, measured, unit, tolerance| {
-        CheckRow::new("T3", text, expected, measured, unit, tolerance)
-    };
     let tilt = measured.map(|(tilt, _)| tilt / 1e-3);
     let inside = measured.map(|(_, inside)| inside / MM);
     // By no more than the tip's corners rise and sink.
     let little = Tolerance::Absolute(peg.width * peg.tilt() / MM);
+    let close = Tolerance::Relative(0.02);
     let hardly = "length inside, which tilting hardly changes";
     vec![
-        row("tilt in two-point contact", expected / 1e-3, tilt, "mrad", Tolerance::Relative(0.02)),
-        row(hardly, peg.inside / MM, inside, "mm", little),
+        CheckRow::new("T3", "tilt in two-point contact", expected / 1e-3, tilt, "mrad", close),
+        CheckRow::new("T3", hardly, peg.inside / MM, inside, "mm", little),
     ]
 }
 
@@ -153,7 +142,7 @@ const RESTING: f64 = 0.05;
 
 /// Tilt and length inside at rest.
 fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
-    let (scene, body) = peg.scene(peg.upright());
+    let (scene, body) = peg.scene(Pose::translation(0.0, 0.0, -peg.inside));
     let mut world = engine.world(&scene);
     peg.load(world.as_mut(), body, Wrench::turning(TURNING), RESTING)?;
     let pose = world.pose(body);
@@ -163,11 +152,10 @@ fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
 
 /// Mass of the plug of T10, kg: an RJ45 plug.
 const LIGHT: f64 = 5.0 * GRAM;
-/// Forces on each of its contacts, N; the second is what an arm at its force
-/// limit of 100 N can wedge a plug with, and shows a contact whose force is bounded.
+/// Forces on each of its contacts, N; an arm at its force limit of 100 N can wedge a plug with the
+/// second.
 const WEDGING: [f64; 2] = [70.0, 200.0];
-/// Largest penetration of a contact under the first force, m: less than the clearance of a
-/// connector, lest plugs pass through rims.
+/// Largest penetration under the first force, m: less than the clearance of a connector.
 const YIELD: f64 = 0.1 * MM;
 
 /// Penetration of a light plug into the walls that it is wedged between, T10 rows: little, and in

@@ -20,7 +20,7 @@ use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 /// Robot file of the arm on its published servos.
 const SOFT: &str = "ur5e";
 /// Force at the TCP, N.
-pub const FORCE: f64 = 5.0;
+const FORCE: f64 = 5.0;
 /// Time in which the servos come to rest, s: twelve times their damping over their gain.
 const REST: f64 = 2.4;
 
@@ -72,7 +72,7 @@ fn shipped(name: &str) -> Option<(Arm, Mounted)> {
 }
 
 /// Compliance `J K^-1 J^T` at home: m/N, rad/N, rad/(N m), base axes.
-pub fn compliance(arm: &Arm) -> Matrix6<f64> {
+fn compliance(arm: &Arm) -> Matrix6<f64> {
     let jacobian = arm.at(&arm.home).tcp_jacobian();
     let soft = nalgebra::SVector::from_fn(|i, _| 1.0 / arm.joints[i].stiffness);
     jacobian * Matrix6::from_diagonal(&soft) * jacobian.transpose()

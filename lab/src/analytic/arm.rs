@@ -6,7 +6,7 @@
 //! body on a coupled 6x6 spring; and once as six links with a sprung joint each (of the soft arm
 //! alone: the hinges give 0.8 um/N across their axes, which is 3 % beside gears).
 
-use super::build::{self, Measured, Wrench};
+use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
 use contact::Engine;
 use contact::scene::{Body, BodyId, JointAxis, Motion, Pose, Scene, Spring};
@@ -102,11 +102,12 @@ impl Loaded {
         time: f64,
     ) -> Measured<Vec<Vector3<f64>>> {
         let mut world = engine.world(&self.scene);
-        let wrench = Wrench::along(axis, FORCE);
+        let load = [Vector3::ith(axis, FORCE), Vector3::zeros()];
         let from = world.pose(self.end) * self.tool;
         let step = |_| {
             let tcp = world.pose(self.end) * self.tool;
-            wrench.push(world.as_mut(), self.end, self.centre, tcp.translation.vector.into());
+            let at = tcp.translation.vector.into();
+            build::push(world.as_mut(), self.end, self.centre, at, load);
             world.step()?;
             let tcp = world.pose(self.end) * self.tool;
             Ok(tcp.translation.vector - from.translation.vector)

@@ -10,8 +10,8 @@
 //! up to 3 %. So the engine is compared with the formula in a tight hole, and with the statics of the
 //! tilted peg in a hole of the reference clearance.
 
-use super::build::{self, Wrench};
-use super::peg::{Peg, REFERENCE};
+use super::build;
+use super::peg::{Peg, REFERENCE, turning};
 use super::{CheckRow, Tolerance};
 use contact::{Diverged, Engine};
 use input::units::MM;
@@ -82,11 +82,11 @@ pub fn t4(engine: &dyn Engine) -> Vec<CheckRow> {
 fn jams(engine: &dyn Engine, peg: &Peg, side: f64, ratio: f64) -> Result<bool, Diverged> {
     let (scene, body) = peg.scene(peg.tilted());
     let mut world = engine.world(&scene);
-    let preload = Wrench::turning(ratio * INSERTION * peg.width / 2.0);
+    let preload = turning(ratio * INSERTION * peg.width / 2.0);
     peg.load(world.as_mut(), body, preload, PRELOADING)?;
     let from = world.pose(body).translation.z;
     let force = INSERTION * Vector3::new(0.0, side, -1.0);
-    peg.load(world.as_mut(), body, Wrench { force, ..preload }, LOADING)?;
+    peg.load(world.as_mut(), body, [force, preload[1]], LOADING)?;
     Ok(from - world.pose(body).translation.z < SLIDING)
 }
 

@@ -7,7 +7,7 @@
 //! The frame of the peg lies in the middle of its tip, its z axis along the
 //! peg; the hole's rim lies in the plane z = 0.
 
-use super::build::{self, Measured, Wrench};
+use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
 use contact::scene::{Body, BodyId, Friction, Motion, Pose, Scene};
 use contact::{Engine, World};
@@ -90,28 +90,26 @@ impl Peg {
         (scene, peg)
     }
 
-    /// Loads the middle of the tip for a time, s.
+    /// Loads the middle of the tip with a force and a moment for a time, s.
     pub fn load(
         &self,
         world: &mut dyn World,
         peg: BodyId,
-        wrench: Wrench,
+        load: [Vector3<f64>; 2],
         time: f64,
     ) -> Measured<()> {
         for _ in 0..build::steps(world, time) {
             let tip = world.pose(peg) * Point3::origin();
-            wrench.push(world, peg, CENTRE, tip);
+            build::push(world, peg, CENTRE, tip, load);
             world.step()?;
         }
         Ok(())
     }
 }
 
-impl Wrench {
-    /// Moment about x, N m, which turns the peg into two-point contact.
-    pub(super) fn turning(moment: f64) -> Self {
-        Wrench { force: Vector3::zeros(), moment: Vector3::new(moment, 0.0, 0.0) }
-    }
+/// Moment about x, N m, which turns the peg into two-point contact, without a force.
+pub(super) fn turning(moment: f64) -> [Vector3<f64>; 2] {
+    [Vector3::zeros(), Vector3::new(moment, 0.0, 0.0)]
 }
 
 /// Tilt of a peg that a moment turns in its hole, T3 rows.
@@ -144,7 +142,7 @@ const RESTING: f64 = 0.05;
 fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
     let (scene, body) = peg.scene(Pose::translation(0.0, 0.0, -peg.inside));
     let mut world = engine.world(&scene);
-    peg.load(world.as_mut(), body, Wrench::turning(TURNING), RESTING)?;
+    peg.load(world.as_mut(), body, turning(TURNING), RESTING)?;
     let pose = world.pose(body);
     let rim = pose.inverse() * Point3::new(0.0, -peg.hole / 2.0, 0.0);
     Ok((pose.rotation.scaled_axis().x, rim.z))
@@ -181,8 +179,7 @@ pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
 fn sinking(engine: &dyn Engine, peg: &Peg, force: f64) -> Measured<[f64; 2]> {
     let (scene, body) = peg.scene(peg.tilted());
     let mut world = engine.world(&scene);
-    let wrench = Wrench::turning(force * peg.inside);
-    peg.load(world.as_mut(), body, wrench, RESTING)?;
+    peg.load(world.as_mut(), body, turning(force * peg.inside), RESTING)?;
     let pose = world.pose(body);
     let corner = pose * Point3::new(0.0, peg.width / 2.0, 0.0);
     let rim = pose.inverse() * Point3::new(0.0, -peg.hole / 2.0, 0.0);

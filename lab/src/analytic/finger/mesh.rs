@@ -18,16 +18,19 @@ const ROUNDING: f64 = 1e-9;
 
 /// Changes by the mesh, and properties of the matrices, F3 rows.
 pub fn f3() -> Vec<CheckRow> {
-    let found: Vec<_> = DESIGNS.iter().map(|&design| (design, Halved::new(design).ok())).collect();
     let row = |text: &str, measured: Option<f64>, unit, allowed| {
         CheckRow::new("F3", text, 0.0, measured.ok_or(()), unit, Tolerance::Absolute(allowed))
     };
-    let changes = found.iter().map(|([density, direction], halved)| {
+    let found = DESIGNS.map(|design| halved(design).ok());
+    let changes = DESIGNS.iter().zip(&found).map(|([density, direction], halved)| {
         let text = format!("half the mesh, {density} %, {direction} deg");
-        let change = halved.as_ref().map(|halved| 100.0 * halved.change());
+        let change = halved.as_ref().map(|[coarse, fine]| {
+            let changes = coarse.iter().zip(fine).map(|(coarse, fine)| difference(coarse, fine));
+            100.0 * changes.fold(0.0, f64::max)
+        });
         row(&text, change, "%", CHANGE_PERCENT)
     });
-    let coarse = found.iter().map(|(_, halved)| Some(halved.as_ref()?.coarse));
+    let coarse = found.iter().map(|halved| Some(halved.as_ref()?[0]));
     let all = coarse.collect::<Option<Vec<_>>>().map(|designs| designs.concat());
     let asymmetry = all.as_ref().map(|all| {
         all.iter().map(|matrix| difference(matrix, &matrix.transpose())).fold(0.0, f64::max)
@@ -43,21 +46,9 @@ pub fn f3() -> Vec<CheckRow> {
 }
 
 /// Matrices of a design (pad; pad and roof; across the plane) on a mesh and at half its size.
-struct Halved {
-    coarse: [Matrix3<f64>; 3],
-    fine: [Matrix3<f64>; 3],
-}
-
-impl Halved {
-    fn new(design: [f64; 2]) -> Result<Self, NoFinger> {
-        let geometry = infill(&finray9()?, design)?;
-        Ok(Halved { coarse: matrices(&geometry, 1.0)?, fine: matrices(&geometry, 0.5)? })
-    }
-
-    fn change(&self) -> f64 {
-        let pairs = self.coarse.iter().zip(&self.fine);
-        pairs.map(|(coarse, fine)| difference(coarse, fine)).fold(0.0, f64::max)
-    }
+fn halved(design: [f64; 2]) -> Result<[[Matrix3<f64>; 3]; 2], NoFinger> {
+    let geometry = infill(&finray9()?, design)?;
+    Ok([matrices(&geometry, 1.0)?, matrices(&geometry, 0.5)?])
 }
 
 /// Matrices before they are made exactly symmetric.

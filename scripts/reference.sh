@@ -52,8 +52,7 @@ finger() {
     record windows "$folder"/*
 }
 
-# What the published experiments say of every finger, each measured one predicted without it; the
-# choice of prints replayed.
+# What the published experiments say of every finger, each measured one predicted without it.
 bench() {
     local folder="$reference/bench" task
     mkdir -p "$folder"
@@ -64,7 +63,6 @@ bench() {
             cp "$work/$task/$table.csv" "$folder/${table}_$task.csv"
         done
     done
-    "$lab" prints --json > "$folder/replay.json"
     figures "$folder"
     # The key that turns in the grasp (docs/notes/bench.md): ket8 with the pressed patch and twice the preload.
     sed 's/^finger_plug_torsion_mm = .*/finger_plug_torsion_mm = "patch"/' tasks/ket8.toml > "$work/patch.toml"

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Studies, optimize, read};
+use common::{Studies, optimize_line, read};
 use finray::export::prism::Prism;
 use finray::export::slicer;
 use finray::geometry::Geometry;
@@ -81,9 +81,8 @@ fn every_format_of_a_studys_best_finger_is_written() {
     studies.study("usb", 4, &["--task", "usb"]).succeeds();
     let (study, folder) = (studies.dir("usb"), studies.dir("prints"));
     let export = |format: &str, file: &str| {
-        let (study, file) = (study.to_str().unwrap(), folder.join(file));
-        let out = file.to_str().unwrap().to_owned();
-        optimize(&["export", "finger", study, "--format", format, "--out", &out])
+        let (study, out) = (study.display(), folder.join(file));
+        optimize_line(&format!("export finger {study} --format {format} --out {}", out.display()))
     };
     for (format, file, words) in [
         ("svg", "f.svg", "width=\"52.8mm\""),
@@ -109,12 +108,15 @@ fn every_format_of_a_studys_best_finger_is_written() {
 
 #[test]
 fn what_cannot_be_exported_is_told() {
-    let export = ["export", "finger", "--format", "stl", "--out", "none.stl"];
-    optimize(&export).fails(2, &["DIR"]);
-    optimize(&[&export[..], &["--density", "20"]].concat()).fails(2, &["--direction"]);
-    let dense = [&export[..], &["--density", "95", "--direction", "0"]].concat();
-    optimize(&dense).fails(2, &["finray9.toml", "ribs.thickness_mm", "at most"]);
-    optimize(&[&export[..], &["nowhere"]].concat()).fails(2, &["nowhere"]);
+    for (words, parts) in [
+        ("", &["DIR"][..]),
+        ("--density 20", &["--direction"]),
+        ("--density 95 --direction 0", &["finray9.toml", "ribs.thickness_mm", "at most"]),
+        ("nowhere", &["nowhere"]),
+    ] {
+        let export = format!("export finger --format stl --out none.stl {words}");
+        optimize_line(&export).fails(2, parts);
+    }
     assert!(!Path::new("none.stl").exists());
 }
 

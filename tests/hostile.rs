@@ -3,15 +3,14 @@
 
 mod common;
 
-use common::{Studies, command, optimize, read, run};
+use common::{
+    SLOW, Studies, command, end, lines, optimize, optimize_line, read, run, sealed, start,
+};
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, symlink};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
-
-/// Microseconds per trial: a study of a thousand evaluations takes longer than any test.
-const SLOW: (&str, &str) = ("FINGER_OPT_FAKE_DELAY_US", "300");
+use std::time::Duration;
 
 /// The binary by a line of shell, in which it is `"$0"`; gives exit code and output.
 fn shell(line: &str, arguments: &[&str]) -> common::Ran {
@@ -20,28 +19,17 @@ fn shell(line: &str, arguments: &[&str]) -> common::Ran {
     run(shell.stdin(Stdio::null()).env(SLOW.0, "20"))
 }
 
-fn start(command: &mut Command) -> Child {
-    let command = command.env(SLOW.0, SLOW.1).stdout(Stdio::null()).stderr(Stdio::piped());
-    command.spawn().expect("the command starts")
+/// Paths in a folder, sorted.
+fn paths(folder: &Path) -> Vec<PathBuf> {
+    let mut paths: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
 }
 
-/// Waits for something, at most half a minute.
-fn wait_until(what: &str, mut done: impl FnMut() -> bool) {
-    let begun = Instant::now();
-    while !done() {
-        assert!(begun.elapsed() < Duration::from_secs(30), "{what}");
-        std::thread::sleep(Duration::from_millis(2));
-    }
-}
-
-fn lines(path: &Path) -> usize {
-    fs::read_to_string(path).unwrap_or_default().lines().count()
-}
-
-/// How a process ended: exit code and standard error.
-fn end(child: Child) -> (Option<i32>, String) {
-    let output = child.wait_with_output().expect("it ends");
-    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+/// Entries of a cache.
+fn cached(cache: &Path) -> Vec<PathBuf> {
+    paths(cache).iter().flat_map(|folder| paths(folder)).collect()
 }
 
 fn mkfifo(path: &Path) {
@@ -106,13 +94,13 @@ fn twenty_reports_at_once_all_succeed() {
     let studies = Studies::new();
     studies.study("s", 12, &[]).succeeds();
     let dir = studies.dir("s");
-    let before = fs::read_dir(&dir).unwrap().count();
+    let before = paths(&dir);
     let report = || start(command(&["report"]).arg(&dir));
     let reports: Vec<Child> = (0..20).map(|_| report()).collect();
     for report in reports {
         assert_eq!(end(report), (Some(0), String::new()));
     }
-    assert_eq!(fs::read_dir(&dir).unwrap().count(), before, "nothing is left beside");
+    assert_eq!(paths(&dir), before, "nothing is left beside");
 }
 
 #[test]
@@ -134,7 +122,7 @@ fn no_link_in_a_study_folder_is_followed() {
         assert!(matches!(ran.code, Some(1 | 2)), "{name}: {}", ran.stderr);
         assert!(parts.iter().all(|part| ran.stderr.contains(part)), "{name}: {}", ran.stderr);
         assert_eq!(read(&victim), "precious", "{name}");
-        assert_eq!(fs::read_dir(studies.dir("elsewhere")).unwrap().count(), 0, "{name}");
+        assert!(paths(&studies.dir("elsewhere")).is_empty(), "{name}");
     }
     // Neither as a second name of a file.
     let dir = studies.dir("hard");
@@ -170,9 +158,7 @@ fn a_pipe_or_a_huge_file_in_place_of_an_own_one_neither_hangs_nor_fills_the_memo
     studies.resume("s").fails(1, &["study.toml", "is longer than"]);
     fs::write(&config, &text).unwrap();
     // The cache: its entries are then measured again.
-    let folders = fs::read_dir(studies.dir("cache")).unwrap().map(|entry| entry.unwrap().path());
-    let entries = folders.flat_map(|folder| fs::read_dir(folder).unwrap());
-    let entries: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    let entries = cached(&studies.dir("cache"));
     assert!(entries.len() >= 4, "evaluations and walks");
     for (i, entry) in entries.iter().enumerate() {
         fs::remove_file(entry).unwrap();
@@ -190,8 +176,7 @@ fn a_pipe_or_a_huge_file_in_place_of_an_own_one_neither_hangs_nor_fills_the_memo
 /// A running study of which `interfere` changes the journal or its folder: exit code and message.
 fn interfered(studies: &Studies, name: &str, interfere: impl Fn(&Path)) -> String {
     let dir = studies.dir(name);
-    let child = start(&mut studies.command(name, 100_000, &["--optimizer", "random"]));
-    wait_until("evaluations", || lines(&dir.join("journal.jsonl")) > 12);
+    let child = studies.begun(name, 100_000, &["--optimizer", "random"], 13);
     interfere(&dir);
     let (code, stderr) = end(child);
     assert_eq!(code, Some(1), "{name}: {stderr}");
@@ -243,35 +228,33 @@ fn a_journal_that_others_change_stops_the_study_and_is_saved() {
 }
 
 #[test]
-fn a_lock_that_is_removed_lets_no_second_writer_in() {
+fn a_second_writer_is_refused_even_if_the_lock_is_removed() {
     let studies = Studies::new();
-    let mut first = start(&mut studies.command("s", 100_000, &["--optimizer", "random"]));
-    let path = studies.dir("s").join("journal.jsonl");
-    wait_until("evaluations", || lines(&path) > 4);
+    let more = ["--optimizer", "random"];
+    let mut first = studies.begun("s", 100_000, &more, 5);
+    let owner = first.id().to_string();
+    studies.study("s", 100_000, &more).fails(1, &["another process", &owner, "--out"]);
+    optimize(&["report", studies.dir("s").to_str().unwrap()]).succeeds();
     fs::remove_file(studies.dir("s").join(".lock")).unwrap();
     studies.resume("s").fails(1, &["another process"]);
     first.kill().unwrap();
     first.wait().unwrap();
-    // Who locks a file that is no longer there has locked nothing: the second try does.
+    // The lock of a dead process blocks nobody. Who locks a file that is no longer there has locked
+    // nothing: the second try does.
     let inode = || fs::metadata(studies.dir("s").join(".lock")).unwrap().ino();
     let before = inode();
     let mut second = start(command(&["resume", "--quiet"]).arg(studies.dir("s")));
-    let known = lines(&path);
-    wait_until("evaluations", || lines(&path) > known);
+    studies.wait_for_lines("s", lines(&studies.dir("s").join("journal.jsonl")) + 1);
     assert_eq!(inode(), before);
     second.kill().unwrap();
     second.wait().unwrap();
 }
 
-/// A changed copy of a shipped file.
-fn changed(studies: &Studies, name: &str, text: &str, changes: &[(&str, &str)]) -> String {
-    let mut text = text.to_owned();
-    for (from, to) in changes {
-        assert!(text.contains(from), "{from}");
-        text = text.replacen(from, to, 1);
-    }
+/// A copy of a shipped file in which the first line that begins with `key` is another.
+fn changed(studies: &Studies, name: &str, text: &str, key: &str, by: &str) -> String {
+    let line = text.lines().find(|line| line.starts_with(key)).expect("the key is there");
     let path = studies.dir(name);
-    fs::write(&path, text).unwrap();
+    fs::write(&path, text.replacen(line, by, 1)).unwrap();
     path.to_str().unwrap().to_owned()
 }
 
@@ -279,9 +262,6 @@ fn changed(studies: &Studies, name: &str, text: &str, changes: &[(&str, &str)]) 
 fn input_files_that_mean_nothing_are_refused_before_anything_is_simulated() {
     let studies = Studies::new();
     let usb = include_str!("../tasks/usb.toml");
-    let line = |text: &str, key: &str| {
-        text.lines().find(|line| line.starts_with(key)).expect("the key is there").to_owned()
-    };
     let parts = |count: usize| {
         let part = |i| {
             format!(
@@ -294,35 +274,33 @@ fn input_files_that_mean_nothing_are_refused_before_anything_is_simulated() {
     let (few, many) = (parts(3_000), parts(100_000));
     let cylinder = "[[plug.part]]\nname = \"c\"\nshape = \"cylinder\"\ncentre_mm = [0, 0]\n\
                     diameter_mm = 1e160\nz_mm = [0, 1]\n[grip]";
-    for (from, to, words) in [
-        (line(usb, "speed_mm_per_s"), "speed_mm_per_s = 0.001", "it may take 60 s"),
-        (line(usb, "settle_s"), "settle_s = 1e9", "it may take 60 s"),
-        (line(usb, "move_mm"), "move_mm = [0.0, 0.0, -1e9]", "must lie in -1000 .. 1000"),
-        ("[grip]".to_owned(), cylinder, "diameter_mm: is 1e160"),
-        ("[grip]".to_owned(), &few, "there may be 200"),
-        ("[grip]".to_owned(), &many, "is longer than"),
-        (line(usb, "finger_plug ="), "finger_plug = 0.0", "finger_plug_torsion_mm: is"),
-        (line(usb, "description"), "description = \"\\u001b[31m\"", "control character"),
+    for (key, by, words) in [
+        ("speed_mm_per_s", "speed_mm_per_s = 0.001", "it may take 60 s"),
+        ("settle_s", "settle_s = 1e9", "it may take 60 s"),
+        ("move_mm", "move_mm = [0.0, 0.0, -1e9]", "must lie in -1000 .. 1000"),
+        ("[grip]", cylinder, "diameter_mm: is 1e160"),
+        ("[grip]", &few, "there may be 200"),
+        ("[grip]", &many, "is longer than"),
+        ("finger_plug =", "finger_plug = 0.0", "finger_plug_torsion_mm: is"),
+        ("description", "description = \"\\u001b[31m\"", "control character"),
     ] {
-        let task = changed(&studies, "task.toml", usb, &[(&from, to)]);
-        let words = ["task.toml", words];
-        studies.study("s", 3, &["--task", &task]).fails(2, &words);
+        let task = changed(&studies, "task.toml", usb, key, by);
+        studies.study("s", 3, &["--task", &task]).fails(2, &["task.toml", words]);
     }
     let codesign = include_str!("../spaces/codesign.toml");
     let mass = "[[parameter]]\nkey = \"finger.mass_g\"\nlow = 1e300\nhigh = 1e300\nstep = 1.0\n\
                 source = \"\"\n[[parameter]]";
-    let space = changed(&studies, "mass.toml", codesign, &[("[[parameter]]", mass)]);
+    let space = changed(&studies, "mass.toml", codesign, "[[parameter]]", mass);
     studies.study("s", 3, &["--space", &space]).fails(2, &["mass.toml", "finger.mass_g"]);
     let typical = include_str!("../uncertainties/typical.toml");
-    let wide = [("half_width_mm = 0.03", "half_width_mm = 1000")];
-    let wide = changed(&studies, "wide.toml", typical, &wide);
+    let wide = "half_width_mm = 1000";
+    let wide = changed(&studies, "wide.toml", typical, "half_width_mm", wide);
     let drawn = ["--objective", "success-rate", "--uncertainty", &wide];
     studies.study("s", 3, &drawn).fails(2, &["wide.toml", "clearance.half_width_mm", "at most"]);
     let weights = ["--task", "usb,rj45", "--aggregate", "weighted", "--weights", "1e308,1e308"];
     studies.study("s", 3, &weights).fails(2, &["1e308 is no weight"]);
-    let given = ["--stiffness-compliance", "1e300", "--stiffness-assembly", "1"];
-    let evaluate = ["evaluate", "--task", "usb", "--engine", "fake"];
-    optimize(&[&evaluate[..], &given].concat()).fails(2, &["1e-6 to 1e6"]);
+    let given = "--stiffness-compliance 1e300 --stiffness-assembly 1";
+    optimize_line(&format!("evaluate --task usb --engine fake {given}")).fails(2, &["1e-6 to 1e6"]);
     assert!(!studies.dir("s").exists(), "no study was begun");
 }
 
@@ -342,20 +320,6 @@ fn what_a_terminal_would_obey_is_shown_instead() {
     for text in [compare.succeeds(), &read(&svg), &read(&studies.dir(name).join("report.html"))] {
         assert!(!text.chars().any(|c| c.is_control() && !"\n\t\r".contains(c)));
     }
-}
-
-/// A journal all of whose checks fit again.
-fn sealed(text: &str) -> String {
-    use sha2::{Digest, Sha256};
-    let line = |line: &str| match line.rsplit_once(",\"check\":\"") {
-        None => format!("{line}\n"),
-        Some((content, rest)) => {
-            let digest = Sha256::digest(content.as_bytes());
-            let check: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
-            format!("{content},\"check\":\"{check}{}\n", &rest[16..])
-        }
-    };
-    text.lines().map(line).collect()
 }
 
 #[test]
@@ -421,24 +385,21 @@ fn the_journal_says_what_came_from_the_cache_and_a_swapped_entry_is_measured_aga
     let more = ["--cache", cache.to_str().unwrap(), "--optimizer", "random"];
     studies.study("first", 6, &more).succeeds();
     studies.study("second", 9, &more).succeeds();
-    let cached = |name: &str, value: &str| {
+    let counted = |name: &str, value: &str| {
         let text = read(&studies.dir(name).join("journal.jsonl"));
         text.lines().filter(|line| line.contains(&format!("\"cached\":[{value}]"))).count()
     };
-    assert_eq!((cached("first", "true"), cached("first", "false")), (0, 6));
-    assert_eq!((cached("second", "true"), cached("second", "false")), (6, 3));
+    assert_eq!((counted("first", "true"), counted("first", "false")), (0, 6));
+    assert_eq!((counted("second", "true"), counted("second", "false")), (6, 3));
     // Every entry under the name of another, and one with a changed number.
-    let folders = fs::read_dir(&cache).unwrap().map(|entry| entry.unwrap().path());
-    let entries = folders.flat_map(|folder| fs::read_dir(folder).unwrap());
-    let mut entries: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
-    entries.sort();
+    let entries = cached(&cache);
     let texts: Vec<String> = entries.iter().map(|path| read(path)).collect();
     for (path, text) in entries.iter().zip(texts.iter().cycle().skip(1)) {
         fs::write(path, text).unwrap();
     }
     fs::write(&entries[0], sealed(&texts[0].replace("\"trials\":", "\"trials\":1"))).unwrap();
     studies.study("third", 9, &more).succeeds();
-    assert_eq!((cached("third", "true"), cached("third", "false")), (0, 9));
+    assert_eq!((counted("third", "true"), counted("third", "false")), (0, 9));
     assert_eq!(studies.journal("third"), studies.journal("second"));
 }
 
@@ -484,9 +445,7 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
         let path = full.join(file);
         let line = format!("ulimit -f 0; exec \"$0\" {words} \"$1\"");
         shell(&line, &[path.to_str().unwrap()]).fails(1, &[full.to_str().unwrap(), "cannot write"]);
-        let left: Vec<_> =
-            fs::read_dir(&full).unwrap().map(|entry| entry.unwrap().path()).collect();
-        assert_eq!(left, Vec::<std::path::PathBuf>::new(), "{words}");
+        assert_eq!(paths(&full), Vec::<PathBuf>::new(), "{words}");
     }
     // What was there stays as it was.
     let kept = studies.dir("kept.csv");
@@ -500,12 +459,10 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
     let before = read(&kept);
     add("ulimit -f 0;").fails(1, &["kept.csv: cannot write"]);
     assert_eq!(read(&kept), before);
-    let pages =
-        || fs::read_dir(&study).unwrap().map(|e| e.unwrap().file_name()).collect::<Vec<_>>();
-    let (before, page) = (pages(), read(&study.join("report.html")));
+    let (before, page) = (paths(&study), read(&study.join("report.html")));
     shell("ulimit -f 0; exec \"$0\" report \"$1\"", &[study.to_str().unwrap()])
         .fails(1, &["cannot write"]);
-    assert_eq!((pages(), read(&study.join("report.html"))), (before, page));
+    assert_eq!((paths(&study), read(&study.join("report.html"))), (before, page));
 }
 
 /// Files and times from the clock of another machine, years ahead or behind, change nothing.
@@ -521,8 +478,7 @@ fn clocks_that_disagree_change_no_journal() {
         [("ahead", now + 10 * year, "2099"), ("behind", now - 40 * year, "1999")]
     {
         let dir = studies.dir(name);
-        let mut killed = start(&mut studies.command(name, 22, &["--no-cache", "--threads", "1"]));
-        wait_until("half a study", || lines(&dir.join("journal.jsonl")) > 10);
+        let mut killed = studies.begun(name, 22, &["--no-cache", "--threads", "1"], 11);
         let _ = killed.kill();
         let _ = killed.wait();
         let journal = read(&dir.join("journal.jsonl"));
@@ -538,7 +494,7 @@ fn clocks_that_disagree_change_no_journal() {
         fs::write(dir.join("journal.jsonl"), sealed(&shifted)).unwrap();
         let mut folders = vec![dir.clone(), cache.clone()];
         while let Some(folder) = folders.pop() {
-            for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            for path in paths(&folder) {
                 match path.is_dir() {
                     true => folders.push(path),
                     false => fs::File::open(&path).unwrap().set_modified(time).unwrap(),
@@ -556,10 +512,8 @@ fn clocks_that_disagree_change_no_journal() {
 #[test]
 fn a_limit_of_the_file_size_is_a_message_and_leaves_a_whole_journal() {
     let studies = Studies::new();
-    let expected = {
-        studies.study("reference", 22, &[]).succeeds();
-        studies.journal("reference")
-    };
+    studies.study("reference", 22, &[]).succeeds();
+    let expected = studies.journal("reference");
     let study = "--task usb --engine fake --budget 22 --no-cache --quiet --out";
     let line = format!("ulimit -f 16; exec \"$0\" {study} \"$1\"");
     let dir = studies.dir("limited");

@@ -4,7 +4,7 @@ mod common;
 
 use ask_tell::GridPoint;
 use ask_tell::{Grid, Observation, Optimizer, StopReason};
-use common::{Studies, read, resealed};
+use common::{Studies, read, sealed};
 use finger_opt::study::{
     Ending, Recorded, Runner, Store, Study, StudyError, StudyRecord, Timing, decode, encode,
     strip_times,
@@ -374,7 +374,7 @@ fn another_schema_version_is_refused() {
     for file in ["study.toml", "journal.jsonl"] {
         let text = read(&Path::new(FIXTURE).join(file));
         let text = text.replace("\"schema_version\":2,", "\"schema_version\":3,");
-        std::fs::write(studies.dir("new").join(file), resealed(&text)).unwrap();
+        std::fs::write(studies.dir("new").join(file), sealed(&text)).unwrap();
     }
     let error = StudyRecord::load(&studies.dir("new")).unwrap_err().to_string();
     assert!(error.contains("schema version is 3"), "{error}");

@@ -1,5 +1,5 @@
 //! Verification of the models: analytic checks, windows compared between engines, searches and
-//! publications, post hoc choice of prints, and benchmarks.
+//! publications, and benchmarks.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // A stream that has gone makes these panic: `cli::terminal` prints.
@@ -10,5 +10,4 @@
 pub mod analytic;
 pub mod cli;
 mod compare;
-mod prints;
 mod problems;

@@ -14,9 +14,7 @@ fn all_tasks_are_compared_and_written() {
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path().join("all");
     let ran = validate(&[], &dir);
-    for part in
-        ["ket8", "ket12", "rj45", "usb", "target", "27.3 %", "54.5 %", "100.0 %", "- bench |"]
-    {
+    for part in ["ket8", "ket12", "rj45", "usb", "27.3", "54.5", "100.0", "- bench |"] {
         assert!(ran.succeeds().contains(part), "{part} is not in {}", ran.stdout);
     }
     let fits = |line: &str| line.starts_with("tables are in") || line.chars().count() <= 100;
@@ -24,7 +22,6 @@ fn all_tasks_are_compared_and_written() {
     let csv = read(&dir.join("validation.csv"));
     assert!(csv.starts_with("task,design,infill_density_percent,infill_direction_deg,"));
     assert_eq!(csv.lines().count(), 45);
-    assert_eq!(read(&dir.join("validation_summary.csv")).lines().count(), 13);
     assert_eq!(read(&dir.join("accuracy.md")).lines().count(), 6);
 }
 
@@ -40,7 +37,6 @@ fn one_task_prints_json_that_threads_do_not_change() {
     let result = ran("one", "1");
     let found = result.json();
     assert_eq!((&found["engine"], &found["search"]), (&"fake".into(), &"walk".into()));
-    assert_eq!(found["agreement_with_bench"][0]["simulation"]["matched_ends"], 6);
     let task = &found["tasks"][0];
     assert_eq!(task["designs"].as_array().map(Vec::len), Some(11));
     // The measured stiffness, not the surrogate's.

@@ -200,7 +200,7 @@ fn moved(words: &[OsString]) -> Option<&'static str> {
         ("validate", _) => "lab validate",
         ("cross-check", _) => "lab cross-check",
         ("bench", "optimizers") => "lab optimizers",
-        ("bench", "next") => "lab prints",
+        ("bench", "next") => return None,
         ("bench", _) => "lab benchmark",
         _ => return None,
     })

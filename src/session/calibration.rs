@@ -13,10 +13,8 @@ use crate::calibration::sampler::Settings;
 use crate::calibration::simulation::Simulation;
 use crate::calibration::subject::Subject;
 use input::shipped::PRIORS;
-use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::template::Template;
 use insertion::space::Design;
-use insertion::trial::NEVER;
-use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -50,14 +48,12 @@ pub struct Calibrated {
 
 /// Tasks with all that is needed to calibrate them.
 pub struct Prepared {
-    setup: Setup,
     /// The tasks' fingers, in order.
     pub subjects: Vec<Subject>,
     /// What each coordinate is.
     pub layout: Layout,
     /// How to sample.
     pub settings: Settings,
-    cache: Option<PathBuf>,
 }
 
 impl CalibrateRequest {
@@ -97,35 +93,17 @@ impl CalibrateRequest {
         let setup = self.setup.setup()?;
         let experiments = measured::read(&self.measurements, &setup.task_names())?;
         let priors = measured::priors(&find("file of priors", PRIORS, &self.priors)?)?;
-        let cache = self.cache.folder(&setup)?;
         let effort = self.effort.or(None)?;
         let ground = Ground {
             setup: &setup,
             parameters: &priors.parameters,
             simulations: usize::from(effort.simulations),
             seed: self.seed,
-            cache: cache.clone(),
+            cache: self.cache.folder(&setup)?,
             stop,
         };
         let (subjects, layout) = ground.subjects(&self.measurements, &experiments, more, watch)?;
-        Ok(Prepared { setup, subjects, layout, settings: settings(effort, self.seed), cache })
-    }
-}
-
-impl Prepared {
-    /// Ranges of a task's fingers with all as the files say, mm.
-    ///
-    /// # Errors
-    /// If a finger cannot be simulated.
-    pub fn simulate(&self, task: usize, fingers: &[usize]) -> Result<Vec<f64>, Failure> {
-        let (evaluator, subject) = (&self.setup.evaluator, &self.subjects[task]);
-        let template = &evaluator.templates[task];
-        let simulation = Simulation::new(evaluator, template, &[], self.cache.clone(), &NEVER);
-        let range = |&finger: &usize| {
-            Ok(simulation.window(&subject.designs[finger], &[])?.window.range_mm())
-        };
-        let ranges = fingers.par_iter().map(range).collect::<Result<_, Impossible>>();
-        ranges.map_err(Failure::input)
+        Ok(Prepared { subjects, layout, settings: settings(effort, self.seed) })
     }
 }
 

@@ -5,8 +5,9 @@ mod ran;
 
 pub use ran::{Ran, read, run};
 
-use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// The binary with these arguments, not yet started.
@@ -19,6 +20,32 @@ pub fn command(arguments: &[&str]) -> Command {
 /// Runs the binary to its end.
 pub fn optimize(arguments: &[&str]) -> Ran {
     run(&mut command(arguments))
+}
+
+/// Runs a command line without spaces in its words.
+pub fn optimize_line(line: &str) -> Ran {
+    optimize(&line.split_whitespace().collect::<Vec<_>>())
+}
+
+/// Microseconds per trial: a study of 22 evaluations takes some tenths of a second, one of a thousand
+/// longer than any test.
+pub const SLOW: (&str, &str) = ("FINGER_OPT_FAKE_DELAY_US", "200");
+
+/// Starts a command with slow trials.
+pub fn start(command: &mut Command) -> Child {
+    let command = command.env(SLOW.0, SLOW.1).stdout(Stdio::null()).stderr(Stdio::piped());
+    command.spawn().expect("the command starts")
+}
+
+/// Exit code and standard error of a process that ends by itself.
+pub fn end(child: Child) -> (Option<i32>, String) {
+    let output = child.wait_with_output().expect("it ends");
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+/// Number of lines of a file; 0 if it is not there.
+pub fn lines(path: &Path) -> usize {
+    std::fs::read_to_string(path).unwrap_or_default().lines().count()
 }
 
 /// A folder for one test's studies.
@@ -45,6 +72,23 @@ impl Studies {
         command
     }
 
+    /// Starts a slow study and waits until its journal has so many lines.
+    pub fn begun(&self, name: &str, budget: u32, more: &[&str], lines: usize) -> Child {
+        let child = start(&mut self.command(name, budget, more));
+        self.wait_for_lines(name, lines);
+        child
+    }
+
+    /// Waits until a study's journal has so many lines, at most a minute.
+    pub fn wait_for_lines(&self, name: &str, least: usize) {
+        let path = self.dir(name).join("journal.jsonl");
+        let begun = Instant::now();
+        while lines(&path) < least {
+            assert!(begun.elapsed() < Duration::from_secs(60), "no journal of {least} lines");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
     /// Runs a study to its end.
     pub fn study(&self, name: &str, budget: u32, more: &[&str]) -> Ran {
         run(&mut self.command(name, budget, more))
@@ -61,11 +105,11 @@ impl Studies {
     }
 }
 
-/// A journal whose second line has a check that fits again.
-pub fn resealed(text: &str) -> String {
+/// A journal all of whose checks fit again.
+pub fn sealed(text: &str) -> String {
     use sha2::{Digest, Sha256};
-    let line = |line: &str| match line.split_once(",\"check\":\"") {
-        Some((content, rest)) if content.contains("schema_version") => {
+    let line = |line: &str| match line.rsplit_once(",\"check\":\"") {
+        Some((content, rest)) if rest.len() > 16 && rest.is_char_boundary(16) => {
             let digest = Sha256::digest(content.as_bytes());
             let check: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
             format!("{content},\"check\":\"{check}{}\n", &rest[16..])

@@ -1,30 +1,22 @@
 //! The binary under limits: 10 s of processor time, 1 GB, an exit code that is documented.
 
-use std::io::{Read, Write};
+use anyhow::{Result, bail};
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
-use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Processor time that a case may take, s, also in a build for tests, which takes 1.7 times as long.
-pub const CPU_S: u32 = 10;
-/// The same of a simulated trial, of which 60 s are simulated at most, in a build for tests.
-pub const TRIAL_S: u32 = 100;
-/// Address space that it may take, KiB.
+/// Processor time of a case, s, also in a build for tests, which takes 1.7 times as long.
+const CPU_S: u32 = 10;
+/// Processor time of a simulated trial, of which 60 s are simulated at most, in a build for tests.
+const TRIAL_S: u32 = 100;
+/// Address space of a case, KiB.
 const MEMORY_KIB: u32 = 1 << 20;
-/// After so long it hangs, whatever the machine is busy with.
-const HANGS: Duration = Duration::from_secs(120);
+/// Wall time after which a case hangs, whatever the machine is busy with, s.
+const HANGS_S: u32 = 120;
 
-/// What came of a case.
-pub enum Verdict {
-    /// As it should be: `accepted` or `refused`.
-    Fine(&'static str),
-    /// A panic, a hang, a limit: what was seen.
-    Wrong(String),
-}
-
-/// What a process left.
+/// Output of a process.
 pub struct Ended {
     pub code: Option<i32>,
     pub stdout: String,
@@ -37,18 +29,22 @@ fn program() -> String {
     std::env::var("FINGER_OPT_FUZZ_PROGRAM").unwrap_or_else(|_| built())
 }
 
-/// Where cases run, and leave what a mutated name makes them write.
+/// Folder in which cases run, and leave what a mutated name makes them write.
 pub fn folder() -> &'static Path {
     static FOLDER: LazyLock<TempDir> = LazyLock::new(|| tempfile::tempdir().unwrap());
     FOLDER.path()
 }
 
-/// Runs the binary; `Err` says what no input may lead to.
-pub fn run(arguments: &[String], input: &[u8], cpu_s: u32) -> Result<Ended, String> {
-    let limits = format!("ulimit -v {MEMORY_KIB} -t {cpu_s} -c 0; exec \"$0\" \"$@\"");
+/// Runs the binary; an error is what no input may lead to.
+pub fn run<S: AsRef<str>>(arguments: &[S], input: &[u8]) -> Result<Ended> {
+    let arguments: Vec<&str> = arguments.iter().map(AsRef::as_ref).collect();
+    let cpu_s = if arguments.first() == Some(&"trial") { TRIAL_S } else { CPU_S };
+    let limits = format!(
+        "ulimit -v {MEMORY_KIB} -t {cpu_s} -c 0; exec timeout -s KILL {HANGS_S} \"$0\" \"$@\""
+    );
     let child = Command::new("bash")
         .args(["-c", &limits, &program()])
-        .args(arguments)
+        .args(&arguments)
         .current_dir(folder())
         .env("RUST_BACKTRACE", "0")
         .env("RAYON_NUM_THREADS", "2")
@@ -57,71 +53,46 @@ pub fn run(arguments: &[String], input: &[u8], cpu_s: u32) -> Result<Ended, Stri
         .stderr(Stdio::piped())
         .spawn();
     let mut child = match child {
-        Ok(child) => child,
         // More words than the system takes: it has refused them.
         Err(error) if error.kind() == std::io::ErrorKind::ArgumentListTooLong => {
             let (stdout, stderr) = (String::new(), error.to_string());
             return Ok(Ended { code: Some(2), stdout, stderr });
         }
-        Err(error) => return Err(format!("cannot start: {error}")),
+        child => child?,
     };
-    let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
-    let input = input.to_vec();
-    // All three at once, or a full pipe would hold the program up.
+    let (stdin, input) = (child.stdin.take(), input.to_vec());
+    // At the same time, or a full pipe would hold the program up.
     std::thread::spawn(move || stdin.map(|mut stdin| stdin.write_all(&input)));
-    let reader = |pipe: Option<Box<dyn Read + Send>>| {
-        std::thread::spawn(move || {
-            let mut bytes = Vec::new();
-            let _ = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
-            String::from_utf8_lossy(&bytes).into_owned()
-        })
-    };
-    let out = reader(stdout.map(|pipe| Box::new(pipe) as Box<dyn Read + Send>));
-    let err = reader(stderr.map(|pipe| Box::new(pipe) as Box<dyn Read + Send>));
-    let begun = Instant::now();
-    let status = loop {
-        match child.try_wait().map_err(|error| error.to_string())? {
-            Some(status) => break status,
-            None if begun.elapsed() > HANGS => {
-                let _ = child.kill();
-                let _ = child.wait();
-                return Err(format!("hangs: optimize {arguments:?}"));
-            }
-            None => std::thread::sleep(Duration::from_millis(2)),
-        }
-    };
-    let (stdout, stderr) = (out.join().unwrap_or_default(), err.join().unwrap_or_default());
-    let ended = Ended { code: status.code(), stdout, stderr };
-    match ended.problem() {
-        None => Ok(ended),
-        Some(problem) => {
-            let tail: String = ended.stderr.chars().take(2000).collect();
-            Err(format!("{problem}: optimize {arguments:?}: {status}\n{tail}"))
-        }
+    let output = child.wait_with_output()?;
+    let [stdout, stderr] =
+        [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    let ended = Ended { code: output.status.code(), stdout, stderr };
+    if let Some(problem) = ended.problem() {
+        let tail: String = ended.stderr.chars().take(2000).collect();
+        bail!("{problem}: optimize {arguments:?}: {}\n{tail}", output.status);
     }
+    Ok(ended)
+}
+
+/// Whether a text has a word that is no number where one belongs.
+pub fn no_number(text: &str) -> bool {
+    text.split(|c: char| !c.is_alphanumeric()).any(|word| word == "NaN" || word == "inf")
 }
 
 impl Ended {
     fn problem(&self) -> Option<&'static str> {
         let control = |text: &str| text.chars().any(|c| c.is_control() && !"\n\t".contains(c));
-        if !matches!(self.code, Some(0..=2)) {
-            return Some("ended by a signal, a limit or an unknown exit code");
-        }
-        if ["panicked", "RUST_BACKTRACE", "memory allocation"]
-            .iter()
-            .any(|word| self.stderr.contains(word))
-        {
-            return Some("panicked");
-        }
-        if control(&self.stdout) || control(&self.stderr) {
-            return Some("prints control characters");
-        }
-        if self.code != Some(0) && self.stderr.trim().is_empty() {
-            return Some("fails without a word");
-        }
-        let number = |text: &str| {
-            text.split(|c: char| !c.is_alphanumeric()).any(|w| w == "NaN" || w == "inf")
-        };
-        (self.code == Some(0) && number(&self.stdout)).then_some("succeeds with what is no number")
+        let panics = ["panicked", "RUST_BACKTRACE", "memory allocation"];
+        let problems = [
+            (
+                !matches!(self.code, Some(0..=2)),
+                "ended by a signal, a limit or an unknown exit code",
+            ),
+            (panics.iter().any(|word| self.stderr.contains(word)), "panicked"),
+            (control(&self.stdout) || control(&self.stderr), "prints control characters"),
+            (self.code != Some(0) && self.stderr.trim().is_empty(), "fails without a word"),
+            (self.code == Some(0) && no_number(&self.stdout), "succeeds with what is no number"),
+        ];
+        problems.into_iter().find_map(|(seen, problem)| seen.then_some(problem))
     }
 }

@@ -1,55 +1,21 @@
 //! What is mutated, and what is asked of the program about it.
 
+use super::common::sealed;
 use super::mutation::{Mutation, mutated};
-use super::process::{CPU_S, TRIAL_S, Verdict, run};
+use super::process::{Ended, no_number, run};
+use anyhow::{Context, Result, bail, ensure};
 use finger_opt::connector::mesh::read;
-use sha2::{Digest, Sha256};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a case is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
-    Task,
-    Space,
-    Robot,
-    Uncertainty,
-    Stiffness,
-    Finger,
-    Config,
-    Journal,
-    SealedJournal,
-    Walk,
-    AskTell,
-    CommandLine,
-    Trial,
-    Measurements,
-    Priors,
-    Mesh,
-}
+/// Names of what a case is about.
+pub const KINDS: &str = "task space robot uncertainty stiffness finger config journal \
+    sealed-journal walk ask-tell command-line trial measurements priors mesh";
 
-impl Kind {
-    pub const ALL: [Kind; 16] = [
-        Kind::Task,
-        Kind::Space,
-        Kind::Robot,
-        Kind::Uncertainty,
-        Kind::Stiffness,
-        Kind::Finger,
-        Kind::Config,
-        Kind::Journal,
-        Kind::SealedJournal,
-        Kind::Walk,
-        Kind::AskTell,
-        Kind::CommandLine,
-        Kind::Trial,
-        Kind::Measurements,
-        Kind::Priors,
-        Kind::Mesh,
-    ];
-}
+/// Outcome of a case that is as it should be.
+type How = Result<&'static str>;
 
-/// The shipped files in a folder, by their kind.
+/// The shipped files in a folder.
 fn shipped(folder: &str) -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let mut paths: Vec<PathBuf> =
@@ -59,15 +25,10 @@ fn shipped(folder: &str) -> Vec<String> {
     paths.iter().map(|path| fs::read_to_string(path).unwrap()).collect()
 }
 
-/// What mutations begin with.
+/// Files that take a while to make.
 pub struct Base {
-    tasks: Vec<String>,
-    spaces: Vec<String>,
-    robots: Vec<String>,
-    uncertainties: Vec<String>,
-    fingers: Vec<String>,
     /// Plug and socket of each example, as OBJ: where a corner moves its faces follow.
-    meshes: Vec<[String; 2]>,
+    meshes: [[String; 2]; 2],
     /// A finished study.
     study: tempfile::TempDir,
 }
@@ -75,21 +36,15 @@ pub struct Base {
 impl Base {
     pub fn new() -> Self {
         let study = tempfile::tempdir().unwrap();
-        let words = "--task usb,rj45 --engine fake --budget 7 --polish 3 --no-cache --quiet \
-                     --constraint peak-force<=30 --out";
-        let ended = run(&with_path(words, &study.path().join("study")), b"", CPU_S).unwrap();
+        let ended = at_once(&format!(
+            "--task usb,rj45 --engine fake --budget 7 --polish 3 --no-cache --quiet \
+             --constraint peak-force<=30 --out {}/study",
+            study.path().display()
+        ));
+        let ended = ended.unwrap();
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        Base {
-            tasks: shipped("tasks"),
-            spaces: shipped("spaces"),
-            robots: shipped("robots"),
-            uncertainties: shipped("uncertainties"),
-            fingers: shipped("fingers"),
-            meshes: ["keyed", "usb"]
-                .map(|pair| ["plug", "socket"].map(|body| obj(pair, body)))
-                .to_vec(),
-            study,
-        }
+        let meshes = ["keyed", "usb"].map(|pair| ["plug", "socket"].map(|body| obj(pair, body)));
+        Base { meshes, study }
     }
 }
 
@@ -114,109 +69,96 @@ fn obj(pair: &str, body: &str) -> String {
     corners.concat() + &faces
 }
 
-fn with_path(words: &str, path: &Path) -> Vec<String> {
-    let words = words.split_whitespace().map(str::to_owned);
-    words.chain([path.display().to_string()]).collect()
+/// Runs a command line without spaces in its words.
+fn at_once(line: &str) -> Result<Ended> {
+    run(&line.split_whitespace().collect::<Vec<_>>(), b"")
 }
 
 /// Runs one case; gives how it ended, or what no case may do.
-fn run_case(
-    kind: Kind,
-    mutations: &[Mutation],
-    number: u64,
-    base: &Base,
-) -> Result<&'static str, String> {
-    let dir = tempfile::tempdir().map_err(|error| error.to_string())?;
-    let of = |texts: &[String]| texts[number as usize % texts.len()].clone();
-    let file = |text: &str, name: &str| -> Result<PathBuf, String> {
-        let path = dir.path().join(name);
-        fs::write(&path, mutated(text, mutations)).map_err(|error| error.to_string())?;
+pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) -> How {
+    let dir = tempfile::tempdir()?;
+    let (folder, number) = (dir.path().display(), number as usize);
+    let file = |text: &str, name: &str| -> Result<String> {
+        let path = format!("{folder}/{name}");
+        fs::write(&path, mutated(text, mutations))?;
         Ok(path)
     };
-    let study = "--engine fake --budget 3 --no-cache --quiet --json";
+    let changed = |folder: &str| {
+        let texts = shipped(folder);
+        file(&texts[number % texts.len()], "f.toml")
+    };
     let out = dir.path().join("study");
+    let study = |words: String| {
+        let quick = "--engine fake --budget 3 --no-cache --quiet --json";
+        let how = ended(&format!("{quick} {words} --out {folder}/study"))?;
+        if how == "accepted" {
+            read_again(&out)?;
+        }
+        Ok(how)
+    };
     match kind {
-        Kind::Task => {
-            let path = file(&of(&base.tasks), "f.toml")?;
-            accepted(&with_path(&format!("{study} --task {} --out", path.display()), &out), &out)
+        "task" => study(format!("--task {}", changed("tasks")?)),
+        "space" => study(format!("--task usb --space {}", changed("spaces")?)),
+        "robot" if number.is_multiple_of(7) => {
+            let robot = changed("robots")?;
+            ended(&format!("trial --task usb --json --density 20 --direction 10 --robot {robot}"))
         }
-        Kind::Space => {
-            let path = file(&of(&base.spaces), "f.toml")?;
-            let words = format!("{study} --task usb --space {} --out", path.display());
-            accepted(&with_path(&words, &out), &out)
+        "robot" => study(format!("--task usb --robot {}", changed("robots")?)),
+        "uncertainty" => {
+            let goal = ["success-rate", "robust-range"][number / 2 % 2];
+            let file = changed("uncertainties")?;
+            study(format!("--task usb --objective {goal} --uncertainty {file}"))
         }
-        Kind::Robot => {
-            let path = file(&of(&base.robots), "f.toml")?;
-            if number.is_multiple_of(7) {
-                let words = "trial --task usb --json --density 20 --direction 10 --robot";
-                return ended(&with_path(words, &path), b"");
-            }
-            let words = format!("{study} --task usb --robot {} --out", path.display());
-            accepted(&with_path(&words, &out), &out)
-        }
-        Kind::Uncertainty => {
-            let path = file(&of(&base.uncertainties), "f.toml")?;
-            let goal = ["success-rate", "robust-range"][number as usize / 2 % 2];
-            let words = format!(
-                "{study} --task usb --objective {goal} --uncertainty {} --out",
-                path.display()
-            );
-            accepted(&with_path(&words, &out), &out)
-        }
-        Kind::Stiffness => {
-            let text = include_str!("../../data/measured_stiffness.csv");
-            let path = file(text, "f.csv")?;
-            let svg = dir.path().join("f.svg");
-            let words = format!("stiffness --json --stiffness-data {} --svg", path.display());
-            let how = ended(&with_path(&words, &svg), b"")?;
-            drawing(&svg)?;
+        "stiffness" => {
+            let data = file(include_str!("../../data/measured_stiffness.csv"), "f.csv")?;
+            let how =
+                ended(&format!("stiffness --json --stiffness-data {data} --svg {folder}/f.svg"))?;
+            drawing(&dir.path().join("f.svg"))?;
             Ok(how)
         }
-        Kind::Finger => {
-            let path = file(&of(&base.fingers), "f.toml")?;
-            let words = "finger --json --density 20 --direction 10 --finger";
-            ended(&with_path(words, &path), b"")
+        "finger" => {
+            let finger = changed("fingers")?;
+            ended(&format!("finger --json --density 20 --direction 10 --finger {finger}"))
         }
-        Kind::Config | Kind::Journal | Kind::SealedJournal | Kind::Walk => {
-            kept(kind, mutations, base, &out)
+        "config" => kept("study.toml", &|text| mutated(text, mutations), base, &out),
+        "journal" => kept("journal.jsonl", &|text| mutated(text, mutations), base, &out),
+        "sealed-journal" => {
+            let change = |text: &str| {
+                sealed(&String::from_utf8_lossy(&mutated(text, mutations))).into_bytes()
+            };
+            kept("journal.jsonl", &change, base, &out)
         }
-        Kind::AskTell => talk(mutations, number),
-        Kind::CommandLine => command_line(mutations, number, dir.path()),
-        Kind::Trial => {
-            let path = file(&of(&base.tasks), "f.toml")?;
-            let words = "trial --json --density 20 --direction 10 --task";
-            ended(&with_path(words, &path), b"")
+        "walk" => kept("walk.json", &|text| mutated(text, mutations), base, &out),
+        "ask-tell" => talk(mutations, number),
+        "command-line" => command_line(mutations, number, dir.path()),
+        "trial" => {
+            let task = changed("tasks")?;
+            ended(&format!("trial --json --density 20 --direction 10 --task {task}"))
         }
-        Kind::Measurements => {
+        "measurements" => {
             let path = file(include_str!("../../data/published_bench.csv"), "f.csv")?;
-            let words = match number % 4 {
-                0 => &format!("{CALIBRATE} --measurements"),
-                _ => "measure check --json",
-            };
-            ended(&with_path(words, &path), b"")
+            match number % 4 {
+                0 => ended(&format!("{CALIBRATE} --measurements {path}")),
+                _ => ended(&format!("measure check --json {path}")),
+            }
         }
-        Kind::Priors => {
-            let path = file(include_str!("../../priors/bench.toml"), "f.toml")?;
-            let words = format!("{CALIBRATE} --measurements published --priors");
-            ended(&with_path(&words, &path), b"")
+        "priors" => {
+            let priors = file(include_str!("../../priors/bench.toml"), "f.toml")?;
+            ended(&format!("{CALIBRATE} --measurements published --priors {priors}"))
         }
-        Kind::Mesh => {
-            let [plug, socket] = &base.meshes[number as usize % base.meshes.len()];
-            let changed = file([plug, socket][number as usize / 2 % 2], "changed.obj")?;
-            let other = dir.path().join("other.obj");
-            fs::write(&other, [socket, plug][number as usize / 2 % 2])
-                .map_err(|e| e.to_string())?;
-            let [plug, socket] = match number / 2 % 2 {
-                0 => [changed, other],
-                _ => [other, changed],
-            };
-            let words = format!(
-                "task import --engine fake --json --unit mm --resolution 32 --plug {} --socket {} --out",
-                plug.display(),
-                socket.display()
-            );
-            ended(&with_path(&words, &dir.path().join("task.toml")), b"")
+        "mesh" => {
+            let bodies = &base.meshes[number % 2];
+            let changed = number / 2 % 2;
+            let mut paths = [0, 1].map(|_| format!("{folder}/other.obj"));
+            fs::write(&paths[0], &bodies[1 - changed])?;
+            paths[changed] = file(&bodies[changed], "changed.obj")?;
+            let [plug, socket] = paths;
+            ended(&format!(
+                "task import --engine fake --json --unit mm --resolution 32 --plug {plug} \
+                 --socket {socket} --out {folder}/task.toml"
+            ))
         }
+        other => bail!("no kind is called {other}"),
     }
 }
 
@@ -224,138 +166,92 @@ fn run_case(
 const CALIBRATE: &str =
     "calibrate --task usb --engine fake --simulations 16 --samples 20 --no-cache --json";
 
-/// Runs one case and judges it.
-pub fn judge(kind: Kind, mutations: &[Mutation], number: u64, base: &Base) -> Verdict {
-    match run_case(kind, mutations, number, base) {
-        Ok(how) => Verdict::Fine(how),
-        Err(what) => Verdict::Wrong(what),
-    }
+fn ended(line: &str) -> How {
+    judged(&line.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
 }
 
-fn ended(arguments: &[String], input: &[u8]) -> Result<&'static str, String> {
-    let cpu_s = match arguments {
-        [command, ..] if command == "trial" => TRIAL_S,
-        _ => CPU_S,
-    };
-    let ended = run(arguments, input, cpu_s)?;
-    if ended.code == Some(0) && arguments.iter().any(|word| word == "--json") {
-        serde_json::from_str::<serde_json::Value>(&ended.stdout)
-            .map_err(|error| format!("no JSON: {error}: {arguments:?}: {}", ended.stdout))?;
+fn judged(arguments: &[String]) -> How {
+    let ended = run(arguments, b"")?;
+    if ended.code != Some(0) {
+        return Ok("refused");
     }
-    Ok(if ended.code == Some(0) { "accepted" } else { "refused" })
+    if arguments.iter().any(|word| word == "--json") {
+        serde_json::from_str::<serde_json::Value>(&ended.stdout)
+            .with_context(|| format!("no JSON: {arguments:?}: {}", ended.stdout))?;
+    }
+    Ok("accepted")
 }
 
 /// What is accepted can be read again: its report is made from the files.
-fn accepted(arguments: &[String], out: &Path) -> Result<&'static str, String> {
-    let how = ended(arguments, b"")?;
-    if how == "accepted" {
-        read_again(out)?;
-    }
-    Ok(how)
-}
-
-fn read_again(out: &Path) -> Result<(), String> {
+fn read_again(out: &Path) -> Result<()> {
     for words in ["report", "resume --quiet --json"] {
-        let again = run(&with_path(words, out), b"", CPU_S)?;
-        if again.code != Some(0) {
-            return Err(format!("was accepted, but `{words}` fails: {}", again.stderr));
-        }
+        let again = at_once(&format!("{words} {}", out.display()))?;
+        ensure!(again.code == Some(0), "was accepted, but `{words}` fails: {}", again.stderr);
     }
     drawing(&out.join("convergence.svg"))?;
-    let journal = fs::read_to_string(out.join("journal.jsonl")).map_err(|e| e.to_string())?;
+    let journal = fs::read_to_string(out.join("journal.jsonl"))?;
     // JSON has no NaN and no infinity, but in texts, where they are no numbers.
     let read = |line: &str| serde_json::from_str::<serde_json::Value>(line).map(drop);
-    journal.lines().try_for_each(read).map_err(|error| format!("a line of the journal: {error}"))
+    journal.lines().try_for_each(read).context("a line of the journal")
 }
 
 /// A drawing, if there is one, is XML with numbers only.
-fn drawing(path: &Path) -> Result<(), String> {
+fn drawing(path: &Path) -> Result<()> {
     let Ok(text) = fs::read_to_string(path) else { return Ok(()) };
-    roxmltree::Document::parse(&text).map_err(|error| format!("no XML: {error}"))?;
-    let number = |word: &str| word == "NaN" || word == "inf";
-    match text.split(|c: char| !c.is_alphanumeric()).any(number) {
-        true => Err(format!("{}: holds what is no number", path.display())),
-        false => Ok(()),
-    }
+    roxmltree::Document::parse(&text).context("no XML")?;
+    ensure!(!no_number(&text), "{}: holds what is no number", path.display());
+    Ok(())
 }
 
 /// A study's folder in which one file was changed.
-fn kept(
-    kind: Kind,
-    mutations: &[Mutation],
-    base: &Base,
-    out: &Path,
-) -> Result<&'static str, String> {
+fn kept(name: &str, change: &dyn Fn(&str) -> Vec<u8>, base: &Base, out: &Path) -> How {
     let from = base.study.path().join("study");
-    let io = |error: std::io::Error| error.to_string();
-    fs::create_dir_all(out.join("inputs")).map_err(io)?;
+    fs::create_dir_all(out.join("inputs"))?;
     for folder in ["", "inputs"] {
-        for entry in fs::read_dir(from.join(folder)).map_err(io)?.flatten() {
+        for entry in fs::read_dir(from.join(folder))?.flatten() {
             if entry.path().is_file() {
-                let to = out.join(folder).join(entry.file_name());
-                fs::copy(entry.path(), to).map_err(io)?;
+                fs::copy(entry.path(), out.join(folder).join(entry.file_name()))?;
             }
         }
     }
-    let name = match kind {
-        Kind::Config => "study.toml",
-        Kind::Walk => "walk.json",
-        _ => "journal.jsonl",
-    };
     let path = out.join(name);
-    let mut text = mutated(&fs::read_to_string(&path).map_err(io)?, mutations);
-    if kind == Kind::SealedJournal {
-        text = sealed(&String::from_utf8_lossy(&text)).into_bytes();
-    }
-    fs::write(&path, text).map_err(io)?;
-    let how = ended(&with_path("report", out), b"")?;
+    fs::write(&path, change(&fs::read_to_string(&path)?))?;
+    let how = ended(&format!("report {}", out.display()))?;
     drawing(&out.join("convergence.svg"))?;
-    let resumed = ended(&with_path("resume --quiet --json", out), b"")?;
-    if resumed == "accepted" {
+    if ended(&format!("resume --quiet --json {}", out.display()))? == "accepted" {
         read_again(out)?;
     }
     Ok(how)
 }
 
-/// A journal all of whose checks fit again.
-fn sealed(text: &str) -> String {
-    let line = |line: &str| match line.rsplit_once(",\"check\":\"") {
-        Some((content, rest)) if rest.len() > 16 && rest.is_char_boundary(16) => {
-            let digest = Sha256::digest(content.as_bytes());
-            let check: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
-            format!("{content},\"check\":\"{check}{}\n", &rest[16..])
-        }
-        _ => format!("{line}\n"),
-    };
-    text.lines().map(line).collect()
-}
-
 /// A conversation, each line answered with a line of JSON.
-fn talk(mutations: &[Mutation], number: u64) -> Result<&'static str, String> {
-    let optimizer = ["gp", "cma-es", "random", "sobol", "grid"][number as usize % 5];
-    let asked = "{\"ask\":3}\n{\"tell\":[{\"id\":0,\"value\":0.5},{\"id\":1,\"value\":null},{\"id\":2,\"value\":-3}]}\n";
-    let more =
-        "{\"ask\":2}\n{\"tell\":[{\"id\":3,\"value\":1e3},{\"id\":4,\"value\":2}]}\n{\"ask\":4}\n";
+fn talk(mutations: &[Mutation], number: usize) -> How {
+    let optimizer = ["gp", "cma-es", "random", "sobol", "grid"][number % 5];
     let text = format!(
-        "{{\"parameters\":[{{\"name\":\"x\",\"low\":-5,\"high\":5}},{{\"name\":\"n\",\"low\":1,\"high\":9,\"step\":2}}],\
-         \"optimizer\":\"{optimizer}\",\"seed\":1,\"direction\":\"minimize\"}}\n\
-         {{\"tell\":[{{\"values\":{{\"x\":0.5,\"n\":3}},\"value\":1.5}}]}}\n{asked}{more}"
+        r#"{{"parameters":[{{"name":"x","low":-5,"high":5}},{{"name":"n","low":1,"high":9,"step":2}}],"optimizer":"{optimizer}","seed":1,"direction":"minimize"}}
+{{"tell":[{{"values":{{"x":0.5,"n":3}},"value":1.5}}]}}
+{{"ask":3}}
+{{"tell":[{{"id":0,"value":0.5}},{{"id":1,"value":null}},{{"id":2,"value":-3}}]}}
+{{"ask":2}}
+{{"tell":[{{"id":3,"value":1e3}},{{"id":4,"value":2}}]}}
+{{"ask":4}}
+"#
     );
-    let ended = run(&["ask-tell".to_owned()], &mutated(&text, mutations), CPU_S)?;
-    let mut errors = false;
+    let ended = run(&["ask-tell"], &mutated(&text, mutations))?;
+    let mut how = "accepted";
     for line in ended.stdout.lines() {
         let answer: serde_json::Value =
-            serde_json::from_str(line).map_err(|error| format!("no JSON: {error}: {line}"))?;
-        errors |= answer.get("error").is_some();
+            serde_json::from_str(line).with_context(|| format!("no JSON: {line}"))?;
+        if answer.get("error").is_some() {
+            how = "refused";
+        }
     }
-    match ended.code {
-        Some(0) => Ok(if errors { "refused" } else { "accepted" }),
-        _ => Err(format!("a conversation ends with {:?}: {}", ended.code, ended.stderr)),
-    }
+    ensure!(ended.code == Some(0), "a conversation ends with {:?}: {}", ended.code, ended.stderr);
+    Ok(how)
 }
 
 /// Command lines of known words with values that may mean nothing.
-fn command_line(mutations: &[Mutation], number: u64, dir: &Path) -> Result<&'static str, String> {
+fn command_line(mutations: &[Mutation], number: usize, dir: &Path) -> How {
     const LINES: [&str; 14] = [
         "--task \"usb\" --engine \"fake\" --budget 3 --batch 2 --seed 1 --threads 2 --no-cache",
         "--task \"usb,rj45\" --engine \"fake\" --budget 2 --aggregate \"weighted\" --weights \"1,2\" --no-cache",
@@ -372,7 +268,7 @@ fn command_line(mutations: &[Mutation], number: u64, dir: &Path) -> Result<&'sta
         "tasks --json",
         "export \"mjcf\" --task \"usb\" --density 20 --direction 10 --out \"scene.xml\"",
     ];
-    let line = LINES[number as usize % LINES.len()];
+    let line = LINES[number % LINES.len()];
     let text = String::from_utf8_lossy(&mutated(line, mutations)).into_owned();
     let plain = |c: char| c == '\0' || c == '"' || c == '\n';
     let mut words: Vec<String> = text.split(' ').map(|word| word.replace(plain, "")).collect();
@@ -394,5 +290,5 @@ fn command_line(mutations: &[Mutation], number: u64, dir: &Path) -> Result<&'sta
     if let Some(at) = words.iter().position(|word| word == "scene.xml") {
         words[at] = dir.join("scene.xml").display().to_string();
     }
-    ended(&words, b"")
+    judged(&words)
 }

@@ -1,13 +1,12 @@
 //! T11: deflection of the UR5e under a load at the TCP, on its published servos and under position
 //! control.
 //!
-//! At rest a force F displaces the TCP by `J K^-1 J^T F`, with the Jacobian J of
-//! the six joints and their gains K (Salisbury 1980, 19th IEEE Conf. Decision and
-//! Control). Once as in the trials, one body on a coupled 6x6 spring; and once as the chain that it
-//! stands for, six links with a sprung joint each (of the soft arm alone: the hinges of a chain give
-//! 0.8 um/N across their axes, which is nothing beside servos and 3 % beside gears).
+//! At rest a force F displaces the TCP by `J K^-1 J^T F`, with the Jacobian J of the six joints and
+//! their gains K (Salisbury 1980, 19th IEEE Conf. Decision and Control). Once as in the trials, one
+//! body on a coupled 6x6 spring; and once as six links with a sprung joint each (of the soft arm
+//! alone: the hinges give 0.8 um/N across their axes, which is 3 % beside gears).
 
-use super::build::{self, Measured, Wrench};
+use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
 use contact::Engine;
 use contact::scene::{Body, BodyId, Motion, Pose, Scene, Spring};
@@ -21,7 +20,7 @@ use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 /// Robot file of the arm on its published servos.
 const SOFT: &str = "ur5e";
 /// Force at the TCP, N.
-pub const FORCE: f64 = 5.0;
+const FORCE: f64 = 5.0;
 /// Time in which the servos come to rest, s: twelve times their damping over their gain.
 const REST: f64 = 2.4;
 
@@ -35,11 +34,10 @@ pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
 /// Rows of a shipped robot.
 fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
     let Some((arm, mounted)) = shipped(file) else { return Vec::new() };
-    let reduced = flange(&mounted);
-    if engine.supports(&reduced.scene).is_err() {
+    let mut models = vec![("coupled spring", flange(&mounted))];
+    if engine.supports(&models[0].1.scene).is_err() {
         return Vec::new();
     }
-    let mut models = vec![("coupled spring", reduced)];
     if file == SOFT {
         models.push(("joint chain", chain(&arm)));
     }
@@ -47,7 +45,8 @@ fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
     for (name, loaded) in models {
         for (axis, along) in ["x", "y", "z"].into_iter().enumerate() {
             let expected = compliance(&arm)[(axis, axis)] * FORCE / MM;
-            let measured = loaded.deflection(engine, axis).map(|by| by / MM);
+            let moved = loaded.moved(engine, axis, REST);
+            let measured = moved.map(|path| path.last().map_or(f64::NAN, |by| by[axis]) / MM);
             let quantity = format!("{words}, {name}, TCP along {along}");
             let close = Tolerance::Relative(0.01);
             rows.push(CheckRow::new("T11", quantity, expected, measured, "mm", close));
@@ -73,7 +72,7 @@ fn shipped(name: &str) -> Option<(Arm, Mounted)> {
 }
 
 /// Compliance `J K^-1 J^T` at home: m/N, rad/N, rad/(N m), base axes.
-pub fn compliance(arm: &Arm) -> Matrix6<f64> {
+fn compliance(arm: &Arm) -> Matrix6<f64> {
     let jacobian = arm.at(&arm.home).tcp_jacobian();
     let soft = nalgebra::SVector::from_fn(|i, _| 1.0 / arm.joints[i].stiffness);
     jacobian * Matrix6::from_diagonal(&soft) * jacobian.transpose()
@@ -92,12 +91,6 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Deflection of the TCP under a force along an axis, at rest, m.
-    fn deflection(&self, engine: &dyn Engine, axis: usize) -> Measured {
-        let moved = self.moved(engine, axis, REST)?;
-        Ok(moved.last().map_or(f64::NAN, |moved| moved[axis]))
-    }
-
     /// Deflection of the TCP under a force along an axis after each step, m.
     ///
     /// # Errors
@@ -109,11 +102,12 @@ impl Loaded {
         time: f64,
     ) -> Measured<Vec<Vector3<f64>>> {
         let mut world = engine.world(&self.scene);
-        let wrench = Wrench::along(axis, FORCE);
+        let load = [Vector3::ith(axis, FORCE), Vector3::zeros()];
         let from = world.pose(self.end) * self.tool;
         let step = |_| {
             let tcp = world.pose(self.end) * self.tool;
-            wrench.push(world.as_mut(), self.end, self.centre, tcp.translation.vector.into());
+            let at = tcp.translation.vector.into();
+            build::push(world.as_mut(), self.end, self.centre, at, load);
             world.step()?;
             let tcp = world.pose(self.end) * self.tool;
             Ok(tcp.translation.vector - from.translation.vector)

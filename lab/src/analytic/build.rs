@@ -96,22 +96,15 @@ pub fn bisected(
     Ok((from + to) / 2.0)
 }
 
-/// Force, N, along a line through a point of the world, and a moment besides, N m.
-#[derive(Debug, Clone, Copy)]
-pub struct Wrench {
-    pub force: Vector3<f64>,
-    pub moment: Vector3<f64>,
-}
-
-impl Wrench {
-    /// Force along an axis (0 x, 1 y, 2 z).
-    pub fn along(axis: usize, force: f64) -> Self {
-        Wrench { force: Vector3::ith(axis, force), moment: Vector3::zeros() }
-    }
-
-    /// Pushes a body whose centre of mass lies at `centre` in its frame.
-    pub fn push(&self, world: &mut dyn World, body: BodyId, centre: Point3<f64>, at: Point3<f64>) {
-        let arm = at - world.pose(body) * centre;
-        world.push(body, self.force, self.moment + arm.cross(&self.force));
-    }
+/// Pushes a body, whose centre of mass lies at `centre` in its frame, by a force, N, through a point
+/// of the world, and a moment, N m.
+pub fn push(
+    world: &mut dyn World,
+    body: BodyId,
+    centre: Point3<f64>,
+    at: Point3<f64>,
+    [force, moment]: [Vector3<f64>; 2],
+) {
+    let arm = at - world.pose(body) * centre;
+    world.push(body, force, moment + arm.cross(&force));
 }

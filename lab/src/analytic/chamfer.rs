@@ -1,11 +1,10 @@
 //! T6: the force of crossing a chamfer.
 //!
-//! A plug on a lateral spring K slides down a chamfer that makes the angle a with the direction of
-//! insertion. With the normal force N the balance of the plug is K x = N (cos a - mu sin a) across
-//! and F = N (sin a + mu cos a) along the insertion, hence F = K x tan(a + atan mu), x being the
-//! way that the chamfer has pushed the plug aside (Whitney 1982, J. Dyn. Sys. Meas. Control 104:65,
-//! chamfer crossing, for a support that does not turn). The chamfer is a turned block; at 45
-//! degrees also what a task's `edges` make of a block's edge.
+//! A plug on a lateral spring K slides down a chamfer at the angle a to the direction of insertion.
+//! With the normal force N its balance is K x = N (cos a - mu sin a) across and F = N (sin a + mu cos
+//! a) along the insertion, hence F = K x tan(a + atan mu), x being its way aside (Whitney 1982, J.
+//! Dyn. Sys. Meas. Control 104:65, for a support that does not turn). The chamfer is a turned block;
+//! at 45 degrees also what a task's `edges` make of a block's edge.
 
 use super::build;
 use super::{CheckRow, Tolerance};
@@ -27,8 +26,7 @@ const WAY: f64 = 0.6 * MM;
 /// The plug, kg and m.
 const MASS: f64 = 20.0 * GRAM;
 const SIZE: [f64; 3] = [8.0 * MM, 12.0 * MM, 20.0 * MM];
-/// Rotational stiffness, N m/rad: the formula's support does not turn (here by
-/// less than a milliradian), but nor may it ring between two steps.
+/// Rotational stiffness, N m/rad: the support turns by less than a milliradian.
 const UPRIGHT: f64 = 100.0;
 
 /// Insertion force over lateral force, T6 rows.

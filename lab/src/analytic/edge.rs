@@ -1,9 +1,8 @@
 //! T8, first part: a block that is pushed over an edge.
 //!
-//! Statics: it tips when its centre of mass is above the edge. An engine that keeps a contact
-//! beyond the edge, or loses one before it, tips it elsewhere. The pusher touches the block at its
-//! foot and without friction, so the couple of push and ground friction shifts the place by less
-//! than friction times the pusher's height, 0.1 mm.
+//! Statics: it tips when its centre of mass is above the edge. The pusher touches it at its foot and
+//! without friction, so the couple of push and ground friction shifts the place by less than friction
+//! times the pusher's height, 0.1 mm.
 
 use super::build::{self, GRAVITY};
 use super::{CheckRow, Tolerance};

@@ -1,9 +1,8 @@
 //! T13: a servo-compliant flange whose command sets off.
 //!
-//! Spring `k` and critical damper act between the command and the flange of mass `m`. If
-//! the command moves at the speed `V` from one instant on, inertia keeps the flange back:
-//! `z'' + 2 w z' + w^2 z = 0` with `z(0) = 0`, `z'(0) = -V` and `w^2 = k/m`, so it trails by
-//! `V t exp(-w t)`, most at `t = 1/w`, and then by nothing.
+//! Spring `k` and critical damper act between the command and the flange of mass `m`. If the command
+//! sets off at the speed `V`, `z'' + 2 w z' + w^2 z = 0` with `z(0) = 0`, `z'(0) = -V` and `w^2 =
+//! k/m`: the flange trails by `V t exp(-w t)`, most at `t = 1/w`, and then by nothing.
 
 use super::build;
 use super::{CheckRow, Tolerance};

@@ -1,12 +1,10 @@
 //! T12: a face that slides or turns on another, as a part does in the grasp.
 //!
-//! A face that slides without turning is held back through its centre of pressure,
-//! whatever its pressure and its torsional friction are (Mason 1986, Int. J. Robot.
-//! Res. 5:53): beside the middle by `e` the friction `mu N` has the moment `mu N e`.
-//! A soft face of patch radius `rho` also resists a turn about its normal: at each point
-//! that bears `N`, force `F` and moment `M` lie within the ellipsoid
-//! `(F/mu N)^2 + (M/mu N rho)^2 = 1` (Howe and Cutkosky 1996, Int. J. Robot. Res. 15:557).
-//! A face of points at the radius `r` from its middle then turns at `mu N sqrt(rho^2 + r^2)`.
+//! A face that slides without turning is held back through its centre of pressure (Mason 1986, Int.
+//! J. Robot. Res. 5:53): beside the middle by `e` the friction `mu N` has the moment `mu N e`. A soft
+//! face of patch radius `rho` also resists a turn: at each point that bears `N`, force `F` and moment
+//! `M` lie within `(F/mu N)^2 + (M/mu N rho)^2 = 1` (Howe and Cutkosky 1996, Int. J. Robot. Res.
+//! 15:557). A face of points at the radius `r` then turns at `mu N sqrt(rho^2 + r^2)`.
 //!
 //! T15: the friction of a contact patch ([`Torsion::Patch`]). It turns at `mu N` times the mean
 //! distance of its area from the centre of pressure, 4.0 mm for 12 x 9 mm, whatever points carry it;
@@ -26,16 +24,15 @@ const PATCH: f64 = 30.0 * MM;
 /// The block: its face is as large as a fingertip's pad.
 const MASS: f64 = 5.0 * GRAM;
 const SIZE: [f64; 3] = [12.0 * MM, 8.4 * MM, 6.0 * MM];
-/// How far beside the middle the load acts, along y, m.
+/// Distances of the load from the middle along y, m.
 const BESIDE: [f64; 2] = [1.5 * MM, 3.0 * MM];
 /// Springs that hold the block: along, N/m, and about the normal, N m/rad.
 const HOLD: f64 = 1e4;
 const TURN: f64 = 10.0;
-/// How fast a hand draws the block, m/s, and turns it, rad/s: as slowly as parts slip in
-/// a grasp, and at the same speed at the patch.
+/// Speeds at which a hand draws the block, m/s, and turns it, rad/s: as slow as slip in a grasp.
 const DRAWN: f64 = 1.0 * MM;
 const TURNED: f64 = DRAWN / PATCH;
-/// How long, s: nine times what an uneven face takes to come to rest in its turn.
+/// Duration, s: nine times what an uneven face takes to come to rest in its turn.
 const DRAWING: f64 = 4.0;
 
 /// Moments of a pad's friction, T12 rows; on an engine without torsional friction only
@@ -44,9 +41,7 @@ pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
     let drawn = |beside: f64| {
         let quantity = format!("moment of a face loaded {} mm beside", beside / MM);
         let case = Case { beside, speed: DRAWN, ..TURNING };
-        let moment = case.hold(engine).map(|held| held.moment / MM);
-        let expected = FRICTION * LOAD * beside / MM;
-        CheckRow::new("T12", quantity, expected, moment, "N mm", Tolerance::Relative(0.02))
+        moment("T12", quantity, FRICTION * LOAD * beside, case.hold(engine))
     };
     let mut rows = BESIDE.map(drawn).to_vec();
     if engine.turns_with_friction() {
@@ -59,17 +54,20 @@ pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
 fn turning(engine: &dyn Engine, speed: f64) -> Vec<CheckRow> {
     let held = Case { speed, spin: TURNED, ..TURNING }.hold(engine);
     let angle = held.as_ref().map_or(0.0, |held| held.angle);
-    let (force, moment) = friction(speed, TURNED, angle);
+    let (force, resisting) = friction(speed, TURNED, angle);
     let how = if speed > 0.0 { "drawn and turned" } else { "turned" };
-    let row = |part: &str, expected, measured, unit| {
-        let quantity = format!("{part} of a face, {how}");
-        CheckRow::new("T12", quantity, expected, measured, unit, Tolerance::Relative(0.02))
-    };
-    let mut rows = vec![row("moment", moment / MM, held.map(|held| held.moment / MM), "N mm")];
+    let mut rows = vec![moment("T12", format!("moment of a face, {how}"), resisting, held)];
     if speed > 0.0 {
-        rows.push(row("force", force, held.map(|held| held.force), "N"));
+        let (quantity, held) = (format!("force of a face, {how}"), held.map(|held| held.force));
+        rows.push(CheckRow::new("T12", quantity, force, held, "N", Tolerance::Relative(0.02)));
     }
     rows
+}
+
+/// Row of a moment, N m.
+fn moment(check: &'static str, quantity: String, expected: f64, held: Measured<Held>) -> CheckRow {
+    let measured = held.map(|held| held.moment / MM);
+    CheckRow::new(check, quantity, expected / MM, measured, "N mm", Tolerance::Relative(0.02))
 }
 
 /// Force along x and moment of the friction of a face that moves at `speed` along x and
@@ -91,21 +89,17 @@ pub fn t15(engine: &dyn Engine) -> Vec<CheckRow> {
     if engine.supports(&patch.scene().0).is_err() {
         return Vec::new();
     }
-    let two_percent = Tolerance::Relative(0.02);
-    let row = |quantity: String, expected: f64, case: Case| {
-        let moment = case.hold(engine).map(|held| held.moment / MM);
-        CheckRow::new("T15", quantity, expected / MM, moment, "N mm", two_percent)
-    };
     let turned = [0.0, BESIDE[0]].map(|beside| {
         let quantity = format!("moment of a patch turned, load {} mm beside", beside / MM);
         let lever = mean_lever([SIZE[0], SIZE[1] - 2.0 * beside]);
         // Not guided, it turns about its centre of pressure.
         let case = Case { beside, spin: TURNED, guide: 0.0, time: 1.0, ..patch };
-        row(quantity, FRICTION * LOAD * lever, case)
+        moment("T15", quantity, FRICTION * LOAD * lever, case.hold(engine))
     });
     let drawn = BESIDE.map(|beside| {
         let quantity = format!("moment of a patch drawn, load {} mm beside", beside / MM);
-        row(quantity, FRICTION * LOAD * beside, Case { beside, speed: DRAWN, ..patch })
+        let case = Case { beside, speed: DRAWN, ..patch };
+        moment("T15", quantity, FRICTION * LOAD * beside, case.hold(engine))
     });
     [turned, drawn].concat()
 }

@@ -6,12 +6,12 @@
 //! the two lines it goes in, beyond them it jams. Here F_x acts along +y and the peg leans so that
 //! the line of +lambda counts; the other is its mirror image.
 //!
-//! The formula is the limit of a small tilt. At a connector's clearance the tilt lowers the
-//! threshold by up to 3 %, so the engine is compared twice: with the formula in a tight hole, and
-//! with the statics of the tilted peg in a hole of the reference clearance.
+//! The formula is the limit of a small tilt, which at a connector's clearance lowers the threshold by
+//! up to 3 %. So the engine is compared with the formula in a tight hole, and with the statics of the
+//! tilted peg in a hole of the reference clearance.
 
-use super::build::{self, Wrench};
-use super::peg::{Peg, REFERENCE};
+use super::build;
+use super::peg::{Peg, REFERENCE, turning};
 use super::{CheckRow, Tolerance};
 use contact::{Diverged, Engine};
 use input::units::MM;
@@ -25,8 +25,7 @@ const INSERTION: f64 = 10.0;
 const CLEARANCE: f64 = 0.02 * MM;
 /// Time under the moment alone, so that both contacts hold, s.
 const PRELOADING: f64 = 0.005;
-/// Time under the full load, s, and the way that counts as sliding, m: a peg
-/// of 20 g goes 0.5 mm in it if 0.1 N of the 10 N is not held.
+/// Time under the full load, s, and the way that counts as sliding, m.
 const LOADING: f64 = 0.02;
 const SLIDING: f64 = 0.1 * MM;
 /// Thresholds are sought between these multiples of the expected one ...
@@ -83,11 +82,11 @@ pub fn t4(engine: &dyn Engine) -> Vec<CheckRow> {
 fn jams(engine: &dyn Engine, peg: &Peg, side: f64, ratio: f64) -> Result<bool, Diverged> {
     let (scene, body) = peg.scene(peg.tilted());
     let mut world = engine.world(&scene);
-    let preload = Wrench::turning(ratio * INSERTION * peg.width / 2.0);
+    let preload = turning(ratio * INSERTION * peg.width / 2.0);
     peg.load(world.as_mut(), body, preload, PRELOADING)?;
     let from = world.pose(body).translation.z;
     let force = INSERTION * Vector3::new(0.0, side, -1.0);
-    peg.load(world.as_mut(), body, Wrench { force, ..preload }, LOADING)?;
+    peg.load(world.as_mut(), body, [force, preload[1]], LOADING)?;
     Ok(from - world.pose(body).translation.z < SLIDING)
 }
 

@@ -7,7 +7,7 @@
 //! The frame of the peg lies in the middle of its tip, its z axis along the
 //! peg; the hole's rim lies in the plane z = 0.
 
-use super::build::{self, Measured, Wrench};
+use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
 use contact::scene::{Body, BodyId, Friction, Motion, Pose, Scene};
 use contact::{Engine, World};
@@ -16,6 +16,8 @@ use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Length of a peg, m: that of a connector.
 const LENGTH: f64 = 20.0 * MM;
+/// Centre of mass of a peg, m.
+const CENTRE: Point3<f64> = Point3::new(0.0, 0.0, LENGTH / 2.0);
 /// Width of a peg in x, m.
 const DEPTH: f64 = 8.0 * MM;
 /// Thickness of the walls, m.
@@ -41,8 +43,7 @@ pub(super) const REFERENCE: Peg =
     Peg { width: 12.0 * MM, hole: 12.1 * MM, inside: 8.0 * MM, friction: 0.3, mass: 20.0 * GRAM };
 
 impl Peg {
-    /// Tilt in two-point contact, rad: the formula above, solved for t with the
-    /// angle and the length of the diagonal from the tip's corner to the rim.
+    /// Tilt in two-point contact, rad: the formula above, solved for t.
     pub fn tilt(&self) -> f64 {
         let diagonal = self.width.hypot(self.inside);
         self.inside.atan2(self.width) - (self.hole / diagonal).acos()
@@ -57,23 +58,13 @@ impl Peg {
         Pose::from_parts(Translation3::new(0.0, self.hole / 2.0 - corner.y, -rim.z), turn)
     }
 
-    /// Pose upright in the middle of the hole.
-    pub fn upright(&self) -> Pose {
-        Pose::translation(0.0, 0.0, -self.inside)
-    }
-
-    /// Centre of mass in the peg's frame.
-    pub fn centre(&self) -> Point3<f64> {
-        Point3::new(0.0, 0.0, LENGTH / 2.0)
-    }
-
     /// Weightless body of the peg.
     pub fn body(&self, pose: Pose) -> Body {
         let size = Vector3::new(DEPTH, self.width, LENGTH);
-        let middle = Pose::translation(0.0, 0.0, LENGTH / 2.0);
+        let middle = Pose::from(Translation3::from(CENTRE.coords));
         Body {
             name: "peg".into(),
-            motion: Motion::Carried(build::box_inertia(self.mass, size, self.centre())),
+            motion: Motion::Carried(build::box_inertia(self.mass, size, CENTRE)),
             pose,
             geoms: vec![build::cuboid("peg", size, middle)],
         }
@@ -99,28 +90,26 @@ impl Peg {
         (scene, peg)
     }
 
-    /// Loads the middle of the tip for a time, s.
+    /// Loads the middle of the tip with a force and a moment for a time, s.
     pub fn load(
         &self,
         world: &mut dyn World,
         peg: BodyId,
-        wrench: Wrench,
+        load: [Vector3<f64>; 2],
         time: f64,
     ) -> Measured<()> {
         for _ in 0..build::steps(world, time) {
             let tip = world.pose(peg) * Point3::origin();
-            wrench.push(world, peg, self.centre(), tip);
+            build::push(world, peg, CENTRE, tip, load);
             world.step()?;
         }
         Ok(())
     }
 }
 
-impl Wrench {
-    /// Moment about x, N m, which turns the peg into two-point contact.
-    pub(super) fn turning(moment: f64) -> Self {
-        Wrench { force: Vector3::zeros(), moment: Vector3::new(moment, 0.0, 0.0) }
-    }
+/// Moment about x, N m, which turns the peg into two-point contact, without a force.
+pub(super) fn turning(moment: f64) -> [Vector3<f64>; 2] {
+    [Vector3::zeros(), Vector3::new(moment, 0.0, 0.0)]
 }
 
 /// Tilt of a peg that a moment turns in its hole, T3 rows.
@@ -131,17 +120,15 @@ pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
     // judged at the length inside at which it came to rest.
     let inside = measured.map_or(peg.inside, |(_, inside)| inside);
     let expected = Peg { inside, ..peg }.tilt();
-    let row = |text: &str, expected, measured, unit, tolerance| {
-        CheckRow::new("T3", text, expected, measured, unit, tolerance)
-    };
     let tilt = measured.map(|(tilt, _)| tilt / 1e-3);
     let inside = measured.map(|(_, inside)| inside / MM);
     // By no more than the tip's corners rise and sink.
     let little = Tolerance::Absolute(peg.width * peg.tilt() / MM);
+    let close = Tolerance::Relative(0.02);
     let hardly = "length inside, which tilting hardly changes";
     vec![
-        row("tilt in two-point contact", expected / 1e-3, tilt, "mrad", Tolerance::Relative(0.02)),
-        row(hardly, peg.inside / MM, inside, "mm", little),
+        CheckRow::new("T3", "tilt in two-point contact", expected / 1e-3, tilt, "mrad", close),
+        CheckRow::new("T3", hardly, peg.inside / MM, inside, "mm", little),
     ]
 }
 
@@ -153,9 +140,9 @@ const RESTING: f64 = 0.05;
 
 /// Tilt and length inside at rest.
 fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
-    let (scene, body) = peg.scene(peg.upright());
+    let (scene, body) = peg.scene(Pose::translation(0.0, 0.0, -peg.inside));
     let mut world = engine.world(&scene);
-    peg.load(world.as_mut(), body, Wrench::turning(TURNING), RESTING)?;
+    peg.load(world.as_mut(), body, turning(TURNING), RESTING)?;
     let pose = world.pose(body);
     let rim = pose.inverse() * Point3::new(0.0, -peg.hole / 2.0, 0.0);
     Ok((pose.rotation.scaled_axis().x, rim.z))
@@ -163,11 +150,10 @@ fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
 
 /// Mass of the plug of T10, kg: an RJ45 plug.
 const LIGHT: f64 = 5.0 * GRAM;
-/// Forces on each of its contacts, N; the second is what an arm at its force
-/// limit of 100 N can wedge a plug with, and shows a contact whose force is bounded.
+/// Forces on each of its contacts, N; an arm at its force limit of 100 N can wedge a plug with the
+/// second.
 const WEDGING: [f64; 2] = [70.0, 200.0];
-/// Largest penetration of a contact under the first force, m: less than the clearance of a
-/// connector, lest plugs pass through rims.
+/// Largest penetration under the first force, m: less than the clearance of a connector.
 const YIELD: f64 = 0.1 * MM;
 
 /// Penetration of a light plug into the walls that it is wedged between, T10 rows: little, and in
@@ -193,8 +179,7 @@ pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
 fn sinking(engine: &dyn Engine, peg: &Peg, force: f64) -> Measured<[f64; 2]> {
     let (scene, body) = peg.scene(peg.tilted());
     let mut world = engine.world(&scene);
-    let wrench = Wrench::turning(force * peg.inside);
-    peg.load(world.as_mut(), body, wrench, RESTING)?;
+    peg.load(world.as_mut(), body, turning(force * peg.inside), RESTING)?;
     let pose = world.pose(body);
     let corner = pose * Point3::new(0.0, peg.width / 2.0, 0.0);
     let rim = pose.inverse() * Point3::new(0.0, -peg.hole / 2.0, 0.0);

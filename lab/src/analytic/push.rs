@@ -1,10 +1,9 @@
 //! T14: the net force of a contact, by which a trial's force stop and peak force go.
 //!
-//! A weightless block is pushed askew against a wall, by a force F at the angle a to the wall's
-//! normal. Statics: while it sticks, tan a < mu, the wall holds against all of it, F cos a along
-//! the normal and F sin a along the wall. Coulomb: once it slides, the wall presses with the same F
-//! cos a and rubs with mu F cos a. Nothing acts across the push. The wall stands askew in the world
-//! and the block on it, so that axes which are taken for others show.
+//! A weightless block is pushed against a wall by a force F at the angle a to the wall's normal.
+//! While it sticks, tan a < mu, the wall holds F cos a along the normal and F sin a along the wall;
+//! once it slides, it rubs with mu F cos a (Coulomb). Nothing acts across the push. Wall and block
+//! stand askew, so that axes which are taken for others show.
 
 use super::build;
 use super::{CheckRow, Tolerance};

@@ -5,7 +5,7 @@
 //! Control 104:65): a force through the centre displaces a held part without
 //! turning it; along a line at a distance L from it, it also turns it by F L/k.
 
-use super::build::{self, Measured, Wrench};
+use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
 use contact::Engine;
 use contact::scene::{Body, BodyId, Motion, Pose, Scene};
@@ -130,10 +130,10 @@ fn held_part(engine: &dyn Engine, finger: &Finger, along: usize, above: f64) -> 
     let rigid = [None; 6];
     build::joint(&mut scene, "grasp", [holder, part], [Pose::identity(); 2], rigid);
     let mut world = engine.world(&scene);
-    let wrench = Wrench::along(along, SIDE_FORCE);
+    let load = [Vector3::ith(along, SIDE_FORCE), Vector3::zeros()];
     let line = Point3::new(0.0, 0.0, above - finger.rcc);
     for _ in 0..build::steps(world.as_ref(), rest_time(finger)) {
-        wrench.push(world.as_mut(), part, Point3::origin(), line);
+        build::push(world.as_mut(), part, Point3::origin(), line, load);
         world.step()?;
     }
     Ok(centre_moved(&world.pose(holder), finger))

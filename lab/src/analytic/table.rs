@@ -2,7 +2,6 @@
 
 use super::{CheckRow, Tolerance};
 use serde_json::{Value, json};
-use std::fmt::Write;
 
 /// Width of the quantities; the rest of a longer one goes to the next line.
 const QUANTITY: usize = 29;
@@ -20,17 +19,15 @@ pub fn table(rows: &[CheckRow]) -> String {
         };
         let verdict = if row.passed { "ok" } else { "FAIL" };
         let (quantity, rest) = broken(&row.quantity);
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "{:<4}{quantity:<QUANTITY$}{:>9}{:>9} {:<6}{error:>9} {allowed:<8}{verdict}",
+        text += &format!(
+            "{:<4}{quantity:<QUANTITY$}{:>9}{:>9} {:<6}{error:>9} {allowed:<8}{verdict}\n",
             row.check,
             number(row.expected),
             number(row.measured),
             row.unit,
         );
         if !rest.is_empty() {
-            let _ = writeln!(text, "      {rest}");
+            text += &format!("      {rest}\n");
         }
     }
     let failed = rows.iter().filter(|row| !row.passed).count();

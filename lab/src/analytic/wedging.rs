@@ -2,10 +2,8 @@
 //!
 //! Whitney 1982 (J. Dyn. Sys. Meas. Control 104:65): two contacts can hold a peg by a force between
 //! them alone if the line through them lies within both friction cones. That line spans the peg's
-//! width d and the length l inside, so a peg wedges only where l/d < mu. Here the force comes from
-//! the wall at +y, which slides and is pressed against the tip's corner; nothing else acts on the
-//! peg. Beyond the threshold the couple of the two normal forces turns the peg upright and the wall
-//! follows.
+//! width d and the length l inside, so a peg wedges only where l/d < mu. Here the sliding wall at +y
+//! presses on the tip's corner; beyond the threshold the normal forces turn the peg upright.
 
 use super::build;
 use super::peg::{Peg, REFERENCE};
@@ -19,14 +17,12 @@ use nalgebra::{Point3, Vector3};
 const FRICTIONS: [f64; 2] = [0.2, 0.3];
 /// Force on the wall, N.
 const SQUEEZE: f64 = 10.0;
-/// The peg, kg: as light as an RJ45 plug. Light parts between heavy ones are
-/// what an iterative solver finds hardest.
+/// The peg, kg: as light as an RJ45 plug, which an iterative solver finds hard.
 const MASS: f64 = 5.0 * GRAM;
 /// The sliding wall, kg, and the damping of its slide, N s/m.
 const WALL_MASS: f64 = 50.0 * GRAM;
 const WALL_DAMPING: f64 = 1.0;
-/// Clearance of the hole, m: many times what the contacts yield. The tilt that
-/// comes with it does not matter, since the rim presses along the flank's normal.
+/// Clearance of the hole, m: many times what the contacts yield.
 const CLEARANCE: f64 = 0.02 * MM;
 /// Time under the force, s.
 const SQUEEZING: f64 = 0.03;

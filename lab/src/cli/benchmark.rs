@@ -10,6 +10,7 @@ use insertion::finger::Finger;
 use insertion::robot::Robot;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
+use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
 use std::time::Instant;
@@ -61,28 +62,30 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             measure(&task, &robot, arguments)
         })
         .collect::<Result<Vec<TaskSpeed>, Failure>>()?;
-    if arguments.json { print_json(&json(arguments, &rows)) } else { print(&table(&rows)) }
+    if !arguments.json {
+        return print(&table(&rows));
+    }
+    print_json(&json!({
+        "robot": arguments.robot,
+        "engine": arguments.engine.name(),
+        "threads": rayon::current_num_threads(),
+        "budget": BUDGET,
+        "tasks": rows,
+    }))
 }
 
 fn measure(task: &Task, robot: &Robot, arguments: &Arguments) -> Result<TaskSpeed, Failure> {
     let finger = Finger::new(COMPLIANCE * N_PER_MM, ASSEMBLY * N_PER_MM);
     let finger = finger.shaped(&task.finger, 0.0);
     let rig = arguments.engine.rig(task, robot, &finger, 1.0).map_err(Failure::input)?;
-    let trials = std::sync::atomic::AtomicU32::new(0);
     let clock = Instant::now();
-    rayon::scope(|scope| {
-        for _ in 0..arguments.repeats {
-            scope.spawn(|_| {
-                let done = tolerance::evaluate(&*rig, &finger, Search::default()).trials;
-                trials.fetch_add(done, std::sync::atomic::Ordering::Relaxed);
-            });
-        }
-    });
+    let trials = |_| tolerance::evaluate(&*rig, &finger, Search::default()).trials;
+    let trials: u32 = (0..arguments.repeats).into_par_iter().map(trials).sum();
     let wall_s = clock.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
     let evaluations_per_min = 60.0 * f64::from(arguments.repeats) / wall_s;
     Ok(TaskSpeed {
         task: task.name.clone(),
-        trials_per_s: f64::from(trials.into_inner()) / wall_s,
+        trials_per_s: f64::from(trials) / wall_s,
         evaluations_per_min,
         study_s: 60.0 * BUDGET / evaluations_per_min,
     })
@@ -100,14 +103,4 @@ fn table(rows: &[TaskSpeed]) -> String {
         );
     }
     text
-}
-
-fn json(arguments: &Arguments, rows: &[TaskSpeed]) -> serde_json::Value {
-    json!({
-        "robot": arguments.robot,
-        "engine": arguments.engine.name(),
-        "threads": rayon::current_num_threads(),
-        "budget": BUDGET,
-        "tasks": rows,
-    })
 }

@@ -52,21 +52,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let name = engine.name();
         return Err(Failure::usage(format!("--engine {name} simulates no contacts to be checked")));
     }
-    let make = |factor: f64| engine.build(factor);
     if arguments.convergence || arguments.searches {
-        return arguments.windows(&|| make(1.0));
+        return arguments.windows();
     }
-    let rows = analytic::run(&make);
+    let rows = analytic::run(&|factor| engine.build(factor));
     let failed = rows.iter().filter(|row| !row.passed).count();
     arguments.show(analytic::table(&rows), &analytic::json(&rows))?;
     verdict("checks", failed, rows.len())
 }
 
 impl Arguments {
-    fn windows(&self, make: &dyn Fn() -> Box<dyn Engine>) -> Result<(), Failure> {
+    fn windows(&self) -> Result<(), Failure> {
         let robot = session::robot(&self.robot)?;
         let ways = if self.convergence { finer } else { searches };
-        let tasks = tasks(&self.task)?.into_iter().map(|task| ways(task, &robot, make()));
+        let engine = || self.engine.build(1.0);
+        let tasks = tasks(&self.task)?.into_iter().map(|task| ways(task, &robot, engine()));
         let tasks = tasks.collect::<Result<Vec<_>, _>>()?;
         let (allowed, way, keys) = match self.convergence {
             true => (ALLOWED_STEPS, "finer", ["production", "refined"]),

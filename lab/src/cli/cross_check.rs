@@ -2,7 +2,7 @@
 
 use super::validate::{Fingers, tasks};
 use super::{Failure, print, print_json};
-use crate::compare::engines::{self, TrialSet};
+use crate::compare::engines;
 use crate::compare::{TaskWays, Way};
 use clap::Args;
 use finger_opt::session::{self, DEFAULT_ROBOT};
@@ -60,19 +60,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // The softest and the stiffest.
     let mut designs = Fingers::Three.designs();
     designs.remove(1);
+    let show = |text: String, json: serde_json::Value| match arguments.json {
+        true => print_json(&json),
+        false => print(&text),
+    };
     if arguments.time {
         let rows = engines::time(&tasks, &designs);
-        return match arguments.json {
-            true => print_json(&engines::time_json(&rows, names)),
-            false => print(&engines::time_text(&rows, names)),
-        };
+        return show(engines::time_text(&rows, names), engines::time_json(&rows, names));
     }
-    let set = if arguments.reduced { TrialSet::Reduced } else { TrialSet::Full };
-    let check = engines::run(&tasks, &designs, set);
-    match arguments.json {
-        true => print_json(&engines::json(&check, names))?,
-        false => print(&engines::text(&check, names))?,
-    }
+    let check = engines::run(&tasks, &designs, arguments.reduced);
+    show(engines::text(&check, names), engines::json(&check, names))?;
     match check.passed() {
         true => Ok(()),
         false => Err(Failure::running(format!("{} do not agree well enough", names.join(" and ")))),

@@ -4,7 +4,6 @@ mod benchmark;
 mod check;
 mod cross_check;
 mod optimizers;
-mod prints;
 mod validate;
 
 use clap::{Parser, Subcommand};
@@ -40,8 +39,6 @@ enum Command {
     Benchmark(benchmark::Arguments),
     #[command(after_help = "Example: lab optimizers --functions branin --optimizers gp")]
     Optimizers(optimizers::Arguments),
-    #[command(after_help = "Example: lab prints --json")]
-    Prints(prints::Arguments),
 }
 
 /// Runs `lab` with these arguments, the program's name first.
@@ -61,7 +58,6 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Validate(arguments) => validate::run(arguments),
         Command::Benchmark(arguments) => benchmark::run(arguments),
         Command::Optimizers(arguments) => optimizers::run(arguments),
-        Command::Prints(arguments) => prints::run(arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

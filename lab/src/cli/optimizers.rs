@@ -1,10 +1,7 @@
 //! `lab optimizers`: evaluations that the optimizers need on problems with known optima.
 
 use super::{Failure, print};
-use crate::problems::{
-    Function, GridProblem, Landscape, csv, markdown, on_function, on_grid, suggestion_times,
-    time_markdown,
-};
+use crate::problems::{Function, GridProblem, Landscape, csv, markdown, on_function, on_grid};
 use ask_tell::OptimizerKind;
 use clap::{Args, ValueEnum};
 use finger_opt::study::write_file;
@@ -33,9 +30,6 @@ pub struct Arguments {
     /// Write every run as CSV
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
-    /// Measure the processor time of the suggestions of `gp` at 200 evaluations, too
-    #[arg(long)]
-    time: bool,
 }
 
 /// Runs the command.
@@ -51,11 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(file) = &arguments.csv {
         write_file(file, &csv(&runs))?;
     }
-    print(&markdown(&runs))?;
-    if arguments.time {
-        print(&format!("\n{}", time_markdown(&suggestion_times())))?;
-    }
-    Ok(())
+    print(&markdown(&runs))
 }
 
 /// Problem of a landscape, named after its file.

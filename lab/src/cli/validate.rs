@@ -1,7 +1,7 @@
 //! `lab validate`: our tolerance windows beside the published ones.
 
 use super::{Failure, print, print_json};
-use crate::compare::fingers::Windows;
+use crate::compare::fingers::windows;
 use crate::compare::published as beside;
 use clap::{Args, ValueEnum};
 use finger_opt::calibration::published::{self, Origin};
@@ -37,7 +37,7 @@ impl Fingers {
 /// Compare our tolerance windows with the published ones.
 ///
 /// Measures the windows of all published designs, with their measured stiffness, by exhaustive
-/// search as in the paper, and writes validation.csv, validation_summary.csv and accuracy.md.
+/// search as in the paper, and writes validation.csv and accuracy.md.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Task: ket8, ket12, rj45, usb, all, or the path of a task file of such a name
@@ -77,15 +77,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let robot = session::robot(&arguments.robot)?;
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
     let fingers = arguments.finger_model.fingers()?;
-    let windows = Windows { fingers: &fingers, robot: &robot, engine: arguments.engine, search };
-    let tables = windows.measure(&tasks, &arguments.fingers.designs()).map_err(Failure::input)?;
-    for (name, text) in [
-        ("validation.csv", beside::csv(&tables)),
-        ("validation_summary.csv", beside::summary_csv(&tables)),
-        ("accuracy.md", beside::accuracy(&tables)),
-    ] {
-        write_file(&arguments.out.join(name), &text)?;
-    }
+    let designs = arguments.fingers.designs();
+    let tables = windows(&fingers, &robot, arguments.engine, search, &tasks, &designs);
+    let tables = tables.map_err(Failure::input)?;
+    let accuracy = beside::accuracy(&tables);
+    write_file(&arguments.out.join("validation.csv"), &beside::csv(&tables))?;
+    write_file(&arguments.out.join("accuracy.md"), &accuracy)?;
     let engine = arguments.engine.name();
     if arguments.json {
         return print_json(&json!({
@@ -93,21 +90,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "engine": engine,
             "search": search_name(search),
             "tasks": beside::json(&tables),
-            "agreement_with_bench": beside::accuracy_json(&tables),
         }));
     }
-    let texts: Vec<String> = tables.iter().map(beside::text).collect();
     print(&format!(
-        "robot {}, engine {engine}, {}; y: compliance, z: assembly, of one finger\n\
-         ends: failure class (1 lost early, 2 missed, 3 jammed, 4 lost)\n\n\
-         {}\nmean error of the range, mm; rank correlation (Spearman); failures matched, %\n\
+        "robot {}, engine {engine}, {}\n\
+         mean error of the range, mm; rank correlation (Spearman); failures matched, %\n\
          starts: nominal ones that insert; bench: the published experiments\n\n{}\n\
          tables are in {}\n",
         robot.name,
         search_name(search),
-        texts.join("\n"),
         // The units stand above.
-        beside::accuracy(&tables).replace(" mm", "").replace(" %", "").replace(" of ", "/"),
+        accuracy.replace(" mm", "").replace(" %", "").replace(" of ", "/"),
         arguments.out.display(),
     ))
 }

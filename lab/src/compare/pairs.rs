@@ -5,7 +5,6 @@ use finger_opt::calibration::statistics::mean;
 use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
 use serde_json::{Value, json};
-use std::fmt::Write;
 
 /// Windows of a finger in two ways.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,10 +81,8 @@ pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
             Some(false) => " FAIL",
         };
         let design = &pair.subject.design;
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "{:<5}{:>4} {:>11}  {:<14}{a:>14}{b:>14}{below:>+5.1}{above:>+5.1}{verdict}",
+        text += &format!(
+            "{:<5}{:>4} {:>11}  {:<14}{a:>14}{b:>14}{below:>+5.1}{above:>+5.1}{verdict}\n",
             pair.subject.task,
             design.design,
             pair.subject.infill(),

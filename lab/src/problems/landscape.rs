@@ -2,6 +2,7 @@
 
 use ask_tell::{Grid, GridPoint};
 use input::InputError;
+use std::collections::BTreeMap;
 
 /// Column of the values; the columns before it are the axes.
 const VALUE: &str = "range_mm";
@@ -10,8 +11,8 @@ const VALUE: &str = "range_mm";
 #[derive(Debug, Clone, PartialEq)]
 pub struct Landscape {
     pub grid: Grid,
-    /// By level of the first axis, then of the second, and so on.
-    values: Vec<Option<f64>>,
+    /// By level of each axis.
+    values: BTreeMap<Vec<u32>, Option<f64>>,
 }
 
 impl Landscape {
@@ -37,10 +38,10 @@ impl Landscape {
         rows.and_then(|rows| Self::of(&rows, axes)).map_err(fail)
     }
 
-    fn of(rows: &[DesignRow], axes: usize) -> Result<Self, String> {
+    fn of(rows: &[(Vec<f64>, Option<f64>)], axes: usize) -> Result<Self, String> {
         let levels: Vec<Vec<f64>> = (0..axes)
             .map(|axis| {
-                let mut levels: Vec<f64> = rows.iter().map(|row| row.at[axis]).collect();
+                let mut levels: Vec<f64> = rows.iter().map(|(at, _)| at[axis]).collect();
                 levels.sort_by(f64::total_cmp);
                 levels.dedup();
                 levels
@@ -50,18 +51,16 @@ impl Landscape {
         if rows.is_empty() || grid.size() != rows.len() as u64 {
             return Err(format!("{} rows for a grid of {} designs", rows.len(), grid.size()));
         }
-        let mut values = vec![None; rows.len()];
-        let mut seen = vec![false; rows.len()];
-        for row in rows {
+        let mut values = BTreeMap::new();
+        for (at, value) in rows {
             // Every number is among the levels: they were made of the rows.
             let level = |(at, levels): (&f64, &Vec<f64>)| levels.partition_point(|l| l < at) as u32;
-            let index = index(&grid, &row.at.iter().zip(&levels).map(level).collect::<Vec<u32>>());
-            if std::mem::replace(&mut seen[index], true) {
-                return Err(format!("two rows of the design {:?}", row.at));
+            let point = at.iter().zip(&levels).map(level).collect();
+            if values.insert(point, *value).is_some() {
+                return Err(format!("two rows of the design {at:?}"));
             }
-            values[index] = row.value;
         }
-        if values.iter().all(Option::is_none) {
+        if values.values().all(Option::is_none) {
             return Err("no design has a value".to_owned());
         }
         Ok(Landscape { grid, values })
@@ -69,25 +68,17 @@ impl Landscape {
 
     /// Range of a design of the grid, mm.
     pub fn value(&self, point: &GridPoint) -> Option<f64> {
-        self.values[index(&self.grid, &point.0)]
+        self.values.get(&point.0).copied().flatten()
     }
 
     /// Largest range, mm.
     pub fn best(&self) -> f64 {
-        self.values.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max)
+        self.values.values().flatten().copied().fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-fn index(grid: &Grid, point: &[u32]) -> usize {
-    point.iter().zip(grid.levels()).fold(0, |index, (&k, &n)| index * n as usize + k as usize)
-}
-
-struct DesignRow {
-    at: Vec<f64>,
-    value: Option<f64>,
-}
-
-fn row(line: &str, axes: usize) -> Option<DesignRow> {
+/// Values of the axes and of the design.
+fn row(line: &str, axes: usize) -> Option<(Vec<f64>, Option<f64>)> {
     let number = |cell: &str| cell.parse::<f64>().ok().filter(|number| number.is_finite());
     let mut cells = line.split(',');
     let at = cells.by_ref().take(axes).map(number).collect::<Option<Vec<f64>>>()?;
@@ -95,7 +86,7 @@ fn row(line: &str, axes: usize) -> Option<DesignRow> {
         "" => None,
         cell => Some(number(cell)?),
     };
-    (at.len() == axes).then_some(DesignRow { at, value })
+    (at.len() == axes).then_some((at, value))
 }
 
 #[cfg(test)]

@@ -6,22 +6,20 @@ mod functions;
 mod landscape;
 mod problem;
 mod runs;
-mod time;
 
 pub use functions::Function;
 pub use landscape::Landscape;
 pub use problem::GridProblem;
 pub use runs::{Runs, csv, markdown};
-pub use time::{suggestion_times, time_markdown};
 
 use ask_tell::{OptimizerKind, build};
-use problem::{CMA_DIMENSIONS, cma_evaluations, is_unbounded};
+use problem::{CMA_DIMENSIONS, cma_evaluations};
 use rayon::prelude::*;
 
 /// Runs of `methods` on a function: of CMA-ES alone in R^n to 1e-8, or of all on a grid.
 pub fn on_function(function: Function, methods: &[OptimizerKind], seeds: u64) -> Vec<Runs> {
-    if !is_unbounded(function) {
-        let problems = GridProblem::of_function(function);
+    let problems = GridProblem::of_function(function);
+    if !problems.is_empty() {
         return problems.iter().flat_map(|problem| on_grid(problem, methods, seeds)).collect();
     }
     let kind = OptimizerKind::CmaEs;

@@ -14,32 +14,30 @@ const SHORTFALL_MM: f64 = 0.1;
 /// Rounding of the ranges, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
+/// Value of a point, if it has one.
+type Value = dyn Fn(&GridPoint) -> Option<f64> + Sync;
+
 /// Problem on a grid: maximisation up to a target, in a limited number of evaluations.
-#[derive(Debug, Clone)]
 pub struct GridProblem {
     pub name: String,
     pub grid: Grid,
-    value: Value,
+    value: Box<Value>,
     target: f64,
     limit: usize,
 }
 
-#[derive(Debug, Clone)]
-enum Value {
-    /// The negated function.
-    Function(Function),
-    Landscape(Landscape),
-}
-
 impl GridProblem {
-    /// Problems of a function; none of a function that is searched off the grid.
+    /// Problems of a function, negated; none of a function that is searched off the grid.
     pub fn of_function(function: Function) -> Vec<Self> {
-        let problem = |goal: &str, dimension, target, limit| GridProblem {
-            name: format!("{}{goal}", function.name()),
-            grid: Grid::new(vec![LEVELS; dimension]),
-            value: Value::Function(function),
-            target,
-            limit,
+        let problem = |goal: &str, dimension, target, limit| {
+            let grid = Grid::new(vec![LEVELS; dimension]);
+            GridProblem {
+                name: format!("{}{goal}", function.name()),
+                grid: grid.clone(),
+                value: Box::new(move |point| Some(-function.value(&grid.unit(point)))),
+                target,
+                limit,
+            }
         };
         match function {
             Function::Branin => vec![
@@ -61,14 +59,7 @@ impl GridProblem {
             grid: landscape.grid.clone(),
             target: landscape.best() - SHORTFALL_MM - ROUNDING_MM,
             limit: LANDSCAPE_LIMIT,
-            value: Value::Landscape(landscape),
-        }
-    }
-
-    fn value(&self, point: &GridPoint) -> Option<f64> {
-        match &self.value {
-            Value::Function(function) => Some(-function.value(&self.grid.unit(point))),
-            Value::Landscape(landscape) => landscape.value(point),
+            value: Box::new(move |point| landscape.value(point)),
         }
     }
 
@@ -76,7 +67,7 @@ impl GridProblem {
     pub fn evaluations(&self, optimizer: &mut dyn Optimizer) -> Option<usize> {
         for evaluation in 1..=self.limit {
             let point = optimizer.ask(1).pop()?;
-            let value = self.value(&point);
+            let value = (self.value)(&point);
             if value.is_some_and(|value| value >= self.target) {
                 return Some(evaluation);
             }
@@ -92,11 +83,6 @@ const CMA_LIMIT: usize = 1_000_000;
 const CMA_TARGET: f64 = 1e-8;
 /// Dimensions of the functions.
 pub(super) const CMA_DIMENSIONS: [usize; 2] = [2, 5];
-
-/// Whether a function is searched by CMA-ES in R^n instead of on a grid.
-pub(super) fn is_unbounded(function: Function) -> bool {
-    !matches!(function, Function::Branin | Function::Hartmann6)
-}
 
 /// Evaluations of BIPOP-CMA-ES to a value below 1e-8, from a uniform point of [-4, 4]^n with
 /// a step size of 2.

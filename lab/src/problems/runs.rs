@@ -1,7 +1,5 @@
 //! Runs over many seeds, and their tables.
 
-use std::fmt::Write;
-
 /// Evaluations to the target of one method on one problem.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Runs {
@@ -43,10 +41,8 @@ pub fn markdown(all: &[Runs]) -> String {
         let mean = runs.mean().map_or("-".to_owned(), |mean| format!("{mean:.0}"));
         let [low, median, high, worst] = [1, 2, 3, 4].map(|q| show(runs.quartile(q)));
         let (done, of) = (runs.reached(), runs.evaluations.len());
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "| {} | {} | {done}/{of} | {mean} | {low} | {median} | {high} | {worst} |",
+        text += &format!(
+            "| {} | {} | {done}/{of} | {mean} | {low} | {median} | {high} | {worst} |\n",
             runs.problem, runs.method
         );
     }
@@ -59,7 +55,7 @@ pub fn csv(all: &[Runs]) -> String {
     for runs in all {
         for (seed, evaluations) in runs.evaluations.iter().enumerate() {
             let evaluations = evaluations.map_or(String::new(), |n| n.to_string());
-            let _ = writeln!(text, "{},{},{seed},{evaluations}", runs.problem, runs.method);
+            text += &format!("{},{},{seed},{evaluations}\n", runs.problem, runs.method);
         }
     }
     text

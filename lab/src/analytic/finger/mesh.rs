@@ -1,7 +1,7 @@
 //! F3: independence of the mesh.
 
 use super::super::{CheckRow, Tolerance};
-use super::{NoFinger, finray9, infill};
+use super::{finray9, infill};
 use finray::elasticity::{PlaneStress, Slab};
 use finray::geometry::Geometry;
 use finray::mechanics::{CROSS_SIZE, SIZE};
@@ -18,16 +18,19 @@ const ROUNDING: f64 = 1e-9;
 
 /// Changes by the mesh, and properties of the matrices, F3 rows.
 pub fn f3() -> Vec<CheckRow> {
-    let found: Vec<_> = DESIGNS.iter().map(|&design| (design, Halved::new(design).ok())).collect();
     let row = |text: &str, measured: Option<f64>, unit, allowed| {
         CheckRow::new("F3", text, 0.0, measured.ok_or(()), unit, Tolerance::Absolute(allowed))
     };
-    let changes = found.iter().map(|([density, direction], halved)| {
+    let found = DESIGNS.map(halved);
+    let changes = DESIGNS.iter().zip(&found).map(|([density, direction], halved)| {
         let text = format!("half the mesh, {density} %, {direction} deg");
-        let change = halved.as_ref().map(|halved| 100.0 * halved.change());
+        let change = halved.as_ref().map(|[coarse, fine]| {
+            let changes = coarse.iter().zip(fine).map(|(coarse, fine)| difference(coarse, fine));
+            100.0 * changes.fold(0.0, f64::max)
+        });
         row(&text, change, "%", CHANGE_PERCENT)
     });
-    let coarse = found.iter().map(|(_, halved)| Some(halved.as_ref()?.coarse));
+    let coarse = found.iter().map(|halved| Some(halved.as_ref()?[0]));
     let all = coarse.collect::<Option<Vec<_>>>().map(|designs| designs.concat());
     let asymmetry = all.as_ref().map(|all| {
         all.iter().map(|matrix| difference(matrix, &matrix.transpose())).fold(0.0, f64::max)
@@ -43,31 +46,19 @@ pub fn f3() -> Vec<CheckRow> {
 }
 
 /// Matrices of a design (pad; pad and roof; across the plane) on a mesh and at half its size.
-struct Halved {
-    coarse: [Matrix3<f64>; 3],
-    fine: [Matrix3<f64>; 3],
-}
-
-impl Halved {
-    fn new(design: [f64; 2]) -> Result<Self, NoFinger> {
-        let geometry = infill(&finray9()?, design)?;
-        Ok(Halved { coarse: matrices(&geometry, 1.0)?, fine: matrices(&geometry, 0.5)? })
-    }
-
-    fn change(&self) -> f64 {
-        let pairs = self.coarse.iter().zip(&self.fine);
-        pairs.map(|(coarse, fine)| difference(coarse, fine)).fold(0.0, f64::max)
-    }
+fn halved(design: [f64; 2]) -> Option<[[Matrix3<f64>; 3]; 2]> {
+    let geometry = infill(&finray9()?, design)?;
+    Some([matrices(&geometry, 1.0)?, matrices(&geometry, 0.5)?])
 }
 
 /// Matrices before they are made exactly symmetric.
-fn matrices(geometry: &Geometry, factor: f64) -> Result<[Matrix3<f64>; 3], NoFinger> {
-    let (slab, fails) = (Slab::of(&geometry.finger), |_| NoFinger::None);
+fn matrices(geometry: &Geometry, factor: f64) -> Option<[Matrix3<f64>; 3]> {
+    let slab = Slab::of(&geometry.finger);
     let (plane, plate) = (PlaneStress(slab), MindlinPlate(slab));
     let bodies = [Body::Pad, Body::PadAndRoof];
-    let [pad, both] = held(geometry, &plane, SIZE * factor, bodies).map_err(fails)?;
-    let [across] = held(geometry, &plate, CROSS_SIZE * factor, [Body::Pad]).map_err(fails)?;
-    Ok([pad, both, across])
+    let [pad, both] = held(geometry, &plane, SIZE * factor, bodies).ok()?;
+    let [across] = held(geometry, &plate, CROSS_SIZE * factor, [Body::Pad]).ok()?;
+    Some([pad, both, across])
 }
 
 /// Largest difference of two matrices, relative to the springs that the entry couples.

@@ -1,9 +1,8 @@
 //! T9: the same trials in two engines.
 //!
-//! Two engines without common contact code should agree on the outcomes of the same scenes. The
-//! trials: of the measured fingers the softest and the stiffest in the direction of compliance, each
-//! on every task, started at fixed distances from both ends of the window that the first engine
-//! finds, inside and outside, and in its middle.
+//! Two engines without common contact code should agree on the outcomes of the same scenes. Trials of
+//! the softest and the stiffest measured finger on every task start at fixed distances from both ends
+//! of the first engine's window, inside and outside, and in its middle.
 
 mod text;
 mod time;
@@ -27,39 +26,20 @@ pub const AGREEMENT: f64 = 0.9;
 /// Largest mean difference of the windows' ends, mm.
 pub const END_DIFFERENCE_MM: f64 = 0.5;
 
-/// Set of trials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TrialSet {
-    /// All trials, and the second engine's windows.
-    Full,
-    /// A few trials for each task, far from the ends, without windows.
-    Reduced,
-}
-
-impl TrialSet {
-    /// Distances from an end on its inner and on its outer side, grid steps.
-    fn distances(self) -> [&'static [OffsetStep]; 2] {
-        match self {
-            TrialSet::Full => [&[1, 3, 10, 20], &[1, 3, 10, 20, 40]],
-            TrialSet::Reduced => [&[10], &[20]],
-        }
-    }
-
-    /// Offsets of a window's trials, grid steps, without those inside that are nearer to the other
-    /// end.
-    pub fn offsets(self, window: &Window) -> Vec<OffsetStep> {
-        let [inside, outside] = self.distances();
-        let (low, high) = (window.negative_steps, window.positive_steps);
-        let middle = (low + high).div_euclid(2);
-        let inner = inside.iter().flat_map(|by| {
-            let far = 2 * by > high - low;
-            [low + by, high - by].into_iter().filter(move |_| !far)
-        });
-        let outer = outside.iter().flat_map(|by| [low - by, high + by]);
-        // Sorted, each once.
-        let all: BTreeSet<_> = inner.chain(outer).chain([middle]).collect();
-        all.into_iter().collect()
-    }
+/// Offsets of the trials about a window, grid steps, without those inside that are nearer to the
+/// other end; if `reduced`, a few far from the ends.
+pub fn offsets(window: &Window, reduced: bool) -> Vec<OffsetStep> {
+    let [inside, outside]: [&[OffsetStep]; 2] = match reduced {
+        false => [&[1, 3, 10, 20], &[1, 3, 10, 20, 40]],
+        true => [&[10], &[20]],
+    };
+    let (low, high) = (window.negative_steps, window.positive_steps);
+    let near = inside.iter().filter(|&by| 2 * by <= high - low);
+    let inner = near.flat_map(|by| [low + by, high - by]);
+    let outer = outside.iter().flat_map(|by| [low - by, high + by]);
+    // Sorted, each once.
+    let all: BTreeSet<_> = inner.chain(outer).chain([(low + high).div_euclid(2)]).collect();
+    all.into_iter().collect()
 }
 
 /// Trial in both engines.
@@ -110,10 +90,11 @@ impl CrossCheck {
     }
 }
 
-/// Results of the set with the first two ways of every task; in parallel over tasks and fingers.
-pub fn run(tasks: &[TaskWays], designs: &[Measurement], set: TrialSet) -> CrossCheck {
+/// Results of the first two ways of every task, in parallel over tasks and fingers; if `reduced`, of
+/// fewer trials and without the windows of the second way.
+pub fn run(tasks: &[TaskWays], designs: &[Measurement], reduced: bool) -> CrossCheck {
     let results = each(tasks, designs, |subject, ways| match ways {
-        [first, second, ..] => in_both(subject, [first, second], set),
+        [first, second, ..] => in_both(subject, [first, second], reduced),
         _ => CrossCheck::default(),
     });
     let mut all = CrossCheck::default();
@@ -124,27 +105,23 @@ pub fn run(tasks: &[TaskWays], designs: &[Measurement], set: TrialSet) -> CrossC
     all
 }
 
-fn in_both(subject: &Subject, ways: [&Way; 2], set: TrialSet) -> CrossCheck {
+fn in_both(subject: &Subject, ways: [&Way; 2], reduced: bool) -> CrossCheck {
     let reference = ways[0].evaluate(&subject.finger);
+    let window = &reference.window;
     let grasped = ways.map(|way| way.rig.grasp(&subject.finger));
     let trial = |offset: OffsetStep| {
         let trials = grasped.each_ref().map(|grasped| grasped.trial(tolerance::offset(offset)));
         TrialPair {
             subject: subject.clone(),
             offset,
-            from_end: from_end(&reference.window, offset),
+            from_end: (window.negative_steps - offset).max(offset - window.positive_steps),
             outcomes: trials.each_ref().map(|trial| trial.outcome),
             tip_mm: tip_distance(&trials),
         }
     };
-    let trials = set.offsets(&reference.window).into_iter().map(trial).collect();
+    let trials = offsets(window, reduced).into_iter().map(trial).collect();
     let pair = || WindowPair::new(subject, ways, [&reference, &ways[1].evaluate(&subject.finger)]);
-    CrossCheck { trials, windows: (set == TrialSet::Full).then(pair).into_iter().collect() }
-}
-
-/// Distance beyond the nearer end, grid steps.
-fn from_end(window: &Window, offset: OffsetStep) -> OffsetStep {
-    (window.negative_steps - offset).max(offset - window.positive_steps)
+    CrossCheck { trials, windows: (!reduced).then(pair).into_iter().collect() }
 }
 
 /// Distance of the tips at the end of a trial that both inserted, mm.

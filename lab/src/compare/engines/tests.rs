@@ -17,14 +17,14 @@ fn window(negative: OffsetStep, positive: OffsetStep) -> Window {
 
 #[test]
 fn offsets_lie_about_both_ends_and_in_the_middle() {
-    let wide = TrialSet::Full.offsets(&window(-60, 20));
+    let wide = offsets(&window(-60, 20), false);
     let negative = [-100, -80, -70, -63, -61, -59, -57, -50, -40];
     let positive = [0, 10, 17, 19, 21, 23, 30, 40, 60];
     assert_eq!(wide, [&negative[..], &[-20], &positive].concat());
     // 1 mm inside is beyond the middle of a window of 1 mm.
-    let narrow = TrialSet::Full.offsets(&window(-3, 7));
+    let narrow = offsets(&window(-3, 7), false);
     assert_eq!(narrow, [-43, -23, -13, -6, -4, -2, 0, 2, 4, 6, 8, 10, 17, 27, 47]);
-    assert_eq!(TrialSet::Reduced.offsets(&window(-60, 20)), [-80, -50, -20, 10, 40]);
+    assert_eq!(offsets(&window(-60, 20), true), [-80, -50, -20, 10, 40]);
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn an_engine_agrees_with_itself() {
     let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
     let tasks = [TaskWays { task, ways: vec![way("fake"), way("again")] }];
     let designs = [designs()[0], designs()[10]];
-    let check = run(&tasks, &designs, TrialSet::Full);
+    let check = run(&tasks, &designs, false);
     assert_eq!((check.agreement(), check.end_difference_mm()), (1.0, Some(0.0)));
     assert!(
         check.passed() && check.trials.iter().all(|pair| pair.tip_mm.is_none_or(|by| by == 0.0))
@@ -47,7 +47,7 @@ fn an_engine_agrees_with_itself() {
     let inserts = |pair: &TrialPair| pair.outcomes[0] == Outcome::Inserted;
     assert!(check.trials.iter().all(|pair| inside(pair) == inserts(pair)));
     assert!(text(&check, ["fake", "again"]).contains("100.0 %"));
-    let reduced = run(&tasks, &designs, TrialSet::Reduced);
+    let reduced = run(&tasks, &designs, true);
     assert_eq!((reduced.trials.len(), reduced.windows.len()), (10, 0));
 }
 

@@ -1,10 +1,9 @@
 //! Time of the same trial in both engines.
 
-use crate::compare::{Subject, TaskWays, Way, subject_json};
+use crate::compare::{Subject, TaskWays, subject_json};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
 use serde_json::{Value, json};
-use std::fmt::Write;
 use std::time::Instant;
 
 /// Runs of each trial, of which the median counts.
@@ -32,34 +31,30 @@ impl Timing {
 /// Times of every design on every task, one after the other on this thread, the engines (the first
 /// two ways of the task) in turn.
 pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
-    let timing = |task: &TaskWays, design: &Measurement| {
-        let [first, second, ..] = &task.ways[..] else { return None };
-        let subject = Subject::new(&task.task.name, &task.task.finger, *design);
-        Some(time_both(subject, [first, second]))
-    };
-    tasks.iter().flat_map(|task| designs.iter().filter_map(move |d| timing(task, d))).collect()
-}
-
-fn time_both(subject: Subject, ways: [&Way; 2]) -> Timing {
-    let mut walls = [Vec::new(), Vec::new()];
-    let mut ends = [(Outcome::Diverged, 0.0); 2];
-    for _ in 0..RUNS {
-        for (i, way) in ways.iter().enumerate() {
-            let clock = Instant::now();
-            let trial = way.rig.grasp(&subject.finger).trial(0.0);
-            walls[i].push(clock.elapsed().as_secs_f64());
-            ends[i] = (trial.outcome, trial.simulated_s);
+    let timing = |on: &TaskWays, design: &Measurement| {
+        let subject = Subject::new(&on.task.name, &on.task.finger, *design);
+        let mut walls = [Vec::new(), Vec::new()];
+        let mut ends = [(Outcome::Diverged, 0.0); 2];
+        for _ in 0..RUNS {
+            for (i, way) in on.ways.iter().take(2).enumerate() {
+                let clock = Instant::now();
+                let trial = way.rig.grasp(&subject.finger).trial(0.0);
+                walls[i].push(clock.elapsed().as_secs_f64());
+                ends[i] = (trial.outcome, trial.simulated_s);
+            }
         }
-    }
-    Timing {
-        subject,
-        outcomes: ends.map(|end| end.0),
-        simulated_s: ends.map(|end| end.1),
-        wall_s: walls.map(|mut walls| {
+        let median = |mut walls: Vec<f64>| {
             walls.sort_by(f64::total_cmp);
             walls[RUNS / 2]
-        }),
-    }
+        };
+        Timing {
+            subject,
+            outcomes: ends.map(|end| end.0),
+            simulated_s: ends.map(|end| end.1),
+            wall_s: walls.map(median),
+        }
+    };
+    tasks.iter().flat_map(|task| designs.iter().map(move |design| timing(task, design))).collect()
 }
 
 /// Table, and the mean ratio.
@@ -73,18 +68,15 @@ pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
     for row in rows {
         let [a, b] = [0, 1].map(|i| format!("{:.3} ({:.2})", row.wall_s[i], row.simulated_s[i]));
         let same = (row.outcomes[0] == Outcome::Inserted) == (row.outcomes[1] == Outcome::Inserted);
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "{:<7}{:<13}{a:>20}{b:>20}{:>8.3}{}",
+        text += &format!(
+            "{:<7}{:<13}{a:>20}{b:>20}{:>8.3}{}\n",
             row.subject.task,
             row.subject.infill(),
             row.ratio(),
             if same { "" } else { "  another outcome" }
         );
     }
-    let _ = writeln!(text, "mean ratio of wall to simulated time: {:.3}", mean_ratio(rows));
-    text
+    text + &format!("mean ratio of wall to simulated time: {:.3}\n", mean_ratio(rows))
 }
 
 /// Times as JSON.

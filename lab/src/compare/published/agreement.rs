@@ -41,7 +41,9 @@ impl Agreement {
         let pairs: Vec<(f64, f64)> =
             readings.iter().filter_map(|(a, b)| Some((a.range_mm?, b.range_mm?))).collect();
         let ends = || {
-            let both = readings.iter().flat_map(|(a, b)| a.failures.into_iter().zip(b.failures));
+            let both = readings.iter().flat_map(|(a, b)| {
+                [(a.failure_negative, b.failure_negative), (a.failure_positive, b.failure_positive)]
+            });
             both.filter(|(_, reference)| reference.is_some())
         };
         let over = |measure: &dyn Fn(f64, f64) -> f64| {
@@ -66,31 +68,7 @@ impl Agreement {
     }
 }
 
-/// The paper's deviation: `|range - reference| / reference`, percent. It gives the last column of the paper's bench tables from the simulated
-/// and the bench range, to the 0.1 % by which those are rounded.
+/// The paper's deviation: `|range - reference| / reference`, percent.
 pub fn deviation_percent(range: f64, reference: f64) -> f64 {
     100.0 * (range - reference).abs() / reference
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_deviation_is_that_of_the_published_tables() {
-        // (simulated mm, bench mm, printed deviation %): rows of all four tables.
-        for (simulated, bench, printed) in [
-            (7.2, 7.6, 5.2),
-            (4.4, 7.8, 43.5),
-            (4.5, 7.8, 42.3),
-            (4.6, 6.6, 30.3),
-            (3.5, 3.2, 9.4),
-            (3.7, 1.5, 146.7),
-            (9.0, 4.7, 91.5),
-            (6.3, 6.1, 3.3),
-        ] {
-            let deviation = deviation_percent(simulated, bench);
-            assert!((deviation - printed).abs() < 0.1, "{deviation} is printed as {printed}");
-        }
-    }
 }

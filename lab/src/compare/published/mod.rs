@@ -1,26 +1,22 @@
 //! Our tolerance windows beside the published ones: tables and statistics, pure functions of windows.
 
-mod accuracy;
 mod agreement;
 mod table;
-mod targets;
 #[cfg(test)]
 mod tests;
-mod text;
 
-pub use accuracy::{accuracy, accuracy_json};
 pub use agreement::Agreement;
-pub use table::{csv, json, summary_csv};
-pub use text::text;
+pub use table::{accuracy, csv, json};
 
 use super::failures;
 use finger_opt::calibration::published::{self, Origin, Published};
 use insertion::evaluation::Window;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::stiffness::Measurement;
+use serde::Serialize;
 
 /// Source of a range and the failures at its ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RangeSource {
     /// This program's simulation.
@@ -31,17 +27,6 @@ pub enum RangeSource {
     Bench,
 }
 
-impl RangeSource {
-    /// Names in text and in files.
-    pub fn names(self) -> [&'static str; 2] {
-        match self {
-            RangeSource::Ours => ["ours", "ours"],
-            RangeSource::Simulation => ["published simulation", "simulation"],
-            RangeSource::Bench => ["bench experiments", "bench"],
-        }
-    }
-}
-
 /// Compared sources, each with its reference.
 pub const COMPARISONS: [(RangeSource, RangeSource); 3] = [
     (RangeSource::Ours, RangeSource::Simulation),
@@ -50,12 +35,12 @@ pub const COMPARISONS: [(RangeSource, RangeSource); 3] = [
 ];
 
 /// Range and failures of a design from one source.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Reading {
     /// Tolerable range, mm; `None` if the source gives none.
     pub range_mm: Option<f64>,
-    /// Failure at the negative and at the positive end of the window.
-    pub failures: [Option<FailureClass>; 2],
+    pub failure_negative: Option<FailureClass>,
+    pub failure_positive: Option<FailureClass>,
 }
 
 /// Measured design with our window and the published readings.
@@ -82,19 +67,9 @@ impl From<&Window> for Reading {
     /// A nominal start that diverges gives no range; one that fails gives 0. Either way there is no
     /// window, so no ends to be credited with.
     fn from(window: &Window) -> Self {
-        Reading {
-            range_mm: (window.nominal != Outcome::Diverged).then(|| window.range_mm()),
-            failures: failures(window),
-        }
-    }
-}
-
-impl From<&Published> for Reading {
-    fn from(row: &Published) -> Self {
-        Reading {
-            range_mm: row.tolerable_range_mm,
-            failures: [row.failure_negative_offset, row.failure_positive_offset],
-        }
+        let range_mm = (window.nominal != Outcome::Diverged).then(|| window.range_mm());
+        let [failure_negative, failure_positive] = failures(window);
+        Reading { range_mm, failure_negative, failure_positive }
     }
 }
 
@@ -109,16 +84,17 @@ pub struct TaskTable {
 impl TaskTable {
     /// Table of our windows beside the published readings of a task.
     pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
-        let [simulation, bench] =
-            [Origin::Simulation, Origin::Bench].map(|origin| published::of_task(task, origin));
-        let find = |rows: &[Published], design| {
-            rows.iter().find(|row| row.design == design).map(Reading::from)
+        let published = [Origin::Simulation, Origin::Bench].map(|of| published::of_task(task, of));
+        let reading = |row: &Published| Reading {
+            range_mm: row.tolerable_range_mm,
+            failure_negative: row.failure_negative_offset,
+            failure_positive: row.failure_positive_offset,
         };
-        let row = |(design, window): (Measurement, Window)| DesignRow {
-            simulation: find(&simulation, design.design),
-            bench: find(&bench, design.design),
-            design,
-            window,
+        let row = |(design, window): (Measurement, Window)| {
+            let [simulation, bench] = published
+                .each_ref()
+                .map(|rows| rows.iter().find(|row| row.design == design.design).map(reading));
+            DesignRow { design, window, simulation, bench }
         };
         TaskTable { task: task.to_owned(), rows: windows.into_iter().map(row).collect() }
     }
@@ -126,10 +102,5 @@ impl TaskTable {
     /// Agreement of each pair of [`COMPARISONS`].
     pub fn agreements(&self) -> [Agreement; 3] {
         COMPARISONS.map(|(source, reference)| Agreement::of(&self.rows, source, reference))
-    }
-
-    /// Designs whose nominal start inserts.
-    pub fn nominal_inserted(&self) -> usize {
-        self.rows.iter().filter(|row| row.window.nominal == Outcome::Inserted).count()
     }
 }

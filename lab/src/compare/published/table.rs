@@ -1,11 +1,10 @@
-//! `validation.csv`, `validation_summary.csv` and the JSON of the command.
+//! `validation.csv`, `accuracy.md` and the JSON of the command.
 
 use super::agreement::deviation_percent;
-use super::targets::targets;
-use super::{Agreement, COMPARISONS, DesignRow, Reading, TaskTable};
+use super::{Agreement, COMPARISONS, DesignRow, RangeSource, TaskTable};
 use crate::compare::{subject_json, window_json};
 use input::units::N_PER_MM;
-use insertion::outcome::Outcome;
+use insertion::outcome::{FailureClass, Outcome};
 use serde_json::{Value, json};
 
 /// Columns of `validation.csv`; a deviation is `|range - reference| / reference`.
@@ -18,128 +17,102 @@ pub const CSV_HEADER: &str = "task,design,infill_density_percent,infill_directio
     error_to_bench_mm,deviation_to_bench_percent,\
     simulation_error_to_bench_mm,simulation_deviation_to_bench_percent";
 
-/// Columns of `validation_summary.csv`.
-pub const SUMMARY_HEADER: &str = "task,compared,reference,designs,mean_absolute_error_mm,\
-    mean_error_mm,mean_deviation_percent,spearman,matched_ends,ends,match_percent";
-
 /// `validation.csv`, a line for each task and design; errors are range minus reference.
 pub fn csv(tables: &[TaskTable]) -> String {
-    let line = |table: &TaskTable, row: &DesignRow| {
-        let mut cells = vec![table.task.clone()];
-        cells.extend(design_cells(row));
-        cells.extend(reading_cells(row));
-        for (source, reference) in COMPARISONS {
-            let range = |source| row.reading(source)?.range_mm;
-            let pair = range(source).zip(range(reference));
-            cells.push(number(pair.map(|(a, b)| a - b), 1));
-            cells.push(number(pair.map(|(a, b)| deviation_percent(a, b)), 1));
-        }
-        cells.join(",")
-    };
-    let lines = tables.iter().flat_map(|t| t.rows.iter().map(move |row| line(t, row)));
-    lines_of(CSV_HEADER, lines)
+    let rows = tables.iter().flat_map(|table| table.rows.iter().map(|row| (&table.task, row)));
+    let lines = rows.map(|(task, row)| format!("{task},{}\n", cells(row).join(",")));
+    format!("{CSV_HEADER}\n") + &lines.collect::<String>()
 }
 
-/// `validation_summary.csv`, a line for each task and comparison.
-pub fn summary_csv(tables: &[TaskTable]) -> String {
-    let line = |table: &TaskTable, found: Agreement| {
-        [
-            table.task.clone(),
-            found.source.names()[1].to_owned(),
-            found.reference.names()[1].to_owned(),
-            found.designs.to_string(),
-            number(found.mean_absolute_error_mm, 3),
-            number(found.mean_error_mm, 3),
-            number(found.mean_deviation_percent, 2),
-            number(found.spearman, 3),
-            found.matched_ends.to_string(),
-            found.ends.to_string(),
-            number(found.match_percent, 1),
-        ]
-        .join(",")
-    };
-    let lines = tables.iter().flat_map(|t| t.agreements().map(|found| line(t, found)));
-    lines_of(SUMMARY_HEADER, lines)
-}
-
-fn lines_of(header: &str, lines: impl Iterator<Item = String>) -> String {
-    [header.to_owned()].into_iter().chain(lines).map(|line| line + "\n").collect()
-}
-
-fn design_cells(row: &DesignRow) -> [String; 5] {
-    let design = &row.design;
-    [
-        design.design.to_string(),
-        design.density_percent.to_string(),
-        design.direction_deg.to_string(),
-        (design.assembly / N_PER_MM).to_string(),
-        (design.compliance / N_PER_MM).to_string(),
-    ]
-}
-
-fn reading_cells(row: &DesignRow) -> Vec<String> {
-    let window = &row.window;
+fn cells(row: &DesignRow) -> Vec<String> {
+    let (design, window) = (&row.design, &row.window);
     let word = |end: Option<Outcome>| match end {
         Some(Outcome::Failed(class)) => class.number().to_string(),
         Some(Outcome::Diverged) => "diverged".to_owned(),
         Some(Outcome::Inserted) | None => String::new(),
     };
-    let nominal = match window.nominal {
-        Outcome::Inserted => "inserted".to_owned(),
-        other => word(Some(other)),
-    };
+    let inserted = window.nominal == Outcome::Inserted;
     // Without a window there are no ends.
-    let end = |end| word(end).repeat(usize::from(window.nominal == Outcome::Inserted));
+    let end = |end| word(end).repeat(usize::from(inserted));
+    let range = |source| row.reading(source).and_then(|reading| reading.range_mm);
     let mut cells = vec![
-        nominal,
+        design.design.to_string(),
+        design.density_percent.to_string(),
+        design.direction_deg.to_string(),
+        (design.assembly / N_PER_MM).to_string(),
+        (design.compliance / N_PER_MM).to_string(),
+        if inserted { "inserted".to_owned() } else { word(Some(window.nominal)) },
         window.negative_mm().to_string(),
         window.positive_mm().to_string(),
-        number(Reading::from(window).range_mm, 1),
+        number(range(RangeSource::Ours)),
         end(window.end_negative),
         end(window.end_positive),
     ];
-    for reading in [row.simulation, row.bench] {
-        cells.push(number(reading.and_then(|r| r.range_mm), 1));
-        let failures = reading.map_or([None; 2], |r| r.failures);
-        cells.extend(failures.map(|c| c.map_or(String::new(), |c| c.number().to_string())));
+    let class =
+        |class: Option<FailureClass>| class.map_or(String::new(), |c| c.number().to_string());
+    for source in [RangeSource::Simulation, RangeSource::Bench] {
+        let found = row.reading(source);
+        cells.push(number(range(source)));
+        cells.push(class(found.and_then(|reading| reading.failure_negative)));
+        cells.push(class(found.and_then(|reading| reading.failure_positive)));
+    }
+    for (source, reference) in COMPARISONS {
+        let pair = range(source).zip(range(reference));
+        cells.push(number(pair.map(|(a, b)| a - b)));
+        cells.push(number(pair.map(|(a, b)| deviation_percent(a, b))));
     }
     cells
 }
 
-/// Cell of a number, empty without a value; never a negative zero.
-fn number(value: Option<f64>, digits: usize) -> String {
-    let scale = 10f64.powi(digits as i32);
-    value.map_or(String::new(), |v| format!("{:.digits$}", (v * scale).round() / scale + 0.0))
+/// Cell of a number with one digit, empty without a value; never a negative zero.
+fn number(value: Option<f64>) -> String {
+    value.map_or(String::new(), |v| format!("{:.1}", (v * 10.0).round() / 10.0 + 0.0))
 }
 
-/// JSON list of tasks with `designs`, `agreement` and `targets`.
+/// A Markdown table with a line for each task; each comparison is mean absolute error of the range,
+/// Spearman's rank correlation, and share of the window ends with the same failure class.
+pub fn accuracy(tables: &[TaskTable]) -> String {
+    let head = "| task | starts | ours - simulation | ours - bench | simulation - bench |\n\
+                | --- | --- | --- | --- | --- |\n";
+    let line = |table: &TaskTable| {
+        let [simulation, bench, published] = table.agreements().map(words);
+        let inserts = |row: &&DesignRow| row.window.nominal == Outcome::Inserted;
+        let (inserted, all) = (table.rows.iter().filter(inserts).count(), table.rows.len());
+        let task = &table.task;
+        format!("| {task} | {inserted} of {all} | {simulation} | {bench} | {published} |\n")
+    };
+    head.to_owned() + &tables.iter().map(line).collect::<String>()
+}
+
+/// `0.99 mm, +0.96, 100.0 %`, with `-` for what is not defined.
+fn words(found: Agreement) -> String {
+    let value =
+        |value: Option<f64>, words: &dyn Fn(f64) -> String| value.map_or("-".to_owned(), words);
+    [
+        value(found.mean_absolute_error_mm, &|error| format!("{error:.2} mm")),
+        value(found.spearman, &|rank| format!("{:+.2}", (100.0 * rank).round() / 100.0 + 0.0)),
+        value(found.match_percent, &|share| format!("{share:.1} %")),
+    ]
+    .join(", ")
+}
+
+/// JSON list of tasks with `designs` and `agreement`.
 pub fn json(tables: &[TaskTable]) -> Value {
+    let design = |task: &str, row: &DesignRow| {
+        let measured = json!({
+            "window": window_json(&row.window),
+            "ours": row.reading(RangeSource::Ours),
+            "simulation": row.simulation,
+            "bench": row.bench,
+        });
+        subject_json(task, &row.design, measured)
+    };
     let task = |table: &TaskTable| {
         json!({
             "task": table.task,
-            "designs": table.rows.iter().map(|row| row_json(&table.task, row)).collect::<Vec<_>>(),
+            "designs": table.rows.iter().map(|row| design(&table.task, row)).collect::<Vec<_>>(),
             "agreement": table.agreements(),
-            "targets": targets(table),
         })
     };
     tables.iter().map(task).collect()
-}
-
-fn row_json(task: &str, row: &DesignRow) -> Value {
-    let reading = |reading: Option<Reading>| {
-        reading.map(|r| {
-            json!({
-                "range_mm": r.range_mm,
-                "failure_negative": r.failures[0],
-                "failure_positive": r.failures[1],
-            })
-        })
-    };
-    let measured = json!({
-        "window": window_json(&row.window),
-        "ours": reading(Some(Reading::from(&row.window))),
-        "simulation": reading(row.simulation),
-        "bench": reading(row.bench),
-    });
-    subject_json(task, &row.design, measured)
 }

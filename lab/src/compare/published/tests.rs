@@ -1,7 +1,6 @@
 //! Tables of known windows.
 
-use super::table::{CSV_HEADER, SUMMARY_HEADER};
-use super::targets::targets;
+use super::table::CSV_HEADER;
 use super::*;
 use crate::compare::Subject;
 use crate::compare::tests::window;
@@ -68,8 +67,6 @@ fn a_divergence_is_no_range_and_no_match() {
     let table = TaskTable::new("usb", published::designs().into_iter().zip([diverged]));
     let found = table.agreements()[0];
     assert_eq!((found.designs, found.matched_ends, found.ends), (0, 0, 2));
-    assert!(text(&table).contains("nominal start x"));
-    assert!(targets(&table).iter().all(|target| !target.met));
     assert!(csv(&[table]).lines().nth(1).unwrap().contains(",diverged,0,0,,,,9.0"));
 }
 
@@ -85,7 +82,7 @@ fn a_failing_nominal_start_is_a_range_of_0_and_no_match() {
 }
 
 #[test]
-fn tables_are_complete_and_fit_a_terminal() {
+fn tables_are_complete() {
     let tables = ["ket8", "ket12", "rj45", "usb"].map(table);
     let found = csv(&tables);
     assert_eq!(found.lines().count(), 1 + 4 * 11);
@@ -97,15 +94,6 @@ fn tables_are_complete_and_fit_a_terminal() {
     let first =
         "ket8,1,10,0,52.4,1.2,inserted,-5.3,2,7.3,3,2,7.2,3,3,7.6,3,3,0.1,1.4,-0.3,3.9,-0.4,5.3";
     assert_eq!(found.lines().nth(1), Some(first));
-    let summary = summary_csv(&tables);
-    assert_eq!(summary.lines().count(), 1 + 4 * 3);
-    assert!(
-        summary.lines().all(|line| line.split(',').count() == SUMMARY_HEADER.split(',').count())
-    );
     let accuracy = accuracy(&tables);
     assert!(accuracy.contains("2.73 mm, +0.00, 100.0 % |\n| rj45 |"), "{accuracy}");
-    assert_eq!(accuracy_json(&tables)[3]["simulation"]["matched_ends"], 6);
-    for text in tables.iter().map(text) {
-        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
-    }
 }

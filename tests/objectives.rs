@@ -73,7 +73,7 @@ fn a_success_rate_is_that_of_the_evaluation_with_the_studys_seed() {
     assert_ne!(other["success_failure_counts"], alone["success_failure_counts"]);
     let rates = column(&studies, "s", "success_rate");
     assert_eq!(rates, column(&studies, "s", "objective_share"));
-    assert!(report(&studies, "s").contains("success rate under drawn errors"));
+    assert!(report(&studies, "s").contains("95 % interval"));
     let text = studies.study("s", 12, &["--objective", "success-rate"]);
     assert!(text.succeeds().contains("95 % interval"), "{}", text.stdout);
 }

@@ -336,9 +336,7 @@ fn the_best_designs_are_walked_beside_the_journal() {
     let by_ribs = recommended["computed"]["tasks"][0]["range_mm"].as_f64().expect("both ranges");
     assert!(by_ribs > 0.0 && walked[0]["range_mm"].as_f64() != Some(by_ribs), "other springs");
     let report = read(&studies.dir("s").join("report.html"));
-    assert!(
-        report.contains(&format!("range with springs from its ribs</dt><dd><b>{by_ribs:.1} mm"))
-    );
+    assert!(report.contains("from its ribs") && report.contains(&format!("{by_ribs:.1} mm (")));
     // The lower end of the closed form moves with friction.
     assert!(firm(recommended) < recommended["range_mm"].as_f64().unwrap());
     assert!(

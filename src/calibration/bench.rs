@@ -2,7 +2,7 @@
 //! parameters and for every finger.
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
-use super::sampler::{Effort, sample};
+use super::sampler::{Settings, sample};
 use rand::Rng;
 use std::cell::RefCell;
 
@@ -108,7 +108,7 @@ impl Posterior {
     pub fn sampled(
         benches: &[Bench<'_>],
         dimension: usize,
-        effort: Effort,
+        settings: &Settings<'_>,
         random: &mut impl Rng,
     ) -> Self {
         let mut parts = vec![Vec::new(); dimension];
@@ -129,6 +129,6 @@ impl Posterior {
             }
             bench.conditioned(state, &known.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
         };
-        Posterior { samples: sample(&parts, &log_likelihood, effort, random) }
+        Posterior { samples: sample(&parts, &log_likelihood, settings, random) }
     }
 }

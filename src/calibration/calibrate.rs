@@ -95,11 +95,11 @@ pub struct Calibration {
 
 impl Calibration {
     /// Calibrates the subjects, and leaves out each measured finger in turn.
-    pub fn new(layout: Layout, subjects: &[Subject], settings: &Settings) -> Self {
+    pub fn new(layout: Layout, subjects: &[Subject], settings: &Settings<'_>) -> Self {
         let benches = layout.benches(subjects);
         let dimension = layout.dimension();
         let mut random = stream(settings.seed, 0, "calibrate");
-        let posterior = Posterior::sampled(&benches, dimension, settings.effort, &mut random);
+        let posterior = Posterior::sampled(&benches, dimension, settings, &mut random);
         let task = |(i, subject): (usize, &Subject)| {
             let mut random = stream(settings.seed, i as u64, "draws");
             let fingers: Vec<usize> = (0..subject.of_space).collect();

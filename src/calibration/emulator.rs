@@ -9,6 +9,7 @@ use insertion::evaluation::template::Impossible;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{Design, Parameter, Space};
 use rayon::prelude::*;
+use std::sync::atomic::Ordering;
 
 /// One simulation in this many is kept to measure the error.
 const FRESH: usize = 8;
@@ -90,6 +91,10 @@ impl Emulator {
         };
         let runs = points.into_par_iter().map(run).collect::<Result<Vec<Run>, Impossible>>()?;
         let simulations = count - count / FRESH;
+        if simulation.stop.load(Ordering::SeqCst) {
+            // Worthless: whoever has set it does not look at what follows.
+            return Err(CalibrationError::NoFit(task.to_owned(), simulations));
+        }
         Emulator::fitted(runs, simulations)
             .ok_or_else(|| CalibrationError::NoFit(task.to_owned(), simulations))
     }

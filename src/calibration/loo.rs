@@ -63,25 +63,33 @@ impl Accuracy {
     }
 }
 
-/// Leaves out each finger with a measured range on one of the benches; the others stay whole.
+/// Most times that a calibration is repeated with fingers left out.
+const MOST_FOLDS: usize = 20;
+
+/// Leaves out each finger with a measured range on one of the benches; the others stay whole. Of more
+/// than [`MOST_FOLDS`] fingers several are left out at a time.
 pub fn leave_one_out(
     benches: &[Bench<'_>],
     task: usize,
     dimension: usize,
-    settings: &Settings,
+    settings: &Settings<'_>,
 ) -> Vec<LeftOut> {
     let known = || benches[task].observations.iter().filter(|one| !one.at_least);
     let fingers: BTreeSet<usize> = known().map(|one| one.finger).collect();
-    let one = |finger: usize| {
-        let of_finger: Vec<f64> =
-            known().filter(|one| one.finger == finger).map(|one| one.range_mm).collect();
+    let fingers: Vec<usize> = fingers.into_iter().collect();
+    let fold = |fold: &[usize]| -> Vec<LeftOut> {
         let mut benches = benches.to_vec();
-        benches[task].observations.retain(|one| one.finger != finger);
-        let mut random = stream(settings.seed, finger as u64, "leave one out");
-        let posterior = Posterior::sampled(&benches, dimension, settings.effort, &mut random);
-        let predicted = predict(&benches[task], &posterior, &[finger], Of::Measurement);
-        let measured_mm = mean(&of_finger)?;
-        Some(LeftOut { finger, measured_mm, predicted: *predicted.first()? })
+        benches[task].observations.retain(|one| !fold.contains(&one.finger));
+        let mut random = stream(settings.seed, fold[0] as u64, "leave one out");
+        let posterior = Posterior::sampled(&benches, dimension, settings, &mut random);
+        let predicted = predict(&benches[task], &posterior, fold, Of::Measurement);
+        let left_out = |(&finger, predicted): (&usize, Predicted)| {
+            let own = known().filter(|one| one.finger == finger).map(|one| one.range_mm);
+            let measured_mm = mean(&own.collect::<Vec<f64>>())?;
+            Some(LeftOut { finger, measured_mm, predicted })
+        };
+        fold.iter().zip(predicted).filter_map(left_out).collect()
     };
-    fingers.into_par_iter().filter_map(one).collect()
+    let size = fingers.len().div_ceil(MOST_FOLDS).max(1);
+    fingers.par_chunks(size).flat_map_iter(fold).collect()
 }

@@ -3,6 +3,7 @@
 
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Length of the sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,11 +18,13 @@ pub struct Effort {
 
 /// Settings of a calibration.
 #[derive(Debug, Clone, Copy)]
-pub struct Settings {
+pub struct Settings<'a> {
     /// Length of the sampling.
     pub effort: Effort,
     /// Names the random streams.
     pub seed: u64,
+    /// Set when it is to end: what it gives is then worthless.
+    pub stop: &'a AtomicBool,
 }
 
 /// Sweeps after which the steps adapt.
@@ -34,9 +37,10 @@ const ACCEPTED: f64 = 0.44;
 pub fn sample(
     parts: &[Vec<usize>],
     log_likelihood: &dyn Fn(usize, &[f64]) -> f64,
-    effort: Effort,
+    settings: &Settings<'_>,
     random: &mut impl Rng,
 ) -> Vec<Vec<f64>> {
+    let effort = settings.effort;
     let dimension = parts.len();
     let count = parts.iter().flatten().max().map_or(0, |last| last + 1);
     let mut state = vec![0.0; dimension];
@@ -45,6 +49,9 @@ pub fn sample(
     let mut accepted = vec![0_usize; dimension];
     let mut kept = Vec::with_capacity(effort.samples);
     for sweep in 0..effort.warm_up + effort.samples * effort.thin {
+        if settings.stop.load(Ordering::SeqCst) {
+            return vec![state];
+        }
         for c in 0..dimension {
             let old = state[c];
             let jump: f64 = random.sample(StandardNormal);

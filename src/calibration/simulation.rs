@@ -28,7 +28,8 @@ pub struct Simulation<'a> {
     pub parameters: Vec<&'a Parameter>,
     /// Where windows are kept, if they are.
     cache: Option<PathBuf>,
-    stop: &'a AtomicBool,
+    /// Set when it is to end: windows are then worthless, and none is kept.
+    pub stop: &'a AtomicBool,
 }
 
 impl<'a> Simulation<'a> {

@@ -3,14 +3,16 @@
 use super::bench::{Bench, Observation, Posterior, Simulator, share};
 use super::predict::{Of, Predicted, draws, predict};
 use super::process::{COORDINATES, Place};
-use super::sampler::Effort;
+use super::sampler::{Effort, Settings};
 use ask_tell::stream::stream;
+use insertion::trial::NEVER;
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 const FINGERS: usize = 20;
 const SCALE_MM: f64 = 5.0;
-const EFFORT: Effort = Effort { warm_up: 200, samples: 150, thin: 3 };
+const SETTINGS: Settings<'_> =
+    Settings { effort: Effort { warm_up: 200, samples: 150, thin: 3 }, seed: 0, stop: &NEVER };
 
 /// A simulator of two parameters, the first of which turns the order of the fingers.
 struct MadeUp {
@@ -48,7 +50,7 @@ impl MadeUp {
 }
 
 fn posterior(bench: &Bench<'_>, random: &mut impl Rng) -> Posterior {
-    Posterior::sampled(std::slice::from_ref(bench), 2 + COORDINATES, EFFORT, random)
+    Posterior::sampled(std::slice::from_ref(bench), 2 + COORDINATES, &SETTINGS, random)
 }
 
 /// One made-up bench after its calibration.

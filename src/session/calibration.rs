@@ -47,13 +47,13 @@ pub struct Calibrated {
 }
 
 /// Tasks with all that is needed to calibrate them.
-pub struct Prepared {
+pub struct Prepared<'a> {
     /// The tasks' fingers, in order.
     pub subjects: Vec<Subject>,
     /// What each coordinate is.
     pub layout: Layout,
     /// How to sample.
-    pub settings: Settings,
+    pub settings: Settings<'a>,
 }
 
 impl CalibrateRequest {
@@ -76,6 +76,7 @@ impl CalibrateRequest {
     pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Calibrated, Failure> {
         let Prepared { subjects, layout, settings, .. } = self.prepare(&[], stop, watch)?;
         let found = Calibration::new(layout, &subjects, &settings);
+        not_stopped(stop)?;
         Ok(Calibrated { subjects, found })
     }
 
@@ -84,12 +85,12 @@ impl CalibrateRequest {
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn prepare(
+    pub fn prepare<'a>(
         &self,
         more: &[Design],
-        stop: &AtomicBool,
+        stop: &'a AtomicBool,
         watch: &mut Watch<'_>,
-    ) -> Result<Prepared, Failure> {
+    ) -> Result<Prepared<'a>, Failure> {
         let setup = self.setup.setup()?;
         let experiments = measured::read(&self.measurements, &setup.task_names())?;
         let priors = measured::priors(&find("file of priors", PRIORS, &self.priors)?)?;
@@ -103,7 +104,7 @@ impl CalibrateRequest {
             stop,
         };
         let (subjects, layout) = ground.subjects(&self.measurements, &experiments, more, watch)?;
-        Ok(Prepared { subjects, layout, settings: settings(effort, self.seed) })
+        Ok(Prepared { subjects, layout, settings: settings(effort, self.seed, stop) })
     }
 }
 

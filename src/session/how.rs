@@ -7,6 +7,7 @@ use crate::study::{BenchEffort, Cache, Conclusion, IfChanged};
 use rayon::ThreadPool;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 /// Folder of the cache unless another is named.
 const CACHE: &str = "results/.cache";
@@ -77,9 +78,9 @@ impl EffortRequest {
 }
 
 /// How to sample.
-pub(super) fn settings(effort: BenchEffort, seed: u64) -> Settings {
+pub(super) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Settings<'_> {
     let effort = Effort { warm_up: WARM_UP, samples: usize::from(effort.samples), thin: THIN };
-    Settings { effort, seed }
+    Settings { effort, seed, stop }
 }
 
 /// How a study is run, as opposed to what it measures.

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::calibration::CalibrateRequest;
-use super::failure::within;
+use super::failure::{not_stopped, within};
 use super::{Prepared, Watch};
 use crate::calibration::bench::Posterior;
 use crate::calibration::next::{Advice, Question, advise};
@@ -77,13 +77,14 @@ impl NextRequest {
         };
         let mut prepared = self.calibration.prepare(&published, stop, watch)?;
         let advice = self.advise(&prepared, &published, cost_mm)?;
+        not_stopped(stop)?;
         let subject = prepared.subjects.swap_remove(0);
         Ok(Advised { subject, advice })
     }
 
     fn advise(
         &self,
-        prepared: &Prepared,
+        prepared: &Prepared<'_>,
         published: &[Design],
         cost_mm: f64,
     ) -> Result<Advice, Failure> {
@@ -96,9 +97,9 @@ impl NextRequest {
                 published.iter().filter_map(|design| subject.finger(design)).collect()
             }
         };
-        let mut random = stream(prepared.settings.seed, 0, "next");
-        let (dimension, effort) = (prepared.layout.dimension(), prepared.settings.effort);
-        let posterior = Posterior::sampled(&benches, dimension, effort, &mut random);
+        let (dimension, settings) = (prepared.layout.dimension(), &prepared.settings);
+        let mut random = stream(settings.seed, 0, "next");
+        let posterior = Posterior::sampled(&benches, dimension, settings, &mut random);
         let count = usize::from(self.count);
         let question = Question { among: &among, count, cost_mm, draws: DRAWS };
         Ok(advise(bench, &posterior, &question, &mut random))

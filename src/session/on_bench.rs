@@ -70,7 +70,9 @@ fn all(
     watch: &mut Watch<'_>,
 ) -> Result<(OnBench, String), Failure> {
     let (subjects, layout) = ground.subjects(file, experiments, &[], watch)?;
-    let calibration = Calibration::new(layout, &subjects, &settings(effort, ground.seed));
+    let calibration =
+        Calibration::new(layout, &subjects, &settings(effort, ground.seed, ground.stop));
+    not_stopped(ground.stop)?;
     let nothing = || Failure::running("the space has no finger to predict");
     let (subject, result) = subjects.first().zip(calibration.tasks.first()).ok_or_else(nothing)?;
     let best = by_range(result).first().map(|best| best.finger).ok_or_else(nothing)?;

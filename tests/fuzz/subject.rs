@@ -5,12 +5,17 @@ use super::mutation::{Mutation, mutated};
 use super::process::{Ended, no_number, run};
 use anyhow::{Context, Result, bail, ensure};
 use finger_opt::connector::mesh::read;
+use finger_opt::session::{
+    Failure, NotTaken, OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform,
+};
+use insertion::trial::NEVER;
+use insertion::trial::engine::EngineKind;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Names of what a case is about.
 pub const KINDS: &str = "task space robot uncertainty stiffness finger config journal \
-    sealed-journal walk ask-tell command-line trial measurements priors mesh";
+    sealed-journal walk ask-tell command-line trial measurements loop priors mesh mesh-size worker";
 
 /// Outcome of a case that is as it should be.
 type How = Result<&'static str>;
@@ -142,6 +147,16 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
                 _ => ended(&format!("measure check --json {path}")),
             }
         }
+        // Measured, changed, measured again.
+        "loop" => {
+            let few = "--task ket8 --simulations 16 --samples 20 --measurements";
+            let head = include_str!("../../data/published_bench.csv").lines().take(3 + number % 10);
+            let head: String = head.map(|line| line.to_owned() + "\n").collect();
+            let whole = format!("{folder}/whole.csv");
+            fs::write(&whole, &head)?;
+            study(format!("{few} {whole}"))?;
+            study(format!("{few} {} --accept-changed", file(&head, "f.csv")?))
+        }
         "priors" => {
             let priors = file(include_str!("../../priors/bench.toml"), "f.toml")?;
             ended(&format!("{CALIBRATE} --measurements published --priors {priors}"))
@@ -158,8 +173,75 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
                  --socket {socket} --out {folder}/task.toml"
             ))
         }
+        "mesh-size" => {
+            let plug = format!("{folder}/plug.stl");
+            fs::write(&plug, lathe(3 + number % 400, 1 + number / 400 % 100))?;
+            let socket = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/meshes/keyed-socket.stl");
+            ended(&format!(
+                "task import --engine fake --json --unit mm --resolution 32 --plug {plug} \
+                 --socket {socket} --out {folder}/task.toml"
+            ))
+        }
+        "worker" => lied_to(mutations, &out),
         other => bail!("no kind is called {other}"),
     }
+}
+
+/// A round peg with a domed tip of so many rings, of so many flats, as a text STL.
+fn lathe(flats: usize, rings: usize) -> String {
+    let dome = (0..=rings).map(|j| std::f64::consts::FRAC_PI_2 * j as f64 / rings as f64);
+    let mut profile: Vec<[f64; 2]> = dome.map(|a| [4.0 * a.sin(), 4.0 - 4.0 * a.cos()]).collect();
+    profile.extend([[4.0, 12.0], [7.0, 12.0], [7.0, 30.0], [0.0, 30.0]]);
+    let corner = |i: usize, k: usize| {
+        let (a, [r, z]) = (std::f64::consts::TAU * (k % flats) as f64 / flats as f64, profile[i]);
+        format!("vertex {} {} {z}\n", r * a.cos(), r * a.sin())
+    };
+    let mut text = "solid s\n".to_owned();
+    for (i, k) in (1..profile.len()).flat_map(|i| (0..flats).map(move |k| (i, k))) {
+        let [a, b, c, d] =
+            [(i - 1, k), (i - 1, k + 1), (i, k + 1), (i, k)].map(|(i, k)| corner(i, k));
+        for face in [[&a, &b, &c], [&a, &c, &d]] {
+            text += &format!("facet\n{}{}{}endfacet\n", face[0], face[1], face[2]);
+        }
+    }
+    text
+}
+
+/// A study whose worker lies: what is believed of it can be read again.
+fn lied_to(mutations: &[Mutation], out: &Path) -> How {
+    let tasks = TaskSource::list("usb");
+    let setup = SetupRequest { tasks, engine: EngineKind::Fake, ..SetupRequest::default() };
+    let request = StudyRequest { out: Some(out.to_owned()), ..StudyRequest::new(setup, 3) };
+    let failed = |failure: Failure| anyhow::anyhow!("{failure}");
+    let mut guided = request.open(None).and_then(OpenStudy::guided).map_err(failed)?;
+    let mut how = "accepted";
+    loop {
+        let works = match guided.order().map_err(failed)? {
+            Order::Measure(works) => works,
+            Order::Wait => bail!("it waits for a result that nobody was asked for"),
+            Order::Finish(ending) => {
+                guided.finish(ending, &NEVER).map_err(failed)?;
+                break;
+            }
+        };
+        for (proposal, work) in works {
+            let result = perform(&work, "a worker", &NEVER).map_err(failed)?;
+            let lie = mutated(std::str::from_utf8(&result)?, mutations);
+            let lie = sealed(&String::from_utf8_lossy(&lie));
+            match guided.take(proposal, lie.as_bytes()) {
+                Ok(_) => {}
+                Err(NotTaken::Failed(failure)) => return Err(failed(failure)),
+                Err(NotTaken::Refused(_)) => {
+                    how = "refused";
+                    let taken = guided.take(proposal, &result);
+                    ensure!(matches!(taken, Ok(true)), "the true result is refused");
+                }
+            }
+        }
+    }
+    drop(guided);
+    read_again(out)?;
+    Ok(how)
 }
 
 /// As little of it as there may be, of the formula in place of an engine.

@@ -305,6 +305,7 @@ impl Space {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     const GOOD: &str = r#"
 name = "s"
@@ -356,6 +357,33 @@ source = "paper"
         }
         let label = Design::infill(20.0, 7.5).labelled();
         assert_eq!(label, "infill density 20 %, infill direction 7.5°");
+    }
+
+    proptest! {
+        /// Whatever is accepted has levels that can be counted, and each is the nearest to its value.
+        #[test]
+        fn accepted_levels_are_few_and_found_again(
+            low in -1e6..1e6f64,
+            span in 0..9u32,
+            exponent in -7..7i32,
+            log in any::<bool>(),
+            share in 0.0..=1.0f64,
+        ) {
+            let step = libm::pow(10.0, f64::from(exponent)) + f64::from(u32::from(log));
+            let high = if log { low * libm::pow(step, f64::from(span)) } else { low + f64::from(span) * step };
+            let (scale, source) = (if log { Scale::Log } else { Scale::Linear }, String::new());
+            let parameter = Parameter { key: "task.x".to_owned(), low, high, step, scale, source };
+            let raw = RawSpace { name: String::new(), description: String::new(), parameter: vec![parameter] };
+            if let Ok(space) = Space::check(raw, "s.toml") {
+                let parameter = &space.parameters[0];
+                prop_assert!((1..=1_000_001).contains(&parameter.levels()));
+                let level = (share * f64::from(parameter.levels() - 1)) as u32;
+                // Values are rounded to nine decimals, on a log scale to four digits.
+                let nearest = parameter.nearest(parameter.value(level));
+                prop_assert!(log || nearest == level);
+                prop_assert!(nearest < parameter.levels());
+            }
+        }
     }
 
     #[test]

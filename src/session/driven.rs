@@ -6,7 +6,7 @@ use super::finger::FingerRequest;
 use super::request::SetupRequest;
 use input::units::MM;
 use insertion::evaluation::tolerance::offset;
-use insertion::trial::{Driven, State};
+use insertion::trial::{Driven, Grasp, State};
 use nalgebra::Vector3;
 use std::sync::atomic::AtomicBool;
 
@@ -18,10 +18,11 @@ pub struct Insertion {
 }
 
 impl Insertion {
-    /// A part between these fingers; a start that is taught is looked for until `stop` is set.
+    /// A part between these fingers.
     ///
     /// # Errors
-    /// If task, robot and finger cannot be simulated, or the engine simulates nothing.
+    /// If task, robot and finger cannot be simulated, or the engine simulates nothing; if `stop` is
+    /// set meanwhile.
     pub fn new(
         setup: &SetupRequest,
         finger: &FingerRequest,
@@ -30,13 +31,14 @@ impl Insertion {
         let setup = setup.setup()?;
         let specimen = finger.choose(&setup)?.specimen;
         let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
-        not_stopped(stop)?;
         let rig = setup.evaluator.rig(&specimen, None, 1.0).map_err(Failure::input)?;
-        let driven = rig.driven(&specimen.finger).ok_or_else(|| {
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let driven = rig.driven(grasp).ok_or_else(|| {
             Failure::usage(
                 "this engine simulates nothing that could be driven; use --engine direct",
             )
         })?;
+        not_stopped(stop)?;
         Ok(Insertion { driven, taught: taught.map_or(0.0, offset) })
     }
 

@@ -102,25 +102,32 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// An independent copy that goes on bit for bit alike.
-    pub fn copy(&self) -> Attempt<'a> {
+    /// An independent copy that goes on bit for bit alike, until `stop` is set.
+    pub fn copy<'b>(&self, stop: &'b AtomicBool) -> Attempt<'b> {
         Attempt {
             robot: Arc::clone(&self.robot),
-            stop: self.stop,
+            stop,
             task: Arc::clone(&self.task),
             cell: self.cell.clone(),
             world: self.world.snapshot(),
+            target: self.target,
+            stage: self.stage,
+            begun: self.begun,
+            yaw: self.yaw,
+            socket: self.socket,
+            time: self.time,
+            grasp: self.grasp,
+            watch: self.watch,
             edge: self.edge.clone(),
             phases: self.phases.clone(),
             trace: self.trace.clone(),
             recorder: self.recorder.clone(),
-            ..*self
         }
     }
 
     /// A copy with the start shifted by `offset` metres along y.
     pub fn shifted(&self, offset: f64) -> Attempt<'a> {
-        let mut shifted = self.copy();
+        let mut shifted = self.copy(self.stop);
         // Shifting the start by y is shifting the socket by -y: the part has
         // touched nothing of it yet. So all offsets share grasp and approach.
         let socket = Pose::translation(0.0, -offset, 0.0) * turned(self.yaw);

@@ -122,15 +122,15 @@ pub trait Rig: Send + Sync {
         self.hold(Grasp::of(finger))
     }
 
-    /// The trial of such a pair of fingers with the start shifted by `offset` metres along y, filmed
-    /// from the grasp on; `None` if there is nothing to be seen.
-    fn record(&self, _finger: &Finger, _offset: f64) -> Option<Recording> {
+    /// The trial of such a grasp with the start shifted by `offset` metres along y, filmed from the
+    /// grasp on; `None` if there is nothing to be seen.
+    fn record(&self, _grasp: Grasp<'_>, _offset: f64) -> Option<Recording> {
         None
     }
 
-    /// The trial of such a pair of fingers whose moves the caller commands; `None` where nothing
-    /// is simulated.
-    fn driven(&self, _finger: &Finger) -> Option<Driven> {
+    /// The trial of such a grasp whose moves the caller commands, once it is made whatever becomes of
+    /// the grasp's flag; `None` where nothing is simulated.
+    fn driven(&self, _grasp: Grasp<'_>) -> Option<Driven> {
         None
     }
 }

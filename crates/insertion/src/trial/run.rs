@@ -107,9 +107,9 @@ impl Rig for EngineRig {
         Box::new(Ready { rig: self, grasp, prepared, halved: OnceLock::new() })
     }
 
-    fn record(&self, finger: &Finger, offset: f64) -> Option<Recording> {
+    fn record(&self, grasp: Grasp<'_>, offset: f64) -> Option<Recording> {
         let by = |engine: &dyn Engine| {
-            let prepared = self.prepare(engine, Grasp::of(finger), Some(Recorder::default()));
+            let prepared = self.prepare(engine, grasp, Some(Recorder::default()));
             let (trial, _, frames) = prepared.watched(offset, None);
             Recording::new(trial, frames)
         };
@@ -121,9 +121,9 @@ impl Rig for EngineRig {
         Some(Recording { trial: Trial { retried: true, ..again.trial }, ..again })
     }
 
-    fn driven(&self, finger: &Finger) -> Option<Driven> {
-        let ready = self.prepare(&*self.engine, Grasp::of(finger), None);
-        Some(Driven::new(ready.attempt, ready.end))
+    fn driven(&self, grasp: Grasp<'_>) -> Option<Driven> {
+        let ready = self.prepare(&*self.engine, grasp, None);
+        Some(Driven::new(&ready.attempt, ready.end))
     }
 }
 
@@ -245,6 +245,8 @@ mod tests {
         stop.store(true, Ordering::SeqCst);
         let after_the_grasp = grasped.trial(0.0);
         assert!(after_the_grasp.simulated_s < 1.5, "nothing but grasp and approach");
+        assert_eq!(rig.record(grasp, 0.0).unwrap().trial.simulated_s, 0.0);
+        assert_eq!(rig.driven(grasp).unwrap().start(0.0).outcome, Some(Outcome::Diverged));
     }
 
     #[test]
@@ -302,7 +304,7 @@ mod tests {
     #[test]
     fn a_recorded_trial_is_the_same_trial() {
         let (rig, finger) = (rig(task("ket8")), finger(2.6, 45.0));
-        let recording = rig.record(&finger, 5e-4).unwrap();
+        let recording = rig.record(Grasp::of(&finger), 5e-4).unwrap();
         assert_eq!(recording.trial, rig.grasp(&finger).trial(5e-4));
         let frames = &recording.frames;
         let last = frames.last().unwrap();

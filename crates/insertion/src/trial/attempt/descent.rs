@@ -32,7 +32,7 @@ impl<'a> Attempt<'a> {
         if phase.stage != Stage::Search || !matches!(phase.ending, Ending::Touch { .. }) {
             return None;
         }
-        let mut copy = self.copy();
+        let mut copy = self.copy(self.stop);
         copy.stage = phase.stage;
         let motion = copy.motion(phase);
         let mut steps = 0;

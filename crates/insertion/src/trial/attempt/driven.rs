@@ -4,6 +4,7 @@
 use super::{Attempt, REST, Stop};
 use crate::outcome::Outcome;
 use crate::task::{Hold, Stage};
+use crate::trial::NEVER;
 use crate::trial::classify::{Facts, classify};
 use input::units::{DEG, MM};
 use nalgebra::Vector3;
@@ -49,8 +50,8 @@ pub struct State {
 }
 
 impl Driven {
-    pub(in crate::trial) fn new(ready: Attempt<'static>, prepared: Result<(), Stop>) -> Self {
-        let attempt = ready.copy();
+    pub(in crate::trial) fn new(ready: &Attempt<'_>, prepared: Result<(), Stop>) -> Self {
+        let [ready, attempt] = [ready.copy(&NEVER), ready.copy(&NEVER)];
         let mut driven = Driven { ready, prepared, attempt, end: Ok(()), seated_s: 0.0 };
         driven.start(0.0);
         driven
@@ -132,10 +133,10 @@ mod tests {
     use super::*;
     use crate::fixtures::{finger, rig, task};
     use crate::outcome::FailureClass;
-    use crate::trial::Rig;
+    use crate::trial::{Grasp, Rig};
 
     fn driven() -> Driven {
-        rig(task("ket8")).driven(&finger(2.6, 45.0)).unwrap()
+        rig(task("ket8")).driven(Grasp::of(&finger(2.6, 45.0))).unwrap()
     }
 
     #[test]

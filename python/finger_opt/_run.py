@@ -22,6 +22,8 @@ class Performer:
 
     def __init__(self) -> None:
         self.stop = _native.Stop()
+        # Dask names tasks by it.
+        self.__name__ = "perform"
 
     def __call__(self, work: bytes) -> bytes:
         return bytes(_native.perform(work, f"{socket.gethostname()}:{os.getpid()}", self.stop))

@@ -286,6 +286,7 @@ def command() -> int:
         open_streams()
         for name in STOPS:
             signal.signal(name, stop_once)
+        # The program has begun this process, and holds the other end of its input.
         if "FINGER_OPT_SOURCES" in os.environ:
             threading.Thread(target=watch_input, daemon=True).start()
         return main(sys.argv[1:])

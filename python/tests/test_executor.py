@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import finger_opt as fo
+from finger_opt.executors import Processes
 from test_study import journal
 
 #: How long processes may take to end, s.
@@ -85,6 +86,17 @@ def test_a_signal_to_the_program_alone_ends_it_and_all_that_it_began(name, tmp_p
     assert goes_on(tmp_path) == expected
 
 
+def test_ctrl_c_in_a_terminal_is_no_more_than_one(tmp_path, expected):
+    process = begun(tmp_path, "processes:2")
+    others = below(process.pid)
+    # All that the terminal runs get it.
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.wait(PATIENCE_S) == 1 and all_end(others)
+    said = process.stderr.read()
+    assert said.count("interrupted;") == 1 and "Traceback" not in said, said
+    assert goes_on(tmp_path) == expected
+
+
 def test_the_workers_end_when_their_driver_is_killed(tmp_path, expected):
     process = begun(tmp_path, "processes:2")
     *others, driver = below(process.pid)
@@ -103,6 +115,19 @@ def test_a_lost_worker_is_replaced(tmp_path, expected):
     os.kill(workers[-1], signal.SIGKILL)
     assert process.wait(60) == 0, process.stderr.read()
     assert journal(tmp_path / "study") == expected
+
+
+class Deadly(Processes):
+    """Its processes end with whatever they are given."""
+
+    def submit(self, fn, /, *args, **kwargs):
+        return super().submit(os._exit, 3)
+
+
+def test_workers_that_are_always_lost_end_the_study(tmp_path, fake):
+    study = fo.Study.create("rj45", budget=4, batch=4, out=tmp_path / "study", no_cache=True, **fake)
+    with Deadly(2) as deadly, pytest.raises(fo.RunError, match="(?s)was lost 3 times.*BrokenProcessPool.*resume"):
+        study.run(deadly, progress=False, retries=2)
 
 
 @pytest.mark.parametrize("streams", ["2>/dev/full", "2>&-", "2>&1 >/dev/null | head -c 1", "0<&- >&- 2>&-"])

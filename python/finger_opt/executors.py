@@ -29,8 +29,6 @@ from ._shell import open_streams
 LOOK = 1.0
 #: How often Slurm is asked which jobs it still has, s.
 ASK = 30.0
-
-
 #: Most processes and most jobs.
 PROCESSES, JOBS = 1024, 10_000
 

@@ -469,7 +469,7 @@ fn a_latch_snaps_behind_its_lips() {
     let hinge = task.plug.latch.as_ref().unwrap().hinge;
     for robot in ["servo", "ur5e_position"] {
         let rig = rig(task.clone(), robot);
-        let recording = rig.record(&finger(2.6, 45.0), 0.0).unwrap();
+        let recording = rig.record(Grasp::of(&finger(2.6, 45.0)), 0.0).unwrap();
         assert_eq!(recording.trial.outcome, Outcome::Inserted, "{:?}", recording.trial);
         let turns = recording.frames.iter().map(|frame| {
             let bent = frame.poses.plug.inverse() * frame.poses.latch.unwrap();

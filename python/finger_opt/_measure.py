@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import html
 import json
+import os
 from typing import Any
 
 import numpy as np
 
 from . import _native
-from ._task import Task, sources
+from ._task import Given, sources
 
 
 class Record(dict[str, Any]):
@@ -67,7 +68,7 @@ class Trial(Record):
 
 
 def evaluate(
-    task: str | Task,
+    task: Given,
     density: float | None = None,
     direction: float | None = None,
     **settings: Any,
@@ -87,7 +88,7 @@ def evaluate(
 
 
 def trial(
-    task: str | Task,
+    task: Given,
     density: float | None = None,
     direction: float | None = None,
     offset_mm: float = 0.0,
@@ -113,7 +114,7 @@ def stiffness(
     density: float | None = None,
     direction: float | None = None,
     *,
-    stiffness_data: str | None = None,
+    stiffness_data: str | os.PathLike[str] | None = None,
 ) -> Record:
     """The stiffness predicted for an infill, or, without one, how well the model fits.
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable, Mapping, Sequence
+from numbers import Integral
 from typing import Any
 
 from . import _native
+from ._json import dumps
 
 
 class Point(dict[str, float]):
@@ -37,14 +40,14 @@ class Optimizer:
 
     def __init__(
         self,
-        space: str | Mapping[str, Sequence[float]] | Iterable[Mapping[str, Any]],
+        space: str | os.PathLike[str] | Mapping[str, Sequence[float]] | Iterable[Mapping[str, Any]],
         optimizer: str = "gp",
         seed: int = 0,
         *,
         direction: str = "maximize",
         batch: int | None = None,
     ) -> None:
-        if isinstance(space, str):
+        if isinstance(space, (str, os.PathLike)):
             parameters = json.loads(_native.space(space))
         elif isinstance(space, Mapping):
             keys = ("low", "high", "step")
@@ -74,7 +77,7 @@ class Optimizer:
         self, points: Point | int | Iterable[Point | int], values: float | None | Iterable[float | None]
     ) -> None:
         """The values of points (or of their ids), in any order; ``None`` for a failed one."""
-        if isinstance(points, (Point, int)):
+        if isinstance(points, (Point, int, Integral)):
             points, values = [points], [values]  # type: ignore[list-item]
         ids = [point.id if isinstance(point, Point) else int(point) for point in points]
         told = [None if value is None else float(value) for value in values]  # type: ignore[union-attr]
@@ -84,7 +87,7 @@ class Optimizer:
         self.best, self.stop = answer["best"], answer["stop"]
 
     def _say(self, line: Mapping[str, Any]) -> dict[str, Any]:
-        answer = self._session.answer(json.dumps(line))
+        answer = self._session.answer(dumps(line))
         found: dict[str, Any] = json.loads(answer) if answer is not None else {}
         if "error" in found:
             raise _native.InputError(found["error"])

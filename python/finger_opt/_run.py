@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import suppress
 from typing import Any
 
 from . import _native
@@ -16,13 +17,29 @@ from . import _native
 LOOK = 0.2
 
 
+class Performer:
+    """The unit of work for one run, whose end also ends what is still performed in this process."""
+
+    def __init__(self) -> None:
+        self.stop = _native.Stop()
+        # Dask names tasks by it.
+        self.__name__ = "perform"
+
+    def __call__(self, work: bytes) -> bytes:
+        return bytes(_native.perform(work, f"{socket.gethostname()}:{os.getpid()}", self.stop))
+
+    def __reduce__(self) -> tuple[type[Performer], tuple[()]]:
+        # Another process knows nothing of the run.
+        return Performer, ()
+
+
 def perform(work: bytes) -> bytes:
     """The unit of work: bytes that a study gave out in, the result for it out.
 
     Depends on nothing else, so it may be done twice, anywhere; it refuses the work of another
     version of the program, with the name of this host and process.
     """
-    return bytes(_native.perform(work, f"{socket.gethostname()}:{os.getpid()}"))
+    return Performer()(work)
 
 
 def workers_of(executor: Any) -> int:
@@ -39,12 +56,27 @@ def lost(executor: Any) -> bool:
     return getattr(client, "status", None) in ("closing", "closed")
 
 
+def say(text: str) -> None:
+    """Writes to standard error. Where that has gone or is full nobody can be told, and no study ends for it."""
+    with suppress(OSError, ValueError):
+        if sys.stderr is not None:
+            sys.stderr.write(text)
+            sys.stderr.flush()
+
+
+def terminal() -> bool:
+    """Whether standard error is one."""
+    with suppress(OSError, ValueError):
+        return sys.stderr is not None and sys.stderr.isatty()
+    return False
+
+
 class Progress:
     """A line on standard error (in a notebook: under the cell) that says how far it is."""
 
     def __init__(self, shown: bool) -> None:
         self.shown = shown
-        self.live = sys.stderr.isatty() or "ipykernel" in sys.modules
+        self.live = terminal() or "ipykernel" in sys.modules
         self.last = float("-inf") if self.live else time.monotonic()
 
     def show(self, study: Any, ended: bool = False) -> None:
@@ -55,10 +87,8 @@ class Progress:
         self.last = now
         done, evaluations, best = study.progress()
         line = f"{done}/{evaluations} evaluations, {best}"[:78]
-        sys.stderr.write(f"\r{line:78}" if self.live else line)
-        if ended or not self.live:
-            sys.stderr.write("\n")
-        sys.stderr.flush()
+        end = "\n" if ended or not self.live else ""
+        say((f"\r{line:78}" if self.live else line) + end)
 
 
 def run_open(
@@ -75,28 +105,30 @@ def run_open(
         executor = own = ThreadPoolExecutor(study.threads() or os.cpu_count())
     else:
         study = begin(workers or workers_of(executor))
-    shown = Progress(progress)
+    performer, shown = Performer(), Progress(progress)
     try:
-        ending = Course(study, executor, retries, shown).run()
+        ending = Course(study, executor, performer, retries, shown).run()
         shown.show(study, ended=True)
         return study.finish(ending)
     except KeyboardInterrupt:
-        _native.stop_performing(True)
-        sys.stderr.write(f"\ninterrupted; {study.hint()}\n")
+        say(f"\ninterrupted; {study.hint()}\n")
         raise
     finally:
+        performer.stop.set()
         if own is not None:
             own.shutdown(wait=True, cancel_futures=True)
-            _native.stop_performing(False)
         study.close()
 
 
 class Course:
     """The work that is out, and how often each was lost."""
 
-    def __init__(self, study: Any, executor: Any, retries: int, progress: Progress) -> None:
+    def __init__(
+        self, study: Any, executor: Any, performer: Performer, retries: int, progress: Progress
+    ) -> None:
         self.study = study
         self.executor = executor
+        self.performer = performer
         self.retries = retries
         self.progress = progress
         self.running: dict[Future[bytes], tuple[int, bytes]] = {}
@@ -120,7 +152,7 @@ class Course:
 
     def submit(self, proposal: int, work: bytes) -> None:
         try:
-            future = self.executor.submit(perform, work)
+            future = self.executor.submit(self.performer, work)
         except Exception as error:
             raise self.stopped(f"the executor takes no more work: {named(error)}") from error
         self.running[future] = (proposal, work)
@@ -144,6 +176,8 @@ class Course:
                 self.again(proposal, work, error)
                 continue
             try:
+                if not isinstance(result, bytes):
+                    raise _native.Refused(f"the result is no bytes: {type(result).__name__}")
                 self.study.take(proposal, result)
             except _native.Refused as error:
                 self.again(proposal, work, error)

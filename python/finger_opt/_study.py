@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from . import _native
 from ._measure import Record
 from ._run import run_open
-from ._task import Task, sources
+from ._task import Given, Task, sources
 
 if TYPE_CHECKING:
     import pandas
@@ -34,7 +34,7 @@ class Study:
     @classmethod
     def create(
         cls,
-        task: str | Task | Iterable[str | Task],
+        task: Given | Iterable[Given],
         *,
         budget: int,
         seed: int = 0,
@@ -80,6 +80,9 @@ class Study:
     def _open(self, workers: int | None) -> Any:
         return self._asked.open(workers)
 
+    def _begun(self) -> bool:
+        return os.path.exists(os.path.join(self.path, "study.toml"))
+
     def _read(self) -> _native.Recorded:
         return _native.Recorded(self.path)
 
@@ -93,7 +96,7 @@ class Study:
         """The recommended design, as ``recommended`` of ``--json``: ``values`` by key,
         ``evaluation`` (its number), ``range_mm``, ``negative_mm``, ``positive_mm``; ``None``
         while there is none. Of several objectives the first of the front."""
-        found = json.loads(self._read().best())
+        found = json.loads(self._read().best()) if self._begun() else None
         return None if found is None else Record(found)
 
     def to_dataframe(self) -> pandas.DataFrame:
@@ -106,13 +109,13 @@ class Study:
 
     def __len__(self) -> int:
         """Evaluations in the journal."""
-        return self._read().length()
+        return self._read().length() if self._begun() else 0
 
     def __bool__(self) -> bool:
         return True
 
     def _repr_html_(self) -> str:
-        if not os.path.exists(os.path.join(self.path, "study.toml")):
+        if not self._begun():
             return f"<p>a study not begun yet: {self.path}</p>"
         return self._read().card()
 

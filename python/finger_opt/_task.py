@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 import json
-from collections.abc import Iterable, Iterator
-from typing import Any
+import os
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Union
 
 from . import _native
+from ._json import dumps
 
 
 class Fields:
@@ -46,12 +49,15 @@ class Fields:
         table[place] = value
         try:
             self._changed()
-        except _native.InputError:
+        except Exception:
             if known:
                 table[place] = before
             else:
                 del table[place]
             raise
+
+    def __reduce__(self) -> tuple[Callable[..., Fields], tuple[Any, ...]]:
+        return Fields, (copy.deepcopy(self._table), _unchecked)
 
     def __getattr__(self, key: str) -> Any:
         if isinstance(self._table, dict) and key in self._table:
@@ -77,6 +83,10 @@ class Fields:
         return repr(self._table)
 
 
+def _unchecked() -> None:
+    """The copy of a table belongs to no task, which would check it."""
+
+
 class Task(Fields):
     """A connector task: plug, socket, grip, friction, search strategy and success.
 
@@ -97,22 +107,29 @@ class Task(Fields):
         super().__init__(fields, self.to_toml)
         object.__setattr__(self, "file", file)
 
+    def __reduce__(self) -> tuple[Callable[..., Task], tuple[str, str]]:
+        return type(self), (self.file, self.to_toml())
+
     @classmethod
-    def from_toml(cls, source: str) -> Task:
+    def from_toml(cls, source: str | os.PathLike[str]) -> Task:
         """The task of a shipped name (``"usb"``), of the file at a path, or of a TOML text."""
-        if "\n" in source:
+        if isinstance(source, str) and "\n" in source:
             return cls("task", source)
-        return cls(*_native.task(str(source)))
+        return cls(*_native.task(source))
 
     def to_toml(self) -> str:
         """The text of the task file, without the comments of the original."""
-        return str(_native.task_text(getattr(self, "file", "task"), json.dumps(self._table)))
+        return str(_native.task_text(getattr(self, "file", "task"), dumps(self._table)))
 
     def __repr__(self) -> str:
         return f"<Task {self.name}: {self.description}>"
 
 
-def sources(task: str | Task | Iterable[str | Task]) -> list[str | tuple[str, str]]:
+#: A task: a shipped name, the path of a task file, or the task itself.
+Given = Union[str, "os.PathLike[str]", Task]
+
+
+def sources(task: Given | Iterable[Given]) -> list[str | os.PathLike[str] | tuple[str, str]]:
     """Tasks for the library: names as they are, and of a :class:`Task` what messages call it and its text."""
-    given = [task] if isinstance(task, (str, Task)) else list(task)
+    given = [task] if isinstance(task, (str, os.PathLike, Task)) else list(task)
     return [(one.file, one.to_toml()) if isinstance(one, Task) else one for one in given]

@@ -1,28 +1,94 @@
 """Executors by name, for ``optimize --executor``: ``dask://HOST:PORT``, ``slurm``, ``processes``.
 
-``python -m finger_opt.executors WORDS..`` is what ``optimize WORDS.. --executor WHERE`` starts.
+``optimize WORDS.. --executor WHERE`` starts :func:`command` in a process of its own.
 """
 
 from __future__ import annotations
 
+import _thread
 import os
+import re
+import signal
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
 from multiprocessing import get_context
-from typing import Any
+from multiprocessing.connection import Connection
+from typing import Any, TextIO
 
 from . import _native
-from ._run import run_open
+from ._run import run_open, say
+from ._shell import open_streams
 
 #: How often the folder of the jobs is looked into for results, s.
 LOOK = 1.0
 #: How often Slurm is asked which jobs it still has, s.
 ASK = 30.0
+#: Most processes and most jobs.
+PROCESSES, JOBS = 1024, 10_000
+
+
+class Processes(Executor):
+    """Processes of this machine. Where one is lost, which its pool does not survive, a new pool goes on.
+
+    They end with this process, however it ends.
+    """
+
+    def __init__(self, workers: int) -> None:
+        self._max_workers = workers
+        # Not forked: a copy of a process with threads may stand still.
+        self._context = get_context("spawn")
+        # Nothing is ever said: its end is all that counts.
+        self._alive, self._tied = self._context.Pipe(duplex=False)
+        self._pool = self._new()
+
+    def _new(self) -> ProcessPoolExecutor:
+        with elsewhere():
+            return ProcessPoolExecutor(self._max_workers, self._context, tied, (self._alive,))
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        with elsewhere():
+            try:
+                return self._pool.submit(fn, *args, **kwargs)
+            except BrokenProcessPool:
+                self._pool = self._new()
+                return self._pool.submit(fn, *args, **kwargs)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Ends all processes, whatever they do."""
+        self._tied.close()
+        self._pool.shutdown(wait, cancel_futures=cancel_futures)
+
+
+def tied(alive: Connection) -> None:
+    """Ends this process with the one that began it, to which it also leaves Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def end() -> None:
+        with suppress(EOFError, OSError):
+            alive.recv_bytes()
+        os._exit(1)
+
+    threading.Thread(target=end, daemon=True).start()
+
+
+@contextmanager
+def elsewhere() -> Iterator[None]:
+    """In no folder of the user's while processes begin, where Python 3.10 lets them import from it."""
+    if sys.version_info >= (3, 11):
+        yield
+        return
+    folder = os.getcwd()
+    os.chdir(os.sep)
+    try:
+        yield
+    finally:
+        os.chdir(folder)
 
 
 class SlurmExecutor(Executor):
@@ -114,19 +180,28 @@ def needs(extra: str, module: str) -> str:
 @contextmanager
 def named(name: str) -> Iterator[Executor]:
     """The executor of this name."""
-    scheme, _, rest = name.partition(":")
-    if scheme == "processes":
-        workers = int(rest) if rest else os.cpu_count()
-        # Not forked: a copy of a process with threads may stand still.
-        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-            yield pool
-    elif scheme == "slurm":
-        slurm = SlurmExecutor(workers=int(rest) if rest else 64)
+    scheme, colon, rest = name.partition(":")
+    if scheme in ("processes", "slurm"):
+        most = PROCESSES if scheme == "processes" else JOBS
+        if colon and not (re.fullmatch("[0-9]{1,5}", rest) and 1 <= int(rest) <= most):
+            raise _native.InputError(
+                f"--executor {name}: after {scheme}: comes a whole number from 1 to {most}"
+            )
+        own: Processes | SlurmExecutor
+        if scheme == "processes":
+            own = Processes(int(rest) if colon else os.cpu_count() or 1)
+        else:
+            own = SlurmExecutor(workers=int(rest) if colon else 64)
         try:
-            yield slurm
+            yield own
         finally:
-            slurm.shutdown(cancel_futures=True)
-    elif scheme == "dask" and rest.startswith("//"):
+            own.shutdown(cancel_futures=True)
+    elif scheme == "dask":
+        port = re.fullmatch(r"//(?:\[[0-9a-fA-F:.]+\]|[^\s/:\[\]]+):([0-9]{1,5})", rest)
+        if port is None or not 1 <= int(port[1]) <= 65535:
+            raise _native.InputError(
+                f"--executor {name}: names no scheduler; give its host and port, as in dask://127.0.0.1:8786"
+            )
         try:
             from distributed import Client
         except ImportError:
@@ -156,17 +231,72 @@ def main(words: list[str]) -> int:
         raise _native.InputError("give --executor")
     with named(asked.executor) as executor:
         text, unusable = run_open(asked.open, executor, not asked.quiet, None, 10)
-    sys.stdout.write(text)
+    show(text)
     if unusable is not None:
         raise _native.RunError(unusable)
     return 0
 
 
-if __name__ == "__main__":
+def show(text: str) -> None:
+    """Prints to standard output, as the program does; a reader that has gone away is no error."""
+    if sys.stdout is None:
+        return
     try:
-        sys.exit(main(sys.argv[1:]))
+        sys.stdout.buffer.write(text.encode())
+        sys.stdout.flush()
+    except BrokenPipeError:
+        pass
+    except OSError as error:
+        raise _native.RunError(f"cannot write the output: {error}") from None
+
+
+def let_go(stream: TextIO | None) -> None:
+    """Keeps the interpreter from failing at its end for what a stream could not take."""
+    if stream is None:
+        return
+    try:
+        stream.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def stop_once(*_: object) -> None:
+    """Ends the study as Ctrl-C does; who asks again changes nothing."""
+    for name in STOPS:
+        signal.signal(name, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
+#: What ends the study.
+STOPS = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
+
+
+def watch_input() -> None:
+    """Ends the study when the input ends: the program wants it to, or has gone."""
+    with suppress(OSError):
+        os.read(0, 1)
+    _thread.interrupt_main()
+
+
+def command() -> int:
+    """The command line of this process; gives its exit code."""
+    try:
+        open_streams()
+        for name in STOPS:
+            signal.signal(name, stop_once)
+        # The program has begun this process, and holds the other end of its input.
+        if "FINGER_OPT_SOURCES" in os.environ:
+            threading.Thread(target=watch_input, daemon=True).start()
+        return main(sys.argv[1:])
     except KeyboardInterrupt:
-        sys.exit(1)
+        return 1
     except (_native.InputError, _native.RunError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        sys.exit(2 if isinstance(error, _native.InputError) else 1)
+        say(f"error: {error}\n")
+        return 2 if isinstance(error, _native.InputError) else 1
+    finally:
+        let_go(sys.stdout)
+        let_go(sys.stderr)
+
+
+if __name__ == "__main__":
+    sys.exit(command())

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from . import _native
-from ._task import Task, sources
+from ._task import Given, sources
 
 try:
     import gymnasium
@@ -66,7 +66,7 @@ class InsertionEnv(gymnasium.Env[np.ndarray, np.ndarray]):
 
     def __init__(
         self,
-        task: str | Task = "usb",
+        task: Given = "usb",
         density: float | None = None,
         direction: float | None = None,
         *,

@@ -13,19 +13,32 @@ use pyo3::types::{PyBool, PyDict, PyString};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// A task: names by commas, or what to call a task file in messages, and its text.
-#[derive(FromPyObject)]
-pub enum TaskWord {
-    Named(String),
-    Given((String, String)),
+/// A name, or a path of any kind that Python knows.
+pub struct Name(pub String);
+
+impl FromPyObject<'_> for Name {
+    fn extract_bound(value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let text = value.extract::<PathBuf>()?.into_os_string().into_string();
+        text.map(Name).map_err(|name| {
+            InputError::new_err(format!("{}: its name has to be UTF-8", name.display()))
+        })
+    }
 }
 
-impl TaskWord {
-    fn sources(self) -> Vec<TaskSource> {
-        match self {
-            TaskWord::Named(names) => TaskSource::list(&names),
-            TaskWord::Given((file, text)) => vec![TaskSource::Given(Source { file, text })],
+/// Tasks: names by commas, a path, or what to call a task file in messages, and its text.
+pub struct TaskWord(Vec<TaskSource>);
+
+impl FromPyObject<'_> for TaskWord {
+    fn extract_bound(value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok((file, text)) = value.extract() {
+            return Ok(TaskWord(vec![TaskSource::Given(Source { file, text })]));
         }
+        let Name(name) = value.extract()?;
+        Ok(TaskWord(match value.is_instance_of::<PyString>() {
+            true => TaskSource::list(&name),
+            // A path may have a comma in it.
+            false => vec![TaskSource::Named(name)],
+        }))
     }
 }
 
@@ -89,7 +102,7 @@ impl<'py> Keywords<'py> {
 
     /// A name or a path.
     pub fn text(&self, name: &str) -> PyResult<Option<String>> {
-        Ok(self.take::<PathBuf>(name)?.map(|path| path.to_string_lossy().into_owned()))
+        Ok(self.take(name)?.map(|Name(text)| text))
     }
 
     /// One of the words that there are.
@@ -143,7 +156,7 @@ impl<'py> Keywords<'py> {
     pub fn setup(&self, tasks: Vec<TaskWord>) -> PyResult<SetupRequest> {
         let usual = SetupRequest::default();
         Ok(SetupRequest {
-            tasks: tasks.into_iter().flat_map(TaskWord::sources).collect(),
+            tasks: tasks.into_iter().flat_map(|TaskWord(sources)| sources).collect(),
             space: self.text("space")?.unwrap_or(usual.space),
             robot: self.text("robot")?.unwrap_or(usual.robot),
             stiffness_data: self.text("stiffness_data")?,

@@ -11,12 +11,13 @@ mod study;
 
 use finger_opt::cli;
 use pyo3::prelude::*;
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Runs `optimize` with these arguments, the program's name first; gives the exit code.
 #[pyfunction]
-fn main(py: Python<'_>, arguments: Vec<String>) -> u8 {
-    let code = py.allow_threads(|| cli::main(arguments.into_iter().map(Into::into)));
+fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    let code = py.allow_threads(|| cli::main(arguments));
     u8::from(code != ExitCode::SUCCESS) * if code == ExitCode::from(2) { 2 } else { 1 }
 }
 
@@ -40,11 +41,11 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<insertion::Insertion>()?;
     module.add("Refused", py.get_type::<errors::Refused>())?;
     module.add_function(wrap_pyfunction!(study::perform, module)?)?;
-    module.add_function(wrap_pyfunction!(study::stop_performing, module)?)?;
     module.add_function(wrap_pyfunction!(study::source_sha256, module)?)?;
     module.add_function(wrap_pyfunction!(study::study, module)?)?;
     module.add_function(wrap_pyfunction!(study::resume, module)?)?;
     module.add_function(wrap_pyfunction!(study::asked, module)?)?;
+    module.add_class::<study::Stop>()?;
     module.add_class::<study::Asked>()?;
     module.add_class::<study::Recorded>()?;
     module.add_class::<study::Guided>()?;

@@ -1,7 +1,7 @@
 //! Evaluations, trials, stiffness and task files.
 
-use crate::errors::{InputError, raise};
-use crate::keywords::{Keywords, TaskWord, wrong};
+use crate::errors::{InputError, not_forked, raise};
+use crate::keywords::{Keywords, Name, TaskWord, wrong};
 use finger_opt::cli;
 use finger_opt::report;
 use finger_opt::session::{EvaluateRequest, StiffnessRequest, TaskFile, TrialRequest};
@@ -19,26 +19,42 @@ use std::time::Duration;
 /// How often a long call looks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Runs `work` without the interpreter's lock. Ctrl-C sets the flag that `work` is given,
-/// and is raised when `work` has ended.
+/// Runs `work`, which may use the threads that all share, without the interpreter's lock.
+pub fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    not_forked()?;
+    Ok(py.allow_threads(work))
+}
+
+/// The same for what takes long: Ctrl-C sets the flag that `work` is given, and is raised when
+/// `work` has ended.
 pub fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send,
 ) -> PyResult<T> {
+    not_forked()?;
     let stop = AtomicBool::new(false);
+    watched(py, &stop, || work(&stop))
+}
+
+/// Runs `work`, which shares no threads, without the interpreter's lock. Ctrl-C sets `stop`, and is
+/// raised when `work` has ended.
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    stop: &AtomicBool,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
     py.allow_threads(|| {
         std::thread::scope(|scope| {
             let (sender, receiver) = mpsc::channel();
-            let stop = &stop;
             // The receiver is there until the scope ends.
-            scope.spawn(move || sender.send(work(stop)));
+            scope.spawn(move || sender.send(work()));
             let mut signal = Ok(());
             loop {
                 match receiver.recv_timeout(LOOK) {
                     Ok(done) => return signal.map(|()| done),
                     Err(RecvTimeoutError::Timeout) if signal.is_ok() => {
                         signal = Python::with_gil(|py| py.check_signals());
-                        stop.store(signal.is_err(), Ordering::SeqCst);
+                        stop.fetch_or(signal.is_err(), Ordering::SeqCst);
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => {
@@ -115,9 +131,9 @@ pub fn trial<'py>(
 /// How well the stiffness model fits, as JSON.
 #[pyfunction]
 #[pyo3(signature = (*, stiffness_data=None))]
-pub fn stiffness(py: Python<'_>, stiffness_data: Option<String>) -> PyResult<String> {
-    let request = StiffnessRequest { stiffness_data, ..StiffnessRequest::default() };
-    let model = py.allow_threads(|| request.model()).map_err(raise)?;
+pub fn stiffness(py: Python<'_>, stiffness_data: Option<Name>) -> PyResult<String> {
+    let request = stiffness_request(stiffness_data);
+    let model = released(py, || request.model())?.map_err(raise)?;
     Ok(report::stiffness::json(&model).to_string())
 }
 
@@ -128,19 +144,23 @@ pub fn predict(
     py: Python<'_>,
     density: f64,
     direction: f64,
-    stiffness_data: Option<String>,
+    stiffness_data: Option<Name>,
 ) -> PyResult<String> {
-    let request = StiffnessRequest { stiffness_data, ..StiffnessRequest::default() };
-    let model = py.allow_threads(|| request.model()).map_err(raise)?;
-    let predicted = model.predict(density, direction);
-    let predicted = predicted.map_err(|error| InputError::new_err(error.to_string()))?;
+    let request = stiffness_request(stiffness_data);
+    let predicted = released(py, || request.predict(density, direction))?.map_err(raise)?;
     Ok(json!(predicted).to_string())
+}
+
+/// The stiffness model of these measurements, or of the shipped ones.
+fn stiffness_request(stiffness_data: Option<Name>) -> StiffnessRequest {
+    let stiffness_data = stiffness_data.map(|Name(name)| name);
+    StiffnessRequest { stiffness_data, ..StiffnessRequest::default() }
 }
 
 /// The parameters of a space as the first line of `ask-tell` has them, as JSON.
 #[pyfunction]
-pub fn space(name: &str) -> PyResult<String> {
-    let space = read_space(name).map_err(raise)?;
+pub fn space(name: Name) -> PyResult<String> {
+    let space = read_space(&name.0).map_err(raise)?;
     let line = |parameter: &Parameter| {
         let Parameter { key, low, high, step, .. } = parameter;
         json!({"name": key, "low": low, "high": high, "step": step})
@@ -150,8 +170,8 @@ pub fn space(name: &str) -> PyResult<String> {
 
 /// Name in messages and text of the task file of this name or path.
 #[pyfunction]
-pub fn task(name: &str) -> PyResult<(String, String)> {
-    let source = read_task(name).map_err(raise)?.source;
+pub fn task(name: Name) -> PyResult<(String, String)> {
+    let source = read_task(&name.0).map_err(raise)?.source;
     Ok((source.file, source.text))
 }
 

@@ -2,7 +2,7 @@
 
 use crate::errors::{InputError, Refused, RunError, raise};
 use crate::keywords::{Keywords, TaskWord, wrong};
-use crate::measure::interruptible;
+use crate::measure::{interruptible, released, watched};
 use finger_opt::cli::call;
 use finger_opt::report;
 use finger_opt::session::{self, AnyStudy, NotTaken, Order, POLISH, ResumeRequest, StudyRequest};
@@ -10,25 +10,38 @@ use finger_opt::study::{Ending, SOURCES, StudyRecord, evaluations_csv};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde_json::json;
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Set while what this process performs is to end early.
-static STOP: AtomicBool = AtomicBool::new(false);
+/// Ends what a run still performs in this process.
+#[pyclass(frozen)]
+pub struct Stop(AtomicBool);
 
-/// The unit of work: bytes in, bytes out.
-#[pyfunction]
-pub fn perform<'py>(py: Python<'py>, work: &[u8], worker: &str) -> PyResult<Bound<'py, PyBytes>> {
-    let work = work.to_vec();
-    let done = py.allow_threads(|| session::perform(&work, worker, &STOP)).map_err(raise)?;
-    Ok(PyBytes::new(py, &done))
+#[pymethods]
+impl Stop {
+    #[new]
+    fn new() -> Self {
+        Stop(AtomicBool::new(false))
+    }
+
+    fn set(&self) {
+        self.0.store(true, Ordering::SeqCst);
+    }
 }
 
-/// Whether what this process performs is to end early.
+/// The unit of work: bytes in, bytes out; ends early once `stop` is set.
 #[pyfunction]
-pub fn stop_performing(stop: bool) {
-    STOP.store(stop, Ordering::SeqCst);
+pub fn perform<'py>(
+    py: Python<'py>,
+    work: &[u8],
+    worker: &str,
+    stop: &Stop,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let work = work.to_vec();
+    let done = watched(py, &stop.0, || session::perform(&work, worker, &stop.0))?;
+    Ok(PyBytes::new(py, &done.map_err(raise)?))
 }
 
 /// SHA-256 of the sources of this build.
@@ -94,7 +107,7 @@ pub fn resume<'py>(
 
 /// The study of these words of the command line.
 #[pyfunction]
-pub fn asked(words: Vec<String>) -> PyResult<Asked> {
+pub fn asked(words: Vec<OsString>) -> PyResult<Asked> {
     call::asked(&words).map(Asked).map_err(raise)
 }
 
@@ -114,12 +127,12 @@ impl Asked {
 
     /// Its folder, with all checked that is asked for.
     fn folder(&self, py: Python<'_>) -> PyResult<PathBuf> {
-        py.allow_threads(|| self.0.study.folder()).map_err(raise)
+        released(py, || self.0.study.folder())?.map_err(raise)
     }
 
     /// Begins it or goes on with it.
     fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<Guided> {
-        let opened = py.allow_threads(|| self.0.study.open(workers)?.guided()).map_err(raise)?;
+        let opened = released(py, || self.0.study.open(workers)?.guided())?.map_err(raise)?;
         Ok(Guided { open: Mutex::new(Some(opened)), json: self.0.json })
     }
 }
@@ -187,7 +200,7 @@ impl Guided {
         py: Python<'_>,
         what: impl FnOnce(&mut session::Guided) -> T + Send,
     ) -> PyResult<T> {
-        let done = py.allow_threads(|| self.study().as_mut().map(what));
+        let done = released(py, || self.study().as_mut().map(what))?;
         done.ok_or_else(|| RunError::new_err("the study is closed"))
     }
 }

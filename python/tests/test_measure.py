@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -126,3 +127,33 @@ def test_other_threads_go_on_during_a_long_call():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert json.loads(done.stdout) > 10
+
+
+def test_paths_are_names_too(tmp_path, fake):
+    # By commas several tasks are named; a path may have one in it.
+    task, table = tmp_path / "a,b.toml", tmp_path / "mine.csv"
+    task.write_text(fo.Task.from_toml("usb").to_toml())
+    table.write_text((Path(__file__).parents[2] / "data" / "measured_stiffness.csv").read_text())
+    measured = without_time(fo.evaluate("usb", 20, 10, **fake))
+    assert without_time(fo.evaluate(task, 20, 10, stiffness_data=table, **fake)) == measured
+    assert fo.trial(task, 20, 10, **fake) == fo.trial("usb", 20, 10, **fake)
+    assert fo.stiffness(20, 10, stiffness_data=table) == fo.stiffness(20, 10)
+    assert fo.stiffness(stiffness_data=table) == fo.stiffness()
+    study = fo.Study.create([task, "rj45"], budget=1, out=tmp_path / "study", no_cache=True, **fake)
+    assert study.run(progress=False).config["tasks"] == ["usb", "rj45"]
+
+
+@pytest.mark.parametrize("number", [np.int64, np.int32, np.uint8])
+def test_numbers_of_numpy_are_numbers(number, tmp_path, fake):
+    twenty, ten, two = number(20), number(10), number(2)
+    assert without_time(fo.evaluate("usb", twenty, ten, **fake)) == without_time(fo.evaluate("usb", 20, 10, **fake))
+    assert fo.stiffness(twenty, ten) == fo.stiffness(20, 10)
+    settings = {"seed": two, "batch": two, "threads": two, "no_cache": True, **fake}
+    study = fo.Study.create("usb", budget=two, out=tmp_path / "study", **settings).run(progress=False)
+    assert (len(study), study.config["seed"]) == (2, 2)
+
+
+@pytest.mark.parametrize("infill", [(float("nan"), 10), (-1, 10), (1e300, 10), (20, -1), (20, 91), (0.05, 0)])
+def test_a_finger_that_cannot_be_has_no_stiffness(infill):
+    with pytest.raises(fo.InputError, match="infill_d.*must lie in"):
+        fo.stiffness(*infill)

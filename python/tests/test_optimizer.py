@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 import finger_opt as fo
@@ -67,3 +69,20 @@ def test_shipped_spaces_and_errors():
     with pytest.raises(fo.InputError, match="2 values for 1 points"):
         optimizer.tell([0], [1.0, 2.0])
     optimizer.tell(0, None)
+
+
+@pytest.mark.parametrize("number", [np.int64, np.int32, np.float32])
+def test_numbers_of_numpy_are_numbers(number):
+    whole = np.int64 if number is np.float32 else number
+    plain = fo.Optimizer({"x": (1, 5), "n": (1, 9, 2)}, "sobol", seed=3, batch=2)
+    given = {"x": (number(1), number(5)), "n": (number(1), number(9), number(2))}
+    numpy = fo.Optimizer(given, "sobol", seed=whole(3), batch=whole(2))
+    assert numpy.ask(whole(2)) == plain.ask(2)
+    numpy.tell(whole(0), number(7))
+    numpy.tell(np.array([1], dtype=whole), np.array([8], dtype=number))
+    assert numpy.best["value"] == 8
+
+
+def test_a_space_is_found_at_a_path():
+    file = Path(__file__).parents[2] / "spaces" / "infill.toml"
+    assert fo.Optimizer(file, seed=1).ask(2) == fo.Optimizer("infill", seed=1).ask(2)

@@ -84,6 +84,7 @@ def test_every_executor_gives_the_journal_of_one_machine(create, expected):
 def test_a_study_as_python_sees_it(create, tmp_path):
     study = create("seen")
     assert "not begun" in study._repr_html_()
+    assert (study.best, len(study)) == (None, 0)
     assert study.run(progress=False) is study
     frame = study.to_dataframe()
     assert len(frame) == len(study) == BUDGET
@@ -259,6 +260,26 @@ def test_a_study_of_poisoned_results_stops_and_says_by_whom(create):
     study = create("poisoner")
     with pytest.raises(fo.RunError, match="(?s)Refused.*continue with: optimize resume"):
         study.run(Poisoner(1), progress=False, retries=2)
+    assert len(study) == 0
+
+
+class Silent(Shuffled):
+    """Its first results are no bytes."""
+
+    def __init__(self, seed, results):
+        super().__init__(seed)
+        self.results = list(results)
+
+    def work(self, fn, *args):
+        return self.results.pop() if self.results else super().work(fn, *args)
+
+
+def test_results_that_are_no_bytes_are_refused_and_the_work_is_done_again(create, expected):
+    create("silent").run(Silent(1, [None, "done", 7, bytearray(b"{}")]), progress=False)
+    assert journal(create("silent").path) == expected
+    study = create("dumb")
+    with pytest.raises(fo.RunError, match="(?s)lost 3 times.*Refused.*NoneType.*continue with: optimize resume"):
+        study.run(Silent(1, [None] * 1000), progress=False, retries=2)
     assert len(study) == 0
 
 

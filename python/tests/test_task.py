@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
+import numpy as np
 import pytest
 
 import finger_opt as fo
@@ -13,7 +17,8 @@ def test_what_is_written_reads_back(tmp_path, fake):
     assert again.to_toml() == task.to_toml()
     file = tmp_path / "mine.toml"
     file.write_text(task.to_toml())
-    assert fo.Task.from_toml(str(file)).to_toml() == task.to_toml()
+    for path in (file, str(file)):
+        assert fo.Task.from_toml(path).to_toml() == task.to_toml()
     same = {key: fo.evaluate(one, 20, 10, **fake) for key, one in [("a", task), ("b", "usb")]}
     assert {**same["a"], "wall_s": 0} == {**same["b"], "wall_s": 0}
 
@@ -41,3 +46,30 @@ def test_what_cannot_be_is_refused_and_changes_nothing():
     assert task.to_toml() == before
     with pytest.raises(fo.InputError, match="did you mean"):
         fo.Task.from_toml("usbb")
+
+
+@pytest.mark.parametrize("copied", [lambda task: pickle.loads(pickle.dumps(task)), copy.copy, copy.deepcopy])
+def test_a_copy_is_a_task_of_its_own(copied):
+    task = fo.Task.from_toml("usb")
+    task.strategy.tilt_deg = 8
+    again = copied(task)
+    assert (again.to_toml(), again.file) == (task.to_toml(), task.file)
+    again.strategy.tilt_deg = 7
+    with pytest.raises(fo.InputError, match="mass_g"):
+        again.plug.mass_g = -1
+    assert task.strategy.tilt_deg == 8
+    table = copied(task.strategy)
+    table.tilt_deg = 6
+    assert (table.tilt_deg, task.strategy.tilt_deg) == (6, 8)
+
+
+def test_numbers_of_numpy_are_numbers():
+    task = fo.Task.from_toml("usb")
+    task.strategy.tilt_deg = np.int64(8)
+    task.strategy.phase["side"].move_mm = np.array([0, -9, 0])
+    again = fo.Task.from_toml(task.to_toml())
+    assert (again.strategy.tilt_deg, again.strategy.phase["side"].move_mm) == (8, [0, -9, 0])
+    before = task.to_toml()
+    with pytest.raises(TypeError, match="object cannot be written as JSON"):
+        task.strategy.tilt_deg = object()
+    assert task.to_toml() == before

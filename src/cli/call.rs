@@ -6,6 +6,7 @@ use crate::session::{AnyStudy, Ended};
 use crate::study::StudyRecord;
 use clap::{Args, Parser};
 use serde_json::Value;
+use std::ffi::OsString;
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]
@@ -30,7 +31,7 @@ pub struct Asked {
 ///
 /// # Errors
 /// If they ask for no study.
-pub fn asked(words: &[String]) -> Result<Asked, Failure> {
+pub fn asked(words: &[OsString]) -> Result<Asked, Failure> {
     let (study, run) = match words {
         [first, rest @ ..] if first == "resume" => {
             let arguments: study::ResumeArguments = read(rest)?;
@@ -44,7 +45,7 @@ pub fn asked(words: &[String]) -> Result<Asked, Failure> {
     Ok(Asked { study, executor: run.executor, quiet: run.quiet, json: run.json })
 }
 
-fn read<T: Args>(words: &[String]) -> Result<T, Failure> {
+fn read<T: Args>(words: &[OsString]) -> Result<T, Failure> {
     let read = Words::<T>::try_parse_from(words).map_err(|error| {
         let text = error.render().to_string();
         Failure::usage(text.strip_prefix("error: ").unwrap_or(&text).trim_end())

@@ -18,10 +18,11 @@ pub struct Insertion {
 }
 
 impl Insertion {
-    /// A part between these fingers; a start that is taught is looked for until `stop` is set.
+    /// A part between these fingers.
     ///
     /// # Errors
-    /// If task, robot and finger cannot be simulated, or the engine simulates nothing.
+    /// If task, robot and finger cannot be simulated, or the engine simulates nothing; if `stop` is
+    /// set meanwhile.
     pub fn new(
         setup: &SetupRequest,
         finger: &FingerRequest,
@@ -30,13 +31,13 @@ impl Insertion {
         let setup = setup.setup()?;
         let specimen = finger.choose(&setup)?.specimen;
         let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
-        not_stopped(stop)?;
         let rig = setup.evaluator.rig(&specimen, None, 1.0).map_err(Failure::input)?;
         let driven = rig.driven(&specimen.finger).ok_or_else(|| {
             Failure::usage(
                 "this engine simulates nothing that could be driven; use --engine direct",
             )
         })?;
+        not_stopped(stop)?;
         Ok(Insertion { driven, taught: taught.map_or(0.0, offset) })
     }
 

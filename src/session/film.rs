@@ -1,6 +1,7 @@
 //! Films of trials: of one trial that is asked for, and the pairs at the ends of a study's
 //! recommended window.
 
+use super::failure::not_stopped;
 use super::{Failure, Setup};
 use crate::report::replay::{self, ENDS, Film, pair_file};
 use crate::study::{StudyRecord, write_file, write_own_file};
@@ -8,10 +9,11 @@ use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::tolerance::offset;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
-use insertion::trial::{Recording, Rig};
+use insertion::trial::{Grasp, Recording, Rig};
 use rayon::ThreadPool;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is made of a recorded trial.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -38,14 +40,16 @@ impl FilmRequest {
         rig: &dyn Rig,
         specimen: &Specimen,
         offset_mm: f64,
+        stop: &AtomicBool,
     ) -> Result<Option<Recording>, Failure> {
         if self.record.is_none() && self.plot.is_none() {
             return Ok(None);
         }
-        let recording = rig.record(&specimen.finger, offset_mm * input::units::MM);
-        let recording = recording.ok_or_else(|| {
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let recording = rig.record(grasp, offset_mm * input::units::MM).ok_or_else(|| {
             Failure::usage("--record and --plot need an engine that simulates: --engine direct")
         })?;
+        not_stopped(stop)?;
         let label = shifted(offset_mm);
         let film = Film {
             label: &label,
@@ -105,12 +109,13 @@ fn shifted(offset_mm: f64) -> String {
 
 /// Records the pair at each end of the recommended design's windows, the last offset that
 /// inserts beside the first that fails, into the study's folder; what an earlier run left there is
-/// replaced or, where there is no pair, removed.
+/// replaced or, where there is no pair, removed. Ends early once `stop` is set.
 pub(super) fn boundary(
     dir: &Path,
     record: &StudyRecord,
     setup: &Setup,
     pool: &ThreadPool,
+    stop: &AtomicBool,
 ) -> Result<(), Failure> {
     let found = record.recommendation();
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
@@ -125,9 +130,13 @@ pub(super) fn boundary(
                         .evaluator
                         .specimen(template, &best.design, best.stiffness)
                         .map_err(Failure::input)?;
-                    pair(setup, &specimen, task, (end, outward), pool)?
+                    pair(setup, &specimen, task, (end, outward), (pool, stop))?
                 }
             };
+            // What was filmed meanwhile is worthless.
+            if stop.load(Ordering::SeqCst) {
+                return Ok(());
+            }
             match pair {
                 Some(page) => {
                     let folder = file.parent().unwrap_or(dir);
@@ -150,7 +159,7 @@ fn pair(
     specimen: &Specimen,
     measured: &Evaluation,
     (end, outward): (&str, OffsetStep),
-    pool: &ThreadPool,
+    (pool, stop): (&ThreadPool, &AtomicBool),
 ) -> Result<Option<String>, Failure> {
     let window = &measured.window;
     let (last, failed) = match outward {
@@ -161,7 +170,8 @@ fn pair(
         return Ok(None);
     }
     let rig = setup.evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
-    let film = |step| rig.record(&specimen.finger, offset(step));
+    let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+    let film = |step| rig.record(grasp, offset(step));
     let (inside, outside) = pool.install(|| rayon::join(|| film(last), || film(last + outward)));
     let Some((inside, outside)) = inside.zip(outside) else { return Ok(None) };
     let labels = [last, last + outward].map(|step| shifted(grid_mm(step)));

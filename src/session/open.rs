@@ -109,14 +109,14 @@ impl OpenStudy {
         }
         let (dir, record) = (study.dir().to_owned(), study.record());
         if !interrupted() {
-            film::boundary(&dir, &record, setup, pool)?;
+            film::boundary(&dir, &record, setup, pool, stop)?;
         }
         printable::write(&dir, &record)?;
         report::write(&dir, &record, &setup.evaluator.surrogate)?;
         if interrupted() {
             return Err(Failure::running(format!("interrupted; {}", resume_hint(study))));
         }
-        let unusable = unusable::check(&dir, &record, setup).err();
+        let unusable = unusable::check(&dir, &record, setup, stop).err();
         Ok(Ended { dir, record, ending, known, unusable })
     }
 }

@@ -3,7 +3,8 @@
 use super::Failure;
 use super::files::{printed_finger, stiffness_data, surrogate};
 use super::request::DEFAULT_FINGER;
-use insertion::surrogate::Model;
+use insertion::space::Design;
+use insertion::surrogate::{Model, Prediction};
 
 /// Which measurements the model is fitted to.
 #[derive(Debug, Clone, clap::Args)]
@@ -30,5 +31,14 @@ impl StiffnessRequest {
     pub fn model(&self) -> Result<Model, Failure> {
         let finger = printed_finger(&self.finger)?;
         surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)
+    }
+
+    /// The stiffness of an infill: density, percent, and direction, degrees.
+    ///
+    /// # Errors
+    /// If there is no such finger, or a file cannot be used.
+    pub fn predict(&self, density: f64, direction: f64) -> Result<Prediction, Failure> {
+        Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
+        self.model()?.predict(density, direction).map_err(Failure::input)
     }
 }

@@ -96,7 +96,7 @@ impl TrialRequest {
         let offset = offset_mm * MM;
         let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
         let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
-        let filmed = self.film.record(&*rig, specimen, offset_mm)?;
+        let filmed = self.film.record(&*rig, specimen, offset_mm, stop)?;
         let grasp = || rig.hold(Grasp { stop, ..Grasp::of(&specimen.finger) });
         let (trial, samples) = match (self.every_s, filmed) {
             (None, Some(recording)) => (recording.trial, Vec::new()),

@@ -1,16 +1,24 @@
 //! What went wrong where no design of a study inserts at the nominal start.
 
+use super::failure::not_stopped;
 use super::{Failure, Setup};
 use crate::study::{StudyRecord, write_own_file};
 use insertion::outcome::Outcome;
-use insertion::trial::picture;
+use insertion::trial::{Grasp, picture};
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// Picture of the nominal trial in the study's folder.
 const PICTURE: &str = "nominal.svg";
 
-/// Fails, with what the design that comes nearest does at the nominal start, if none inserts there.
-pub(super) fn check(dir: &Path, record: &StudyRecord, setup: &Setup) -> Result<(), Failure> {
+/// Fails, with what the design that comes nearest does at the nominal start, if none inserts there;
+/// if `stop` is set meanwhile.
+pub(super) fn check(
+    dir: &Path,
+    record: &StudyRecord,
+    setup: &Setup,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
     let Some((task, nearest)) = record.unusable() else { return Ok(()) };
     let Some(template) = setup.evaluator.templates.get(task) else { return Ok(()) };
     let evaluator = &setup.evaluator;
@@ -18,7 +26,8 @@ pub(super) fn check(dir: &Path, record: &StudyRecord, setup: &Setup) -> Result<(
         evaluator.specimen(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
     let taught = nearest.on(task).and_then(|found| found.taught);
     let rig = evaluator.rig(&specimen, taught, 1.0).map_err(Failure::input)?;
-    let trial = rig.grasp(&specimen.finger).trial(0.0);
+    let trial = rig.hold(Grasp { stop, ..Grasp::of(&specimen.finger) }).trial(0.0);
+    not_stopped(stop)?;
     let label = format!("{}, nominal start, evaluation {}", specimen.task.name, nearest.index);
     let file = dir.join(PICTURE);
     write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;

@@ -164,6 +164,25 @@ impl Design {
         Design::default().with(DENSITY_KEY, density_percent).with(DIRECTION_KEY, direction_deg)
     }
 
+    /// The same, if there are such fingers; `given` names who gave it.
+    ///
+    /// # Errors
+    /// If a value lies beyond its bounds, or is not a number.
+    pub fn checked_infill(
+        density_percent: f64,
+        direction_deg: f64,
+        given: &str,
+    ) -> Result<Self, InputError> {
+        for (key, value) in [(DENSITY_KEY, density_percent), (DIRECTION_KEY, direction_deg)] {
+            let [least, most] = bounds(key);
+            // Written so that a NaN is outside.
+            let inside = (least..=most).contains(&value);
+            let must = format!("lie in {least} .. {most}");
+            Check { file: given }.require(key, value, inside, &must)?;
+        }
+        Ok(Design::infill(density_percent, direction_deg))
+    }
+
     /// The infill that a finger is printed with, its first rib at `phase_mm`, else where the finger
     /// file has it; NaN of what the design does not name, which no finger has.
     pub fn printed(&self, phase_mm: Option<f64>) -> infill::Design {

@@ -44,8 +44,8 @@ impl<R: Deref<Target: Rig> + Send + Sync> Rig for Moved<R> {
         Box::new(Moved { rig: self.rig.hold(grasp), by: self.by })
     }
 
-    fn record(&self, finger: &Finger, shift: f64) -> Option<Recording> {
-        self.rig.record(finger, shift + offset(self.by))
+    fn record(&self, grasp: Grasp<'_>, shift: f64) -> Option<Recording> {
+        self.rig.record(grasp, shift + offset(self.by))
     }
 }
 

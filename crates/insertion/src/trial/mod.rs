@@ -114,9 +114,9 @@ pub trait Rig: Send + Sync {
         self.hold(Grasp::of(finger))
     }
 
-    /// The trial of such a pair of fingers with the start shifted by `offset` metres along y, filmed
-    /// from the grasp on; `None` if there is nothing to be seen.
-    fn record(&self, _finger: &Finger, _offset: f64) -> Option<Recording> {
+    /// The trial of such a grasp with the start shifted by `offset` metres along y, filmed from the
+    /// grasp on; `None` if there is nothing to be seen.
+    fn record(&self, _grasp: Grasp<'_>, _offset: f64) -> Option<Recording> {
         None
     }
 

@@ -106,8 +106,8 @@ impl Rig for EngineRig {
         Box::new(self.ready(grasp, false))
     }
 
-    fn record(&self, finger: &Finger, offset: f64) -> Option<Recording> {
-        let (trial, _, frames) = self.ready(Grasp::of(finger), true).watched(offset, None);
+    fn record(&self, grasp: Grasp<'_>, offset: f64) -> Option<Recording> {
+        let (trial, _, frames) = self.ready(grasp, true).watched(offset, None);
         Some(Recording::new(trial, frames))
     }
 
@@ -228,6 +228,7 @@ mod tests {
         stop.store(true, Ordering::SeqCst);
         let after_the_grasp = grasped.trial(0.0);
         assert!(after_the_grasp.simulated_s < 1.5, "nothing but grasp and approach");
+        assert_eq!(rig.record(grasp, 0.0).unwrap().trial.simulated_s, 0.0);
     }
 
     #[test]
@@ -285,7 +286,7 @@ mod tests {
     #[test]
     fn a_recorded_trial_is_the_same_trial() {
         let (rig, finger) = (rig(task("ket8")), finger(2.6, 45.0));
-        let recording = rig.record(&finger, 5e-4).unwrap();
+        let recording = rig.record(Grasp::of(&finger), 5e-4).unwrap();
         assert_eq!(recording.trial, rig.grasp(&finger).trial(5e-4));
         let frames = &recording.frames;
         let last = frames.last().unwrap();

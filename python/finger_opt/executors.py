@@ -48,11 +48,11 @@ class Processes(Executor):
         self._pool = self._new()
 
     def _new(self) -> ProcessPoolExecutor:
-        with elsewhere():
+        with apart():
             return ProcessPoolExecutor(self._max_workers, self._context, tied, (self._alive,))
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        with elsewhere():
+        with apart():
             try:
                 return self._pool.submit(fn, *args, **kwargs)
             except BrokenProcessPool:
@@ -61,8 +61,9 @@ class Processes(Executor):
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Ends all processes, whatever they do."""
+        # The pool first: once its processes have gone it trips over work that was cancelled.
+        self._pool.shutdown(wait=False, cancel_futures=cancel_futures)
         self._tied.close()
-        self._pool.shutdown(wait, cancel_futures=cancel_futures)
 
 
 def tied(alive: Connection) -> None:
@@ -78,17 +79,21 @@ def tied(alive: Connection) -> None:
 
 
 @contextmanager
-def elsewhere() -> Iterator[None]:
-    """In no folder of the user's while processes begin, where Python 3.10 lets them import from it."""
-    if sys.version_info >= (3, 11):
-        yield
-        return
-    folder = os.getcwd()
-    os.chdir(os.sep)
+def apart() -> Iterator[None]:
+    """Processes that begin meanwhile get no Ctrl-C, and import nothing from the user's folder."""
+    masked = hasattr(signal, "pthread_sigmask")
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT]) if masked else set()
+    # Later versions are told by PYTHONSAFEPATH.
+    folder = os.getcwd() if sys.version_info < (3, 11) else None
+    if folder is not None:
+        os.chdir(os.sep)
     try:
         yield
     finally:
-        os.chdir(folder)
+        if folder is not None:
+            os.chdir(folder)
+        if masked:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class SlurmExecutor(Executor):
@@ -263,7 +268,8 @@ def let_go(stream: TextIO | None) -> None:
 def stop_once(*_: object) -> None:
     """Ends the study as Ctrl-C does; who asks again changes nothing."""
     for name in STOPS:
-        signal.signal(name, signal.SIG_IGN)
+        # Not SIG_IGN: of a signal that came meanwhile Python would complain.
+        signal.signal(name, lambda *_: None)
     raise KeyboardInterrupt
 
 

@@ -90,7 +90,7 @@ fn progress_goes_to_standard_error_unless_quiet() {
     let studies = Studies::new();
     let dir = studies.dir("s");
     let loud = fake(&format!("--task usb --budget 8 --json --out {}", dir.display()));
-    assert!(loud.stderr.contains("4/8 evaluations, best "), "{}", loud.stderr);
+    assert!(loud.stderr.contains("8/8 evaluations, best "), "{}", loud.stderr);
     assert_eq!(loud.json()["evaluations"], 8);
     assert_eq!(studies.study("quiet", 8, &[]).stderr, "");
 }

@@ -55,18 +55,28 @@ pub enum CalibrationError {
     Measured(u64, String),
 }
 
+/// A designed set of simulations.
+#[derive(Debug, Clone, Copy)]
+pub struct Set<'a> {
+    /// Name of the task.
+    pub task: &'a str,
+    /// Number of simulations.
+    pub count: usize,
+    /// Names the set.
+    pub seed: u64,
+}
+
 impl Emulator {
     /// From `count` simulations of the space and the parameters' priors, of which one in eight
-    /// measures the error; `seed` names the set.
+    /// measures the error; `done` is told of each.
     ///
     /// # Errors
     /// If one of them cannot be simulated, or nothing can be fitted.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,
-        task: &str,
-        count: usize,
-        seed: u64,
+        Set { task, count, seed }: Set<'_>,
+        done: &(dyn Fn() + Sync),
     ) -> Result<Self, CalibrationError> {
         let dimension = space.parameters.len() + simulation.parameters.len();
         let points: Vec<Vec<f64>> =
@@ -78,6 +88,7 @@ impl Emulator {
             };
             let design = Design(space.parameters.iter().zip(of_space).map(value).collect());
             let evaluation = simulation.window(&design, shares)?;
+            done();
             let window = &evaluation.window;
             let class = |end: Option<Outcome>| match end {
                 Some(Outcome::Failed(class)) => Some(class),

@@ -7,6 +7,7 @@ use crate::calibration::statistics::{mean, spearman};
 use ask_tell::stream::stream;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A measured finger, predicted without it.
 #[derive(Debug, Clone, Copy)]
@@ -77,6 +78,8 @@ pub fn leave_one_out(
     let known = || benches[task].observations.iter().filter(|one| !one.at_least);
     let fingers: BTreeSet<usize> = known().map(|one| one.finger).collect();
     let fingers: Vec<usize> = fingers.into_iter().collect();
+    let size = fingers.len().div_ceil(MOST_FOLDS).max(1);
+    let (count, folds) = (AtomicUsize::new(0), fingers.len().div_ceil(size));
     let fold = |fold: &[usize]| -> Vec<LeftOut> {
         let mut benches = benches.to_vec();
         benches[task].observations.retain(|one| !fold.contains(&one.finger));
@@ -88,8 +91,8 @@ pub fn leave_one_out(
             let measured_mm = mean(&own.collect::<Vec<f64>>())?;
             Some(LeftOut { finger, measured_mm, predicted })
         };
+        (settings.done)([count.fetch_add(1, Ordering::Relaxed) + 1, folds]);
         fold.iter().zip(predicted).filter_map(left_out).collect()
     };
-    let size = fingers.len().div_ceil(MOST_FOLDS).max(1);
     fingers.par_chunks(size).flat_map_iter(fold).collect()
 }

@@ -17,7 +17,7 @@ pub struct Effort {
 }
 
 /// Settings of a calibration.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct Settings<'a> {
     /// Length of the sampling.
     pub effort: Effort,
@@ -25,6 +25,8 @@ pub struct Settings<'a> {
     pub seed: u64,
     /// Set when it is to end: what it gives is then worthless.
     pub stop: &'a AtomicBool,
+    /// Told of each calibration with fingers left out, how many are done, and of how many.
+    pub done: &'a (dyn Fn([usize; 2]) + Sync),
 }
 
 /// Sweeps after which the steps adapt.

@@ -11,8 +11,12 @@ use rand_distr::StandardNormal;
 
 const FINGERS: usize = 20;
 const SCALE_MM: f64 = 5.0;
-const SETTINGS: Settings<'_> =
-    Settings { effort: Effort { warm_up: 200, samples: 150, thin: 3 }, seed: 0, stop: &NEVER };
+const SETTINGS: Settings<'_> = Settings {
+    effort: Effort { warm_up: 200, samples: 150, thin: 3 },
+    seed: 0,
+    stop: &NEVER,
+    done: &|_| (),
+};
 
 /// A simulator of two parameters, the first of which turns the order of the fingers.
 struct MadeUp {

@@ -1,7 +1,7 @@
 //! `optimize calibrate`: what few measurements say of every finger.
 
 use super::arguments::CalibrationArguments;
-use super::terminal::simulating;
+use super::progress::Progress;
 use super::{Failure, print, print_json};
 use crate::calibration::table;
 use crate::session::{Calibrated, SetupRequest};
@@ -39,7 +39,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { setup, measurements, calibration, .. } = arguments;
     let request = calibration.request(setup.clone(), measurements);
     let quiet = arguments.quiet || arguments.json;
-    let Calibrated { subjects, found } = request.run(&NEVER, &mut simulating(quiet))?;
+    let mut progress = Progress::of_simulations(request.simulations(), quiet);
+    let Calibrated { subjects, found } = request.run(&NEVER, &mut |event| progress.see(event))?;
+    drop(progress);
     if let Some(out) = &arguments.out {
         for (subject, result) in subjects.iter().zip(&found.tasks) {
             let name = format!("predictions_{}.csv", subject.task);

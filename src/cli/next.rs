@@ -1,7 +1,7 @@
 //! `optimize next`: which finger to print next.
 
 use super::arguments::CalibrationArguments;
-use super::terminal::simulating;
+use super::progress::Progress;
 use super::{Failure, print, print_json};
 use crate::calibration::next::Advice;
 use crate::calibration::subject::Subject;
@@ -54,7 +54,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         print_cost_mm: arguments.print_cost_mm,
     };
     let quiet = arguments.quiet || arguments.json;
-    let Advised { subject, advice } = request.run(&NEVER, &mut simulating(quiet))?;
+    let mut progress = Progress::of_simulations(request.calibration.simulations(), quiet);
+    let Advised { subject, advice } = request.run(&NEVER, &mut |event| progress.see(event))?;
+    drop(progress);
     if arguments.json {
         return print_json(&to_json(&subject, &advice));
     }

@@ -1,82 +1,113 @@
-//! Progress of a study on standard error: a bar on a terminal, lines elsewhere.
+//! Progress on standard error, through all phases: a bar on a terminal, a line every few seconds
+//! elsewhere.
 
-use super::terminal::{say, simulating};
-use crate::session::{Event, Standing};
+use super::terminal::say;
+use crate::session::{COSTS, Event, Part, Standing};
 use crate::study::{Recorded, Study};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 
-/// Shows how far a study is.
+/// Time between two lines where there is no terminal.
+const EVERY: Duration = Duration::from_secs(3);
+/// Designs that are repeated, and walked, once a search has ended.
+const CONFIRMED: [f64; 2] = [9.0, 3.0];
+
+/// Shows how far a study or a calibration is. Work is counted in evaluations of the search.
 pub struct Progress {
     bar: Option<ProgressBar>,
-    /// Where there is no terminal: a line each time this many are done.
-    line_every: Option<u64>,
+    shown: bool,
     begun: Instant,
-    done_before: u64,
-    budget: u64,
-    standing: Standing,
-    /// Whether nothing is said of what follows the search.
-    quiet_after: bool,
+    said: Instant,
+    /// What was done since it began, and what is left as far as that is known.
+    done: f64,
+    left: f64,
+    /// Evaluations in all, and the best of them, of a study.
+    search: Option<(u64, Standing)>,
 }
 
 impl Progress {
-    /// Begins; nothing is shown if `quiet`, and no more than that if JSON is printed.
-    pub fn new(study: &Study, quiet: bool, json: bool) -> Self {
-        let done = study.evaluations.len() as u64;
-        let budget = study.config.evaluations();
+    /// Of a study; nothing is shown if `quiet`.
+    pub fn new(study: &Study, quiet: bool) -> Self {
+        let (done, budget) = (study.evaluations.len() as u64, study.config.evaluations());
+        let conclusion = study.config.conclusion;
+        let confirmed = CONFIRMED.iter().zip(COSTS).map(|(count, cost)| count * cost).sum::<f64>();
+        let confirmed = if conclusion.no_confirm { 0.0 } else { confirmed };
+        let bench = conclusion.bench.map_or(0.0, |effort| f64::from(effort.simulations) * COSTS[2]);
+        let left = budget.saturating_sub(done) as f64 + confirmed + bench;
         let shown = !quiet && done < budget;
-        let bar = (shown && stderr().is_terminal()).then(|| bar(done, budget));
-        Progress {
-            line_every: (shown && bar.is_none()).then_some(study.config.batch),
-            bar,
-            begun: Instant::now(),
-            done_before: done,
-            budget,
-            standing: Standing::new(study),
-            quiet_after: quiet || json,
-        }
+        let mut progress = Progress::of(left, shown);
+        progress.search = Some((budget, Standing::new(study)));
+        progress
     }
 
+    /// Of a calibration of so many simulations.
+    pub fn of_simulations(count: usize, quiet: bool) -> Self {
+        Progress::of(count as f64 * COSTS[2], !quiet)
+    }
+
+    fn of(left: f64, shown: bool) -> Self {
+        let bar = (shown && stderr().is_terminal()).then(|| bar(left));
+        let now = Instant::now();
+        Progress { bar, shown, begun: now, said: now, done: 0.0, left, search: None }
+    }
+
+    /// Shows what happens.
     pub fn see(&mut self, event: Event<'_>) {
         match event {
             Event::Measured(recorded) => self.measured(recorded),
-            Event::Searched { not_kept } => {
-                self.bar.iter().for_each(ProgressBar::finish_and_clear);
-                if let Some(problem) = not_kept {
-                    say(&format!("warning: evaluations are not kept for other studies: {problem}"));
-                }
+            Event::Searched { not_kept: Some(problem) } => {
+                self.say(&format!(
+                    "warning: evaluations are not kept for other studies: {problem}"
+                ));
             }
-            Event::Simulating { .. } => simulating(self.quiet_after)(event),
+            Event::Searched { not_kept: None } => {}
+            Event::Part(Part { what, done, of, cost }) => {
+                self.step(cost, &format!("{what}: {done}/{of}"), done == of);
+            }
         }
     }
 
     fn measured(&mut self, recorded: &Recorded) {
-        self.standing.add(recorded);
-        let best = self.standing.best();
-        let done = recorded.index + 1;
+        let Some((budget, standing)) = &mut self.search else { return };
+        standing.add(recorded);
+        let (done, budget) = (recorded.index + 1, *budget);
+        let what = format!("{done}/{budget} evaluations, {}", standing.best());
+        self.step(1.0, &what, done == budget);
+    }
+
+    /// A part of this cost is done; the last of a phase is always shown.
+    fn step(&mut self, cost: f64, what: &str, last: bool) {
+        self.done += cost;
+        self.left = (self.left - cost).max(0.0);
+        let left = self.begun.elapsed().mul_f64(self.left / self.done.max(1.0));
         if let Some(bar) = &self.bar {
-            let left = indicatif::HumanDuration(self.remaining(done));
-            bar.set_message(format!("{best}, about {left:#} left"));
-            bar.inc(1);
-        } else if let Some(every) = self.line_every
-            && (done.is_multiple_of(every) || done == self.budget)
-        {
-            let left = self.remaining(done).as_secs();
-            say(&format!("{done}/{} evaluations, {best}, about {left} s left", self.budget));
+            bar.set_message(format!("{what}, about {:#} left", HumanDuration(left)));
+            bar.set_length((self.done + self.left).ceil() as u64);
+            bar.set_position(self.done as u64);
+        } else if self.shown && (last || self.said.elapsed() >= EVERY) {
+            self.said = Instant::now();
+            say(&format!("{what}, about {} s left", left.as_secs()));
         }
     }
 
-    fn remaining(&self, done: u64) -> Duration {
-        let here = done.saturating_sub(self.done_before).max(1);
-        self.begun.elapsed().mul_f64(self.budget.saturating_sub(done) as f64 / here as f64)
+    fn say(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| say(text)),
+            None => say(text),
+        }
     }
 }
 
-fn bar(done: u64, budget: u64) -> ProgressBar {
-    let bar = ProgressBar::new(budget).with_position(done);
-    let style = "{bar:20} {pos}/{len}  {msg}  {elapsed} gone";
-    if let Ok(style) = ProgressStyle::with_template(style) {
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+    }
+}
+
+fn bar(left: f64) -> ProgressBar {
+    let bar = ProgressBar::new(left.ceil() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:12} {msg}  {elapsed} gone") {
         bar.set_style(style);
     }
     bar.enable_steady_tick(Duration::from_millis(500));

@@ -43,9 +43,10 @@ impl ResumeArguments {
 /// Runs an open study until its budget is spent, shows how far it is, and prints its result.
 pub fn to_its_end(open: OpenStudy, arguments: &RunArguments) -> Result<(), Failure> {
     let stop = stop_on_interrupt(open.study().dir())?;
-    let mut progress = Progress::new(open.study(), arguments.quiet, arguments.json);
+    let mut progress = Progress::new(open.study(), arguments.quiet);
     let Ended { dir, record, ending, known, unusable } =
         open.run(&stop, &mut |event| progress.see(event))?;
+    drop(progress);
     record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));
     print(&summary::printed(&dir, &record, ending, known, arguments.json))?;
     unusable.map_or(Ok(()), Err)

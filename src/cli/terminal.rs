@@ -1,6 +1,6 @@
 //! What is printed: standard output, standard error, and what a terminal must not see.
 
-use crate::session::{Event, Failure};
+use crate::session::Failure;
 use input::files::visible;
 use serde_json::Value;
 use std::io::{self, Write};
@@ -37,14 +37,4 @@ fn shown(text: &str) -> String {
 /// ends for it.
 pub fn say(text: &str) {
     let _ = writeln!(io::stderr(), "{}", shown(text));
-}
-
-/// Says what is about to be simulated for the bench, unless `quiet`.
-pub fn simulating(quiet: bool) -> impl FnMut(Event<'_>) + Send {
-    move |event| match event {
-        Event::Simulating { task, count } if !quiet => {
-            say(&format!("{task}: {count} simulations, or their cache .."));
-        }
-        _ => (),
-    }
 }

@@ -4,9 +4,9 @@ use super::failure::not_stopped;
 use super::files::find;
 use super::how::{CacheRequest, EffortRequest, settings};
 use super::request::SetupRequest;
-use super::{Event, Failure, Setup, Watch, measured};
+use super::{COSTS, Failure, Part, Setup, Watch, measured, tell};
 use crate::calibration::calibrate::{Calibration, Layout};
-use crate::calibration::emulator::{CalibrationError, Emulator};
+use crate::calibration::emulator::{CalibrationError, Emulator, Set};
 use crate::calibration::experiments::Experiment;
 use crate::calibration::prior::Parameter;
 use crate::calibration::sampler::Settings;
@@ -16,7 +16,8 @@ use input::shipped::PRIORS;
 use insertion::evaluation::template::Template;
 use insertion::space::Design;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Priors unless others are named.
 pub const DEFAULT_PRIORS: &str = "bench";
@@ -69,13 +70,20 @@ impl CalibrateRequest {
         }
     }
 
+    /// Simulations in all.
+    pub fn simulations(&self) -> usize {
+        self.setup.tasks.len() * self.effort.count()
+    }
+
     /// Predicts every finger of the space on each task.
     ///
     /// # Errors
     /// If a file cannot be used, or nothing can be fitted; if `stop` is set meanwhile.
     pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Calibrated, Failure> {
         let Prepared { subjects, layout, settings, .. } = self.prepare(&[], stop, watch)?;
-        let found = Calibration::new(layout, &subjects, &settings);
+        let watch = Mutex::new(watch);
+        let done = |[done, of]: [usize; 2]| tell(&watch, folds(done, of));
+        let found = Calibration::new(layout, &subjects, &Settings { done: &done, ..settings });
         not_stopped(stop)?;
         Ok(Calibrated { subjects, found })
     }
@@ -106,6 +114,11 @@ impl CalibrateRequest {
         let (subjects, layout) = ground.subjects(&self.measurements, &experiments, more, watch)?;
         Ok(Prepared { subjects, layout, settings: settings(effort, self.seed, stop) })
     }
+}
+
+/// A calibration with fingers left out.
+pub(super) fn folds(done: usize, of: usize) -> Part {
+    Part { what: "fingers left out".to_owned(), done, of, cost: COSTS[3] }
 }
 
 /// What a calibration simulates with.
@@ -163,10 +176,15 @@ impl<'a> Ground<'a> {
     ) -> Result<Subject, CalibrationError> {
         let (evaluator, space) = (&self.setup.evaluator, &self.setup.space);
         let (task, count) = (&template.task.name, self.simulations);
-        if evaluator.engine.simulates() {
-            watch(Event::Simulating { task, count });
-        }
-        let emulator = Emulator::new(&self.simulation(template), space, task, count, self.seed)?;
+        let (counted, watch) = (AtomicUsize::new(0), Mutex::new(watch));
+        let done = || {
+            let done = counted.fetch_add(1, Ordering::Relaxed) + 1;
+            let part =
+                Part { what: format!("{task}: simulations"), done, of: count, cost: COSTS[2] };
+            tell(&watch, part);
+        };
+        let set = Set { task, count, seed: self.seed };
+        let emulator = Emulator::new(&self.simulation(template), space, set, &done)?;
         Subject::new(evaluator, template, space, emulator, experiments, more)
     }
 }

@@ -66,6 +66,11 @@ impl EffortRequest {
         within("--samples", self.samples, &SAMPLES)
     }
 
+    /// Simulations per task, unless a study knows better.
+    pub(super) fn count(self) -> usize {
+        usize::from(self.simulations.unwrap_or(EFFORT.simulations))
+    }
+
     /// What was asked for, or else what is known.
     pub(super) fn or(self, known: Option<BenchEffort>) -> Result<BenchEffort, Failure> {
         self.check()?;
@@ -80,7 +85,7 @@ impl EffortRequest {
 /// How to sample.
 pub(super) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Settings<'_> {
     let effort = Effort { warm_up: WARM_UP, samples: usize::from(effort.samples), thin: THIN };
-    Settings { effort, seed, stop }
+    Settings { effort, seed, stop, done: &|_| () }
 }
 
 /// How a study is run, as opposed to what it measures.

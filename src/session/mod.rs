@@ -62,6 +62,7 @@ pub use task::{TaskCheck, TaskFile, read_space, read_task};
 pub use trial::{TrialDone, TrialRequest};
 
 use crate::study::Recorded;
+use std::sync::Mutex;
 
 /// What happens meanwhile, for whoever shows it.
 #[derive(Debug)]
@@ -73,13 +74,34 @@ pub enum Event<'a> {
         /// Why evaluations are not kept for other studies, if so.
         not_kept: Option<String>,
     },
-    /// An emulator is about to be made, of simulations or their cache.
-    Simulating {
-        /// Name of the task.
-        task: &'a str,
-        /// How many simulations.
-        count: usize,
-    },
+    /// A part of what follows the search, or of a calibration, is done.
+    Part(Part),
+}
+
+/// A part of a long phase.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// The phase, and what was done: `confirming 10 %, 26°`.
+    pub what: String,
+    /// Parts of the phase that are done.
+    pub done: usize,
+    /// Parts of the phase.
+    pub of: usize,
+    /// What such a part takes, in evaluations of the search, roughly.
+    pub cost: f64,
+}
+
+/// Costs of the parts: of a design that is repeated at its ends, of one that is walked, of a
+/// simulation for an emulator, of a calibration with fingers left out. Measured on usb and ket8; they
+/// decide nothing but the time that is said to be left.
+pub const COSTS: [f64; 4] = [4.0, 12.0, 1.2, 4.0];
+
+/// Tells a part from whichever thread has done it.
+fn tell(watch: &Mutex<&mut Watch<'_>>, part: Part) {
+    // Whoever shows it has panicked: that ends the run by itself.
+    if let Ok(mut watch) = watch.lock() {
+        watch(Event::Part(part));
+    }
 }
 
 /// Is told what happens meanwhile.

@@ -1,17 +1,19 @@
 //! A study with measurements: which of its fingers is the best on the bench.
 
-use super::calibration::Ground;
+use super::calibration::{Ground, folds};
 use super::failure::not_stopped;
 use super::how::{RunRequest, settings};
 use super::measured::Measured;
-use super::{Failure, Setup, Watch};
+use super::{Failure, Setup, Watch, tell};
 use crate::calibration::calibrate::Calibration;
 use crate::calibration::on_bench::{by_range, on_bench};
+use crate::calibration::sampler::Settings;
 use crate::calibration::simulation::Simulation;
 use crate::calibration::table;
 use crate::study::{BenchEffort, OnBench, Provenance, Study, StudyConfig, write_own_file};
 use insertion::evaluation::objective::{Measure, Objectives};
 use rayon::ThreadPool;
+use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 /// Every finger of the space as predicted, in the study's folder.
@@ -70,8 +72,10 @@ fn all(
     watch: &mut Watch<'_>,
 ) -> Result<(OnBench, String), Failure> {
     let (subjects, layout) = ground.subjects(file, experiments, &[], watch)?;
-    let calibration =
-        Calibration::new(layout, &subjects, &settings(effort, ground.seed, ground.stop));
+    let watch = Mutex::new(watch);
+    let done = |[done, of]: [usize; 2]| tell(&watch, folds(done, of));
+    let settings = Settings { done: &done, ..settings(effort, ground.seed, ground.stop) };
+    let calibration = Calibration::new(layout, &subjects, &settings);
     not_stopped(ground.stop)?;
     let nothing = || Failure::running("the space has no finger to predict");
     let (subject, result) = subjects.first().zip(calibration.tasks.first()).ok_or_else(nothing)?;

@@ -2,15 +2,18 @@
 
 use super::guided::Guided;
 use super::how::RunRequest;
-use super::{Event, Failure, Setup, Watch};
+use super::{COSTS, Event, Failure, Part, Setup, Watch, tell};
 use super::{film, on_bench, optimizer, printable, report, unusable};
 use crate::study::{
-    Cache, Confirmer, Ending, Runner, Simulated, Study, StudyConfig, StudyError, StudyRecord,
+    Cache, Confirmed, Confirmer, Ending, Recorded, Runner, Simulated, Study, StudyConfig,
+    StudyError, StudyRecord,
 };
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::tolerance::Search;
+use insertion::space::label;
 use rayon::ThreadPool;
 use std::path::PathBuf;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A study that is open; no other process can open it meanwhile.
@@ -99,7 +102,7 @@ impl OpenStudy {
         let conclusion = study.config.conclusion;
         let interrupted = || ending == Ending::Interrupted || stop.load(Ordering::SeqCst);
         if ending != Ending::Interrupted && !conclusion.no_confirm {
-            confirm((study, setup), cache.as_ref(), pool, stop)?;
+            confirm((study, setup), cache.as_ref(), (pool, stop), watch)?;
         }
         study.check_journal()?;
         if !interrupted() {
@@ -125,15 +128,33 @@ impl OpenStudy {
 fn confirm(
     (study, setup): (&mut Study, &Setup),
     cache: Option<&Cache>,
-    pool: &ThreadPool,
-    stop: &AtomicBool,
+    (pool, stop): (&ThreadPool, &AtomicBool),
+    watch: &mut Watch<'_>,
 ) -> Result<(), Failure> {
+    let watch = Mutex::new(watch);
+    let done = |phase, recorded: &Recorded, [done, of]: [usize; 2]| {
+        let (word, cost) = match phase {
+            Confirmed::Repeated => ("confirming", COSTS[0]),
+            Confirmed::Walked => ("walking", COSTS[1]),
+        };
+        let what = format!("{word} {}", short(recorded));
+        tell(&watch, Part { what, done, of, cost });
+    };
     let (evaluator, search, plan) = (&setup.evaluator, Search::Walk, &Plan::WINDOW);
     let walker = Simulated { evaluator, search, plan, cache, stop };
     let by_ribs = setup.by_ribs();
     let by_ribs = by_ribs.as_ref();
-    let confirmer = Confirmer { walker: &walker, by_ribs, evaluator, pool, stop };
+    let confirmer = Confirmer { walker: &walker, by_ribs, evaluator, pool, stop, done: &done };
     confirmer.confirm(study).map_err(|error| hint(error, study))
+}
+
+/// A design in few letters: `10 %, 26°`, of many parameters the number of its evaluation.
+fn short(recorded: &Recorded) -> String {
+    let value = |(key, value): (&String, &f64)| format!("{value}{}", label(key).1);
+    match recorded.design.0.len() {
+        ..=2 => recorded.design.0.iter().map(value).collect::<Vec<_>>().join(", "),
+        _ => format!("evaluation {}", recorded.index),
+    }
 }
 
 /// Whether `study.toml` says what the input files say, which it was once written from.

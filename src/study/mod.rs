@@ -50,5 +50,5 @@ pub use simulated::Simulated;
 pub use store::{FileStore, Store};
 pub use table::{evaluations_csv, write_evaluations_csv};
 pub use time::now;
-pub use walk::Confirmer;
+pub use walk::{Confirmed, Confirmer};
 pub use work::{Work, WorkError};

@@ -16,7 +16,7 @@ use insertion::space::Design;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// What the best designs are measured with.
@@ -31,6 +31,17 @@ pub struct Confirmer<'a> {
     pub pool: &'a ThreadPool,
     /// Set when the study is to stop: trials then end at once.
     pub stop: &'a AtomicBool,
+    /// Told of each design that is repeated or walked, how many are, and of how many.
+    pub done: &'a (dyn Fn(Confirmed, &Recorded, [usize; 2]) + Sync),
+}
+
+/// What was done with a design.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Confirmed {
+    /// Its ends were repeated.
+    Repeated,
+    /// It was walked.
+    Walked,
 }
 
 impl Confirmer<'_> {
@@ -50,7 +61,7 @@ impl Confirmer<'_> {
             return Ok(());
         }
         let (kept, seed) = (Kept::read(study, &best, self.stop), study.config.seed);
-        self.each(&best, |recorded| match kept.row(recorded) {
+        self.each(Confirmed::Repeated, &best, |recorded| match kept.row(recorded) {
             Some(_) => Ok(()),
             None => kept.put(Row {
                 evaluation: recorded.index,
@@ -63,7 +74,7 @@ impl Confirmer<'_> {
         let mut firm: Vec<_> = best.iter().copied().filter_map(standing).collect();
         firm.sort_by(|(_, a), (_, b)| rule.order(a, b));
         let first: Vec<&Recorded> = firm.into_iter().take(WALKED).map(|(best, _)| best).collect();
-        self.each(&first, |recorded| match kept.row(recorded) {
+        self.each(Confirmed::Walked, &first, |recorded| match kept.row(recorded) {
             Some(row) if row.walked.is_none() => kept.put(self.walk(recorded, row, seed)?),
             _ => Ok(()),
         })?;
@@ -73,10 +84,18 @@ impl Confirmer<'_> {
     /// Does something with each design, several at a time.
     fn each(
         &self,
+        phase: Confirmed,
         designs: &[&Recorded],
         what: impl Fn(&Recorded) -> Result<(), StudyError> + Sync,
     ) -> Result<(), StudyError> {
-        self.pool.install(|| designs.par_iter().try_for_each(|recorded| what(recorded)))
+        let count = AtomicUsize::new(0);
+        let one = |recorded: &&Recorded| {
+            what(recorded)?;
+            let done = count.fetch_add(1, Ordering::Relaxed) + 1;
+            (self.done)(phase, recorded, [done, designs.len()]);
+            Ok(())
+        };
+        self.pool.install(|| designs.par_iter().try_for_each(one))
     }
 
     /// The design walked, and repeated at those ends that are others than before.

@@ -6,7 +6,7 @@ use super::finger::FingerRequest;
 use super::request::SetupRequest;
 use input::units::MM;
 use insertion::evaluation::tolerance::offset;
-use insertion::trial::{Driven, State};
+use insertion::trial::{Driven, Grasp, State};
 use nalgebra::Vector3;
 use std::sync::atomic::AtomicBool;
 
@@ -32,7 +32,8 @@ impl Insertion {
         let specimen = finger.choose(&setup)?.specimen;
         let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
         let rig = setup.evaluator.rig(&specimen, None, 1.0).map_err(Failure::input)?;
-        let driven = rig.driven(&specimen.finger).ok_or_else(|| {
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let driven = rig.driven(grasp).ok_or_else(|| {
             Failure::usage(
                 "this engine simulates nothing that could be driven; use --engine direct",
             )

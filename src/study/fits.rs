@@ -122,8 +122,8 @@ pub fn implausible(evaluation: &Evaluation) -> Option<&'static str> {
     let ends = [window.negative_steps, window.positive_steps];
     let failed = failure_counts.iter().fold(*diverged, |sum, &count| sum.saturating_add(count));
     let inserts = window.nominal == Outcome::Inserted;
-    // NaN, null in the journal, is not measured.
-    let size = |number: f64| number.is_nan() || (0.0..=LARGEST).contains(&number);
+    // NaN, null in the journal, is not measured: nothing has inserted.
+    let size = |number: f64| (0.0..=LARGEST).contains(&number) || (number.is_nan() && !inserts);
     let sizes = [evaluation.peak_force_n, evaluation.slip_mm, evaluation.simulated_s];
     let checks = [
         (ends.iter().chain(&evaluation.taught).all(farthest), "its window lies too far out"),
@@ -229,7 +229,7 @@ pub(super) mod tests {
             implausible(&evaluation)
         };
         assert_eq!(with(&|_| ()), None);
-        assert_eq!(with(&|e| e.peak_force_n = f64::NAN), None);
+        assert!(with(&|e| e.peak_force_n = f64::NAN).is_some());
         assert_eq!(implausible(&NOTHING), None);
         assert!(with(&|e| e.peak_force_n = f64::INFINITY).is_some());
         assert!(with(&|e| e.end_shares[0] = f64::NAN).is_some());

@@ -6,7 +6,7 @@ use super::leading::LeadingEdge;
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
 use super::watch::Watch;
-use super::{PhaseEnd, Poses, Trial};
+use super::{NEVER, PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
 use crate::robot::Mounted;
 use crate::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
@@ -99,6 +99,31 @@ impl<'a> Attempt<'a> {
             phases: Vec::new(),
             trace: None,
             recorder: None,
+        }
+    }
+
+    /// The same, which nothing stops any more.
+    pub fn unstoppable(self) -> Attempt<'static> {
+        let Attempt { robot, task, cell, world, target, stage, begun, yaw, socket, .. } = self;
+        let Attempt { time, grasp, watch, edge, phases, trace, recorder, .. } = self;
+        Attempt {
+            robot,
+            stop: &NEVER,
+            task,
+            cell,
+            world,
+            target,
+            stage,
+            begun,
+            yaw,
+            socket,
+            time,
+            grasp,
+            watch,
+            edge,
+            phases,
+            trace,
+            recorder,
         }
     }
 

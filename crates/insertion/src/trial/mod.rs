@@ -120,9 +120,9 @@ pub trait Rig: Send + Sync {
         None
     }
 
-    /// The trial of such a pair of fingers whose moves the caller commands; `None` where nothing
-    /// is simulated.
-    fn driven(&self, _finger: &Finger) -> Option<Driven> {
+    /// The trial of such a grasp whose moves the caller commands, once it is made whatever becomes of
+    /// the grasp's flag; `None` where nothing is simulated.
+    fn driven(&self, _grasp: Grasp<'_>) -> Option<Driven> {
         None
     }
 }

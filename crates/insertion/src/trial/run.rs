@@ -111,8 +111,8 @@ impl Rig for EngineRig {
         Some(Recording::new(trial, frames))
     }
 
-    fn driven(&self, finger: &Finger) -> Option<Driven> {
-        let ready = self.prepare(&*self.engine, Grasp::of(finger), false);
+    fn driven(&self, grasp: Grasp<'_>) -> Option<Driven> {
+        let ready = self.prepare(&*self.engine, grasp, false);
         Some(Driven::new(ready.attempt, ready.end))
     }
 }
@@ -229,6 +229,7 @@ mod tests {
         let after_the_grasp = grasped.trial(0.0);
         assert!(after_the_grasp.simulated_s < 1.5, "nothing but grasp and approach");
         assert_eq!(rig.record(grasp, 0.0).unwrap().trial.simulated_s, 0.0);
+        assert_eq!(rig.driven(grasp).unwrap().start(0.0).outcome, Some(Outcome::Diverged));
     }
 
     #[test]

@@ -46,7 +46,8 @@ pub struct State {
 }
 
 impl Driven {
-    pub(in crate::trial) fn new(ready: Attempt<'static>, prepared: Result<(), Stop>) -> Self {
+    pub(in crate::trial) fn new(ready: Attempt<'_>, prepared: Result<(), Stop>) -> Self {
+        let ready = ready.unstoppable();
         let attempt = ready.clone();
         let mut driven = Driven { ready, prepared, attempt, end: Ok(()), seated_s: 0.0 };
         driven.start(0.0);
@@ -129,10 +130,10 @@ mod tests {
     use super::*;
     use crate::fixtures::{finger, rig, task};
     use crate::outcome::FailureClass;
-    use crate::trial::Rig;
+    use crate::trial::{Grasp, Rig};
 
     fn driven() -> Driven {
-        rig(task("ket8")).driven(&finger(2.6, 45.0)).unwrap()
+        rig(task("ket8")).driven(Grasp::of(&finger(2.6, 45.0))).unwrap()
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::again;
 use super::elements::definitions;
 use crate::answer::lines::{self, Line};
-use crate::answer::words::{design, end, ends_mm, mm, outcome, span, stiffness};
+use crate::answer::words::{design, end, ends_mm, mm, outcome, span};
 use crate::answer::{Answer, OnTask, Recommended};
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
@@ -15,6 +15,10 @@ use maud::{Markup, html};
 pub(super) fn section(answer: &Answer) -> Markup {
     let Some(found) = &answer.recommended else { return none(answer) };
     let (best, objectives) = (found.design, &answer.record.config.objective);
+    // What the figures above do not say, and everything.
+    let facts = facts(answer, found);
+    let seen = |(name, _): &&Line| ["from its ribs", "as good", "robot"].contains(&name.as_str());
+    let beside: Vec<Line> = facts.iter().filter(seen).cloned().collect();
     html! {
         p.big { (best.design.labelled()) }
         div.card {
@@ -45,7 +49,11 @@ pub(super) fn section(answer: &Answer) -> Markup {
                 result."
             }
         }
-        (definitions(&facts(answer, found)))
+        (definitions(&beside))
+        details {
+            summary { "All its numbers" }
+            (definitions(&facts))
+        }
         p { "Print and measure more than one: " code { "optimize next" } " says which." }
         p {
             "The same study again, in its folder: "
@@ -120,7 +128,6 @@ fn figures(found: &Recommended) -> Vec<[String; 3]> {
 
 /// The lines of the terminal, and what they do not say.
 fn facts(answer: &Answer, found: &Recommended) -> Vec<Line> {
-    let (best, count) = (found.design, answer.record.evaluations.len());
     let mut facts = lines::recommended(answer, found);
     let mut add = |name: &str, value: String| facts.push((name.to_owned(), value));
     for task in &found.tasks {
@@ -128,8 +135,5 @@ fn facts(answer: &Answer, found: &Recommended) -> Vec<Line> {
             add(&format!("largest slip in the grasp{}", found.on(task)), Measure::Slip.show(slip));
         }
     }
-    add("compliance stiffness (y), one finger", stiffness(best.stiffness.compliance));
-    add("assembly stiffness (z), one finger", stiffness(best.stiffness.assembly));
-    add("evaluation", format!("{} (the {count} are counted from 0)", best.index));
     facts
 }

@@ -131,7 +131,10 @@ pub fn implausible(evaluation: &Evaluation) -> Option<&'static str> {
         (inserts || ends == [0, 0], "its nominal start fails, and it has a window"),
         ((1..=MOST_TRIALS).contains(trials) && failed <= *trials, "its trials do not add up"),
         (inserts || failed > 0, "its nominal start failed in no trial"),
-        (sizes.into_iter().all(size), "a force, a slip or a time is negative or far too large"),
+        (
+            sizes.into_iter().all(size),
+            "a force, a slip or a time is not finite, negative or far too large",
+        ),
         (
             evaluation.end_shares.iter().all(|share| share.abs() <= 1.0),
             "an end is no share of a step",

@@ -2,12 +2,11 @@
 
 mod common;
 
+use ask_tell::OptimizerKind;
 use common::{command, run};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
-
-const OPTIMIZERS: [&str; 5] = ["gp", "cma-es", "random", "sobol", "grid"];
 
 /// A running program; ended when dropped.
 struct Talk {
@@ -87,7 +86,7 @@ fn told(points: &[Value], sign: f64) -> Value {
 
 #[test]
 fn every_optimizer_asks_distinct_points_within_the_bounds_in_both_directions_alike() {
-    for name in OPTIMIZERS {
+    for name in OptimizerKind::all().map(OptimizerKind::name) {
         let mut down = Talk::begin(&header(name, "minimize", None));
         let mut up = Talk::begin(&header(name, "maximize", None));
         let mut seen = Vec::new();
@@ -235,7 +234,7 @@ fn no_input_is_no_error() {
 
 #[test]
 fn what_is_known_can_be_told_and_is_not_asked_again() {
-    for name in OPTIMIZERS {
+    for name in OptimizerKind::all().map(OptimizerKind::name) {
         let mut header = header(name, "minimize", Some(3));
         header["parameters"][0]["step"] = json!(1);
         let mut talk = Talk::begin(&header);

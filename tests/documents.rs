@@ -16,7 +16,8 @@ fn pages(folder: &str) -> Vec<(PathBuf, String)> {
 }
 
 fn words(pages: &[(PathBuf, String)]) -> usize {
-    pages.iter().map(|(_, text)| text.split_whitespace().count()).sum()
+    let words = |text: &str| text.split_whitespace().filter(|word| *word != "|").count();
+    pages.iter().map(|(_, text)| words(text)).sum()
 }
 
 /// The targets of the links to files in a page, without their anchors.

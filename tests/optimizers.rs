@@ -73,7 +73,7 @@ fn distinct(points: &[GridPoint]) -> bool {
 
 #[test]
 fn points_lie_on_the_grid_and_come_once_whatever_is_told() {
-    for kind in OptimizerKind::ALL {
+    for kind in OptimizerKind::all() {
         for grid in grids() {
             for (name, objective) in OBJECTIVES {
                 for n in [1, 4, 7] {
@@ -92,7 +92,7 @@ fn points_lie_on_the_grid_and_come_once_whatever_is_told() {
 
 #[test]
 fn a_grid_is_exhausted_completely_and_then_it_stops() {
-    for kind in OptimizerKind::ALL {
+    for kind in OptimizerKind::all() {
         for levels in [vec![7, 9], vec![1, 5, 2, 6], vec![61], vec![1], vec![]] {
             let grid = Grid::new(levels);
             for (name, objective) in OBJECTIVES {
@@ -111,7 +111,7 @@ fn a_grid_is_exhausted_completely_and_then_it_stops() {
 
 #[test]
 fn the_seed_decides_and_nothing_else() {
-    for kind in OptimizerKind::ALL {
+    for kind in OptimizerKind::all() {
         let grid = Grid::new(vec![21, 41]);
         let with = |seed| run(&mut *build(kind, grid.clone(), seed), &grid, hill, (10, 3));
         assert_eq!(with(7), with(7), "{kind}");
@@ -162,7 +162,7 @@ fn the_proposals_are_those_of_every_other_machine() {
 
 #[test]
 fn a_history_told_again_leads_to_the_same_proposals() {
-    for kind in OptimizerKind::ALL {
+    for kind in OptimizerKind::all() {
         let grid = Grid::new(vec![51, 31]);
         let mut first = build(kind, grid.clone(), 5);
         let history = run(&mut *first, &grid, hill, (9, 4));
@@ -179,7 +179,7 @@ fn a_history_told_again_leads_to_the_same_proposals() {
 
 #[test]
 fn asking_again_before_telling_gives_other_points() {
-    for kind in OptimizerKind::ALL {
+    for kind in OptimizerKind::all() {
         let grid = Grid::new(vec![9, 9]);
         let mut optimizer = build(kind, grid.clone(), 1);
         run(&mut *optimizer, &grid, hill, (6, 2));
@@ -196,7 +196,7 @@ fn asking_again_before_telling_gives_other_points() {
 
 #[test]
 fn observations_of_unknown_or_impossible_points_are_survived() {
-    for kind in OptimizerKind::ALL {
+    for kind in OptimizerKind::all() {
         let grid = Grid::new(vec![9, 9]);
         let mut optimizer = build(kind, grid.clone(), 1);
         let tell = |levels: Vec<u32>| Observation::new(GridPoint(levels), Some(1.0));
@@ -209,7 +209,7 @@ fn observations_of_unknown_or_impossible_points_are_survived() {
 
 #[test]
 fn those_that_learn_find_the_hill_and_those_that_spread_come_near_it() {
-    for kind in OptimizerKind::ALL {
+    for kind in OptimizerKind::all() {
         let grid = Grid::new(vec![21, 41]);
         let points = run(&mut *build(kind, grid.clone(), 4), &grid, hill, (15, 4));
         let best = points.iter().filter_map(|p| hill(&grid, p, 0)).fold(f64::MIN, f64::max);
@@ -330,7 +330,7 @@ fn several_objectives_and_constraints_keep_the_contract() {
         let violations = if broken { Vec::new() } else { vec![f64::from(point.0[1]) - 4.0] };
         Observation { point: point.clone(), values, violations }
     };
-    for kind in OptimizerKind::ALL.into_iter().filter(|kind| kind.takes_several_objectives()) {
+    for kind in OptimizerKind::all().filter(|kind| kind.takes_several_objectives()) {
         let run = || {
             let told = told(&mut *build(kind, grid.clone(), 2), problem, (15, 4));
             told.into_iter().map(|o| o.point).collect::<Vec<_>>()

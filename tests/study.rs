@@ -2,6 +2,7 @@
 
 mod common;
 
+use ask_tell::OptimizerKind;
 use ask_tell::stream::stream;
 use common::{SLOW, Studies, end, optimize, read, run, start};
 use rand::RngExt;
@@ -36,7 +37,7 @@ fn the_same_seed_gives_the_same_journal_whatever_the_threads() {
 #[test]
 fn every_optimizer_goes_on_under_a_raised_budget_as_if_it_had_been_so_from_the_start() {
     let studies = Studies::new();
-    for optimizer in ["gp", "cma-es", "random", "sobol", "grid"] {
+    for optimizer in OptimizerKind::all().map(OptimizerKind::name) {
         let more = ["--optimizer", optimizer];
         studies.study(&format!("{optimizer}-once"), 40, &more).succeeds();
         let raised = format!("{optimizer}-raised");

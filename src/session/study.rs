@@ -285,7 +285,7 @@ fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
         return Ok(());
     }
     if !kind.takes_several_objectives() {
-        let able = OptimizerKind::ALL.into_iter().filter(|kind| kind.takes_several_objectives());
+        let able = OptimizerKind::all().filter(|kind| kind.takes_several_objectives());
         let able: Vec<&str> = able.map(OptimizerKind::name).collect();
         return Err(Failure::usage(format!(
             "{kind} knows one objective only; for {} give --optimizer {}",

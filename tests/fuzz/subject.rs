@@ -4,6 +4,7 @@ use super::common::sealed;
 use super::mutation::{Mutation, mutated};
 use super::process::{Ended, no_number, run};
 use anyhow::{Context, Result, bail, ensure};
+use ask_tell::OptimizerKind;
 use finger_opt::connector::mesh::read;
 use finger_opt::session::{
     Failure, NotTaken, OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform,
@@ -308,7 +309,8 @@ fn kept(name: &str, change: &dyn Fn(&str) -> Vec<u8>, base: &Base, out: &Path) -
 
 /// A conversation, each line answered with a line of JSON.
 fn talk(mutations: &[Mutation], number: usize) -> How {
-    let optimizer = ["gp", "cma-es", "random", "sobol", "grid"][number % 5];
+    let optimizers: Vec<OptimizerKind> = OptimizerKind::all().collect();
+    let optimizer = optimizers[number % optimizers.len()];
     let text = format!(
         r#"{{"parameters":[{{"name":"x","low":-5,"high":5}},{{"name":"n","low":1,"high":9,"step":2}}],"optimizer":"{optimizer}","seed":1,"direction":"minimize"}}
 {{"tell":[{{"values":{{"x":0.5,"n":3}},"value":1.5}}]}}

@@ -24,30 +24,31 @@ pub enum OptimizerKind {
     Grid,
 }
 
+/// Each kind with its name on the command line, in the order in which help texts list them, and the
+/// most parameters that it copes with: its model, its covariance or its points must neither fill the
+/// memory nor take minutes.
+const KINDS: [(OptimizerKind, &str, usize); 5] = [
+    (OptimizerKind::Gp, "gp", 100),
+    (OptimizerKind::CmaEs, "cma-es", 200),
+    (OptimizerKind::Random, "random", 10_000),
+    (OptimizerKind::Sobol, "sobol", 10_000),
+    (OptimizerKind::Grid, "grid", 10_000),
+];
+
 impl OptimizerKind {
     /// All kinds, in the order in which help texts list them.
-    pub const ALL: [OptimizerKind; 5] =
-        [Self::Gp, Self::CmaEs, Self::Random, Self::Sobol, Self::Grid];
+    pub fn all() -> impl Iterator<Item = Self> {
+        KINDS.into_iter().map(|(kind, ..)| kind)
+    }
 
     /// The name as written on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Gp => "gp",
-            Self::CmaEs => "cma-es",
-            Self::Random => "random",
-            Self::Sobol => "sobol",
-            Self::Grid => "grid",
-        }
+        KINDS[self as usize].1
     }
 
-    /// Most parameters that it copes with: its model, its covariance or its points must
-    /// neither fill the memory nor take minutes.
+    /// Most parameters that it copes with.
     pub fn most_parameters(self) -> usize {
-        match self {
-            Self::Gp => 100,
-            Self::CmaEs => 200,
-            Self::Random | Self::Sobol | Self::Grid => 10_000,
-        }
+        KINDS[self as usize].2
     }
 
     /// Whether it can look for a front of several objectives: it models each of them, or
@@ -67,8 +68,8 @@ impl FromStr for OptimizerKind {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
-            let valid = Self::ALL.map(Self::name).join(", ");
+        Self::all().find(|kind| kind.name() == name).ok_or_else(|| {
+            let valid = KINDS.map(|(_, name, _)| name).join(", ");
             format!("unknown optimizer '{name}'; valid names are {valid}")
         })
     }
@@ -106,8 +107,8 @@ mod tests {
 
     #[test]
     fn names_round_trip_and_a_wrong_one_lists_the_right_ones() {
-        for kind in OptimizerKind::ALL {
-            assert_eq!(kind.to_string().parse(), Ok(kind));
+        for (i, kind) in OptimizerKind::all().enumerate() {
+            assert_eq!((kind.to_string().parse(), kind as usize), (Ok(kind), i));
         }
         let error = "bayes".parse::<OptimizerKind>().unwrap_err();
         assert_eq!(

@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE.csv")]
     landscape: Vec<PathBuf>,
     /// Optimizers, separated by commas
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = OptimizerKind::ALL)]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = OptimizerKind::all())]
     optimizers: Vec<OptimizerKind>,
     /// Write every run as CSV
     #[arg(long, value_name = "FILE.csv")]

@@ -175,6 +175,33 @@ fn one_signal_ends_a_study_within_half_a_second_in_every_phase() {
 }
 
 #[test]
+fn one_signal_ends_every_command_that_simulates() {
+    let finger = "--density 20 --direction 10";
+    let bench = "--task ket8 --no-cache --measurements published";
+    for line in [
+        format!("evaluate --task usb {finger} --walk --repeat 900"),
+        format!("evaluate --task usb {finger} --uncertainty typical"),
+        format!("trial --task usb {finger} --repeat 900"),
+        "sensitivity --task usb --samples 64".to_owned(),
+        format!("calibrate {bench}"),
+        format!("next {bench}"),
+    ] {
+        for signal in ["INT", "TERM", "HUP"] {
+            // What is begun in a shell's background inherits that Ctrl-C is ignored.
+            let mut child = std::process::Command::new("env");
+            child.args(["--default-signal=INT,HUP", env!("CARGO_BIN_EXE_optimize")]);
+            let child = child.args(line.split_whitespace());
+            let child = child.stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+            let mut child = child.expect("the command starts");
+            std::thread::sleep(Duration::from_millis(400));
+            assert!(child.try_wait().expect("it can be asked").is_none(), "{line} has ended");
+            let took = kill(child, signal);
+            assert!(took < Duration::from_millis(900), "{line}: {took:?} after SIG{signal}");
+        }
+    }
+}
+
+#[test]
 fn what_another_program_adds_to_a_journal_is_passed_over_and_said() {
     let folder = Studies::new();
     let expected = answer(&folder.study("whole", 24, &["--json"]));

@@ -12,27 +12,19 @@ pub trait Simulator: Sync {
     fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64>;
 }
 
-/// Measurement of one finger's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
-    /// Number of the finger.
     pub finger: usize,
-    /// Measured range, mm.
     pub range_mm: f64,
-    /// Whether the range is this or more.
     pub at_least: bool,
     /// Measurements that this is the mean of.
     pub repeats: u32,
 }
 
-/// The bench of one task.
 #[derive(Clone)]
 pub struct Bench<'a> {
-    /// Simulator of its fingers.
     pub simulator: &'a dyn Simulator,
-    /// Standardised stiffness of each finger.
     pub places: &'a [Place],
-    /// Measurements.
     pub observations: Vec<Observation>,
     /// mm to one unit of the process.
     pub scale_mm: f64,
@@ -50,12 +42,10 @@ pub fn share(coordinate: f64) -> f64 {
 }
 
 impl Bench<'_> {
-    /// Shares of the parameters' priors in a sample.
     pub fn shares(&self, state: &[f64]) -> Vec<f64> {
         self.parameters.iter().map(|&coordinate| share(state[coordinate])).collect()
     }
 
-    /// Fingers as simulated at a sample.
     pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {
         let ranges_mm = self.simulator.ranges_mm(numbers, &self.shares(state));
         numbers.iter().zip(ranges_mm).map(|(&number, range)| self.finger(number, range)).collect()
@@ -65,7 +55,6 @@ impl Bench<'_> {
         Finger { place: self.places[number], simulated: range_mm / self.scale_mm }
     }
 
-    /// The process's standard deviations in a sample.
     pub fn hyperparameters(&self, state: &[f64]) -> Hyperparameters {
         let own = &state[self.first..self.first + COORDINATES];
         Hyperparameters::from_coordinates(own, self.error_mm / self.scale_mm)

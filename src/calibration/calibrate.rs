@@ -12,10 +12,8 @@ use ask_tell::stream::stream;
 /// Joint draws per sample of the posterior.
 const DRAWS: usize = 3;
 
-/// One coordinate that is a parameter.
 #[derive(Debug, Clone)]
 pub struct Coordinate {
-    /// The parameter.
     pub parameter: Parameter,
     /// The task it belongs to; `None` if they share it.
     pub task: Option<String>,
@@ -24,7 +22,6 @@ pub struct Coordinate {
 /// Meaning of a sample's coordinates: the parameters, then each task's hyperparameters.
 #[derive(Debug, Clone)]
 pub struct Layout {
-    /// The parameters.
     pub coordinates: Vec<Coordinate>,
     /// The coordinates of each task's parameters, in its simulation's order.
     of_task: Vec<Vec<usize>>,
@@ -49,12 +46,10 @@ impl Layout {
         Layout { coordinates, of_task }
     }
 
-    /// Coordinates of a sample.
     pub fn dimension(&self) -> usize {
         self.coordinates.len() + COORDINATES * self.of_task.len()
     }
 
-    /// The benches of the tasks, in order.
     pub fn benches<'a>(&self, subjects: &'a [Subject]) -> Vec<Bench<'a>> {
         let bench = |(i, subject): (usize, &'a Subject)| {
             subject.bench(self.of_task[i].clone(), self.coordinates.len() + COORDINATES * i)
@@ -63,7 +58,6 @@ impl Layout {
     }
 }
 
-/// Result of a calibration on one task.
 #[derive(Debug, Clone)]
 pub struct TaskResult {
     /// Each finger of the space, in the subject's order.
@@ -72,24 +66,17 @@ pub struct TaskResult {
     pub left_out: Vec<LeftOut>,
 }
 
-/// A finger's predicted bench range.
 #[derive(Debug, Clone, Copy)]
 pub struct Prediction {
-    /// Number of the finger.
     pub finger: usize,
-    /// Its range.
     pub range: Predicted,
     /// Probability of its being the best of the space, 0 to 1.
     pub best: f64,
 }
 
-/// A finished calibration.
 pub struct Calibration {
-    /// Meaning of the coordinates.
     pub layout: Layout,
-    /// Samples of all coordinates.
     pub posterior: Posterior,
-    /// One per task.
     pub tasks: Vec<TaskResult>,
 }
 

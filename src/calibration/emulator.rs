@@ -18,7 +18,6 @@ const ROUNDING_MM: f64 = 0.04;
 /// Evaluations of the likelihood per start of the fit.
 const EVALUATIONS: usize = 30;
 
-/// One simulated window.
 #[derive(Debug, Clone)]
 struct Run {
     /// Shares of the space, then of the parameters' priors.
@@ -27,7 +26,6 @@ struct Run {
     failures: [Option<FailureClass>; 2],
 }
 
-/// The simulator's stand-in on one task.
 pub struct Emulator {
     process: Gp,
     mean_mm: f64,
@@ -37,7 +35,6 @@ pub struct Emulator {
     pub simulations: usize,
     /// Simulations its error was measured on.
     pub fresh: usize,
-    /// Root mean square of that error, mm.
     pub error_mm: f64,
 }
 
@@ -131,7 +128,6 @@ impl Emulator {
         (self.mean_mm + self.sd_mm * self.process.mean(at)).max(0.0)
     }
 
-    /// Mean range over the simulations, mm.
     pub fn mean_mm(&self) -> f64 {
         self.mean_mm
     }

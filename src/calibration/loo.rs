@@ -11,7 +11,6 @@ use std::collections::BTreeSet;
 /// A measured finger, predicted without it.
 #[derive(Debug, Clone, Copy)]
 pub struct LeftOut {
-    /// Number of the finger.
     pub finger: usize,
     /// Its measured range, mm: the mean, if it was measured several times.
     pub measured_mm: f64,
@@ -22,18 +21,15 @@ pub struct LeftOut {
 /// Accuracy of the predictions of left-out fingers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
-    /// Fingers.
     pub fingers: usize,
     /// Mean of `|predicted - measured| / measured`, percent; `None` without fingers.
     pub mean_deviation_percent: Option<f64>,
-    /// Rank correlation; `None` below 3 fingers or if one side does not vary.
     pub spearman: Option<f64>,
     /// Fingers whose measured range lies in its interval.
     pub inside: usize,
 }
 
 impl LeftOut {
-    /// Whether the interval holds what was measured.
     pub fn inside(&self) -> bool {
         (self.predicted.low_mm..=self.predicted.high_mm).contains(&self.measured_mm)
     }

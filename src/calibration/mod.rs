@@ -9,22 +9,22 @@
 //! 6. [`next`]: which finger to print.
 //! 7. [`mod@on_bench`]: what a study keeps of it.
 
-pub mod bench;
-pub mod calibrate;
-pub mod emulator;
-pub mod experiments;
-pub mod loo;
-pub mod next;
-pub mod on_bench;
-pub mod order;
-pub mod predict;
-pub mod prior;
-pub mod process;
+pub(crate) mod bench;
+pub(crate) mod calibrate;
+pub(crate) mod emulator;
+pub(crate) mod experiments;
+pub(crate) mod loo;
+pub(crate) mod next;
+pub(crate) mod on_bench;
+pub(crate) mod order;
+pub(crate) mod predict;
+pub(crate) mod prior;
+pub(crate) mod process;
 pub mod published;
-pub mod sampler;
-pub mod simulation;
+pub(crate) mod sampler;
+pub(crate) mod simulation;
 pub mod statistics;
-pub mod subject;
-pub mod table;
+pub(crate) mod subject;
+pub(crate) mod table;
 #[cfg(test)]
 mod tests;

@@ -11,27 +11,19 @@ use super::process::Place;
 use rand::Rng;
 use std::collections::BTreeSet;
 
-/// One finger to print.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Print {
-    /// Number of the finger.
     pub finger: usize,
-    /// Its expected range, mm.
     pub expected_mm: f64,
-    /// Lower end of the interval of its range.
     pub low_mm: f64,
-    /// Upper end.
     pub high_mm: f64,
     /// Expected gain of the best known range by this print and those before it, less theirs.
     pub expected_gain_mm: f64,
-    /// Why, in one line.
     pub reason: String,
 }
 
-/// Advice on the next prints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
-    /// The prints, best first.
     pub next: Vec<Print>,
     /// Expected range of the best measured finger, mm; `None` if none was measured.
     pub best_known_mm: Option<f64>,
@@ -39,12 +31,9 @@ pub struct Advice {
     pub stop: bool,
 }
 
-/// Question to [`advise`].
 #[derive(Debug, Clone, Copy)]
 pub struct Question<'a> {
-    /// Fingers that may be printed.
     pub among: &'a [usize],
-    /// Prints at a time.
     pub count: usize,
     /// Gain that a print must promise to be worth its cost, mm.
     pub cost_mm: f64,

@@ -7,7 +7,6 @@ use super::table::warnings;
 use crate::study::{BenchEffort, BenchFinger, OnBench, Provenance, Trust};
 use insertion::evaluation::Evaluation;
 
-/// Fingers that are kept.
 const KEPT: usize = 5;
 
 /// The fingers of the space by their predicted ranges, best first.

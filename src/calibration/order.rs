@@ -17,7 +17,6 @@ const VALIDATION: &str = include_str!("../../data/simulated_ranges.csv");
 pub struct Order {
     /// Spearman's, +1 for the same order, -1 for the opposite one.
     pub spearman: f64,
-    /// Fingers it rests on.
     pub fingers: usize,
     /// Whose ranges these are.
     pub source: OrderSource,
@@ -35,7 +34,6 @@ pub enum OrderSource {
 }
 
 impl OrderSource {
-    /// In words.
     pub fn words(self) -> &'static str {
         match self {
             OrderSource::Study => "this study",

@@ -20,14 +20,10 @@ const FREEDOM: f64 = 5.0;
 /// Draws per sample where there is no closed formula.
 const EACH: usize = 5;
 
-/// A range as predicted, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predicted {
-    /// Mean.
     pub mean_mm: f64,
-    /// Lower end of the interval.
     pub low_mm: f64,
-    /// Upper end of the interval.
     pub high_mm: f64,
     /// Range by simulation alone, averaged over the posterior.
     pub simulated_mm: f64,
@@ -38,11 +34,9 @@ pub struct Predicted {
 pub enum Of {
     /// The range that many measurements would give on average.
     Truth,
-    /// The next measurement.
     Measurement,
 }
 
-/// Predicts fingers, by their numbers.
 pub fn predict(
     bench: &Bench<'_>,
     posterior: &Posterior,

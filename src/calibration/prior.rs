@@ -3,15 +3,11 @@
 use input::{Check, InputError, read};
 use serde::Deserialize;
 
-/// A checked file of priors.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Priors {
-    /// Name, as used on the command line.
     pub name: String,
-    /// One line for lists.
     pub description: String,
-    /// The uncertain numbers.
     #[serde(rename = "parameter")]
     pub parameters: Vec<Parameter>,
 }
@@ -20,22 +16,15 @@ pub struct Priors {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
-    /// Its name.
     pub name: String,
-    /// Quantity that it changes.
     pub sets: Target,
-    /// Way in which it changes it.
     #[serde(rename = "as")]
     pub way: Way,
     /// Scale on which it is drawn evenly.
     pub scale: Scale,
-    /// Lower bound.
     pub low: f64,
-    /// Upper bound.
     pub high: f64,
-    /// Whether all tasks share one value.
     pub shared: bool,
-    /// Source of the bounds.
     pub source: String,
 }
 
@@ -73,9 +62,7 @@ const NAMED: [(&str, Target); 6] = [
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Way {
-    /// It multiplies it.
     Factor,
-    /// It is added to it.
     Shift,
 }
 
@@ -83,9 +70,7 @@ pub enum Way {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scale {
-    /// The parameter.
     Linear,
-    /// Its logarithm.
     Log,
 }
 

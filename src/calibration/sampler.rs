@@ -5,23 +5,18 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Length of the sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
     /// Sweeps over all coordinates before the first sample is kept.
     pub warm_up: usize,
-    /// Samples kept.
     pub samples: usize,
     /// Sweeps from one to the next.
     pub thin: usize,
 }
 
-/// Settings of a calibration.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'a> {
-    /// Length of the sampling.
     pub effort: Effort,
-    /// Names the random streams.
     pub seed: u64,
     /// Set when it is to end: what it gives is then worthless.
     pub stop: &'a AtomicBool,

@@ -20,7 +20,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// teaches the start where it inserts.
 const TAUGHT_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 
-/// Simulates fingers on one task.
 pub struct Simulation<'a> {
     evaluator: &'a Evaluator,
     template: &'a Template,

@@ -17,15 +17,11 @@ const MOST_FINGERS: u64 = 4000;
 /// Measured fingers, or simulations, near a finger that say how it fails.
 const NEAR: usize = 3;
 
-/// One task with its fingers.
 pub struct Subject {
-    /// Name of the task.
     pub task: String,
     /// The fingers: first those of the space, then other measured or published ones.
     pub designs: Vec<Design>,
-    /// Number of fingers of the space.
     pub of_space: usize,
-    /// The simulator's stand-in.
     pub emulator: Emulator,
     /// Measurements on this task, with the number of the finger.
     pub experiments: Vec<(usize, Experiment)>,
@@ -75,12 +71,10 @@ impl Subject {
         Ok(Subject { task, designs, of_space, emulator, experiments: measured, places, shares })
     }
 
-    /// The number of a design, if it is among the fingers.
     pub fn finger(&self, design: &Design) -> Option<usize> {
         self.designs.iter().position(|known| known == design)
     }
 
-    /// Measured fingers.
     pub fn measured(&self) -> BTreeSet<usize> {
         self.experiments.iter().map(|(number, _)| *number).collect()
     }
@@ -188,7 +182,6 @@ pub fn whole(
     Ok(design)
 }
 
-/// A design as shares of its space.
 fn shares(space: &Space, design: &Design) -> Vec<f64> {
     let share = |parameter: &Parameter| {
         let value = design.get(&parameter.key).unwrap_or(parameter.low);

@@ -14,10 +14,8 @@ const MOVED: (f64, f64) = (0.75, 0.5);
 /// Correlation at which two parameters cannot be told apart.
 const TOGETHER: f64 = 0.5;
 
-/// One parameter before and after.
 #[derive(Debug, Clone)]
 pub struct Moved {
-    /// Its name.
     pub name: String,
     /// The task it belongs to, unless all share it.
     pub task: Option<String>,
@@ -29,7 +27,6 @@ pub struct Moved {
     pub moved: bool,
 }
 
-/// What the measurements did to each parameter.
 pub fn moved(calibration: &Calibration) -> Vec<Moved> {
     let one = |(i, Coordinate { parameter, task }): (usize, &Coordinate)| {
         let values = coordinate(calibration, i);
@@ -118,7 +115,6 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     lines
 }
 
-/// The design's keys.
 pub fn design_json(design: &Design) -> Map<String, Value> {
     design.0.iter().map(|(key, value)| (key.clone(), json!(value))).collect()
 }
@@ -127,7 +123,6 @@ fn class(failure: Option<FailureClass>) -> Value {
     json!(failure.map(FailureClass::number))
 }
 
-/// The JSON of a calibration.
 pub fn json(calibration: &Calibration, subjects: &[Subject]) -> Value {
     let tasks =
         subjects.iter().zip(&calibration.tasks).map(|(subject, result)| task_json(subject, result));
@@ -264,7 +259,6 @@ pub fn parameters_csv(calibration: &Calibration) -> String {
     head.to_owned() + &lines.collect::<String>()
 }
 
-/// Fingers that the text lists.
 const LISTED: usize = 5;
 
 /// A task's result within 80 columns.

@@ -31,7 +31,6 @@ struct Placed {
 }
 
 impl<'a> ConvexBody<'a> {
-    /// Body of rigid parts.
     pub fn new(parts: &'a [Part]) -> Self {
         let place = |part: &Part| {
             let geom = part.geom();
@@ -110,7 +109,6 @@ impl<'a> ConvexBody<'a> {
         self.corners().map(|p| at * p).min_by(|a, b| a.z.total_cmp(&b.z))
     }
 
-    /// Corners of all parts, body frame, m.
     pub fn corners(&self) -> impl Iterator<Item = Point3<f64>> + '_ {
         self.parts.iter().flat_map(|part| part.solid.corners())
     }
@@ -143,12 +141,10 @@ pub fn extent<P: Borrow<Point3<f64>>>(
     span(points.into_iter().map(|p| p.borrow()[axis]))
 }
 
-/// Longest side of the bounding box of points.
 pub fn longest_side(points: &[Point3<f64>]) -> f64 {
     (0..3).map(|axis| width(extent(points, axis))).fold(0.0, f64::max)
 }
 
-/// Width of an interval.
 pub fn width([low, high]: [f64; 2]) -> f64 {
     high - low
 }

@@ -5,12 +5,10 @@ use contact::scene::Pose;
 use insertion::task::{Ending, Stage, Task};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
-/// End of a commanded move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waypoint {
     /// Name of the phase that ends here; "start" for the first.
     pub name: String,
-    /// Stage of that phase.
     pub stage: Stage,
     /// Grasp point (TCP), task frame, m.
     pub tcp: Vector3<f64>,
@@ -26,7 +24,6 @@ pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
     Pose::from_parts(tcp.into(), turn) * Pose::translation(0.0, 0.0, -task.grip.tcp_z)
 }
 
-/// Start, and end of every phase.
 pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     let start = Vector3::from(task.strategy.start);
     let lowest = plug.lowest(&plug_pose(task, start));

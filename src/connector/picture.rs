@@ -12,11 +12,8 @@ use insertion::trial::picture::escape;
 use nalgebra::{Point2, Point3};
 use std::fmt::Write;
 
-/// Side of a panel, pixels.
 const PANEL: f64 = 420.0;
-/// Side of a panel's drawing, pixels.
 const INSIDE: f64 = PANEL - 10.0;
-/// Styles of the drawn bodies.
 const SOCKET: &str = "fill=\"#b8c4d6\" fill-opacity=\"0.5\" stroke=\"#56657d\"";
 const PLUG: &str = "fill=\"#e8a33d\" fill-opacity=\"0.5\" stroke=\"#8a5a10\"";
 const SEATED: &str = "fill=\"none\" stroke=\"#8a5a10\" stroke-dasharray=\"4 3\"";
@@ -39,7 +36,6 @@ const VIEWS: [View; 3] = [
     View { title: "from above: y to the right, x up", right: 1, up: 0 },
 ];
 
-/// Contents of the views.
 struct Drawing<'a> {
     task: &'a Task,
     way: Vec<Waypoint>,
@@ -48,7 +44,6 @@ struct Drawing<'a> {
     tip: [[f64; 2]; 2],
 }
 
-/// Stand-alone SVG of a task.
 pub fn svg(task: &Task) -> String {
     let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
     let way = path::waypoints(task, &plug);
@@ -77,7 +72,6 @@ struct Frame<'a> {
     view: &'a View,
     /// Left and top edge, m.
     corner: [f64; 2],
-    /// Scale, pixels per metre.
     scale: f64,
 }
 

@@ -45,7 +45,6 @@ const WITHIN: f64 = 0.9;
 /// Least depth of a plug that goes in, m.
 const LEAST_DEPTH: f64 = 1.0 * MM;
 
-/// Error of a plan.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum PlanError {
     /// The plug does not enter: depth, mm, and the parts of plug and socket that meet there.
@@ -54,7 +53,6 @@ pub enum PlanError {
          where `{1}` meets `{2}`; make the opening wider or the plug smaller"
     )]
     NoEntry(f64, String, String),
-    /// Nothing stops the plug.
     #[error("the plug falls through its socket: give the socket a floor, or the plug a shoulder")]
     NoFloor,
 }
@@ -99,7 +97,6 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     Ok(task)
 }
 
-/// Start of the search and lengths of its moves, m.
 struct Moves {
     /// x of the plug's axis at the start.
     x: f64,

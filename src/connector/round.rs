@@ -8,10 +8,8 @@ const OFF: f64 = 0.05;
 /// Fewest and most flats, multiples of four, so that one faces each of -x, +x, -y and +y.
 const FLATS: [u32; 2] = [16, 96];
 
-/// Hole of flats that lie as far inside the circle as their corners lie outside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hole {
-    /// Number of flats.
     pub flats: u32,
     /// Distance of each flat from the axis, m.
     pub flat: f64,

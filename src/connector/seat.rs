@@ -20,7 +20,6 @@ const GRID: i32 = 8;
 /// Refinements of that grid about its best place.
 const REFINEMENTS: i32 = 4;
 
-/// Lowest place of an upright plug.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seat {
     /// Depth of the tip below the socket's top, m; 0 if it does not enter.
@@ -31,7 +30,6 @@ pub struct Seat {
     pub stopped_by: Option<[usize; 2]>,
 }
 
-/// Upright places of a plug over a socket.
 pub struct Seating<'a> {
     plug: &'a ConvexBody<'a>,
     socket: &'a ConvexBody<'a>,
@@ -39,12 +37,10 @@ pub struct Seating<'a> {
 }
 
 impl<'a> Seating<'a> {
-    /// Seating of a plug in the socket of its task.
     pub fn new(task: &Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
         Seating { plug, socket, opening: task.opening }
     }
 
-    /// Lowest place of the plug.
     pub fn deepest(&self) -> Seat {
         let [bottom, top] = self.plug.extent(2);
         let mut at = self.opening.map(|[low, high]| (low + high) / 2.0);

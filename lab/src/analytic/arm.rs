@@ -19,7 +19,6 @@ use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Robot file of the arm on its published servos.
 const SOFT: &str = "ur5e";
-/// Force at the TCP, N.
 const FORCE: f64 = 5.0;
 /// Time in which the servos come to rest, s: twelve times their damping over their gain.
 const REST: f64 = 2.4;
@@ -31,7 +30,6 @@ pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
     arms.into_iter().flat_map(|(words, file)| of_robot(engine, words, file)).collect()
 }
 
-/// Rows of a shipped robot.
 fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
     let Some((arm, mounted)) = shipped(file) else { return Vec::new() };
     let mut models = vec![("coupled spring", flange(&mounted))];
@@ -60,7 +58,6 @@ pub fn ur5e() -> Option<(Arm, Mounted)> {
     shipped(SOFT)
 }
 
-/// Shipped arm of a name, and its mount.
 fn shipped(name: &str) -> Option<(Arm, Mounted)> {
     let file = ROBOTS.iter().find(|file| file.name == name)?;
     let robot = Robot::parse(file.text, file.file).ok()?;

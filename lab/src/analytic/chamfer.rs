@@ -17,7 +17,6 @@ use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Angles of the chamfer, degrees from the direction of insertion.
 const ANGLES: [f64; 2] = [30.0, 45.0];
-/// Friction of plug and socket.
 const FRICTION: f64 = 0.2;
 /// Speed of insertion, m/s: so slow that the springs' dampers carry nothing.
 const SPEED: f64 = 2.0 * MM;

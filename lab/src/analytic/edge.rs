@@ -14,7 +14,6 @@ use nalgebra::Vector3;
 /// The block, kg and m.
 const MASS: f64 = 20.0 * GRAM;
 const SIZE: [f64; 3] = [24.0 * MM, 12.0 * MM, 8.0 * MM];
-/// Friction of block and ground.
 const FRICTION: f64 = 0.1;
 /// Height of the pusher, m, and its speed, m/s.
 const PUSHER: f64 = 1.0 * MM;
@@ -27,7 +26,6 @@ const TIPPING: f64 = 2e-3;
 /// Largest error of the place, m.
 pub(super) const ALLOWED: f64 = 0.5 * MM;
 
-/// Place at which a block tips, T8 rows.
 pub fn t8(engine: &dyn Engine) -> Vec<CheckRow> {
     let place = tipping_place(engine).map(|place| place / MM);
     let quantity = "block pushed over an edge tips at";

@@ -21,7 +21,6 @@ const SERVO: Servo = Servo {
     inertia: 0.01,
     damping_ratio: 1.0,
 };
-/// Speed of the side move, m/s.
 const SPEED: f64 = 100.0 * MM;
 
 /// Lag of the flange along y and z, T13 rows.

@@ -64,7 +64,6 @@ fn turning(engine: &dyn Engine, speed: f64) -> Vec<CheckRow> {
     rows
 }
 
-/// Row of a moment, N m.
 fn moment(check: &'static str, quantity: String, expected: f64, held: Measured<Held>) -> CheckRow {
     let measured = held.map(|held| held.moment / MM);
     CheckRow::new(check, quantity, expected / MM, measured, "N mm", Tolerance::Relative(0.02))
@@ -116,11 +115,8 @@ fn mean_lever(sides: [f64; 2]) -> f64 {
 /// Resistance of a block that a hand draws and turns over a floor.
 #[derive(Debug, Clone, Copy)]
 struct Held {
-    /// Force against the draw, N.
     force: f64,
-    /// Moment against the turn, N m.
     moment: f64,
-    /// Turn of the block, rad.
     angle: f64,
 }
 
@@ -130,13 +126,10 @@ struct Case {
     torsion: Torsion,
     /// Distance of the load from the middle along y, m.
     beside: f64,
-    /// Speed of the hand, m/s.
     speed: f64,
-    /// Turning speed of the hand, rad/s.
     spin: f64,
     /// Springs along x and y, N/m.
     guide: f64,
-    /// Duration, s.
     time: f64,
 }
 

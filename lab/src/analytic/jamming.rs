@@ -19,7 +19,6 @@ use nalgebra::{Vector2, Vector3};
 
 /// Side forces as shares of the insertion force.
 const SIDE: [f64; 3] = [0.0, 0.5, -0.5];
-/// Insertion force, N.
 const INSERTION: f64 = 10.0;
 /// Clearance at which the neglected tilt (2.5 mrad) is worth 0.5 % only.
 const CLEARANCE: f64 = 0.02 * MM;

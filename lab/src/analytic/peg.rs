@@ -14,13 +14,11 @@ use contact::{Engine, World};
 use input::units::{GRAM, MM};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
-/// Length of a peg, m: that of a connector.
 const LENGTH: f64 = 20.0 * MM;
 /// Centre of mass of a peg, m.
 const CENTRE: Point3<f64> = Point3::new(0.0, 0.0, LENGTH / 2.0);
 /// Width of a peg in x, m.
 const DEPTH: f64 = 8.0 * MM;
-/// Thickness of the walls, m.
 const WALL: f64 = 10.0 * MM;
 
 /// Peg in a hole that is open along x.
@@ -32,9 +30,7 @@ pub(super) struct Peg {
     pub hole: f64,
     /// Length l of the peg below the rim, m.
     pub inside: f64,
-    /// Friction of peg and walls.
     pub friction: f64,
-    /// Mass of the peg, kg.
     pub mass: f64,
 }
 
@@ -49,7 +45,6 @@ impl Peg {
         self.inside.atan2(self.width) - (self.hole / diagonal).acos()
     }
 
-    /// Pose in two-point contact.
     pub fn tilted(&self) -> Pose {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), self.tilt());
         // The tip's corner at +y lies on the wall, the rim's point on the flank at z = 0.
@@ -79,7 +74,6 @@ impl Peg {
         build::fixed(name, pose, vec![geom])
     }
 
-    /// Peg and hole.
     pub fn scene(&self, pose: Pose) -> (Scene, BodyId) {
         let mut scene = Scene::default();
         let peg = scene.body(self.body(pose));
@@ -135,10 +129,8 @@ pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
 /// Moment that turns the peg of T3, N m: presses each contact with 0.25 N. The
 /// formula is for rigid contacts; so lightly pressed, ours yield next to nothing.
 const TURNING: f64 = 0.002;
-/// Time to come to rest, s.
 const RESTING: f64 = 0.05;
 
-/// Tilt and length inside at rest.
 fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
     let (scene, body) = peg.scene(Pose::translation(0.0, 0.0, -peg.inside));
     let mut world = engine.world(&scene);

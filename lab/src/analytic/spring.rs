@@ -17,7 +17,6 @@ use nalgebra::{Point3, Vector3};
 const FORCE: f64 = 5.0;
 /// Moment of T1, N m: turns the softest axis by about one degree.
 const MOMENT: f64 = 0.02;
-/// Force of T7, N.
 const SIDE_FORCE: f64 = 0.5;
 /// Distance of the force of T7 from the remote centre, m.
 const OFFSET: f64 = 10.0 * MM;

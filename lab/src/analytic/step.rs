@@ -13,7 +13,6 @@ use input::units::{DEG, MM};
 const MARGIN: f64 = 0.02;
 /// A block that is slower than this rests, m/s.
 const RESTS: f64 = 0.01 * MM;
-/// Friction of the cases.
 const FRICTION: f64 = 0.3;
 /// Simulated time before the snapshot and after it, s: from the push to the fall.
 const BEFORE: f64 = 0.3;

@@ -15,7 +15,6 @@ use nalgebra::{Point3, Vector3};
 
 /// Frictions of the check; l/d = 0.2 is a plug 2.4 mm inside.
 const FRICTIONS: [f64; 2] = [0.2, 0.3];
-/// Force on the wall, N.
 const SQUEEZE: f64 = 10.0;
 /// The peg, kg: as light as an RJ45 plug, which an iterative solver finds hard.
 const MASS: f64 = 5.0 * GRAM;
@@ -24,7 +23,6 @@ const WALL_MASS: f64 = 50.0 * GRAM;
 const WALL_DAMPING: f64 = 1.0;
 /// Clearance of the hole, m: many times what the contacts yield.
 const CLEARANCE: f64 = 0.02 * MM;
-/// Time under the force, s.
 const SQUEEZING: f64 = 0.03;
 /// The peg is wedged if it still has this share of its tilt.
 const KEPT: f64 = 0.5;

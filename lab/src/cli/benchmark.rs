@@ -42,7 +42,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Speed on a task.
 #[derive(Serialize)]
 struct TaskSpeed {
     task: String,

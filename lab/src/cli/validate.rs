@@ -105,7 +105,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     ))
 }
 
-/// Name of a search in tables.
 pub fn search_name(search: Search) -> &'static str {
     match search {
         Search::Walk => "walk",
@@ -125,7 +124,6 @@ pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
     names.into_iter().map(task).collect()
 }
 
-/// Task with published windows.
 fn task(name: &str) -> Result<Task, Failure> {
     let TaskFile { source, task } = session::read_task(name)?;
     if published::of_task(&task.name, Origin::Simulation).is_empty() {

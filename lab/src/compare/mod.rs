@@ -23,17 +23,14 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// Way of measuring windows.
 #[derive(Clone)]
 pub struct Way {
-    /// Name in tables.
     pub name: String,
     pub rig: Arc<dyn Rig>,
     pub search: Search,
 }
 
 impl Way {
-    /// Evaluation of a finger: its window and its trials.
     pub fn evaluate(&self, finger: &Finger) -> Evaluation {
         tolerance::evaluate(&*self.rig, finger, self.search)
     }
@@ -45,7 +42,6 @@ pub struct TaskWays {
     pub ways: Vec<Way>,
 }
 
-/// Measured finger on a task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
     pub task: String,

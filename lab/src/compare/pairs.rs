@@ -6,14 +6,11 @@ use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
 use serde_json::{Value, json};
 
-/// Windows of a finger in two ways.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WindowPair {
     pub subject: Subject,
-    /// Names of the ways.
     pub ways: [String; 2],
     pub windows: [Window; 2],
-    /// Number of trials of each window.
     pub trials: [u32; 2],
 }
 

@@ -21,7 +21,6 @@ pub enum Function {
 }
 
 impl Function {
-    /// Name in tables and on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
     }

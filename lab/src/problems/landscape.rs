@@ -66,18 +66,15 @@ impl Landscape {
         Ok(Landscape { grid, values })
     }
 
-    /// Range of a design of the grid, mm.
     pub fn value(&self, point: &GridPoint) -> Option<f64> {
         self.values.get(&point.0).copied().flatten()
     }
 
-    /// Largest range, mm.
     pub fn best(&self) -> f64 {
         self.values.values().flatten().copied().fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-/// Values of the axes and of the design.
 fn row(line: &str, axes: usize) -> Option<(Vec<f64>, Option<f64>)> {
     let number = |cell: &str| cell.parse::<f64>().ok().filter(|number| number.is_finite());
     let mut cells = line.split(',');

@@ -33,7 +33,6 @@ pub fn on_function(function: Function, methods: &[OptimizerKind], seeds: u64) ->
         .collect()
 }
 
-/// Runs of `methods` on a problem on a grid.
 pub fn on_grid(problem: &GridProblem, methods: &[OptimizerKind], seeds: u64) -> Vec<Runs> {
     let of = |&kind: &OptimizerKind| Runs {
         problem: problem.name.clone(),
@@ -45,7 +44,6 @@ pub fn on_grid(problem: &GridProblem, methods: &[OptimizerKind], seeds: u64) -> 
     methods.iter().map(of).collect()
 }
 
-/// Results by seed, run in parallel.
 fn over_seeds(seeds: u64, run: impl Fn(u64) -> Option<usize> + Send + Sync) -> Vec<Option<usize>> {
     (0..seeds).into_par_iter().map(run).collect()
 }

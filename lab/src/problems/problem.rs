@@ -14,7 +14,6 @@ const SHORTFALL_MM: f64 = 0.1;
 /// Rounding of the ranges, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// Value of a point, if it has one.
 type Value = dyn Fn(&GridPoint) -> Option<f64> + Sync;
 
 /// Problem on a grid: maximisation up to a target, in a limited number of evaluations.

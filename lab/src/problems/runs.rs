@@ -10,12 +10,10 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// Number of runs that reached the target.
     pub fn reached(&self) -> usize {
         self.evaluations.iter().flatten().count()
     }
 
-    /// Mean of the runs that reached the target.
     pub fn mean(&self) -> Option<f64> {
         let sum: usize = self.evaluations.iter().flatten().sum();
         (self.reached() > 0).then(|| sum as f64 / self.reached() as f64)
@@ -31,7 +29,6 @@ impl Runs {
     }
 }
 
-/// Markdown table, a row for each.
 pub fn markdown(all: &[Runs]) -> String {
     let mut text = "| problem | method | reached | mean | lower quartile | median | upper quartile | worst |\n\
                     | --- | --- | --- | --- | --- | --- | --- | --- |\n"

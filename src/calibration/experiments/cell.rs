@@ -11,7 +11,6 @@ const LEAST_MM: f64 = 0.02;
 /// Largest force that is taken for newtons.
 const MOST_N: f64 = 5000.0;
 
-/// A number, in the unit of its column.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -19,7 +18,6 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Infill density, percent.
 pub(super) fn density(text: &str) -> Result<f64, String> {
     match number(text)? {
         share if share > 0.0 && share < 1.0 => {
@@ -30,7 +28,6 @@ pub(super) fn density(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Infill direction, degrees.
 pub(super) fn direction(text: &str) -> Result<f64, String> {
     match number(text)? {
         radians if radians.fract() != 0.0 && radians.abs() < 1.6 => Err(format!(
@@ -42,7 +39,6 @@ pub(super) fn direction(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A length, mm.
 pub(super) fn length(text: &str) -> Result<f64, String> {
     match number(text)? {
         long if long.abs() > MOST_MM => {
@@ -66,7 +62,6 @@ pub(super) fn range(text: &str) -> Result<Option<f64>, String> {
     }
 }
 
-/// A failure class, 1 to 4.
 pub(super) fn failure(text: &str) -> Result<FailureClass, String> {
     let class = text.parse::<u8>().ok().and_then(|number| FailureClass::try_from(number).ok());
     let known = FailureClass::ALL.map(|class| format!("{} ({})", class.number(), class.label()));
@@ -81,7 +76,6 @@ pub(super) fn repeats(text: &str) -> Result<u32, String> {
     }
 }
 
-/// A force, N.
 pub(super) fn force(text: &str) -> Result<f64, String> {
     match number(text)? {
         large if large > MOST_N => {
@@ -92,7 +86,6 @@ pub(super) fn force(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A day.
 pub(super) fn date(text: &str) -> Result<String, String> {
     match text.parse::<Date>() {
         Ok(day) => Ok(day.to_string()),

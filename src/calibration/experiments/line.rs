@@ -37,7 +37,6 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// Reads a line.
 pub(super) fn experiment(
     header: &StringRecord,
     record: &StringRecord,

@@ -57,9 +57,7 @@ fn problem(line: u64, column: &str, words: &str) -> String {
 /// One line of a measurement file: one finger on one task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
-    /// Line in the file, from 1.
     pub line: u64,
-    /// Name of the task.
     pub task: String,
     /// The finger's infill, and what else its columns set.
     pub design: Design,
@@ -67,17 +65,14 @@ pub struct Experiment {
     pub negative_mm: Option<f64>,
     /// Most positive start that inserted, mm.
     pub positive_mm: Option<f64>,
-    /// Width of the window, mm.
     range_mm: Option<f64>,
     /// Failure below and above the window.
     pub failures: [Option<FailureClass>; 2],
     /// Measurements that the values are the mean of.
     pub repeats: u32,
-    /// Largest contact force of the insertions, N.
     pub peak_force_n: Option<f64>,
     /// Day of the measurement, `YYYY-MM-DD`.
     pub date: Option<String>,
-    /// Anything.
     pub note: String,
 }
 

@@ -74,7 +74,6 @@ fn problem(key: &str, length: f64, [low, high]: [f64; 2]) -> Option<Problem> {
     Some(Problem::new(key, problem, remedy))
 }
 
-/// Plug and opening in different units.
 fn against_opening(case: &Case) -> Option<Problem> {
     let section = section(&case.plug, case.task.success.depth);
     let [x, y] = [0, 1].map(|axis| width(section[axis]) / width(case.task.opening[axis]));

@@ -89,7 +89,6 @@ fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     None
 }
 
-/// Fault of a touch whose stroke ends above the socket.
 fn short(point: &Waypoint) -> Option<Problem> {
     let by = point.short_by?;
     Some(Problem::new(

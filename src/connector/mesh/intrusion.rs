@@ -32,7 +32,6 @@ pub fn largest(
     samples.map(outside).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Sample points on the faces of a part.
 fn samples(part: &Part) -> Vec<Point3<f64>> {
     let Some((corners, faces)) = geometry::hull(&part.solid.corners()) else { return Vec::new() };
     let mut found = Vec::new();

@@ -18,7 +18,6 @@ use finray::infill::Design;
 use finray::printed::PrintedFinger;
 use input::shipped::FINGERS;
 
-/// Results of F1 to F4, in order.
 pub fn run() -> Vec<CheckRow> {
     [beams::f1, patch::f2, mesh::f3, reference::f4].iter().flat_map(|check| check()).collect()
 }

@@ -42,11 +42,9 @@ pub fn offsets(window: &Window, reduced: bool) -> Vec<OffsetStep> {
     all.into_iter().collect()
 }
 
-/// Trial in both engines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialPair {
     pub subject: Subject,
-    /// Offset of the start, grid steps.
     pub offset: OffsetStep,
     /// Distance beyond the nearer end of the first engine's window, grid steps; negative inside.
     pub from_end: OffsetStep,
@@ -63,10 +61,8 @@ impl TrialPair {
     }
 }
 
-/// Results of both engines.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CrossCheck {
-    /// Trials by task, finger and offset.
     pub trials: Vec<TrialPair>,
     /// Windows, if the set has them.
     pub windows: Vec<WindowPair>,
@@ -83,7 +79,6 @@ impl CrossCheck {
         pairs::mean_end_difference_mm(&self.windows)
     }
 
-    /// Whether both targets are met.
     pub fn passed(&self) -> bool {
         self.agreement() >= AGREEMENT
             && self.end_difference_mm().is_none_or(|by| by <= END_DIFFERENCE_MM)

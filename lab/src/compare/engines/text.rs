@@ -48,7 +48,6 @@ pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
     text
 }
 
-/// Results as JSON, lengths in mm.
 pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
     let trial = |pair: &TrialPair| {
         let measured = json!({

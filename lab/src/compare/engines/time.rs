@@ -14,7 +14,6 @@ const RUNS: usize = 5;
 pub struct Timing {
     pub subject: Subject,
     pub outcomes: [Outcome; 2],
-    /// Simulated time, s.
     pub simulated_s: [f64; 2],
     /// Wall time, s: median of 5.
     pub wall_s: [f64; 2],
@@ -79,7 +78,6 @@ pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
     text + &format!("mean ratio of wall to simulated time: {:.3}\n", mean_ratio(rows))
 }
 
-/// Times as JSON.
 pub fn time_json(rows: &[Timing], names: [&str; 2]) -> Value {
     json!({
         "engines": names,

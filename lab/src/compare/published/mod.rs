@@ -34,7 +34,6 @@ pub const COMPARISONS: [(RangeSource, RangeSource); 3] = [
     (RangeSource::Simulation, RangeSource::Bench),
 ];
 
-/// Range and failures of a design from one source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Reading {
     /// Tolerable range, mm; `None` if the source gives none.
@@ -53,7 +52,6 @@ pub struct DesignRow {
 }
 
 impl DesignRow {
-    /// Reading of a source, if it has the design.
     pub fn reading(&self, source: RangeSource) -> Option<Reading> {
         match source {
             RangeSource::Ours => Some(Reading::from(&self.window)),
@@ -73,11 +71,9 @@ impl From<&Window> for Reading {
     }
 }
 
-/// All measured designs on one task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TaskTable {
     pub task: String,
-    /// A row for each design, in order.
     pub rows: Vec<DesignRow>,
 }
 
@@ -99,7 +95,6 @@ impl TaskTable {
         TaskTable { task: task.to_owned(), rows: windows.into_iter().map(row).collect() }
     }
 
-    /// Agreement of each pair of [`COMPARISONS`].
     pub fn agreements(&self) -> [Agreement; 3] {
         COMPARISONS.map(|(source, reference)| Agreement::of(&self.rows, source, reference))
     }

@@ -55,9 +55,6 @@ pub enum CalibrationError {
 impl Emulator {
     /// From `count` simulations of the space and the parameters' priors, of which one in eight
     /// measures the error; `seed` names the set.
-    ///
-    /// # Errors
-    /// If one of them cannot be simulated, or nothing can be fitted.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,

@@ -1,6 +1,7 @@
 //! Unmeasured numbers of a cell, and their bounds: `priors/bench.toml`.
 
 use input::{Check, InputError, read};
+use insertion::space::Scale;
 use serde::Deserialize;
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -64,14 +65,6 @@ const NAMED: [(&str, Target); 6] = [
 pub enum Way {
     Factor,
     Shift,
-}
-
-/// Quantity that is drawn evenly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scale {
-    Linear,
-    Log,
 }
 
 impl TryFrom<String> for Target {

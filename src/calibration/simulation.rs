@@ -53,9 +53,6 @@ impl<'a> Simulation<'a> {
 
     /// The window of a design with each parameter at this share of its prior; without shares
     /// everything is as in the files.
-    ///
-    /// # Errors
-    /// If the design cannot be simulated.
     pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
         let (specimen, robot) = self.specimen(design, shares)?;
         let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;

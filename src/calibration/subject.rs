@@ -32,9 +32,6 @@ pub struct Subject {
 
 impl Subject {
     /// The fingers of a space on a task, those of `more` and those measured.
-    ///
-    /// # Errors
-    /// If a measured finger does not lie in the space.
     pub fn new(
         evaluator: &Evaluator,
         template: &Template,
@@ -151,9 +148,6 @@ fn fingers(space: &Space) -> Vec<Design> {
 
 /// A measured design with all parameters of the space: what its line does not set is as in the
 /// task file.
-///
-/// # Errors
-/// If the line sets what the space does not have, or a value beyond it.
 pub fn whole(
     space: &Space,
     template: &Template,

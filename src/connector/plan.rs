@@ -59,9 +59,6 @@ pub enum PlanError {
 
 /// Task with grasp point, strategy and success derived from `plug`, `socket`, `opening` and the
 /// grip's shoulder and faces.
-///
-/// # Errors
-/// If the plug does not enter its socket, or falls through it.
 pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
     let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));

@@ -63,9 +63,6 @@ pub fn steps(world: &dyn World, time: f64) -> usize {
 }
 
 /// Simulates for a time, s.
-///
-/// # Errors
-/// If the simulation diverges.
 pub fn advance(world: &mut dyn World, time: f64) -> Measured<()> {
     for _ in 0..steps(world, time) {
         world.step()?;
@@ -74,9 +71,6 @@ pub fn advance(world: &mut dyn World, time: f64) -> Measured<()> {
 }
 
 /// Threshold between the bracket's ends by bisection; `low` tells whether a value lies below it.
-///
-/// # Errors
-/// If `low` fails.
 pub fn bisected(
     [mut from, mut to]: [f64; 2],
     bisections: usize,

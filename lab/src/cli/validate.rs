@@ -113,9 +113,6 @@ pub fn search_name(search: Search) -> &'static str {
 }
 
 /// Task of a name, or `all`; only tasks with published windows.
-///
-/// # Errors
-/// If the task is not found, not valid or not published.
 pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
     let names = match name {
         "all" => TASKS.iter().map(|shipped| shipped.name).collect(),

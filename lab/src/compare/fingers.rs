@@ -17,9 +17,6 @@ use rayon::prelude::*;
 
 /// Windows of all designs on all tasks, with their measured stiffness, each about the start that its
 /// task asks for; in parallel, collected by task and design.
-///
-/// # Errors
-/// If a finger is impossible, or the robot or the engine cannot do a task.
 pub fn windows(
     fingers: &FingerSource,
     robot: &Robot,

@@ -125,9 +125,6 @@ impl Experiment {
 }
 
 /// Reads and checks a measurement file; `file` is named in errors. An empty file has no lines.
-///
-/// # Errors
-/// All that is wrong with it, with line and column.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
     // The reader counts a line of a "\r\n" file too few; spreadsheets begin with a mark.
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
@@ -194,9 +191,6 @@ fn hint(name: &str, known: &[&str]) -> String {
 }
 
 /// Checks that each line's task is one of `known`.
-///
-/// # Errors
-/// The lines whose task is not, with the name most like it.
 pub fn check_tasks(experiments: &[Experiment], known: &[&str], file: &str) -> Result<(), Problems> {
     let unknown = experiments.iter().filter(|line| !known.contains(&&*line.task));
     let words = |Experiment { line, task, .. }: &Experiment| {

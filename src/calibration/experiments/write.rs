@@ -4,9 +4,6 @@ use super::COLUMNS;
 
 /// The file's text with one line more; `cells` are the columns that are not empty. Columns that
 /// the file does not have yet are added at its end; a new file has all the documented ones.
-///
-/// # Errors
-/// If the text is not a table.
 pub fn appended(text: &str, cells: &[(&str, String)]) -> Result<String, csv::Error> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let mut header: Vec<String> = match text.trim().is_empty() {

@@ -34,9 +34,6 @@ const OTHERWISE: &str = "export the mesh with fewer flats (a circle of 32 is exa
 
 /// Convex solids of a surface, m, and whether they equal it: if no exact cut is found, it is
 /// approximated with `resolution` voxels along the longest side. `say` gets progress messages.
-///
-/// # Errors
-/// If the approximation would take minutes or has more parts than a task may have.
 pub fn decompose(
     surface: &Surface,
     resolution: u32,

@@ -14,30 +14,10 @@ use super::{Finger, Pad};
 use crate::surrogate::Prediction;
 use crate::task::finger::Coupling;
 use finray::FingerError;
-use finray::mechanics::FingerStiffness;
 use finray::printed::{Outline, PrintedFinger};
 use finray::stiffness::PlanarStiffness;
 use input::units::{MM, N_PER_MM};
 use nalgebra::{Matrix3, Matrix6};
-
-/// Contact surfaces of a finger whose stiffness is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Touching {
-    /// The part touches the pad alone; whether it touches the roof, the contacts decide.
-    Pad,
-    /// Pad and roof are glued to the part.
-    PadAndRoof,
-}
-
-impl Touching {
-    /// The computed stiffness in the finger's plane.
-    pub fn of(self, computed: &FingerStiffness) -> &PlanarStiffness {
-        match self {
-            Touching::Pad => &computed.pad,
-            Touching::PadAndRoof => &computed.pad_and_roof,
-        }
-    }
-}
 
 /// Values of a task file or a design in place of the computed ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

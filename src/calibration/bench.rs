@@ -85,39 +85,31 @@ impl Bench<'_> {
     }
 }
 
-/// Samples of parameters and hyperparameters: standard normal coordinates.
-#[derive(Debug, Clone)]
-pub struct Posterior {
-    /// One vector of coordinates per sample.
-    pub samples: Vec<Vec<f64>>,
-}
-
-impl Posterior {
-    /// Samples over `dimension` coordinates, which the benches' tell what they are.
-    pub fn sampled(
-        benches: &[Bench<'_>],
-        dimension: usize,
-        settings: &Settings<'_>,
-        random: &mut impl Rng,
-    ) -> Self {
-        let mut parts = vec![Vec::new(); dimension];
-        for (part, bench) in benches.iter().enumerate() {
-            let own = bench.first..bench.first + COORDINATES;
-            bench.parameters.iter().copied().chain(own).for_each(|c| parts[c].push(part));
-        }
-        // Most coordinates leave the simulated ranges as they were.
-        let known: Vec<RefCell<(Vec<f64>, Vec<f64>)>> =
-            benches.iter().map(|_| RefCell::default()).collect();
-        let log_likelihood = |part: usize, state: &[f64]| {
-            let bench = &benches[part];
-            let shares = bench.shares(state);
-            let mut known = known[part].borrow_mut();
-            if known.0 != shares || known.1.len() != bench.observations.len() {
-                let ranges = bench.simulator.ranges_mm(&bench.measured(), &shares);
-                *known = (shares, ranges);
-            }
-            bench.conditioned(state, &known.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
-        };
-        Posterior { samples: sample(&parts, &log_likelihood, settings, random) }
+/// Samples of parameters and hyperparameters: `dimension` standard normal coordinates each, which the
+/// benches' tell what they are.
+pub fn sampled(
+    benches: &[Bench<'_>],
+    dimension: usize,
+    settings: &Settings<'_>,
+    random: &mut impl Rng,
+) -> Vec<Vec<f64>> {
+    let mut parts = vec![Vec::new(); dimension];
+    for (part, bench) in benches.iter().enumerate() {
+        let own = bench.first..bench.first + COORDINATES;
+        bench.parameters.iter().copied().chain(own).for_each(|c| parts[c].push(part));
     }
+    // Most coordinates leave the simulated ranges as they were.
+    let known: Vec<RefCell<(Vec<f64>, Vec<f64>)>> =
+        benches.iter().map(|_| RefCell::default()).collect();
+    let log_likelihood = |part: usize, state: &[f64]| {
+        let bench = &benches[part];
+        let shares = bench.shares(state);
+        let mut known = known[part].borrow_mut();
+        if known.0 != shares || known.1.len() != bench.observations.len() {
+            let ranges = bench.simulator.ranges_mm(&bench.measured(), &shares);
+            *known = (shares, ranges);
+        }
+        bench.conditioned(state, &known.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
+    };
+    sample(&parts, &log_likelihood, settings, random)
 }

@@ -1,6 +1,6 @@
 //! All tasks together: which coordinate is what, the posterior, and what it says.
 
-use super::bench::{Bench, Posterior};
+use super::bench::{Bench, sampled};
 use super::loo::{LeftOut, leave_one_out};
 use super::predict::{Of, Predicted, draws, predict};
 use super::prior::Parameter;
@@ -76,7 +76,7 @@ pub struct Prediction {
 
 pub struct Calibration {
     pub layout: Layout,
-    pub posterior: Posterior,
+    pub posterior: Vec<Vec<f64>>,
     pub tasks: Vec<TaskResult>,
 }
 
@@ -86,7 +86,7 @@ impl Calibration {
         let benches = layout.benches(subjects);
         let dimension = layout.dimension();
         let mut random = stream(settings.seed, 0, "calibrate");
-        let posterior = Posterior::sampled(&benches, dimension, settings, &mut random);
+        let posterior = sampled(&benches, dimension, settings, &mut random);
         let task = |(i, subject): (usize, &Subject)| {
             let mut random = stream(settings.seed, i as u64, "draws");
             let fingers: Vec<usize> = (0..subject.of_space).collect();

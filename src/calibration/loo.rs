@@ -1,6 +1,6 @@
 //! Each measured finger predicted by a calibration that never saw it.
 
-use super::bench::{Bench, Posterior};
+use super::bench::{Bench, sampled};
 use super::predict::{Of, Predicted, predict};
 use super::sampler::Settings;
 use crate::calibration::statistics::{mean, spearman};
@@ -77,7 +77,7 @@ pub fn leave_one_out(
         let mut benches = benches.to_vec();
         benches[task].observations.retain(|one| !fold.contains(&one.finger));
         let mut random = stream(settings.seed, fold[0] as u64, "leave one out");
-        let posterior = Posterior::sampled(&benches, dimension, settings, &mut random);
+        let posterior = sampled(&benches, dimension, settings, &mut random);
         let predicted = predict(&benches[task], &posterior, fold, Of::Measurement);
         let left_out = |(&finger, predicted): (&usize, Predicted)| {
             let own = known().filter(|one| one.finger == finger).map(|one| one.range_mm);

@@ -112,11 +112,11 @@ pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) 
     let (motion, springs) = match model {
         Flange::Ideal => return (command, command),
         Flange::Servo(servo) => servo_flange(servo),
-        Flange::Reduced(arm) => (Motion::Mechanism(arm.mass), arm.servo()),
+        Flange::Arm(arm) => (Motion::Mechanism(arm.mass), arm.servo()),
     };
     let flange = scene.body(body("flange", motion, tcp, Vec::new()));
     scene.joint(joint("servo", [command, flange], [Pose::identity(); 2], springs));
-    if let Flange::Reduced(arm) = model {
+    if let Flange::Arm(arm) = model {
         brake(scene, arm, flange, tcp);
     }
     (command, flange)

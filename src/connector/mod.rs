@@ -9,6 +9,5 @@ pub mod nominal;
 pub(crate) mod path;
 pub(crate) mod picture;
 pub(crate) mod plan;
-pub(crate) mod round;
 pub(crate) mod seat;
 pub(crate) mod write;

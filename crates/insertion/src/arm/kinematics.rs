@@ -77,10 +77,8 @@ impl Arm {
             let step = square.cholesky().ok_or(ArmError::Singular)?.solve(&error);
             angles += jacobian.tr_mul(&step);
         }
-        Err(ArmError::Unreachable {
-            miss_mm: error.fixed_rows::<3>(0).norm() / MM,
-            miss_deg: error.fixed_rows::<3>(3).norm() / DEG,
-        })
+        let [moved, turned] = [0, 3].map(|row| error.fixed_rows::<3>(row).norm());
+        Err(ArmError::Unreachable(moved / MM, turned / DEG))
     }
 }
 

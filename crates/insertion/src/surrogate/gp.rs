@@ -19,8 +19,7 @@
 //! likelihood: no random restarts, so the fit is the same on every run.
 
 use super::link::{Link, Sum};
-use super::standard::Standard;
-use super::{Estimate, Fitted, Measured, infills};
+use super::{Estimate, Fitted, Measured, Standard, infills};
 use crate::stiffness::{Axis, Infill};
 use ask_tell::process::{Process, matern52};
 use input::units::DEG;

@@ -7,8 +7,7 @@
 //! as it is, and along axes that are orthogonal one sweep of coordinate descent is exact.
 
 use super::link::Link;
-use super::standard::Standard;
-use super::{Estimate, Fitted, Measured, infills, left_out};
+use super::{Estimate, Fitted, Measured, Standard, infills, left_out};
 use crate::stiffness::Infill;
 use linfa::prelude::{Dataset, Fit};
 use linfa_elasticnet::ElasticNet;

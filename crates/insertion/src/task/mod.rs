@@ -1,6 +1,6 @@
 //! Tasks: plug, socket, grip, friction, search strategy and success, from one TOML file.
 
-pub mod duration;
+pub(crate) mod duration;
 mod edges;
 pub mod finger;
 pub mod geometry;

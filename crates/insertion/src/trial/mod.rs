@@ -9,13 +9,13 @@ use std::sync::atomic::AtomicBool;
 
 mod attempt;
 pub mod cell;
-pub mod classify;
-pub mod conditions;
+mod classify;
+mod conditions;
 pub mod engine;
 #[cfg(any(test, feature = "fake-engine"))]
 pub mod fake;
 mod leading;
-pub mod motion;
+mod motion;
 pub mod picture;
 pub mod record;
 pub mod run;

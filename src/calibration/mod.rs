@@ -7,7 +7,7 @@
 //! 4. [`mod@bench`], [`sampler`]: the posterior of parameters and process, given measurements.
 //! 5. [`mod@predict`], [`loo`]: ranges with intervals; each measured finger predicted without it.
 //! 6. [`next`]: which finger to print.
-//! 7. [`mod@on_bench`]: what a study keeps of it.
+//! 7. [`table`]: all this as text and files, and what a study keeps of it.
 
 pub(crate) mod bench;
 pub(crate) mod calibrate;
@@ -15,7 +15,6 @@ pub(crate) mod emulator;
 pub(crate) mod experiments;
 pub(crate) mod loo;
 pub(crate) mod next;
-pub(crate) mod on_bench;
 pub(crate) mod order;
 pub(crate) mod predict;
 pub(crate) mod prior;

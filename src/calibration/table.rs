@@ -1,11 +1,12 @@
-//! A calibration as JSON, as CSV and as text.
+//! A calibration as JSON, as CSV, as text, and as a study keeps it.
 
 use super::calibrate::{Calibration, Coordinate, Prediction, TaskResult};
 use super::loo::{Accuracy, LeftOut};
-use super::on_bench::by_range;
 use super::predict::{INTERVAL, Predicted};
 use super::subject::Subject;
 use crate::calibration::statistics::mean;
+use crate::study::{BenchEffort, BenchFinger, OnBench, Provenance, Trust};
+use insertion::evaluation::Evaluation;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde_json::{Map, Value, json};
 
@@ -319,4 +320,48 @@ pub fn parameters_text(calibration: &Calibration) -> String {
         lines.push(format!("not told apart: {a} and {b} (correlation {correlation:+.2})"));
     }
     lines.join("\n") + "\n"
+}
+
+const KEPT: usize = 5;
+
+/// The fingers of the space by their predicted ranges, best first.
+pub fn by_range(result: &TaskResult) -> Vec<&Prediction> {
+    let mut order: Vec<&Prediction> = result.predictions.iter().collect();
+    order.sort_by(|a, b| b.range.mean_mm.total_cmp(&a.range.mean_mm));
+    order
+}
+
+/// Prediction of a calibration for a study's one task; `simulated` is the best finger's evaluation.
+pub fn on_bench(
+    subject: &Subject,
+    result: &TaskResult,
+    simulated: Evaluation,
+    provenance: Provenance,
+    effort: BenchEffort,
+) -> OnBench {
+    let accuracy = Accuracy::of(&result.left_out);
+    let finger = |prediction: &&Prediction| BenchFinger {
+        design: subject.designs[prediction.finger].clone(),
+        range_mm: prediction.range.mean_mm,
+        low_mm: prediction.range.low_mm,
+        high_mm: prediction.range.high_mm,
+        probability_best: prediction.best,
+        failures: subject.failures(prediction.finger),
+    };
+    OnBench {
+        provenance,
+        effort,
+        measured: subject.measured().len(),
+        fingers: result.predictions.len(),
+        trust: Trust {
+            fingers: accuracy.fingers,
+            mean_deviation_percent: accuracy.mean_deviation_percent,
+            spearman: accuracy.spearman,
+            inside: accuracy.inside,
+            emulator_error_mm: subject.emulator.error_mm,
+        },
+        warnings: warnings(subject, result),
+        best: by_range(result).iter().take(KEPT).map(finger).collect(),
+        simulated,
+    }
 }

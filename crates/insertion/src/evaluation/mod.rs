@@ -5,7 +5,6 @@ mod leaving;
 pub mod objective;
 pub mod robustness;
 mod schema;
-pub mod sprung;
 pub mod taught;
 pub mod template;
 pub mod tolerance;

@@ -1,7 +1,7 @@
 //! Where the springs of a finger come from that were not measured: the paper, or its ribs.
 
 use super::Finger;
-use super::computed::{AtPad, Computed, Given};
+use super::computed::{self, AtPad, Given};
 use crate::finger::file::{FingerFile, is_shape};
 use crate::space::{DIRECTION_KEY, Design};
 use crate::task::Task;
@@ -156,7 +156,6 @@ impl ComputedFingers {
             plane = plane.corrected(at_pad.compliance, at_pad.assembly).unwrap_or(plane);
         }
         let (printed, across) = (&self.file.with(design)?, computed.cross.matrix);
-        let shoulder = task.grip.shoulder();
-        Computed { printed, plane, across, shoulder }.finger(at_pad, given)
+        computed::finger(printed, plane, across, task.grip.shoulder(), at_pad, given)
     }
 }

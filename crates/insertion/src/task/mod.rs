@@ -7,7 +7,6 @@ pub mod geometry;
 mod latch;
 mod raw;
 mod raw_part;
-mod rounded;
 
 pub use geometry::{Part, Solid};
 pub use latch::Latch;

@@ -2,10 +2,9 @@
 
 use super::cell::{self, Hand, WorkCell};
 use super::classify::{Facts, Placement, classify};
-use super::leading::LeadingEdge;
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
-use super::watch::Watch;
+use super::watch::{LeadingEdge, Watch};
 use super::{PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
 use crate::robot::Mounted;

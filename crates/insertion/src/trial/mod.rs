@@ -14,7 +14,6 @@ mod conditions;
 pub mod engine;
 #[cfg(any(test, feature = "fake-engine"))]
 pub mod fake;
-mod leading;
 mod motion;
 pub mod picture;
 pub mod record;

@@ -1,6 +1,11 @@
-//! Monitors of an attempt: the force of plug and socket, and whether the fingers hold the plug.
+//! Monitors of an attempt: the force of plug and socket, whether the fingers hold the plug, and whether
+//! the edge that leads into the opening has found it.
 
-use nalgebra::Vector3;
+use super::classify::within;
+use crate::task::Task;
+use contact::scene::Pose;
+use input::units::MM;
+use nalgebra::{Point3, Vector3};
 
 /// Time constant of the force filter, s, as of a wrist sensor: a step's impact is numerics.
 const FORCE_FILTER: f64 = 0.005;
@@ -47,5 +52,78 @@ impl Watch {
     /// Whether neither finger has let go.
     pub fn gripped(&self) -> bool {
         self.loose_for.iter().all(|&time| time <= LOSS_TIME)
+    }
+}
+
+/// Depth of an edge that is inside, m: more than contacts sink, less than any preload.
+const DEPTH: f64 = 0.15 * MM;
+/// Overlap of an edge that leans on a wall, m: more than contacts sink, less than a clearance.
+const LEANING: f64 = 0.02 * MM;
+
+/// The corners of the part of a plug that goes in.
+#[derive(Debug, Clone)]
+pub(super) struct LeadingEdge {
+    /// Plug frame: z from the tip.
+    corners: Vec<Point3<f64>>,
+    opening: [[f64; 2]; 2],
+}
+
+impl LeadingEdge {
+    /// Leading edge of a task's plug.
+    pub fn new(task: &Task) -> Self {
+        // A latch gives way, and leads nothing.
+        let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
+        LeadingEdge {
+            corners: corners.filter(|corner| corner.z < task.success.depth).collect(),
+            opening: task.opening.map(|[from, to]| [from - LEANING, to + LEANING]),
+        }
+    }
+
+    /// Whether it is inside the opening: its lowest corner is below the top, and no corner on the side
+    /// of the plug that leans down stands over the housing; `plug` is the plug's pose in the task frame.
+    pub fn inside(&self, plug: &Pose) -> bool {
+        // Towards where the plug leans up, in its own frame.
+        let up = plug.inverse_transform_vector(&Vector3::z());
+        let leads = |corner: &&Point3<f64>| corner.x * up.x + corner.y * up.y <= 0.0;
+        let [x, y] = self.opening;
+        let mut lowest = f64::INFINITY;
+        for corner in self.corners.iter().filter(leads) {
+            let place = plug * corner;
+            if !within(place.x, x) || !within(place.y, y) {
+                return false;
+            }
+            lowest = lowest.min(place.z);
+        }
+        lowest < -DEPTH
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::task;
+    use input::units::DEG;
+
+    fn inside(name: &str, at_mm: [f64; 3], tilt_deg: f64) -> bool {
+        let tilt = Pose::rotation(Vector3::x() * tilt_deg * DEG);
+        let [x, y, z] = at_mm.map(|mm| mm * MM);
+        LeadingEdge::new(&task(name)).inside(&(Pose::translation(x, y, z) * tilt))
+    }
+
+    #[test]
+    fn an_edge_over_the_housing_is_not_inside_though_its_latch_is_lower() {
+        for (name, at_mm, expected) in [
+            // Plug and cavity of rj45 are 7 mm wide in x, the plug 0.5 mm off their middle.
+            ("rj45", [-0.5, 0.0, 0.0], true),
+            ("rj45", [2.0, 0.0, -0.1], false),
+            // High over the opening.
+            ("rj45", [-0.5, 0.0, 2.0], false),
+            // The trailing side may stand over the housing.
+            ("ket8", [0.0, 1.0, 0.0], true),
+            ("ket8", [0.0, 20.0, 0.0], false),
+            ("ket8", [0.0, -20.0, 0.0], false),
+        ] {
+            assert_eq!(inside(name, at_mm, 10.0), expected, "{name} {at_mm:?}");
+        }
     }
 }

@@ -28,7 +28,8 @@ struct Run {
 
 pub struct Emulator {
     process: Gp,
-    mean_mm: f64,
+    /// Mean range over the simulations, mm.
+    pub mean_mm: f64,
     sd_mm: f64,
     runs: Vec<Run>,
     /// Simulations it was fitted to.
@@ -123,10 +124,6 @@ impl Emulator {
     /// The simulated range at shares of the space and of the parameters' priors, mm.
     pub fn range_mm(&self, at: &[f64]) -> f64 {
         (self.mean_mm + self.sd_mm * self.process.mean(at)).max(0.0)
-    }
-
-    pub fn mean_mm(&self) -> f64 {
-        self.mean_mm
     }
 
     /// The failure class at each end that most of the `count` simulations nearest to a design

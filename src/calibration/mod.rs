@@ -5,7 +5,7 @@
 //! 2. [`emulator`]: a Gaussian process in the simulator's place, its error measured.
 //! 3. [`process`]: what remains between simulation and bench, as a process over the stiffness.
 //! 4. [`mod@bench`], [`sampler`]: the posterior of parameters and process, given measurements.
-//! 5. [`mod@predict`], [`loo`]: ranges with intervals; each measured finger predicted without it.
+//! 5. [`mod@predict`], [`calibrate`]: ranges with intervals; each measured finger predicted without it.
 //! 6. [`next`]: which finger to print.
 //! 7. [`table`]: all this as text and files, and what a study keeps of it.
 
@@ -13,7 +13,6 @@ pub(crate) mod bench;
 pub(crate) mod calibrate;
 pub(crate) mod emulator;
 pub(crate) mod experiments;
-pub(crate) mod loo;
 pub(crate) mod next;
 pub(crate) mod order;
 pub(crate) mod predict;

@@ -86,7 +86,7 @@ impl Subject {
             simulator: self,
             places: &self.places,
             observations: self.experiments.iter().filter_map(observation).collect(),
-            scale_mm: self.emulator.mean_mm().max(1.0),
+            scale_mm: self.emulator.mean_mm.max(1.0),
             error_mm: self.emulator.error_mm,
             parameters,
             first,

@@ -1,7 +1,6 @@
 //! A calibration as JSON, as CSV, as text, and as a study keeps it.
 
-use super::calibrate::{Calibration, Coordinate, Prediction, TaskResult};
-use super::loo::{Accuracy, LeftOut};
+use super::calibrate::{Accuracy, Calibration, Coordinate, LeftOut, Prediction, TaskResult};
 use super::predict::{INTERVAL, Predicted};
 use super::subject::Subject;
 use crate::calibration::statistics::mean;
@@ -88,7 +87,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
 pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     let accuracy = Accuracy::of(&result.left_out);
     let mut lines = Vec::new();
-    let scale = subject.emulator.mean_mm().max(1.0);
+    let scale = subject.emulator.mean_mm.max(1.0);
     if accuracy.fingers < 3 {
         let words = "fewer than 3 measured fingers: the intervals rest on the priors";
         lines.push(words.to_owned());

@@ -53,7 +53,6 @@ impl Peg {
         Pose::from_parts(Translation3::new(0.0, self.hole / 2.0 - corner.y, -rim.z), turn)
     }
 
-    /// Weightless body of the peg.
     pub fn body(&self, pose: Pose) -> Body {
         let size = Vector3::new(DEPTH, self.width, LENGTH);
         let middle = Pose::from(Translation3::from(CENTRE.coords));
@@ -167,7 +166,6 @@ pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
     rows.collect()
 }
 
-/// Depth of the tip's corner in the wall, and of the rim in the flank.
 fn sinking(engine: &dyn Engine, peg: &Peg, force: f64) -> Measured<[f64; 2]> {
     let (scene, body) = peg.scene(peg.tilted());
     let mut world = engine.world(&scene);

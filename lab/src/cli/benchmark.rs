@@ -51,7 +51,6 @@ struct TaskSpeed {
     study_s: f64,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let robot = session::robot(&arguments.robot)?;
     let rows = TASKS

@@ -45,7 +45,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let engine = arguments.engine;
     if !engine.simulates() {

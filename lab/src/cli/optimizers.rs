@@ -32,7 +32,6 @@ pub struct Arguments {
     csv: Option<PathBuf>,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let landscapes =
         arguments.landscape.iter().map(|file| problem(file)).collect::<Result<Vec<_>, _>>()?;

@@ -1,7 +1,6 @@
 //! `lab validate`: our tolerance windows beside the published ones.
 
 use super::{Failure, print, print_json};
-use crate::compare::fingers::windows;
 use crate::compare::published as beside;
 use clap::{Args, ValueEnum};
 use finger_opt::calibration::published::{self, Origin};
@@ -68,7 +67,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut tasks = tasks(&arguments.task)?;
     for task in &mut tasks {
@@ -78,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
     let fingers = arguments.finger_model.fingers()?;
     let designs = arguments.fingers.designs();
-    let tables = windows(&fingers, &robot, arguments.engine, search, &tasks, &designs);
+    let tables = beside::windows(&fingers, &robot, arguments.engine, search, &tasks, &designs);
     let tables = tables.map_err(Failure::input)?;
     let accuracy = beside::accuracy(&tables);
     write_file(&arguments.out.join("validation.csv"), &beside::csv(&tables))?;

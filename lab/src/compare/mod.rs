@@ -2,7 +2,6 @@
 //! another engine, and as published.
 
 pub mod engines;
-pub mod fingers;
 pub mod pairs;
 pub mod published;
 

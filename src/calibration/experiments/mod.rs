@@ -93,26 +93,13 @@ impl Experiment {
             let ends = [line.negative_mm, line.positive_mm, line.range_mm, line.peak_force_n];
             ends.map(|number| number.unwrap_or(f64::NEG_INFINITY))
         };
-        let totally = |a: &f64, b: &f64| a.total_cmp(b);
-        let setting =
-            |a: (&String, &f64), b: (&String, &f64)| a.0.cmp(b.0).then(a.1.total_cmp(b.1));
-        let designs = || {
-            let (mut a, mut b) = (self.design.0.iter(), other.design.0.iter());
-            loop {
-                match (a.next(), b.next()) {
-                    (Some(a), Some(b)) if setting(a, b).is_eq() => {}
-                    (Some(a), Some(b)) => return setting(a, b),
-                    (a, b) => return a.is_some().cmp(&b.is_some()),
-                }
-            }
-        };
-        let numbers = || {
-            let pairs = numbers(self).into_iter().zip(numbers(other));
-            pairs.map(|(a, b)| totally(&a, &b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
-        };
-        let (task, date) = (self.task.cmp(&other.task), self.date.cmp(&other.date));
-        let repeats = self.repeats.cmp(&other.repeats);
-        task.then_with(designs).then(date).then_with(numbers).then(repeats)
+        let (own, theirs) = (&self.design.0, &other.design.0);
+        let settings = own.iter().zip(theirs).map(|(a, b)| a.0.cmp(b.0).then(a.1.total_cmp(b.1)));
+        let numbers = numbers(self).into_iter().zip(numbers(other)).map(|(a, b)| a.total_cmp(&b));
+        let task = self.task.cmp(&other.task);
+        let design = settings.fold(task, Ordering::then).then(own.len().cmp(&theirs.len()));
+        let date = design.then(self.date.cmp(&other.date));
+        numbers.fold(date, Ordering::then).then(self.repeats.cmp(&other.repeats))
     }
 
     /// The range, if it was measured whole, mm.

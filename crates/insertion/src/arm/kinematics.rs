@@ -12,7 +12,6 @@ use nalgebra::{
 const DAMPING: f64 = 0.02;
 /// Steps at most; a start near home takes fewer than twenty.
 const STEPS: usize = 200;
-/// Error of a solution, m and rad.
 const EXACT: f64 = 1e-10;
 
 /// The arm at some joint angles, base frame.

@@ -140,7 +140,6 @@ mod tests {
         super::finger(&printed(), plane, across, SHOULDER, at_pad, given)
     }
 
-    /// Compliance of a finger at the middle of its pad, the finger at -y.
     fn at_pad_middle(finger: &Finger) -> Matrix6<f64> {
         let springs = finger.springs().map(|spring| spring.stiffness);
         let stiffness = finger.coupling.unwrap().stiffness(springs, -1.0);

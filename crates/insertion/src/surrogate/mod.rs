@@ -129,17 +129,14 @@ fn measured(infills: &[Infill], stiffness: &[f64]) -> Measured {
     Dataset::new(Array2::from(infills.to_vec()), Array1::from(stiffness.to_vec()))
 }
 
-/// The infill of each design.
 fn infills(measured: &Measured) -> impl Iterator<Item = Infill> {
     measured.records().rows().into_iter().map(|row| [row[0], row[1]])
 }
 
-/// A fitted model of one axis; stiffness in N/m.
 trait Fitted: std::fmt::Debug + Send + Sync {
     /// Mean and standard deviation for a finger yet to be printed.
     fn predict(&self, infill: Infill) -> Estimate;
 
-    /// Its parameters, in words.
     fn describe(&self) -> String;
 }
 

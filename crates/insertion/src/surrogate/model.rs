@@ -141,7 +141,6 @@ pub struct Model {
     /// The measurements it was fitted to.
     pub measurements: Vec<Measurement>,
     hull: Hull,
-    /// By axis.
     chosen: [Chosen; 2],
     /// Leave-one-out errors: one row per axis and model, assembly first.
     pub loo: Vec<Loo>,

@@ -14,7 +14,6 @@ use linfa_elasticnet::ElasticNet;
 use nalgebra::{DMatrix, DVector};
 use ndarray::{Array1, Array2};
 
-/// Penalties tried, in units of the standardised terms.
 pub(super) const PENALTIES: [f64; 4] = [1e-6, 1e-4, 1e-3, 1e-2];
 
 /// A fitted polynomial in (density, direction) on the scale of its link.
@@ -32,7 +31,6 @@ pub(super) struct Ridge {
     penalty: f64,
 }
 
-/// The terms of a polynomial without its constant.
 fn terms(infill: Infill, degree: u8) -> Vec<f64> {
     // About the middle of the printable range, so that terms are less alike.
     let (u, v) = (infill[0] / 20.0 - 1.0, infill[1] / 20.0 - 1.0);

@@ -6,17 +6,12 @@ use crate::stiffness::{Axis, Infill};
 /// How the logarithms of measured / computed stiffness scatter over the eleven shipped designs:
 /// what is expected of another material before its own scatter is known.
 pub(super) const SCATTER: [(Axis, f64); 2] = [(Axis::Compliance, 0.17), (Axis::Assembly, 0.30)];
-/// Degrees of freedom of that scatter.
 pub(super) const FREEDOM: f64 = 10.0;
 
-/// Measured / computed, one for all designs.
 #[derive(Debug)]
 pub(super) struct Scale {
-    /// Mean of the logarithms.
     log: f64,
-    /// Of the logarithm of one finger.
     sd: f64,
-    /// Fingers.
     count: f64,
 }
 

@@ -48,7 +48,6 @@ pub fn named(text: &str) -> Option<Vec<Edge>> {
     Some(sides.map(|side| [first, side]).collect())
 }
 
-/// Whether two edges are the same.
 pub fn same(a: &Edge, b: &Edge) -> bool {
     a == b || *a == [b[1], b[0]]
 }
@@ -232,7 +231,6 @@ mod tests {
         super::cut(&Vector3::zeros(), &(Vector3::from(SIZE) * MM), &edges)
     }
 
-    /// Volume that is missing, mm3.
     fn missing(text: &str, cut: Cut) -> f64 {
         let [x, y, z] = SIZE;
         x * y * z - volume(&left(text, cut).unwrap()) / (MM * MM * MM)

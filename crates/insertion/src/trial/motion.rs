@@ -27,18 +27,15 @@ impl Tcp {
 pub struct Move {
     from: Tcp,
     to: Tcp,
-    /// Time it takes, s.
     pub duration: f64,
 }
 
 impl Move {
-    /// A move at a mean speed (m/s).
     pub fn new(from: Tcp, to: Tcp, speed: f64) -> Self {
         let duration = ((to.position - from.position).norm() / speed).max(SHORTEST_MOVE_S);
         Move { from, to, duration }
     }
 
-    /// A move that takes a given time (s).
     pub fn lasting(from: Tcp, to: Tcp, duration: f64) -> Self {
         Move { from, to, duration: duration.max(SHORTEST_MOVE_S) }
     }

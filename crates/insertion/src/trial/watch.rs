@@ -14,14 +14,10 @@ const LOSS_TIME: f64 = 0.02;
 /// A finger that presses with less is off, N.
 const LOSS_FORCE: f64 = 0.01;
 
-/// Force and grasp monitors of an attempt.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Watch {
-    /// Filtered net force plug-socket, N.
     pub force: Vector3<f64>,
-    /// Largest filtered force in the attempt, N.
     pub peak_force: f64,
-    /// Largest filtered force in the phase, N.
     pub phase_peak: f64,
     /// Whether the leading edge is inside the opening; as it was when the search ended.
     pub entered: bool,
@@ -30,7 +26,6 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Takes in the net force plug-socket over a step of `dt` seconds, N.
     pub fn see_force(&mut self, net: &Vector3<f64>, dt: f64) {
         self.force += (net - self.force) * (dt / FORCE_FILTER);
         self.peak_force = self.peak_force.max(self.force.norm());
@@ -44,12 +39,10 @@ impl Watch {
         }
     }
 
-    /// Whether both fingers have let go.
     pub fn dropped(&self) -> bool {
         self.loose_for.iter().all(|&time| time > LOSS_TIME)
     }
 
-    /// Whether neither finger has let go.
     pub fn gripped(&self) -> bool {
         self.loose_for.iter().all(|&time| time <= LOSS_TIME)
     }
@@ -60,7 +53,6 @@ const DEPTH: f64 = 0.15 * MM;
 /// Overlap of an edge that leans on a wall, m: more than contacts sink, less than a clearance.
 const LEANING: f64 = 0.02 * MM;
 
-/// The corners of the part of a plug that goes in.
 #[derive(Debug, Clone)]
 pub(super) struct LeadingEdge {
     /// Plug frame: z from the tip.
@@ -69,7 +61,6 @@ pub(super) struct LeadingEdge {
 }
 
 impl LeadingEdge {
-    /// Leading edge of a task's plug.
     pub fn new(task: &Task) -> Self {
         // A latch gives way, and leads nothing.
         let corners = task.plug.rigid().flat_map(|part| part.solid.corners());

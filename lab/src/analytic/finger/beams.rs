@@ -24,7 +24,6 @@ pub(super) const SLAB: Slab = Slab { modulus: E, poisson: NU, thickness: DEPTH }
 pub(super) const PLANE: PlaneStress = PlaneStress(SLAB);
 const PLATE: MindlinPlate = MindlinPlate(SLAB);
 
-/// Counter-clockwise rectangle, m.
 pub(super) fn rectangle(x: [f64; 2], y: [f64; 2]) -> Ring {
     [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])]
         .map(|(x, y)| Point2::new(x, y))
@@ -36,7 +35,6 @@ pub fn f1() -> Vec<CheckRow> {
     [cantilever(), frame(), wall()].concat()
 }
 
-/// Row of an entry of a matrix; without a matrix it fails.
 fn row(
     text: &str,
     expected: f64,

@@ -1,5 +1,4 @@
-//! The benches of one or several tasks: simulated, measured, and what follows for the
-//! parameters and for every finger.
+//! The benches of one or several tasks: simulated, measured, and what follows from both.
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
 use super::sampler::{Settings, sample};
@@ -85,8 +84,7 @@ impl Bench<'_> {
     }
 }
 
-/// Samples of parameters and hyperparameters: `dimension` standard normal coordinates each, which the
-/// benches' tell what they are.
+/// Samples of parameters and hyperparameters: `dimension` standard normal coordinates each.
 pub fn sampled(
     benches: &[Bench<'_>],
     dimension: usize,

@@ -1,5 +1,4 @@
-//! All tasks together: which coordinate is what, the posterior, what it says, and each measured finger
-//! predicted by a calibration that never saw it.
+//! All tasks together: which coordinate is what, the posterior, and how far to trust it.
 
 use super::bench::{Bench, sampled};
 use super::predict::{Of, Predicted, draws, predict};
@@ -173,8 +172,7 @@ impl Accuracy {
 /// Most times that a calibration is repeated with fingers left out.
 const MOST_FOLDS: usize = 20;
 
-/// Leaves out each finger with a measured range on one of the benches; the others stay whole. Of more
-/// than [`MOST_FOLDS`] fingers several are left out at a time.
+/// Predicts the measured fingers of one bench without them, at most [`MOST_FOLDS`] times.
 pub fn leave_one_out(
     benches: &[Bench<'_>],
     task: usize,

@@ -54,8 +54,7 @@ pub enum CalibrationError {
 }
 
 impl Emulator {
-    /// From `count` simulations of the space and the parameters' priors, of which one in eight
-    /// measures the error; `seed` names the set.
+    /// From `count` simulations, of which one in eight measures the error; `seed` names the set.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,
@@ -126,8 +125,7 @@ impl Emulator {
         (self.mean_mm + self.sd_mm * self.process.mean(at)).max(0.0)
     }
 
-    /// The failure class at each end that most of the `count` simulations nearest to a design
-    /// met, whatever the parameters were.
+    /// The failure class at each end that most of the `count` simulations nearest to a design met.
     pub fn failures(&self, design: &[f64], count: usize) -> [Option<FailureClass>; 2] {
         let distance =
             |run: &Run| -> f64 { run.at.iter().zip(design).map(|(a, b)| (a - b).powi(2)).sum() };

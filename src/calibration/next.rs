@@ -34,8 +34,7 @@ pub struct Advice {
 /// Joint draws per sample of the posterior.
 const DRAWS: usize = 4;
 
-/// Which fingers of `among` to print, `count` at a time, given what was measured; a print must promise
-/// a gain of `cost_mm` to be worth it.
+/// Which of `among` to print, `count` at a time; a print must promise a gain of `cost_mm`.
 pub fn advise(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],

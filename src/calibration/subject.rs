@@ -93,8 +93,7 @@ impl Subject {
         }
     }
 
-    /// Failure of a finger at either end: as most of the nearest measured ones do, or the
-    /// nearest simulated ones where nothing was measured.
+    /// Failure at either end: as of most of the nearest measured fingers, else of simulated ones.
     pub fn failures(&self, finger: usize) -> [Option<FailureClass>; 2] {
         let here = self.places[finger];
         let distance = |number: usize| {
@@ -146,8 +145,7 @@ fn fingers(space: &Space) -> Vec<Design> {
     (0..size).map(|rest| point(number(rest))).collect()
 }
 
-/// A measured design with all parameters of the space: what its line does not set is as in the
-/// task file.
+/// A measured design with all parameters of the space, by default as in the task file.
 pub fn whole(
     space: &Space,
     template: &Template,

@@ -52,8 +52,7 @@ impl<'a> ConvexBody<'a> {
         ConvexBody { yielding, ..ConvexBody::new(&plug.parts) }
     }
 
-    /// Depth of the deepest overlap with another body, m, if there is one, and the index of each
-    /// part in its own body.
+    /// Depth of the deepest overlap with another body, m, and the index of each part in its body.
     pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<(f64, [usize; 2])> {
         let stiff = (0..self.shapes.len()).filter(|i| !self.yielding.contains(i));
         let pairs = stiff.flat_map(|i| (0..other.shapes.len()).map(move |j| [i, j]));

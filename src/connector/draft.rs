@@ -256,8 +256,7 @@ impl Hole {
 mod tests {
     use super::*;
 
-    /// The flats' ring has the volume of its rectangle less the circle, and keeps the clearance
-    /// within a twentieth where the flats suffice.
+    /// The ring of flats has the volume that the circle leaves, and keeps the clearance.
     #[test]
     fn a_hole_is_its_circle_within_the_error_that_it_states() {
         for (diameter_mm, clearance_mm) in [(3.0, 0.1), (8.0, 0.1), (20.0, 0.2), (100.0, 0.02)] {

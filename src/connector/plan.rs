@@ -57,8 +57,7 @@ pub enum PlanError {
     NoFloor,
 }
 
-/// Task with grasp point, strategy and success derived from `plug`, `socket`, `opening` and the
-/// grip's shoulder and faces.
+/// Task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
 pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
     let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));

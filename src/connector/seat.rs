@@ -97,8 +97,7 @@ impl<'a> Seating<'a> {
         Seat { depth: (free - TOLERANCE).max(0.0), at, stopped_by }
     }
 
-    /// Free place at this depth, near `at` if there is one; otherwise the two parts in the way at
-    /// the best place.
+    /// Free place at this depth, near `at` if there is one; otherwise the two parts in the way.
     fn place(&self, depth: f64, mut at: [f64; 2]) -> Result<[f64; 2], [usize; 2]> {
         let mut best = self.overlap(depth, at);
         if best.0 <= TOLERANCE {
@@ -160,8 +159,7 @@ mod tests {
         Seating::new(task, &plug, &socket).deepest()
     }
 
-    /// usb: the body's shoulder on the housing; ket12: the floor; rj45: the floor beside its step
-    /// and, at the same depth, the guide blocks.
+    /// usb: shoulder on the housing; ket12: floor; rj45: floor and guide blocks at one depth.
     #[test]
     fn shipped_plugs_end_where_their_drawings_say() {
         for (name, depth_mm, by) in [

@@ -149,8 +149,7 @@ fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
 /// Stiffnesses that are so many times those of the shipped fingers are in another unit.
 const OTHER_UNIT: f64 = 100.0;
 
-/// Asks about columns that look as if they were in another unit: nobody prints a finger a hundred
-/// times as stiff or as soft as the measured ones.
+/// Asks about columns whose middle value is a hundred times, or a hundredth of, the shipped one.
 fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     let shipped = rows(STIFFNESS[0].text, STIFFNESS[0].file)?;
     for (axis, column) in [(Axis::Assembly, HEADER[3]), (Axis::Compliance, HEADER[4])] {

@@ -1,5 +1,4 @@
-//! T11: deflection of the UR5e under a load at the TCP, on its published servos and under position
-//! control.
+//! T11: deflection of the UR5e under a load at the TCP, on published servos and held in position.
 //!
 //! At rest a force F displaces the TCP by `J K^-1 J^T F`, with the Jacobian J of the six joints and
 //! their gains K (Salisbury 1980, 19th IEEE Conf. Decision and Control). Once as in the trials, one

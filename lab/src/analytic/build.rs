@@ -84,8 +84,7 @@ pub fn bisected(
     Ok((from + to) / 2.0)
 }
 
-/// Pushes a body, whose centre of mass lies at `centre` in its frame, by a force, N, through a point
-/// of the world, and a moment, N m.
+/// Pushes a body with this centre of mass by a force, N, through a world point, and a moment, N m.
 pub fn push(
     world: &mut dyn World,
     body: BodyId,

@@ -93,8 +93,7 @@ const CASES_FRICTION: f64 = 0.3;
 const BEFORE: f64 = 0.3;
 const AFTER: f64 = 0.3;
 
-/// Place at which a block tips, outcomes that change with the step, and bits that change with a
-/// snapshot, T8 rows.
+/// Place of tipping, outcomes that change with the step, bits that change with a snapshot, T8 rows.
 pub fn t8(make: Make<'_>) -> Vec<CheckRow> {
     let row = |text: &str, measured, unit, allowed| {
         CheckRow::new("T8", text, 0.0, measured, unit, Tolerance::Absolute(allowed))

@@ -35,8 +35,7 @@ const TURNED: f64 = DRAWN / PATCH;
 /// Duration, s: nine times what an uneven face takes to come to rest in its turn.
 const DRAWING: f64 = 4.0;
 
-/// Moments of a pad's friction, T12 rows; on an engine without torsional friction only
-/// those that do not depend on it.
+/// Moments of a pad's friction, T12 rows; fewer on an engine without torsional friction.
 pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
     let drawn = |beside: f64| {
         let quantity = format!("moment of a face loaded {} mm beside", beside / MM);
@@ -69,8 +68,7 @@ fn moment(check: &'static str, quantity: String, expected: f64, held: Measured<H
     CheckRow::new(check, quantity, expected / MM, measured, "N mm", Tolerance::Relative(0.02))
 }
 
-/// Force along x and moment of the friction of a face that moves at `speed` along x and
-/// turns at `spin`, its four corners equally loaded, N and N m.
+/// Force along x, N, and moment, N m, of a moving and turning face on four equal corners.
 fn friction(speed: f64, spin: f64, angle: f64) -> (f64, f64) {
     let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
     corners.into_iter().fold((0.0, 0.0), |(force, moment), (x, y)| {

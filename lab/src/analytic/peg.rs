@@ -4,8 +4,7 @@
 //! the rim at -y. With the width d of the peg, D of the hole and l the length of the peg below the
 //! rim (Whitney 1982, J. Dyn. Sys. Meas. Control 104:65, from the geometry): D = d cos t + l sin t.
 //!
-//! The frame of the peg lies in the middle of its tip, its z axis along the
-//! peg; the hole's rim lies in the plane z = 0.
+//! The frame of the peg: the middle of its tip, z along it; the hole's rim lies in the plane z = 0.
 
 use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
@@ -109,8 +108,7 @@ pub(super) fn turning(moment: f64) -> [Vector3<f64>; 2] {
 pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
     let peg = REFERENCE;
     let measured = settled(engine, &peg);
-    // The peg may have moved along the hole while it turned: the formula is
-    // judged at the length inside at which it came to rest.
+    // While it turned the peg may have moved: the formula is judged at the length inside at rest.
     let inside = measured.map_or(peg.inside, |(_, inside)| inside);
     let expected = Peg { inside, ..peg }.tilt();
     let tilt = measured.map(|(tilt, _)| tilt / 1e-3);
@@ -141,14 +139,12 @@ fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
 
 /// Mass of the plug of T10, kg: an RJ45 plug.
 const LIGHT: f64 = 5.0 * GRAM;
-/// Forces on each of its contacts, N; an arm at its force limit of 100 N can wedge a plug with the
-/// second.
+/// Forces on each contact, N; an arm at its limit of 100 N can wedge a plug with the second.
 const WEDGING: [f64; 2] = [70.0, 200.0];
 /// Largest penetration under the first force, m: less than the clearance of a connector.
 const YIELD: f64 = 0.1 * MM;
 
-/// Penetration of a light plug into the walls that it is wedged between, T10 rows: little, and in
-/// proportion to the force.
+/// Penetration of a light plug into its walls, T10 rows: little, and in proportion to the force.
 pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
     let peg = Peg { mass: LIGHT, ..REFERENCE };
     let sunk = WEDGING.map(|force| sinking(engine, &peg, force));

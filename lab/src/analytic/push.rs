@@ -50,8 +50,7 @@ fn rows(engine: &dyn Engine, case: &str, share: f64) -> Vec<CheckRow> {
     parts.into_iter().enumerate().map(row).collect()
 }
 
-/// Mean force of the wall on the block, N: along its normal, against the push along the wall, and
-/// across the two.
+/// Mean force of the wall on the block, N: normal, against the push along it, and across.
 fn net_force(engine: &dyn Engine, angle: f64) -> Result<Vector3<f64>, Diverged> {
     let size = Vector3::from(SIZE);
     let [x, y, z] = WALL.map(|turn| turn * DEG);

@@ -24,8 +24,7 @@ const OFFSET: f64 = 10.0 * MM;
 const PART_MASS: f64 = 5.0 * GRAM;
 const PART_SIZE: f64 = 12.0 * MM;
 
-/// Time to come to rest, s: twenty time constants of the slowest axis, a rotation (damping over
-/// stiffness = 20 ms).
+/// Time to come to rest, s: twenty time constants of the slowest axis, a rotation (20 ms).
 fn rest_time(finger: &Finger) -> f64 {
     let slowest = finger.springs().map(|s| s.damping / s.stiffness).into_iter().fold(0.0, f64::max);
     20.0 * slowest
@@ -120,8 +119,7 @@ pub fn t7(engine: &dyn Engine) -> Vec<CheckRow> {
     rows.concat()
 }
 
-/// Motion of the remote centre when a part that is fixed to the finger at its pad is pushed along
-/// an axis at a height above the remote centre, m.
+/// Motion of the remote centre when a held part is pushed at a height above it, m.
 fn held_part(engine: &dyn Engine, finger: &Finger, along: usize, above: f64) -> Measured<Pose> {
     let (mut scene, holder) = mounted(finger);
     let size = Vector3::repeat(PART_SIZE);

@@ -17,8 +17,7 @@ use std::time::Instant;
 
 /// Evaluations of the study whose time is estimated.
 const BUDGET: f64 = 200.0;
-/// Compliance and assembly stiffness of the finger, N/mm: measured design 5, in the middle of the
-/// space.
+/// Compliance and assembly stiffness of the finger, N/mm: those of measured design 5.
 const COMPLIANCE: f64 = 2.6;
 const ASSEMBLY: f64 = 45.0;
 

@@ -1,5 +1,4 @@
-//! `lab check`: analytic checks of a contact engine, and whether the windows depend on its step or on
-//! the search.
+//! `lab check`: an engine against closed formulas, its windows at finer steps and other searches.
 
 use super::validate::{Fingers, search_name, tasks};
 use super::{Failure, print, print_json};

@@ -1,5 +1,4 @@
-//! Windows of the same fingers measured in several ways: by another search, at half the step, in
-//! another engine, and as published.
+//! Windows of the same fingers by another search, step or engine, and as published.
 
 pub mod engines;
 pub mod pairs;
@@ -77,8 +76,7 @@ fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
     fields
 }
 
-/// Results of every design on every task; measured in parallel, collected by task and design, so
-/// the number of threads changes nothing.
+/// Results by task and design, measured in parallel: the number of threads changes nothing.
 pub fn each<T: Send>(
     tasks: &[TaskWays],
     designs: &[Measurement],

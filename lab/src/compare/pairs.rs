@@ -61,8 +61,7 @@ pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
     mean(&ends.collect::<Vec<_>>())
 }
 
-/// Aligned table at most 80 columns wide with a summary, and with a verdict on each pair if the
-/// grid steps that its ends may move are given.
+/// Table at most 80 columns wide with a summary, and verdicts if so many grid steps are `allowed`.
 pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     let first = pairs.first().map_or("", |pair| &pair.ways[0]);
     let mut text = format!(
@@ -105,8 +104,7 @@ fn summary(pairs: &[WindowPair]) -> String {
     )
 }
 
-/// JSON list with the keys `way` for the name of the second way, and `windows` for the two windows;
-/// `allowed` as in [`text`].
+/// JSON list; `way` is the key of the second way's name, `windows` those of the two windows.
 pub fn json(
     pairs: &[WindowPair],
     allowed: Option<OffsetStep>,

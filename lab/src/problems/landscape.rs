@@ -17,7 +17,6 @@ pub struct Landscape {
 
 impl Landscape {
     /// Landscape of a CSV: a header, the axes, then `range_mm` (empty for no value), then anything.
-    /// `file` is named in errors.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let fail = |message: String| InputError::Syntax { file: file.to_owned(), message };
         let mut lines = text.lines().filter(|line| !line.starts_with('#'));

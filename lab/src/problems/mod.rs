@@ -90,8 +90,7 @@ const CMA_TARGET: f64 = 1e-8;
 /// Dimensions of the functions.
 const CMA_DIMENSIONS: [usize; 2] = [2, 5];
 
-/// Evaluations of BIPOP-CMA-ES to a value below 1e-8, from a uniform point of [-4, 4]^n with
-/// a step size of 2.
+/// Evaluations of BIPOP-CMA-ES to below 1e-8, from a point of [-4, 4]^n with a step size of 2.
 fn cma_evaluations(function: Function, n: usize, seed: u64) -> Option<usize> {
     let start = StartBox {
         low: vec![-4.0; n],

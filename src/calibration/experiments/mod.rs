@@ -17,8 +17,7 @@ use std::cmp::Ordering;
 /// The cell of `range_mm` that says: the finger was tried, and no range could be measured.
 pub const NOT_MEASURABLE: &str = "not measurable";
 
-/// The documented columns, in the order in which a new file has them; further ones are keys of a
-/// space file.
+/// The documented columns in the order of a new file; further ones are keys of a space file.
 pub const COLUMNS: [&str; 12] = [
     "task",
     DENSITY_KEY,

@@ -19,13 +19,11 @@ const SHARED: f64 = 0.01;
 const NEAR: f64 = 2e-3 * MM;
 /// Most parts of an approximation while it is cut.
 const MOST_HULLS: u32 = 1024;
-/// Most voxels of an approximation times those along its longest side, to which its time is
-/// proportional: half a minute of processor time.
+/// Most voxels times those along the longest side: half a minute of processor time.
 const MOST_WORK: f64 = 2e8;
 /// Coarsest resolution, voxels along the longest side.
 pub const COARSEST: u32 = 8;
-/// Largest concavity of a part, as a share: a tenth of VHACD's default, since the rest fills the
-/// clearance.
+/// Largest concavity of a part, a tenth of VHACD's default, since the rest fills the clearance.
 const CONCAVITY: f64 = 0.001;
 
 /// Advice on a mesh that is not cut exactly.
@@ -98,8 +96,7 @@ fn is_whole(surface: &Surface, solids: &[Solid]) -> bool {
     }
 }
 
-/// Volumetric hierarchical approximate convex decomposition (Mamou 2016), of voxels, each part
-/// the hull of the surface within it.
+/// Approximate convex decomposition (VHACD, Mamou 2016): hulls of the surface in sets of voxels.
 fn approximate(surface: &Surface, resolution: u32) -> Vec<Solid> {
     let (points, faces) = surface.in_millimetres();
     let parameters = VHACDParameters {

@@ -56,8 +56,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// Rotation of this direction to -z. The file's y stays y; if the plug goes in along y, the
-    /// file's x becomes y.
+    /// Rotation of this direction to -z. y stays y; if the plug goes in along y, x becomes y.
     fn turn(self) -> Matrix3<f64> {
         let rows = match self {
             Along::MinusZ => [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -205,8 +204,7 @@ fn stand(surface: Surface, place: [f64; 2]) -> Surface {
     surface.moved(&Matrix3::identity(), by)
 }
 
-/// Socket with its top at z = 0 and the middle of its largest opening at `place`, with that
-/// opening.
+/// Socket with its top at z = 0, its largest opening's middle at `place`; and that opening.
 fn open(
     surface: Surface,
     place: [f64; 2],

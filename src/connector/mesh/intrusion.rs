@@ -14,8 +14,7 @@ const SPACING: f64 = 0.2 * MM;
 /// Most sample points along a side of a triangle.
 const MOST: usize = 60;
 
-/// Largest intrusion, m, and its point, m, among the sample points that `counts` accepts; `None`
-/// without such points.
+/// Largest intrusion, m, and its point, m, among the sample points that `counts` accepts.
 pub fn largest(
     surface: &Surface,
     parts: &[Part],

@@ -52,8 +52,7 @@ pub fn reduced(surface: Surface) -> Surface {
     mesh.surface(was_inward)
 }
 
-/// A collapse: its error in units of a picometre, the corner that goes and the one it goes to, and
-/// their versions.
+/// A collapse: its error, pm, the corner that goes and the one it goes to, and their versions.
 type Queued = Reverse<(u64, [usize; 2], [u32; 2])>;
 
 impl Collapsing {

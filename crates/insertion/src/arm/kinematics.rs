@@ -41,8 +41,7 @@ impl Arm {
         Posture { links, axes, tcp: frame * self.tool }
     }
 
-    /// `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: the sum over the links of
-    /// `m Jv^T Jv + Jw^T I Jw`, each about the link's centre of mass.
+    /// `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: `m Jv^T Jv + Jw^T I Jw` over the links.
     pub fn mass(&self, posture: &Posture) -> Matrix6<f64> {
         (0..JOINTS)
             .map(|i| {

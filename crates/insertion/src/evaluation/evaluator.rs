@@ -147,8 +147,7 @@ impl Evaluator {
         Ok(Some(teach(&*rig, &specimen.finger, stop).unwrap_or(0)))
     }
 
-    /// Where trials of a specimen are run, with the engine's step times `step_factor`; from
-    /// the start that was [`taught`](Self::taught), if it was.
+    /// Where trials of a specimen are run, from its taught start, at `step_factor` times the step.
     pub fn rig(
         &self,
         specimen: &Specimen,
@@ -163,8 +162,7 @@ impl Evaluator {
         })
     }
 
-    /// Measures the window of a specimen, looked for by `search`, and what the plan adds; ends
-    /// early, with a worthless result, once `stop` is set.
+    /// Measures a specimen's window and what the plan adds; worthless once `stop` is set.
     pub fn measure(
         &self,
         specimen: &Specimen,

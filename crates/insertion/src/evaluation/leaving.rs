@@ -15,8 +15,7 @@ use finray::mechanics::FingerStiffness;
 
 /// The prediction for a design whose infill has the prediction `plain`.
 ///
-/// The distance from the measured designs grows by the changed numbers: each counts as the
-/// logarithm of its change, and all are added by their squares.
+/// The squared logarithms of the changes add to the distance from the measured designs, squared.
 ///
 /// # Errors
 /// If a finger cannot be computed.

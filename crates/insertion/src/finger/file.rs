@@ -17,8 +17,7 @@ pub struct FingerFile {
     pub finger: PrintedFinger,
 }
 
-/// Whether a key sets a number of a finger file: it names a table of it. (The numbers of a
-/// finger's springs, as `finger.rcc_mm`, stand in no table.)
+/// Whether a key sets a number of a finger file: in a table, as no number of its springs is.
 pub fn is_shape(key: &str) -> bool {
     key.strip_prefix("finger.").is_some_and(|path| path.contains('.'))
 }

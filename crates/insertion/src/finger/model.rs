@@ -151,8 +151,7 @@ impl ComputedFingers {
         // Pad and roof are glued to the part: `docs/notes/finger.md`.
         let mut plane = computed.pad_and_roof;
         if design.0.keys().any(|key| is_shape(key)) {
-            // Fingers that nobody has measured: none may be refused because measured over computed
-            // stiffness of others does not suit its centre.
+            // Not measured: the ratio of others may not make their centre impossible.
             plane = plane.corrected(at_pad.compliance, at_pad.assembly).unwrap_or(plane);
         }
         let (printed, across) = (&self.file.with(design)?, computed.cross.matrix);

@@ -1,7 +1,6 @@
 //! From infill to stiffness: models fitted to measured fingers at start-up.
 //!
-//! The measurements are per finger. Three steps, once per axis (assembly z,
-//! compliance y), of at least seven fingers:
+//! Three steps, once per axis (assembly z, compliance y), of at least seven fingers:
 //!
 //! 1. fit each candidate of [`ModelKind`] to all measured designs;
 //! 2. leave each design out in turn, refit everything (link, exponent,

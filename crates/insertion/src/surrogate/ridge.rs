@@ -117,8 +117,7 @@ mod tests {
     use crate::stiffness::parse;
     use input::shipped::STIFFNESS;
 
-    /// At the smallest penalised square error its gradient is 0: every term's product with the
-    /// residuals is the penalty's pull on its coefficient.
+    /// At the minimum a term's product with the residuals is the penalty's pull on its coefficient.
     #[test]
     fn one_sweep_along_the_principal_axes_is_the_minimum() {
         let shipped = parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();

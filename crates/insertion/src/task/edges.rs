@@ -1,5 +1,4 @@
-//! Chamfers and radii along the edges of a box: the hull that they leave; and a task with round edges
-//! where its file has sharp ones.
+//! Chamfers and radii along the edges of a box: the hull they leave, and round edges for a task.
 
 use super::geometry::{self, Solid};
 use super::{Part, Task};

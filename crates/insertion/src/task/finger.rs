@@ -64,8 +64,7 @@ impl Coupling {
         })))
     }
 
-    /// The stiffness matrix of springs that are coupled so. The finger at +y (`side` +1) is
-    /// the same printed part turned by 180 degrees about z.
+    /// The stiffness of such springs; the finger at +y (`side` +1) is turned by 180° about z.
     pub fn stiffness(&self, springs: [f64; 6], side: f64) -> Matrix6<f64> {
         let flips = [side, side, -1.0, side, side, -1.0];
         Matrix6::from_fn(|i, j| {

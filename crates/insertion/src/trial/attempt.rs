@@ -369,8 +369,7 @@ impl<'a> Attempt<'a> {
 
     pub fn result(self, end: Result<(), Stop>) -> Trial {
         let placement = self.placement();
-        // Judged at rest after the push, or where a bottomed part stopped the robot:
-        // a part that only passes through a good pose may tip on.
+        // At rest, or where a bottomed part stopped the robot: what passes by may tip on.
         let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
         let facts = Facts {
             seated: held && self.stage == Stage::Assembly && placement.seated(&self.task),

@@ -113,14 +113,12 @@ pub trait Rig: Send + Sync {
         self.hold(Grasp::of(finger))
     }
 
-    /// The trial of such a grasp with the start shifted by `offset` metres along y, filmed from the
-    /// grasp on; `None` if there is nothing to be seen.
+    /// The trial of a grasp, its start shifted by `offset` metres along y, filmed if it can be.
     fn record(&self, _grasp: Grasp<'_>, _offset: f64) -> Option<Recording> {
         None
     }
 
-    /// The trial of such a pair of fingers whose moves the caller commands; `None` where nothing
-    /// is simulated.
+    /// The trial of such fingers whose moves the caller commands, if it is simulated.
     fn driven(&self, _finger: &Finger) -> Option<Driven> {
         None
     }
@@ -128,8 +126,7 @@ pub trait Rig: Send + Sync {
 
 /// A part held and tilted, ready for a trial at any offset.
 pub trait Grasped: Send + Sync {
-    /// One trial with the start shifted by `offset` metres along y; sampled each `every_s` seconds
-    /// from the search on, if that is asked for and it is simulated.
+    /// One trial with the start shifted by `offset` metres along y; sampled each `every_s` seconds.
     fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>);
 
     /// The trial alone.

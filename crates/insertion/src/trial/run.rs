@@ -24,8 +24,7 @@ pub struct EngineRig {
 /// Error of task, robot and engine that do not go together.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
-    /// The robot cannot do the task, or not in time: their names, and the defect of the arm or the
-    /// phase that takes too long.
+    /// Names of robot and task, and why the robot cannot do it, or not in time.
     #[error("the robot `{0}` on the task `{1}`: {2}")]
     Robot(String, String, String),
     /// The engine cannot simulate the two.

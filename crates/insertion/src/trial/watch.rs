@@ -1,5 +1,4 @@
-//! Monitors of an attempt: the force of plug and socket, whether the fingers hold the plug, and whether
-//! the edge that leads into the opening has found it.
+//! Monitors of an attempt: force, grip, and whether the leading edge has found the opening.
 
 use super::classify::within;
 use crate::task::Task;

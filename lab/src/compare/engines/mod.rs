@@ -25,8 +25,7 @@ pub const AGREEMENT: f64 = 0.9;
 /// Largest mean difference of the windows' ends, mm.
 pub const END_DIFFERENCE_MM: f64 = 0.5;
 
-/// Offsets of the trials about a window, grid steps, without those inside that are nearer to the
-/// other end; if `reduced`, a few far from the ends.
+/// Offsets of the trials about a window, grid steps; if `reduced`, a few far from the ends.
 pub fn offsets(window: &Window, reduced: bool) -> Vec<OffsetStep> {
     let [inside, outside]: [&[OffsetStep]; 2] = match reduced {
         false => [&[1, 3, 10, 20], &[1, 3, 10, 20, 40]],
@@ -84,8 +83,7 @@ impl CrossCheck {
     }
 }
 
-/// Results of the first two ways of every task, in parallel over tasks and fingers; if `reduced`, of
-/// fewer trials and without the windows of the second way.
+/// Results of the first two ways of every task; if `reduced`, of few trials and without windows.
 pub fn run(tasks: &[TaskWays], designs: &[Measurement], reduced: bool) -> CrossCheck {
     let results = each(tasks, designs, |subject, ways| match ways {
         [first, second, ..] => in_both(subject, [first, second], reduced),

@@ -27,8 +27,7 @@ impl Timing {
     }
 }
 
-/// Times of every design on every task, one after the other on this thread, the engines (the first
-/// two ways of the task) in turn.
+/// Times of every design on every task in the first two ways, one after the other on this thread.
 pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
     let timing = |on: &TaskWays, design: &Measurement| {
         let subject = Subject::new(&on.task.name, &on.task.finger, *design);

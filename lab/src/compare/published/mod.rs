@@ -72,8 +72,7 @@ impl DesignRow {
 }
 
 impl From<&Window> for Reading {
-    /// A nominal start that diverges gives no range; one that fails gives 0. Either way there is no
-    /// window, so no ends to be credited with.
+    /// A start that diverges gives no range, one that fails gives 0; neither has window ends.
     fn from(window: &Window) -> Self {
         let range_mm = (window.nominal != Outcome::Diverged).then(|| window.range_mm());
         let [failure_negative, failure_positive] = failures(window);
@@ -137,8 +136,7 @@ pub struct Agreement {
 impl Agreement {
     /// Compares two columns of a task's rows.
     ///
-    /// An end at which the source names no class (a divergence, no failure up to
-    /// the search limit, or no window at all) counts as not matched.
+    /// An end at which the source names no class counts as not matched.
     pub fn of(rows: &[DesignRow], source: RangeSource, reference: RangeSource) -> Self {
         let readings: Vec<_> = rows
             .iter()
@@ -179,8 +177,7 @@ pub fn deviation_percent(range: f64, reference: f64) -> f64 {
     100.0 * (range - reference).abs() / reference
 }
 
-/// Windows of all designs on all tasks, with their measured stiffness, each about the start that its
-/// task asks for; in parallel, collected by task and design.
+/// Windows of all designs, as stiff as measured, on all tasks, each about its task's start.
 pub fn windows(
     fingers: &FingerSource,
     robot: &Robot,

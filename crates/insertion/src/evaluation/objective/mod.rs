@@ -151,8 +151,7 @@ impl Goals {
         self.objectives.measures().iter().copied().chain(constrained)
     }
 
-    /// Objectives and violations of one design, evaluated on each task; `None` if any of
-    /// the measures has no value on any of them.
+    /// Objectives and violations of a design; `None` if a measure has no value on one of the tasks.
     pub fn score(&self, tasks: &[&Evaluation]) -> Option<Score> {
         let of = |measure: Measure| -> Option<Vec<f64>> {
             tasks.iter().map(|evaluation| measure.value(evaluation)).collect()

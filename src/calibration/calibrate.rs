@@ -1,10 +1,9 @@
 //! All tasks together: which coordinate is what, the posterior, and how far to trust it.
 
-use super::bench::{Bench, sampled};
+use super::bench::{Bench, Settings, sampled};
 use super::predict::{Of, Predicted, draws, predict};
 use super::prior::Parameter;
 use super::process::COORDINATES;
-use super::sampler::Settings;
 use super::statistics::{mean, spearman};
 use super::subject::Subject;
 use ask_tell::stream::stream;

@@ -4,7 +4,7 @@
 //! 1. [`simulation`]: windows under drawn friction, preload, robot, finger: [`prior`].
 //! 2. [`emulator`]: a Gaussian process in the simulator's place, its error measured.
 //! 3. [`process`]: what remains between simulation and bench, as a process over the stiffness.
-//! 4. [`mod@bench`], [`sampler`]: the posterior of parameters and process, given measurements.
+//! 4. [`mod@bench`]: the posterior of parameters and process, given measurements.
 //! 5. [`mod@predict`], [`calibrate`]: ranges with intervals; each measured finger predicted without it.
 //! 6. [`next`]: which finger to print.
 //! 7. [`table`]: all this as text and files, and what a study keeps of it.
@@ -19,7 +19,6 @@ pub(crate) mod predict;
 pub(crate) mod prior;
 pub(crate) mod process;
 pub mod published;
-pub(crate) mod sampler;
 pub(crate) mod simulation;
 pub mod statistics;
 pub(crate) mod subject;

@@ -1,9 +1,8 @@
 //! Made-up benches, whose truth is known.
 
-use super::bench::{Bench, Observation, Simulator, sampled, share};
+use super::bench::{Bench, Effort, Observation, Settings, Simulator, sampled, share};
 use super::predict::{Of, Predicted, draws, predict};
 use super::process::{COORDINATES, Place};
-use super::sampler::{Effort, Settings};
 use ask_tell::stream::stream;
 use insertion::trial::NEVER;
 use rand::{Rng, RngExt};

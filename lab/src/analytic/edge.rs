@@ -8,7 +8,7 @@
 //! sides of its threshold; and a restored snapshot continues exactly like its world.
 
 use super::build::{self, GRAVITY};
-use super::{CheckRow, Make, Tolerance, incline, jamming, wedging};
+use super::{CheckRow, Make, Tolerance, incline, jamming};
 use contact::scene::{BodyId, Friction, Pose, Scene};
 use contact::{Diverged, Engine, World};
 use input::units::{DEG, GRAM, MM};
@@ -121,7 +121,7 @@ fn outcomes(engine: &dyn Engine) -> Result<Vec<bool>, Diverged> {
             all.push(incline::creep(engine, CASES_FRICTION, heading * DEG, share)? < RESTS);
         }
         all.push(jamming::jams_at(engine, share)?);
-        all.push(wedging::wedges(engine, CASES_FRICTION, share * CASES_FRICTION)?);
+        all.push(jamming::wedges(engine, CASES_FRICTION, share * CASES_FRICTION)?);
     }
     all.push(tipping_place(engine)?.abs() < ALLOWED);
     Ok(all)

@@ -33,10 +33,8 @@ mod grasp;
 mod incline;
 mod jamming;
 mod peg;
-mod push;
 mod spring;
 mod table;
-mod wedging;
 
 pub use table::{json, table};
 
@@ -115,7 +113,7 @@ pub fn contact(make: Make<'_>) -> Vec<CheckRow> {
         checks.iter().flat_map(|check| check(&*engine)).collect()
     };
     let first =
-        [spring::t1, incline::t2, peg::t3, jamming::t4, wedging::t5, chamfer::t6, spring::t7];
-    let last = [peg::t10, arm::t11, grasp::t12, flange::t13, push::t14, grasp::t15];
+        [spring::t1, incline::t2, peg::t3, jamming::t4, jamming::t5, chamfer::t6, spring::t7];
+    let last = [peg::t10, arm::t11, grasp::t12, flange::t13, incline::t14, grasp::t15];
     [all(&first), edge::t8(make), all(&last)].concat()
 }

@@ -3,7 +3,6 @@
 //! Only the task, the design and something that was measured are needed; columns may be left
 //! out, and further design parameters are further columns, named as in a space file.
 
-mod cell;
 mod line;
 #[cfg(test)]
 mod tests;

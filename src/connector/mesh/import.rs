@@ -1,8 +1,7 @@
 //! Task from a mesh of a plug and one of its socket.
 
-use super::decompose::decompose;
 pub use super::decompose::{COARSEST, MOST_PARTS};
-use super::intrusion;
+use super::decompose::{decompose, intrusion};
 use super::reduce::{TOLERANCE, reduced};
 use super::surface::Surface;
 use super::{MeshError, cut};
@@ -234,8 +233,8 @@ fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(f64, Point3<f64>, &'
     let deep = task.success.depth + ABOUT;
     let [x, y] = task.opening;
     let about = |v: f64, [low, high]: [f64; 2]| low - ABOUT < v && v < high + ABOUT;
-    let plug = intrusion::largest(surfaces[0], &task.plug.parts, |p| p.z < deep);
-    let socket = intrusion::largest(surfaces[1], &task.socket, |p| {
+    let plug = intrusion(surfaces[0], &task.plug.parts, |p| p.z < deep);
+    let socket = intrusion(surfaces[1], &task.socket, |p| {
         p.z > -deep - ABOUT && about(p.x, x) && about(p.y, y)
     });
     let plug = plug.map(|(depth, at)| (depth, at, "plug"));

@@ -18,7 +18,6 @@ mod hull;
 mod link;
 mod model;
 mod ridge;
-mod scale;
 #[cfg(test)]
 mod tests;
 

@@ -3,7 +3,7 @@
 use super::hull::Hull;
 use super::link::{Link, Sum};
 use super::{
-    Computed, Estimate, Fitted, Measured, Prediction, gp, left_out, measured, ridge, scale,
+    Computed, Estimate, Fitted, Measured, Prediction, computed, gp, left_out, measured, ridge,
 };
 use crate::stiffness::{Axis, Infill, Measurement, SurrogateError, check_all};
 use finray::FingerError;
@@ -61,7 +61,7 @@ fn fit_axis(axis: Axis, kind: ModelKind, measured: &Measured) -> Option<Box<dyn 
         ModelKind::RidgeLinear => boxed(ridge::fit(measured, 1, positive, &ridge::PENALTIES)),
         ModelKind::RidgeQuadratic => boxed(ridge::fit(measured, 2, positive, &ridge::PENALTIES)),
         ModelKind::GaussianProcess => boxed(gp::fit(axis, measured)),
-        ModelKind::ComputedScale => boxed(scale::fit(axis, measured)),
+        ModelKind::ComputedScale => boxed(computed::fit(axis, measured)),
         ModelKind::ComputedProcess => boxed(gp::fit_ratio(measured)),
     }
 }

@@ -63,7 +63,6 @@ impl Layout {
 pub struct TaskResult {
     /// Each finger of the space, in the subject's order.
     pub predictions: Vec<Prediction>,
-    /// The measured fingers, each predicted without it.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -162,7 +161,6 @@ impl Accuracy {
         }
     }
 
-    /// Share of the fingers inside their intervals, percent.
     pub fn coverage_percent(&self) -> Option<f64> {
         (self.fingers > 0).then(|| 100.0 * self.inside as f64 / self.fingers as f64)
     }

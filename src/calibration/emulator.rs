@@ -32,20 +32,16 @@ pub struct Emulator {
     pub mean_mm: f64,
     sd_mm: f64,
     runs: Vec<Run>,
-    /// Simulations it was fitted to.
     pub simulations: usize,
     /// Simulations its error was measured on.
     pub fresh: usize,
     pub error_mm: f64,
 }
 
-/// Error of what a calibration starts from.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrationError {
-    /// A design or a value of a parameter cannot be simulated.
     #[error(transparent)]
     Impossible(#[from] Impossible),
-    /// No process goes through so many simulations of a task.
     #[error("{0}: no process goes through the {1} simulations; ask for more")]
     NoFit(String, usize),
     /// The measured finger of a line does not lie in the space.

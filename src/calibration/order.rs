@@ -17,14 +17,12 @@ pub struct Order {
     /// Spearman's, +1 for the same order, -1 for the opposite one.
     pub spearman: f64,
     pub fingers: usize,
-    /// Whose ranges these are.
     pub source: OrderSource,
 }
 
 /// Whose simulated ranges are held against the bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OrderSource {
-    /// The study's own.
     Study,
     /// Those of the committed validation, with the study's finger model and robot.
     Validation,

@@ -29,21 +29,16 @@ pub struct Parameter {
     pub source: String,
 }
 
-/// Quantity that a parameter changes.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum Target {
-    /// A number of the task file, by its path.
     Task(String),
     /// The width of the socket's opening, mm.
     Clearance,
     /// The radius of the edges that lead in, mm, where the task has them sharp.
     Edges,
-    /// Compliance and assembly stiffness of the finger.
     Stiffness,
-    /// Tilting stiffness of the finger.
     Tilting,
-    /// Distance of the finger's remote centre.
     Centre,
     /// All stiffnesses of a robot that is a soft flange.
     Flange,
@@ -59,7 +54,6 @@ const NAMED: [(&str, Target); 6] = [
     ("robot.stiffness_n_per_mm", Target::Flange),
 ];
 
-/// Way in which a parameter changes a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Way {
@@ -103,7 +97,6 @@ impl Parameter {
 }
 
 impl Priors {
-    /// Reads and checks priors; `file` is named in errors.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let priors: Priors = read(text, file)?;
         let all = &priors.parameters;

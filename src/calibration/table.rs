@@ -17,7 +17,6 @@ const TOGETHER: f64 = 0.5;
 #[derive(Debug, Clone)]
 pub struct Moved {
     pub name: String,
-    /// The task it belongs to, unless all share it.
     pub task: Option<String>,
     /// The 10th, 50th and 90th percentile before, in its own unit.
     pub prior: [f64; 3],
@@ -207,7 +206,6 @@ pub fn predictions_csv(subject: &Subject, result: &TaskResult) -> String {
     text
 }
 
-/// `leave_one_out.csv` of all tasks.
 pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
     let head =
         format!("task,{DENSITY_KEY},{DIRECTION_KEY},measured_mm,range_mm,low_mm,high_mm,inside\n");

@@ -102,9 +102,7 @@ struct Moves {
     preload: f64,
     /// Moves along x: back, front, and while the tip moves to the side.
     across: [f64; 3],
-    /// Move down on the way to the front.
     down: f64,
-    /// Move along -y.
     side: f64,
 }
 

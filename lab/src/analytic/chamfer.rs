@@ -28,7 +28,6 @@ const SIZE: [f64; 3] = [8.0 * MM, 12.0 * MM, 20.0 * MM];
 /// Rotational stiffness, N m/rad: the support turns by less than a milliradian.
 const UPRIGHT: f64 = 100.0;
 
-/// Insertion force over lateral force, T6 rows.
 pub fn t6(engine: &dyn Engine) -> Vec<CheckRow> {
     let turned = ANGLES.map(|angle| (angle, "chamfer", Some(chamfer(-SIZE[1] / 2.0, angle * DEG))));
     let cut = [(45.0, "cut edge", cut_edge(-SIZE[1] / 2.0))];

@@ -23,7 +23,6 @@ const SERVO: Servo = Servo {
 };
 const SPEED: f64 = 100.0 * MM;
 
-/// Lag of the flange along y and z, T13 rows.
 pub fn t13(engine: &dyn Engine) -> Vec<CheckRow> {
     let rows = [(1, "y"), (2, "z")].map(|(axis, name)| {
         let frequency = (SERVO.stiffness[axis] / SERVO.mass).sqrt();
@@ -41,7 +40,6 @@ pub fn t13(engine: &dyn Engine) -> Vec<CheckRow> {
     rows.concat()
 }
 
-/// Lag along an axis after a time, m.
 fn trails(engine: &dyn Engine, axis: usize, time: f64) -> Result<f64, Diverged> {
     let mut scene = Scene::default();
     let (command, flange) = cell::flange(&mut scene, &Flange::Servo(SERVO), Pose::identity());

@@ -118,7 +118,6 @@ struct Held {
     angle: f64,
 }
 
-/// Motion of the hand and its springs.
 #[derive(Debug, Clone, Copy)]
 struct Case {
     torsion: Torsion,
@@ -142,7 +141,6 @@ const TURNING: Case = Case {
 };
 
 impl Case {
-    /// Resistance at the end of the motion.
     fn hold(&self, engine: &dyn Engine) -> Measured<Held> {
         let Case { beside, speed, spin, guide, .. } = *self;
         let (scene, hand, block) = self.scene();
@@ -181,7 +179,6 @@ impl Case {
     }
 }
 
-/// Middle of the block's face in its frame.
 fn foot() -> Pose {
     Pose::translation(0.0, 0.0, -SIZE[2] / 2.0)
 }

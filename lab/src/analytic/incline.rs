@@ -34,7 +34,6 @@ const SETTLING: f64 = 0.02;
 /// Time over which a sliding block is watched, s; a resting one twice as long.
 const WATCHING: f64 = 0.1;
 
-/// Friction of a sliding block and creep of a resting one, T2 rows.
 pub fn t2(engine: &dyn Engine) -> Vec<CheckRow> {
     let mut rows = Vec::new();
     for friction in FRICTIONS {
@@ -107,7 +106,6 @@ const AVERAGING: f64 = 0.03;
 /// friction stands 1.4 degrees askew to the way of a block that is longer than wide, 2.5 %.
 const ALLOWED: f64 = 0.03;
 
-/// Components of a contact's net force, T14 rows.
 pub fn t14(engine: &dyn Engine) -> Vec<CheckRow> {
     CASES.into_iter().flat_map(|(case, share)| push_rows(engine, case, share)).collect()
 }

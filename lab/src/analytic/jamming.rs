@@ -71,7 +71,6 @@ fn threshold_tilted(peg: &Peg, side: f64) -> f64 {
     -(n1 * rim.perp(&at_rim) + n2 * corner.perp(&at_corner)) / half_width
 }
 
-/// Jamming thresholds, T4 rows.
 pub fn t4(engine: &dyn Engine) -> Vec<CheckRow> {
     let row = |peg: Peg, side: f64, expected: f64, case: &str| {
         let bracket = BRACKET.map(|share| share * expected);
@@ -121,7 +120,6 @@ const DEPTHS: [f64; 2] = [0.5, 2.0];
 /// ... by so many bisections, which leave 0.15 %.
 const DEPTH_BISECTIONS: usize = 10;
 
-/// Largest l/d at which a peg stays wedged, T5 rows.
 pub fn t5(engine: &dyn Engine) -> Vec<CheckRow> {
     let row = |friction: f64| {
         let quantity = format!("l/d up to which a peg wedges, mu {friction}");

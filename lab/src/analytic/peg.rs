@@ -33,7 +33,6 @@ pub(super) struct Peg {
     pub mass: f64,
 }
 
-/// Peg of T3 and T4.
 pub(super) const REFERENCE: Peg =
     Peg { width: 12.0 * MM, hole: 12.1 * MM, inside: 8.0 * MM, friction: 0.3, mass: 20.0 * GRAM };
 
@@ -104,7 +103,6 @@ pub(super) fn turning(moment: f64) -> [Vector3<f64>; 2] {
     [Vector3::zeros(), Vector3::new(moment, 0.0, 0.0)]
 }
 
-/// Tilt of a peg that a moment turns in its hole, T3 rows.
 pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
     let peg = REFERENCE;
     let measured = settled(engine, &peg);

@@ -35,7 +35,6 @@ fn finger() -> Finger {
     Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM)
 }
 
-/// Deflection of the springs under a force and a moment on the remote centre, T1 rows.
 pub fn t1(engine: &dyn Engine) -> Vec<CheckRow> {
     let finger = finger();
     let names = ["x", "y", "z"];
@@ -91,7 +90,6 @@ fn centre_moved(pose: &Pose, finger: &Finger) -> Pose {
     centre.inverse() * pose * centre
 }
 
-/// Motion of a part that a finger holds, under a side force, T7 rows.
 pub fn t7(engine: &dyn Engine) -> Vec<CheckRow> {
     let finger = finger();
     let spring = |axis: usize| finger.springs()[axis].stiffness;

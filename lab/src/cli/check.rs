@@ -93,7 +93,6 @@ fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays,
     Ok(TaskWays { task, ways })
 }
 
-/// Ways of both searches on the same rig.
 fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
     let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
     let rig = Arc::new(rig);

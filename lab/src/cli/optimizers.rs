@@ -47,7 +47,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&markdown(&runs))
 }
 
-/// Problem of a landscape, named after its file.
 fn problem(file: &Path) -> Result<GridProblem, Failure> {
     let path = file.display().to_string();
     let source = shipped::resolve("landscape", &[], &path).map_err(Failure::input)?;

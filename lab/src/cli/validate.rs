@@ -14,7 +14,6 @@ use insertion::trial::engine::EngineKind;
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Selection of the measured fingers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Fingers {
     /// All 11
@@ -24,7 +23,6 @@ pub enum Fingers {
 }
 
 impl Fingers {
-    /// Infill and stiffness of the selected fingers.
     pub fn designs(self) -> Vec<Measurement> {
         match self {
             Fingers::All => published::designs(),

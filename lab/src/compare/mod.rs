@@ -49,7 +49,6 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Measured finger of a shape.
     pub fn new(task: &str, model: &FingerModel, design: Measurement) -> Self {
         let finger = Finger::new(design.compliance, design.assembly);
         let finger = finger.shaped(model, design.direction_deg);
@@ -98,7 +97,6 @@ fn failures(window: &Window) -> [Option<FailureClass>; 2] {
     })
 }
 
-/// JSON keys of a window, the same in every command.
 fn window_json(window: &Window) -> Value {
     let [negative, positive] = failures(window);
     json!({

@@ -88,7 +88,6 @@ pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     text + &summary(pairs)
 }
 
-/// Number of equal pairs, differences of the ranges, and numbers of trials.
 fn summary(pairs: &[WindowPair]) -> String {
     let differences: Vec<f64> = pairs
         .iter()

@@ -18,7 +18,6 @@ const LEVELS: u32 = 1001;
 const LANDSCAPE_LIMIT: usize = 100;
 /// Largest shortfall to the best design of a landscape, mm.
 const SHORTFALL_MM: f64 = 0.1;
-/// Rounding of the ranges, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
 type Value = dyn Fn(&GridPoint) -> Option<f64> + Sync;
@@ -85,9 +84,7 @@ impl GridProblem {
 
 /// Evaluations after which a run of CMA-ES counts as failed.
 const CMA_LIMIT: usize = 1_000_000;
-/// Value that counts as found.
 const CMA_TARGET: f64 = 1e-8;
-/// Dimensions of the functions.
 const CMA_DIMENSIONS: [usize; 2] = [2, 5];
 
 /// Evaluations of BIPOP-CMA-ES to below 1e-8, from a point of [-4, 4]^n with a step size of 2.

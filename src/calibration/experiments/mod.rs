@@ -132,7 +132,6 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
     if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
 }
 
-/// Fault of a text that is no table.
 fn syntax(error: &csv::Error) -> String {
     let words = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {

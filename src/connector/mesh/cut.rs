@@ -261,7 +261,6 @@ fn solid_at(layer: &[Outline], p: &Point2<f64>) -> bool {
     };
     layer.iter().flat_map(|outline| edges(outline)).filter(crossed).count() % 2 == 1
 }
-/// Neighbouring risers, the last with the first.
 fn edges(outline: &[Riser]) -> impl Iterator<Item = (&Riser, &Riser)> {
     outline.iter().zip(outline.iter().cycle().skip(1))
 }

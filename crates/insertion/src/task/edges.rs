@@ -64,7 +64,6 @@ impl Face {
     }
 }
 
-/// Problem of cuts that take more than a face has.
 const ROOM: &str = "take off more than the part has; make them smaller";
 /// Problem of so thin, or so small, a part that corners of the hull would be lost.
 const THIN: &str = "need a part that is not so thin or so small; leave its edges sharp";

@@ -34,7 +34,6 @@ fn rectangle(x: [f64; 2], y: [f64; 2]) -> Ring {
         .to_vec()
 }
 
-/// Stiffness of beams and a frame, F1 rows.
 pub fn f1() -> Vec<CheckRow> {
     [cantilever(), frame(), wall()].concat()
 }
@@ -162,7 +161,6 @@ fn field(p: &Point2<f64>) -> [f64; 2] {
 /// Strains of that field: XX, YY and the shear.
 const STRAIN: [f64; 3] = [0.1, 0.4, 0.3 - 0.2];
 
-/// Errors of the patch test, F2 rows.
 pub fn f2() -> Vec<CheckRow> {
     let [xx, yy, xy] = STRAIN;
     let (nu, width, height) = (SLAB.poisson, 1.3, 1.0);

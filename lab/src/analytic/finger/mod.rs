@@ -21,7 +21,6 @@ pub fn run() -> Vec<CheckRow> {
     [beams::f1, beams::f2, mesh::f3, reference::f4].iter().flat_map(|check| check()).collect()
 }
 
-/// Shipped finger of the measured designs.
 fn finray9() -> Option<PrintedFinger> {
     let shipped = FINGERS.first()?;
     PrintedFinger::parse(shipped.text, shipped.file).ok()

@@ -62,7 +62,6 @@ impl TrialPair {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CrossCheck {
     pub trials: Vec<TrialPair>,
-    /// Windows, if the set has them.
     pub windows: Vec<WindowPair>,
 }
 
@@ -127,7 +126,6 @@ fn tip_distance(trials: &[Trial; 2]) -> Option<f64> {
     Some(square.sqrt())
 }
 
-/// Tables and totals; `names` are those of the engines.
 pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
     let verdict = |met| if met { "met" } else { "MISSED" };
     let mut text = format!("T9: the same trials in {first} and {second}\n\n");

@@ -55,7 +55,6 @@ pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
     tasks.iter().flat_map(|task| designs.iter().map(move |design| timing(task, design))).collect()
 }
 
-/// Table, and the mean ratio.
 pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
     let unit = "wall s (simulated)";
     let mut text = format!(

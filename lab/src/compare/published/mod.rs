@@ -25,19 +25,14 @@ use insertion::trial::engine::EngineKind;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Source of a range and the failures at its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RangeSource {
-    /// This program's simulation.
     Ours,
-    /// The publication's simulation.
     Simulation,
-    /// The publication's experiments on the robot.
     Bench,
 }
 
-/// Compared sources, each with its reference.
 pub const COMPARISONS: [(RangeSource, RangeSource); 3] = [
     (RangeSource::Ours, RangeSource::Simulation),
     (RangeSource::Ours, RangeSource::Bench),
@@ -46,13 +41,11 @@ pub const COMPARISONS: [(RangeSource, RangeSource); 3] = [
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Reading {
-    /// Tolerable range, mm; `None` if the source gives none.
     pub range_mm: Option<f64>,
     pub failure_negative: Option<FailureClass>,
     pub failure_positive: Option<FailureClass>,
 }
 
-/// Measured design with our window and the published readings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesignRow {
     pub design: Measurement,
@@ -87,7 +80,6 @@ pub struct TaskTable {
 }
 
 impl TaskTable {
-    /// Table of our windows beside the published readings of a task.
     pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
         let published = [Origin::Simulation, Origin::Bench].map(|of| published::of_task(task, of));
         let reading = |row: &Published| Reading {

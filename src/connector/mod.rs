@@ -6,7 +6,6 @@ pub mod draft;
 pub(crate) mod hold;
 pub mod mesh;
 pub mod nominal;
-pub(crate) mod path;
 pub(crate) mod picture;
 pub(crate) mod plan;
 pub(crate) mod seat;

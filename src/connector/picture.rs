@@ -1,8 +1,7 @@
 //! SVG of a task: plug at the start and seated, socket, fingertips, search path, clearances.
 
 use super::body::{ConvexBody, extent, span, width};
-use super::path::{self, Waypoint};
-use super::seat::{Seat, Seating, section};
+use super::seat::{self, Seat, Seating, Waypoint, section};
 use contact::scene::{Geom, Pose};
 use input::units::MM;
 use insertion::finger::Pad;
@@ -40,10 +39,10 @@ struct Drawing<'a> {
 
 pub fn svg(task: &Task) -> String {
     let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-    let way = path::waypoints(task, &plug);
+    let way = seat::waypoints(task, &plug);
     let seat = Seating::new(task, &plug, &socket).deepest();
     let tip = section(&plug, task.success.depth.min(seat.depth));
-    let start = path::plug_pose(task, way[0].tcp);
+    let start = seat::plug_pose(task, way[0].tcp);
     let drawing = Drawing { task, way, start, seat, tip };
     let (width, height) = (VIEWS.len() as f64 * PANEL, PANEL + 130.0);
     let [name, description] = [&task.name, &task.description].map(|text| escape(text));

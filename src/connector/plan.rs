@@ -8,8 +8,7 @@
 
 use super::body::{ConvexBody, extent, width};
 use super::hold::held;
-use super::path;
-use super::seat::{Seat, Seating, section};
+use super::seat::{self, Seat, Seating, section};
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
 use insertion::task::{Ending, Part, Phase, Sensed, Solid, Stage, Success, Task};
@@ -86,7 +85,7 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     };
     task.strategy.start = [0.0; 3];
     task.strategy.phases = Vec::new();
-    let edge = path::waypoints(&task, &plug)[0].edge;
+    let edge = seat::waypoints(&task, &plug)[0].edge;
     task.strategy.start =
         [round_mm(search.x), round_mm(search.edge_y - edge.y), round_mm(AIR[0] - edge.z)];
     task.strategy.phases = phases(&task, &search, seat.depth);

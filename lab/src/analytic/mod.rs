@@ -28,7 +28,6 @@ mod build;
 mod chamfer;
 mod edge;
 mod finger;
-mod flange;
 mod grasp;
 mod incline;
 mod jamming;
@@ -114,6 +113,6 @@ pub fn contact(make: Make<'_>) -> Vec<CheckRow> {
     };
     let first =
         [spring::t1, incline::t2, peg::t3, jamming::t4, jamming::t5, chamfer::t6, spring::t7];
-    let last = [peg::t10, arm::t11, grasp::t12, flange::t13, incline::t14, grasp::t15];
+    let last = [peg::t10, arm::t11, grasp::t12, arm::t13, incline::t14, grasp::t15];
     [all(&first), edge::t8(make), all(&last)].concat()
 }

@@ -76,17 +76,14 @@ fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finger::file::FingerFile;
-    use crate::fixtures::predicted;
+    use crate::fixtures::{finger_file, predicted};
     use crate::space::{DENSITY_KEY, DIRECTION_KEY};
-    use input::shipped::FINGERS;
     use input::units::N_PER_MM;
 
     const MODULUS: &str = "finger.material.modulus_gpa";
 
     fn fingers() -> ComputedFingers {
-        let file = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
-        ComputedFingers::new(file)
+        ComputedFingers::new(finger_file())
     }
 
     fn plain() -> Prediction {

@@ -116,15 +116,10 @@ const ACROSS: [usize; 3] = [0, 4, 5];
 #[cfg(test)]
 mod tests {
     use super::*;
-    use input::shipped::FINGERS;
     use nalgebra::Vector3;
 
     const SHOULDER: f64 = 3.5 * MM;
     const AT_PAD: AtPad = AtPad { compliance: 2.6e3, assembly: 45e3 };
-
-    fn printed() -> PrintedFinger {
-        PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
-    }
 
     /// Springs that sit so far below and in front of the pad, and a plate.
     fn stiffness(below: f64, ahead: f64, tilting: f64) -> (PlanarStiffness, Matrix3<f64>) {
@@ -137,7 +132,14 @@ mod tests {
 
     fn finger(at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
         let (plane, across) = stiffness(8.0 * MM, -2.0 * MM, 2.5);
-        super::finger(&printed(), plane, across, SHOULDER, at_pad, given)
+        super::finger(
+            &crate::fixtures::finger_file().finger,
+            plane,
+            across,
+            SHOULDER,
+            at_pad,
+            given,
+        )
     }
 
     fn at_pad_middle(finger: &Finger) -> Matrix6<f64> {

@@ -69,14 +69,13 @@ fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), Impossible> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use input::shipped::{FINGERS, SPACES};
+    use input::shipped::SPACES;
 
     fn shipped(change: [&str; 2]) -> Result<(), InputError> {
         let file = SPACES.iter().find(|space| space.name == "finger").unwrap();
         assert!(file.text.contains(change[0]));
         let space = Space::parse(&file.text.replace(change[0], change[1]), file.file).unwrap();
-        let finger = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
-        check(&space, file.file, &finger)
+        check(&space, file.file, &crate::fixtures::finger_file())
     }
 
     #[test]

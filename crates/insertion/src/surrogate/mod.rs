@@ -8,7 +8,7 @@
 //! 3. keep the candidate with the smallest mean absolute percentage error.
 //!
 //! Of fewer than seven fingers the models are of measured / computed stiffness: the ribs give the
-//! shape ([`Computed`]), the fingers its scale (`docs/notes/finger.md`).
+//! shape, the fingers its scale (`docs/notes/finger.md`).
 //!
 //! Nothing here is random, so equal measurements give bit-identical models.
 

@@ -13,7 +13,7 @@ use insertion::evaluation::robustness::{self, Plan};
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::evaluation::uncertainty::Uncertainty;
 use insertion::finger::Finger;
-use insertion::finger::computed::{AtPad, Touching};
+use insertion::finger::computed::AtPad;
 use insertion::finger::file::FingerFile;
 use insertion::finger::model::{ComputedFingers, FingerSource};
 use insertion::outcome::{FailureClass, Outcome};
@@ -278,9 +278,9 @@ fn a_picture_shows_each_phase_twice() {
 }
 
 /// The finger of 20 %, 20 degrees as computed, as stiff at its pad as measured.
-fn computed(touching: Touching) -> Finger {
+fn computed() -> Finger {
     let printed = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
-    let fingers = ComputedFingers::new(printed, touching);
+    let fingers = ComputedFingers::new(printed);
     let fingers = FingerSource::Computed(Box::new(fingers));
     let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
     fingers.make(at_pad, &Design::infill(20.0, 20.0), &direct("rj45").task).unwrap().finger
@@ -313,25 +313,23 @@ fn mounted(scene: &mut Scene, finger: &Finger, side: f64, inward: f64, geoms: Ve
 #[test]
 fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
     let shoulder = direct("rj45").task.grip.shoulder();
-    for touching in [Touching::Pad, Touching::PadAndRoof] {
-        let finger = computed(touching);
-        for side in [-1.0, 1.0] {
-            let mut scene = Scene::default();
-            let body = mounted(&mut scene, &finger, side, 0.0, Vec::new());
-            let pad = nalgebra::Point3::new(0.0, 0.0, finger.pad.middle(shoulder));
-            for (axis, stiffness) in [(1, 2.6e3), (2, 45e3)] {
-                let mut force = Vector3::zeros();
-                force[axis] = 0.1;
-                let mut world = Direct::default().world(&scene);
-                let arm = pad - finger.centre(side);
-                world.push(body, force, arm.cross(&force));
-                for _ in 0..4000 {
-                    world.step().unwrap();
-                }
-                let moved = world.pose(body) * pad - pad;
-                let found = 0.1 / moved[axis];
-                assert!((found / stiffness - 1.0).abs() < 1e-3, "{side} {axis}: {found}");
+    let finger = computed();
+    for side in [-1.0, 1.0] {
+        let mut scene = Scene::default();
+        let body = mounted(&mut scene, &finger, side, 0.0, Vec::new());
+        let pad = nalgebra::Point3::new(0.0, 0.0, finger.pad.middle(shoulder));
+        for (axis, stiffness) in [(1, 2.6e3), (2, 45e3)] {
+            let mut force = Vector3::zeros();
+            force[axis] = 0.1;
+            let mut world = Direct::default().world(&scene);
+            let arm = pad - finger.centre(side);
+            world.push(body, force, arm.cross(&force));
+            for _ in 0..4000 {
+                world.step().unwrap();
             }
+            let moved = world.pose(body) * pad - pad;
+            let found = 0.1 / moved[axis];
+            assert!((found / stiffness - 1.0).abs() < 1e-3, "{side} {axis}: {found}");
         }
     }
 }
@@ -340,7 +338,7 @@ fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
 /// the pads would move inward, and the part is in their way.
 #[test]
 fn pushed_up_a_part_is_gripped_harder_by_coupled_fingers() {
-    let mut finger = computed(Touching::PadAndRoof);
+    let mut finger = computed();
     // y and z pull at one another: pushed up, its pad moves towards the part.
     finger.coupling = Some(Coupling::new([(1, 2, -0.3)]).unwrap());
     // So high that it stays flat on the part.

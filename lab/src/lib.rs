@@ -1,5 +1,4 @@
-//! Verification of the models: analytic checks, windows compared between engines, searches and
-//! publications, and benchmarks.
+//! Verification of the models: analytic checks, comparisons of windows, and benchmarks.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // A stream that has gone makes these panic: `cli::terminal` prints.

@@ -1,5 +1,4 @@
-//! The analytic checks on the engines with their production settings. A failure prints the table,
-//! which names the check.
+//! The analytic checks on the engines with their production settings; a failure prints the table.
 
 use contact::Engine;
 use contact::direct::Direct;

@@ -19,7 +19,6 @@ fn robot() -> Robot {
     Robot::parse(file.text, file.file).unwrap()
 }
 
-/// Angles in general position.
 fn bent() -> Angles {
     arm().home + Angles::new(0.3, -0.2, 0.25, 0.1, -0.3, 0.7)
 }

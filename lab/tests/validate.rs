@@ -62,8 +62,7 @@ fn a_task_that_is_not_published_is_refused() {
 
 const REFERENCE: &str = "../results/reference/validation";
 
-/// The windows of three fingers on every task by the real engine; `scripts/reference.sh
-/// validation` measures all 44.
+/// Windows of three fingers by the real engine; `scripts/reference.sh validation` measures all 44.
 #[test]
 fn the_windows_are_the_committed_ones() {
     let folder = tempfile::tempdir().unwrap();

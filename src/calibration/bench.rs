@@ -1,10 +1,10 @@
-//! The benches of one or several tasks: simulated, measured, and what follows for the
-//! parameters and for every finger.
+//! The benches of one or several tasks: simulated, measured, and what follows from both.
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
-use super::sampler::{Settings, sample};
-use rand::Rng;
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
 use std::cell::RefCell;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Simulated ranges as a function of the uncertain parameters.
 pub trait Simulator: Sync {
@@ -12,27 +12,19 @@ pub trait Simulator: Sync {
     fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64>;
 }
 
-/// Measurement of one finger's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
-    /// Number of the finger.
     pub finger: usize,
-    /// Measured range, mm.
     pub range_mm: f64,
-    /// Whether the range is this or more.
     pub at_least: bool,
     /// Measurements that this is the mean of.
     pub repeats: u32,
 }
 
-/// The bench of one task.
 #[derive(Clone)]
 pub struct Bench<'a> {
-    /// Simulator of its fingers.
     pub simulator: &'a dyn Simulator,
-    /// Standardised stiffness of each finger.
     pub places: &'a [Place],
-    /// Measurements.
     pub observations: Vec<Observation>,
     /// mm to one unit of the process.
     pub scale_mm: f64,
@@ -50,12 +42,10 @@ pub fn share(coordinate: f64) -> f64 {
 }
 
 impl Bench<'_> {
-    /// Shares of the parameters' priors in a sample.
     pub fn shares(&self, state: &[f64]) -> Vec<f64> {
         self.parameters.iter().map(|&coordinate| share(state[coordinate])).collect()
     }
 
-    /// Fingers as simulated at a sample.
     pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {
         let ranges_mm = self.simulator.ranges_mm(numbers, &self.shares(state));
         numbers.iter().zip(ranges_mm).map(|(&number, range)| self.finger(number, range)).collect()
@@ -65,7 +55,6 @@ impl Bench<'_> {
         Finger { place: self.places[number], simulated: range_mm / self.scale_mm }
     }
 
-    /// The process's standard deviations in a sample.
     pub fn hyperparameters(&self, state: &[f64]) -> Hyperparameters {
         let own = &state[self.first..self.first + COORDINATES];
         Hyperparameters::from_coordinates(own, self.error_mm / self.scale_mm)
@@ -96,39 +85,106 @@ impl Bench<'_> {
     }
 }
 
-/// Samples of parameters and hyperparameters: standard normal coordinates.
-#[derive(Debug, Clone)]
-pub struct Posterior {
-    /// One vector of coordinates per sample.
-    pub samples: Vec<Vec<f64>>,
+/// Samples of parameters and hyperparameters: `dimension` standard normal coordinates each.
+pub fn sampled(
+    benches: &[Bench<'_>],
+    dimension: usize,
+    settings: &Settings<'_>,
+    random: &mut impl Rng,
+) -> Vec<Vec<f64>> {
+    let mut parts = vec![Vec::new(); dimension];
+    for (part, bench) in benches.iter().enumerate() {
+        let own = bench.first..bench.first + COORDINATES;
+        bench.parameters.iter().copied().chain(own).for_each(|c| parts[c].push(part));
+    }
+    // Most coordinates leave the simulated ranges as they were.
+    let known: Vec<RefCell<(Vec<f64>, Vec<f64>)>> =
+        benches.iter().map(|_| RefCell::default()).collect();
+    let log_likelihood = |part: usize, state: &[f64]| {
+        let bench = &benches[part];
+        let shares = bench.shares(state);
+        let mut known = known[part].borrow_mut();
+        if known.0 != shares || known.1.len() != bench.observations.len() {
+            let ranges = bench.simulator.ranges_mm(&bench.measured(), &shares);
+            *known = (shares, ranges);
+        }
+        bench.conditioned(state, &known.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
+    };
+    sample(&parts, &log_likelihood, settings, random)
 }
 
-impl Posterior {
-    /// Samples over `dimension` coordinates, which the benches' tell what they are.
-    pub fn sampled(
-        benches: &[Bench<'_>],
-        dimension: usize,
-        settings: &Settings<'_>,
-        random: &mut impl Rng,
-    ) -> Self {
-        let mut parts = vec![Vec::new(); dimension];
-        for (part, bench) in benches.iter().enumerate() {
-            let own = bench.first..bench.first + COORDINATES;
-            bench.parameters.iter().copied().chain(own).for_each(|c| parts[c].push(part));
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Effort {
+    /// Sweeps over all coordinates before the first sample is kept.
+    pub warm_up: usize,
+    pub samples: usize,
+    /// Sweeps from one to the next.
+    pub thin: usize,
+}
+
+#[derive(Clone, Copy)]
+pub struct Settings<'a> {
+    pub effort: Effort,
+    pub seed: u64,
+    /// Set when it is to end: what it gives is then worthless.
+    pub stop: &'a AtomicBool,
+    /// Told of each calibration with fingers left out, how many are done, and of how many.
+    pub done: &'a (dyn Fn([usize; 2]) + Sync),
+}
+
+/// Sweeps after which the steps adapt.
+const BATCH: usize = 25;
+/// Share of accepted steps that is aimed at: the best for one coordinate.
+const ACCEPTED: f64 = 0.44;
+
+/// Metropolis sampling, one coordinate at a time, with steps that adapt while it warms up (Metropolis
+/// et al. 1953; Roberts and Rosenthal 2009, doi:10.1198/jcgs.2009.06134).
+///
+/// Samples of a density over coordinates whose prior is standard normal. The likelihood is a
+/// sum over parts; `parts[c]` names those that coordinate `c` touches.
+fn sample(
+    parts: &[Vec<usize>],
+    log_likelihood: &dyn Fn(usize, &[f64]) -> f64,
+    settings: &Settings<'_>,
+    random: &mut impl Rng,
+) -> Vec<Vec<f64>> {
+    let effort = settings.effort;
+    let dimension = parts.len();
+    let count = parts.iter().flatten().max().map_or(0, |last| last + 1);
+    let mut state = vec![0.0; dimension];
+    let mut current: Vec<f64> = (0..count).map(|part| log_likelihood(part, &state)).collect();
+    let mut step = vec![1.0_f64; dimension];
+    let mut accepted = vec![0_usize; dimension];
+    let mut kept = Vec::with_capacity(effort.samples);
+    for sweep in 0..effort.warm_up + effort.samples * effort.thin {
+        if settings.stop.load(Ordering::SeqCst) {
+            return vec![state];
         }
-        // Most coordinates leave the simulated ranges as they were.
-        let known: Vec<RefCell<(Vec<f64>, Vec<f64>)>> =
-            benches.iter().map(|_| RefCell::default()).collect();
-        let log_likelihood = |part: usize, state: &[f64]| {
-            let bench = &benches[part];
-            let shares = bench.shares(state);
-            let mut known = known[part].borrow_mut();
-            if known.0 != shares || known.1.len() != bench.observations.len() {
-                let ranges = bench.simulator.ranges_mm(&bench.measured(), &shares);
-                *known = (shares, ranges);
+        for c in 0..dimension {
+            let old = state[c];
+            let jump: f64 = random.sample(StandardNormal);
+            state[c] = old + step[c] * jump;
+            let new: Vec<f64> = parts[c].iter().map(|&part| log_likelihood(part, &state)).collect();
+            let before: f64 = parts[c].iter().map(|&part| current[part]).sum();
+            let gain = new.iter().sum::<f64>() - before - 0.5 * (state[c] * state[c] - old * old);
+            let chance: f64 = random.random();
+            if libm::log(chance) < gain {
+                parts[c].iter().zip(new).for_each(|(&part, value)| current[part] = value);
+                accepted[c] += 1;
+            } else {
+                state[c] = old;
             }
-            bench.conditioned(state, &known.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
-        };
-        Posterior { samples: sample(&parts, &log_likelihood, settings, random) }
+        }
+        if sweep < effort.warm_up && (sweep + 1).is_multiple_of(BATCH) {
+            for (step, accepted) in step.iter_mut().zip(&mut accepted) {
+                let share = *accepted as f64 / BATCH as f64;
+                *step = (*step * libm::exp(1.5 * (share - ACCEPTED))).clamp(0.05, 4.0);
+                *accepted = 0;
+            }
+        }
+        if sweep >= effort.warm_up && (sweep - effort.warm_up + 1).is_multiple_of(effort.thin) {
+            kept.push(state.clone());
+        }
     }
+    kept
 }

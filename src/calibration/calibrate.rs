@@ -1,21 +1,21 @@
-//! All tasks together: which coordinate is what, the posterior, and what it says.
+//! All tasks together: which coordinate is what, the posterior, and how far to trust it.
 
-use super::bench::{Bench, Posterior};
-use super::loo::{LeftOut, leave_one_out};
+use super::bench::{Bench, Settings, sampled};
 use super::predict::{Of, Predicted, draws, predict};
 use super::prior::Parameter;
 use super::process::COORDINATES;
-use super::sampler::Settings;
+use super::statistics::{mean, spearman};
 use super::subject::Subject;
 use ask_tell::stream::stream;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Joint draws per sample of the posterior.
 const DRAWS: usize = 3;
 
-/// One coordinate that is a parameter.
 #[derive(Debug, Clone)]
 pub struct Coordinate {
-    /// The parameter.
     pub parameter: Parameter,
     /// The task it belongs to; `None` if they share it.
     pub task: Option<String>,
@@ -24,7 +24,6 @@ pub struct Coordinate {
 /// Meaning of a sample's coordinates: the parameters, then each task's hyperparameters.
 #[derive(Debug, Clone)]
 pub struct Layout {
-    /// The parameters.
     pub coordinates: Vec<Coordinate>,
     /// The coordinates of each task's parameters, in its simulation's order.
     of_task: Vec<Vec<usize>>,
@@ -49,12 +48,10 @@ impl Layout {
         Layout { coordinates, of_task }
     }
 
-    /// Coordinates of a sample.
     pub fn dimension(&self) -> usize {
         self.coordinates.len() + COORDINATES * self.of_task.len()
     }
 
-    /// The benches of the tasks, in order.
     pub fn benches<'a>(&self, subjects: &'a [Subject]) -> Vec<Bench<'a>> {
         let bench = |(i, subject): (usize, &'a Subject)| {
             subject.bench(self.of_task[i].clone(), self.coordinates.len() + COORDINATES * i)
@@ -63,33 +60,24 @@ impl Layout {
     }
 }
 
-/// Result of a calibration on one task.
 #[derive(Debug, Clone)]
 pub struct TaskResult {
     /// Each finger of the space, in the subject's order.
     pub predictions: Vec<Prediction>,
-    /// The measured fingers, each predicted without it.
     pub left_out: Vec<LeftOut>,
 }
 
-/// A finger's predicted bench range.
 #[derive(Debug, Clone, Copy)]
 pub struct Prediction {
-    /// Number of the finger.
     pub finger: usize,
-    /// Its range.
     pub range: Predicted,
     /// Probability of its being the best of the space, 0 to 1.
     pub best: f64,
 }
 
-/// A finished calibration.
 pub struct Calibration {
-    /// Meaning of the coordinates.
     pub layout: Layout,
-    /// Samples of all coordinates.
-    pub posterior: Posterior,
-    /// One per task.
+    pub posterior: Vec<Vec<f64>>,
     pub tasks: Vec<TaskResult>,
 }
 
@@ -99,7 +87,7 @@ impl Calibration {
         let benches = layout.benches(subjects);
         let dimension = layout.dimension();
         let mut random = stream(settings.seed, 0, "calibrate");
-        let posterior = Posterior::sampled(&benches, dimension, settings, &mut random);
+        let posterior = sampled(&benches, dimension, settings, &mut random);
         let task = |(i, subject): (usize, &Subject)| {
             let mut random = stream(settings.seed, i as u64, "draws");
             let fingers: Vec<usize> = (0..subject.of_space).collect();
@@ -127,4 +115,86 @@ fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
         }
     }
     counts.iter().map(|&count| f64::from(count) / drawn.len().max(1) as f64).collect()
+}
+
+/// A measured finger, predicted without it.
+#[derive(Debug, Clone, Copy)]
+pub struct LeftOut {
+    pub finger: usize,
+    /// Its measured range, mm: the mean, if it was measured several times.
+    pub measured_mm: f64,
+    /// The range predicted for one more measurement.
+    pub predicted: Predicted,
+}
+
+/// Accuracy of the predictions of left-out fingers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    pub fingers: usize,
+    /// Mean of `|predicted - measured| / measured`, percent; `None` without fingers.
+    pub mean_deviation_percent: Option<f64>,
+    pub spearman: Option<f64>,
+    /// Fingers whose measured range lies in its interval.
+    pub inside: usize,
+}
+
+impl LeftOut {
+    pub fn inside(&self) -> bool {
+        (self.predicted.low_mm..=self.predicted.high_mm).contains(&self.measured_mm)
+    }
+}
+
+impl Accuracy {
+    /// Of these fingers. One that does not insert at all has no deviation in percent.
+    pub fn of(left_out: &[LeftOut]) -> Self {
+        let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
+        let percent = |one: &LeftOut| {
+            100.0 * (one.predicted.mean_mm - one.measured_mm).abs() / one.measured_mm
+        };
+        let deviations: Vec<f64> = wide.map(percent).collect();
+        let pairs: Vec<(f64, f64)> =
+            left_out.iter().map(|one| (one.predicted.mean_mm, one.measured_mm)).collect();
+        Accuracy {
+            fingers: left_out.len(),
+            mean_deviation_percent: mean(&deviations),
+            spearman: spearman(&pairs),
+            inside: left_out.iter().filter(|one| one.inside()).count(),
+        }
+    }
+
+    pub fn coverage_percent(&self) -> Option<f64> {
+        (self.fingers > 0).then(|| 100.0 * self.inside as f64 / self.fingers as f64)
+    }
+}
+
+/// Most times that a calibration is repeated with fingers left out.
+const MOST_FOLDS: usize = 20;
+
+/// Predicts the measured fingers of one bench without them, at most [`MOST_FOLDS`] times.
+pub fn leave_one_out(
+    benches: &[Bench<'_>],
+    task: usize,
+    dimension: usize,
+    settings: &Settings<'_>,
+) -> Vec<LeftOut> {
+    let known = || benches[task].observations.iter().filter(|one| !one.at_least);
+    let fingers: BTreeSet<usize> = known().map(|one| one.finger).collect();
+    let fingers: Vec<usize> = fingers.into_iter().collect();
+    let size = fingers.len().div_ceil(MOST_FOLDS).max(1);
+    let (count, folds) = (AtomicUsize::new(0), fingers.len().div_ceil(size));
+    let fold = |fold: &[usize]| -> Vec<LeftOut> {
+        let mut benches = benches.to_vec();
+        benches[task].observations.retain(|one| !fold.contains(&one.finger));
+        let mut random = stream(settings.seed, fold[0] as u64, "leave one out");
+        let posterior = sampled(&benches, dimension, settings, &mut random);
+        let predicted = predict(&benches[task], &posterior, fold, Of::Measurement);
+        let left_out = |(&finger, predicted): (&usize, Predicted)| {
+            let own = known().filter(|one| one.finger == finger).map(|one| one.range_mm);
+            let measured_mm = mean(&own.collect::<Vec<f64>>())?;
+            Some(LeftOut { finger, measured_mm, predicted })
+        };
+        (settings.done)([count.fetch_add(1, Ordering::Relaxed) + 1, folds]);
+        fold.iter().zip(predicted).filter_map(left_out).collect()
+    };
+    fingers.par_chunks(size).flat_map_iter(fold).collect()
 }

@@ -18,7 +18,6 @@ const ROUNDING_MM: f64 = 0.04;
 /// Evaluations of the likelihood per start of the fit.
 const EVALUATIONS: usize = 30;
 
-/// One simulated window.
 #[derive(Debug, Clone)]
 struct Run {
     /// Shares of the space, then of the parameters' priors.
@@ -27,27 +26,22 @@ struct Run {
     failures: [Option<FailureClass>; 2],
 }
 
-/// The simulator's stand-in on one task.
 pub struct Emulator {
     process: Gp,
-    mean_mm: f64,
+    /// Mean range over the simulations, mm.
+    pub mean_mm: f64,
     sd_mm: f64,
     runs: Vec<Run>,
-    /// Simulations it was fitted to.
     pub simulations: usize,
     /// Simulations its error was measured on.
     pub fresh: usize,
-    /// Root mean square of that error, mm.
     pub error_mm: f64,
 }
 
-/// Error of what a calibration starts from.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrationError {
-    /// A design or a value of a parameter cannot be simulated.
     #[error(transparent)]
     Impossible(#[from] Impossible),
-    /// No process goes through so many simulations of a task.
     #[error("{0}: no process goes through the {1} simulations; ask for more")]
     NoFit(String, usize),
     /// The measured finger of a line does not lie in the space.
@@ -67,11 +61,7 @@ pub struct Set<'a> {
 }
 
 impl Emulator {
-    /// From `count` simulations of the space and the parameters' priors, of which one in eight
-    /// measures the error; `done` is told of each.
-    ///
-    /// # Errors
-    /// If one of them cannot be simulated, or nothing can be fitted.
+    /// From `count` simulations, of which one in eight measures the error; `done` is told of each.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,
@@ -142,13 +132,7 @@ impl Emulator {
         (self.mean_mm + self.sd_mm * self.process.mean(at)).max(0.0)
     }
 
-    /// Mean range over the simulations, mm.
-    pub fn mean_mm(&self) -> f64 {
-        self.mean_mm
-    }
-
-    /// The failure class at each end that most of the `count` simulations nearest to a design
-    /// met, whatever the parameters were.
+    /// The failure class at each end that most of the `count` simulations nearest to a design met.
     pub fn failures(&self, design: &[f64], count: usize) -> [Option<FailureClass>; 2] {
         let distance =
             |run: &Run| -> f64 { run.at.iter().zip(design).map(|(a, b)| (a - b).powi(2)).sum() };

@@ -1,30 +1,27 @@
 //! From simulation to the bench: what few measurements say of what nobody measured, and of
 //! every finger (Kennedy and O'Hagan 2001, doi:10.1111/1467-9868.00294).
 //!
-//! 1. [`simulation`]: windows under drawn friction, preload, robot, finger: [`prior`].
-//! 2. [`emulator`]: a Gaussian process in the simulator's place, its error measured.
-//! 3. [`process`]: what remains between simulation and bench, as a process over the stiffness.
-//! 4. [`mod@bench`], [`sampler`]: the posterior of parameters and process, given measurements.
-//! 5. [`mod@predict`], [`loo`]: ranges with intervals; each measured finger predicted without it.
-//! 6. [`next`]: which finger to print.
-//! 7. [`mod@on_bench`]: what a study keeps of it.
+//! 1. `simulation`: windows under drawn friction, preload, robot, finger: `prior`.
+//! 2. `emulator`: a Gaussian process in the simulator's place, its error measured.
+//! 3. `process`: what remains between simulation and bench, as a process over the stiffness.
+//! 4. `bench`: the posterior of parameters and process, given measurements.
+//! 5. `predict`, `calibrate`: ranges with intervals; each measured finger predicted without it.
+//! 6. `next`: which finger to print.
+//! 7. `table`: all this as text and files, and what a study keeps of it.
 
-pub mod bench;
-pub mod calibrate;
-pub mod emulator;
-pub mod experiments;
-pub mod loo;
-pub mod next;
-pub mod on_bench;
-pub mod order;
-pub mod predict;
-pub mod prior;
-pub mod process;
+pub(crate) mod bench;
+pub(crate) mod calibrate;
+pub(crate) mod emulator;
+pub(crate) mod experiments;
+pub(crate) mod next;
+pub(crate) mod order;
+pub(crate) mod predict;
+pub(crate) mod prior;
+pub(crate) mod process;
 pub mod published;
-pub mod sampler;
-pub mod simulation;
+pub(crate) mod simulation;
 pub mod statistics;
-pub mod subject;
-pub mod table;
+pub(crate) mod subject;
+pub(crate) mod table;
 #[cfg(test)]
 mod tests;

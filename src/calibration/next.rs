@@ -5,33 +5,25 @@
 //! doi:10.1023/A:1008306431147). Of several prints each is chosen with those before it counted as
 //! known, draw by draw (Ginsbourger et al. 2010, the multi-points criterion).
 
-use super::bench::{Bench, Posterior};
+use super::bench::Bench;
 use super::predict::{INTERVAL, draws};
 use super::process::Place;
 use rand::Rng;
 use std::collections::BTreeSet;
 
-/// One finger to print.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Print {
-    /// Number of the finger.
     pub finger: usize,
-    /// Its expected range, mm.
     pub expected_mm: f64,
-    /// Lower end of the interval of its range.
     pub low_mm: f64,
-    /// Upper end.
     pub high_mm: f64,
     /// Expected gain of the best known range by this print and those before it, less theirs.
     pub expected_gain_mm: f64,
-    /// Why, in one line.
     pub reason: String,
 }
 
-/// Advice on the next prints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
-    /// The prints, best first.
     pub next: Vec<Print>,
     /// Expected range of the best measured finger, mm; `None` if none was measured.
     pub best_known_mm: Option<f64>,
@@ -39,43 +31,35 @@ pub struct Advice {
     pub stop: bool,
 }
 
-/// Question to [`advise`].
-#[derive(Debug, Clone, Copy)]
-pub struct Question<'a> {
-    /// Fingers that may be printed.
-    pub among: &'a [usize],
-    /// Prints at a time.
-    pub count: usize,
-    /// Gain that a print must promise to be worth its cost, mm.
-    pub cost_mm: f64,
-    /// Joint draws per sample of the posterior.
-    pub draws: usize,
-}
+/// Joint draws per sample of the posterior.
+const DRAWS: usize = 4;
 
-/// Which fingers to print, given what was measured.
+/// Which of `among` to print, `count` at a time; a print must promise a gain of `cost_mm`.
 pub fn advise(
     bench: &Bench<'_>,
-    posterior: &Posterior,
-    question: &Question<'_>,
+    posterior: &[Vec<f64>],
+    among: &[usize],
+    count: usize,
+    cost_mm: f64,
     random: &mut impl Rng,
 ) -> Advice {
     let measured: BTreeSet<usize> = bench.observations.iter().map(|one| one.finger).collect();
-    let new = question.among.iter().filter(|finger| !measured.contains(finger));
+    let new = among.iter().filter(|finger| !measured.contains(finger));
     let all: Vec<usize> = measured.iter().chain(new).copied().collect();
-    let drawn = draws(bench, posterior, &all, question.draws, random);
+    let drawn = draws(bench, posterior, &all, DRAWS, random);
     let known = measured.len();
-    let count = drawn.len().max(1) as f64;
-    let mean = |column: usize| drawn.iter().map(|draw| draw[column]).sum::<f64>() / count;
+    let all_draws = drawn.len().max(1) as f64;
+    let mean = |column: usize| drawn.iter().map(|draw| draw[column]).sum::<f64>() / all_draws;
     // Without a measured finger there is nothing to lose.
     let mut best: Vec<f64> =
         drawn.iter().map(|draw| draw[..known].iter().copied().fold(0.0, f64::max)).collect();
     let best_known_mm = (0..known).map(mean).reduce(f64::max);
     let mut left: Vec<usize> = (known..all.len()).collect();
     let mut next: Vec<Print> = Vec::new();
-    while next.len() < question.count && !left.is_empty() {
+    while next.len() < count && !left.is_empty() {
         let gain = |column: usize| {
             let more = drawn.iter().zip(&best).map(|(draw, best)| (draw[column] - best).max(0.0));
-            more.sum::<f64>() / count
+            more.sum::<f64>() / all_draws
         };
         let gains: Vec<f64> = left.iter().map(|&column| gain(column)).collect();
         let first = (0..gains.len()).rev().max_by(|&a, &b| gains[a].total_cmp(&gains[b]));
@@ -84,14 +68,13 @@ pub fn advise(
         let mut values: Vec<f64> = drawn.iter().map(|draw| draw[column]).collect();
         values.sort_by(f64::total_cmp);
         let tail = |share: f64| {
-            values.get((share * (count - 1.0)).round() as usize).copied().unwrap_or(0.0)
+            values.get((share * (all_draws - 1.0)).round() as usize).copied().unwrap_or(0.0)
         };
         let (low_mm, high_mm) = (tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0));
         let expected_mm = mean(column);
-        let tried: Vec<usize> =
-            measured.iter().copied().chain(next.iter().map(|print| print.finger)).collect();
-        let places = Places { own: bench.places[all[column]], tried: &tried, all: bench.places };
-        let reason = reason(&places, expected_mm, high_mm, best_known_mm);
+        let tried = measured.iter().copied().chain(next.iter().map(|print| print.finger));
+        let tried: Vec<Place> = tried.map(|finger| bench.places[finger]).collect();
+        let reason = reason(bench.places[all[column]], &tried, expected_mm, high_mm, best_known_mm);
         best.iter_mut().zip(&drawn).for_each(|(best, draw)| *best = best.max(draw[column]));
         next.push(Print {
             finger: all[column],
@@ -102,25 +85,25 @@ pub fn advise(
             reason,
         });
     }
-    let stop = next.first().is_none_or(|print| print.expected_gain_mm < question.cost_mm);
+    let stop = next.first().is_none_or(|print| print.expected_gain_mm < cost_mm);
     Advice { next, best_known_mm, stop }
-}
-
-/// Place of a finger among those tried before.
-struct Places<'a> {
-    own: Place,
-    tried: &'a [usize],
-    all: &'a [Place],
 }
 
 /// A finger this far from all others, in standard deviations of the space, tells something new.
 const FAR: f64 = 0.7;
 
-fn reason(places: &Places<'_>, expected_mm: f64, high_mm: f64, best_mm: Option<f64>) -> String {
-    if places.tried.is_empty() {
+/// Why a finger at this place is printed after those tried.
+fn reason(
+    own: Place,
+    tried: &[Place],
+    expected_mm: f64,
+    high_mm: f64,
+    best_mm: Option<f64>,
+) -> String {
+    if tried.is_empty() {
         return "the widest that the simulation expects".to_owned();
     }
-    let news = places.news();
+    let news = news(own, tried);
     let Some(best_mm) = best_mm else {
         return format!("wide as simulated, and {}", news.as_deref().unwrap_or("near the first"));
     };
@@ -137,26 +120,24 @@ fn reason(places: &Places<'_>, expected_mm: f64, high_mm: f64, best_mm: Option<f
     }
 }
 
-impl Places<'_> {
-    /// News that no finger tried before tells.
-    fn news(&self) -> Option<String> {
-        let difference = |axis: usize| {
-            let by = self.tried.iter().map(|&finger| self.own[axis] - self.all[finger][axis]);
-            by.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
-        };
-        let (axis, name) = match difference(0).abs() > difference(1).abs() {
-            true => (0, "compliance"),
-            false => (1, "assembly"),
-        };
-        let more = |finger: &usize| self.own[axis] > self.all[*finger][axis];
-        // The first axis is 1 / ky: more of it is softer.
-        let way = match (self.tried.iter().all(more), self.tried.iter().any(more), axis) {
-            (true, _, 0) | (_, false, 1) => "softer than any tried",
-            (true, ..) | (_, false, _) => "stiffer than any tried",
-            _ => "between those tried",
-        };
-        (difference(axis).abs() > FAR).then(|| format!("tells soft from stiff in {name} ({way})"))
-    }
+/// News that no finger tried before tells.
+fn news(own: Place, tried: &[Place]) -> Option<String> {
+    let difference = |axis: usize| {
+        let by = tried.iter().map(|other| own[axis] - other[axis]);
+        by.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+    };
+    let (axis, name) = match difference(0).abs() > difference(1).abs() {
+        true => (0, "compliance"),
+        false => (1, "assembly"),
+    };
+    let more = |other: &Place| own[axis] > other[axis];
+    // The first axis is 1 / ky: more of it is softer.
+    let way = match (tried.iter().all(more), tried.iter().any(more), axis) {
+        (true, _, 0) | (_, false, 1) => "softer than any tried",
+        (true, ..) | (_, false, _) => "stiffer than any tried",
+        _ => "between those tried",
+    };
+    (difference(axis).abs() > FAR).then(|| format!("tells soft from stiff in {name} ({way})"))
 }
 
 #[cfg(test)]
@@ -166,17 +147,14 @@ mod tests {
     #[test]
     fn a_reason_says_on_which_side_of_the_tried_fingers_one_lies() {
         let all = [[-1.0, 0.0], [1.0, 0.0], [2.0, 0.0], [-2.0, 0.0], [0.0, 0.1], [1.1, 0.0]];
-        let news = |finger: usize| {
-            let places = Places { own: all[finger], tried: &[0, 1], all: &all };
-            places.news().unwrap_or_default()
-        };
+        let news = |finger: usize| news(all[finger], &all[..2]).unwrap_or_default();
         // More of 1 / ky is softer.
         for (finger, words) in [(2, "(softer than"), (3, "(stiffer than"), (4, "(between those")] {
             assert!(news(finger).contains(words), "{finger}: {}", news(finger));
         }
         assert_eq!(news(5), "");
-        let places = || Places { own: all[5], tried: &[0, 1], all: &all };
-        assert!(reason(&places(), 7.0, 7.5, Some(7.9)).contains("hardly wider"));
-        assert!(reason(&places(), 7.0, 8.5, Some(7.9)).contains("may reach 8.5 mm"));
+        let reason = |high_mm| reason(all[5], &all[..2], 7.0, high_mm, Some(7.9));
+        assert!(reason(7.5).contains("hardly wider"));
+        assert!(reason(8.5).contains("may reach 8.5 mm"));
     }
 }

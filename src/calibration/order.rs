@@ -8,8 +8,7 @@ use insertion::finger::model::FingerModelKind;
 use insertion::space::Design;
 use serde::Deserialize;
 
-/// Our windows of the measured fingers, beside those of the bench: columns of the last committed
-/// `validation.csv` (`scripts/reference.sh validation`).
+/// Our windows beside those of the bench: columns of the last committed `validation.csv`.
 const VALIDATION: &str = include_str!("../../data/simulated_ranges.csv");
 
 /// A rank correlation of simulated and measured ranges.
@@ -17,16 +16,13 @@ const VALIDATION: &str = include_str!("../../data/simulated_ranges.csv");
 pub struct Order {
     /// Spearman's, +1 for the same order, -1 for the opposite one.
     pub spearman: f64,
-    /// Fingers it rests on.
     pub fingers: usize,
-    /// Whose ranges these are.
     pub source: OrderSource,
 }
 
 /// Whose simulated ranges are held against the bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OrderSource {
-    /// The study's own.
     Study,
     /// Those of the committed validation, with the study's finger model and robot.
     Validation,
@@ -35,7 +31,6 @@ pub enum OrderSource {
 }
 
 impl OrderSource {
-    /// In words.
     pub fn words(self) -> &'static str {
         match self {
             OrderSource::Study => "this study",
@@ -55,9 +50,7 @@ struct Validated {
     bench_range_mm: Option<f64>,
 }
 
-/// The order on a task of a study, by its place: of the study's own ranges where it simulated all
-/// measured fingers; some alone would be those that its search liked. `None` if nothing was measured
-/// of the task.
+/// The order on a task: of the study's own ranges where it simulated all measured fingers.
 pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
     let name = record.config.tasks().nth(task)?;
     let bench = of_task(name, Origin::Bench);
@@ -87,9 +80,7 @@ fn validated(task: &str) -> Vec<(f64, f64)> {
     own.filter_map(|row| row.range_mm.zip(row.bench_range_mm)).collect()
 }
 
-/// Spearman's rank correlation between published simulation and bench ranges
-/// of a task, and the number of designs it rests on; `None` below 3 designs or
-/// if all ranges are equal.
+/// Spearman's rank correlation between published simulation and bench, and its number of designs.
 pub fn rank_correlation(task: &str) -> Option<(f64, usize)> {
     let bench = of_task(task, Origin::Bench);
     let pairs: Vec<(f64, f64)> = of_task(task, Origin::Simulation)

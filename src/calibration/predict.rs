@@ -1,6 +1,6 @@
 //! Predictions of a posterior for fingers: means, intervals, joint draws.
 
-use super::bench::{Bench, Posterior};
+use super::bench::Bench;
 use super::process::{Conditioned, Finger, Hyperparameters, TERMS};
 use ask_tell::stream::stream;
 use rand::{Rng, RngExt};
@@ -20,14 +20,10 @@ const FREEDOM: f64 = 5.0;
 /// Draws per sample where there is no closed formula.
 const EACH: usize = 5;
 
-/// A range as predicted, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predicted {
-    /// Mean.
     pub mean_mm: f64,
-    /// Lower end of the interval.
     pub low_mm: f64,
-    /// Upper end of the interval.
     pub high_mm: f64,
     /// Range by simulation alone, averaged over the posterior.
     pub simulated_mm: f64,
@@ -38,14 +34,12 @@ pub struct Predicted {
 pub enum Of {
     /// The range that many measurements would give on average.
     Truth,
-    /// The next measurement.
     Measurement,
 }
 
-/// Predicts fingers, by their numbers.
 pub fn predict(
     bench: &Bench<'_>,
-    posterior: &Posterior,
+    posterior: &[Vec<f64>],
     numbers: &[usize],
     of: Of,
 ) -> Vec<Predicted> {
@@ -53,7 +47,7 @@ pub fn predict(
         return from_draws(bench, posterior, numbers, of);
     }
     let states: Vec<(&Vec<f64>, Conditioned)> =
-        posterior.samples.iter().filter_map(|state| Some((state, bench.at(state)?))).collect();
+        posterior.iter().filter_map(|state| Some((state, bench.at(state)?))).collect();
     let one = |number: &usize| {
         let part = |(state, at): &(&Vec<f64>, Conditioned)| {
             let finger = bench.fingers(&[*number], state)[0];
@@ -80,14 +74,14 @@ pub fn predict(
 /// The same from draws: ranges that are known from below leave no closed formula.
 fn from_draws(
     bench: &Bench<'_>,
-    posterior: &Posterior,
+    posterior: &[Vec<f64>],
     numbers: &[usize],
     of: Of,
 ) -> Vec<Predicted> {
     let mut random = stream(0, numbers.len() as u64, "predict from draws");
     let mut drawn = draws(bench, posterior, numbers, EACH, &mut random);
     if of == Of::Measurement {
-        let states = posterior.samples.iter().flat_map(|state| std::iter::repeat_n(state, EACH));
+        let states = posterior.iter().flat_map(|state| std::iter::repeat_n(state, EACH));
         for (draw, state) in drawn.iter_mut().zip(states) {
             let noise = bench.hyperparameters(state).noise * bench.scale_mm;
             for value in draw {
@@ -98,7 +92,7 @@ fn from_draws(
     }
     let simulated = |number: &usize| {
         let one = |state: &Vec<f64>| bench.fingers(&[*number], state)[0].simulated * bench.scale_mm;
-        posterior.samples.iter().map(one).sum::<f64>() / posterior.samples.len().max(1) as f64
+        posterior.iter().map(one).sum::<f64>() / posterior.len().max(1) as f64
     };
     let one = |(i, number): (usize, &usize)| {
         let mut values: Vec<f64> = drawn.iter().map(|draw| draw[i]).collect();
@@ -132,13 +126,13 @@ fn quantile(parts: &[[f64; 3]], probability: f64) -> f64 {
 /// Joint draws of the fingers' true ranges, mm, a vector each: as many for every sample.
 pub fn draws(
     bench: &Bench<'_>,
-    posterior: &Posterior,
+    posterior: &[Vec<f64>],
     numbers: &[usize],
     each: usize,
     random: &mut impl Rng,
 ) -> Vec<Vec<f64>> {
     let mut all = Vec::new();
-    for state in &posterior.samples {
+    for state in posterior {
         let Some(at) = bench.at(state) else { continue };
         let fingers = bench.fingers(numbers, state);
         let bounded: Vec<Finger> =

@@ -1,17 +1,14 @@
 //! Unmeasured numbers of a cell, and their bounds: `priors/bench.toml`.
 
 use input::{Check, InputError, read};
+use insertion::space::Scale;
 use serde::Deserialize;
 
-/// A checked file of priors.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Priors {
-    /// Name, as used on the command line.
     pub name: String,
-    /// One line for lists.
     pub description: String,
-    /// The uncertain numbers.
     #[serde(rename = "parameter")]
     pub parameters: Vec<Parameter>,
 }
@@ -20,40 +17,28 @@ pub struct Priors {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
-    /// Its name.
     pub name: String,
-    /// Quantity that it changes.
     pub sets: Target,
-    /// Way in which it changes it.
     #[serde(rename = "as")]
     pub way: Way,
     /// Scale on which it is drawn evenly.
     pub scale: Scale,
-    /// Lower bound.
     pub low: f64,
-    /// Upper bound.
     pub high: f64,
-    /// Whether all tasks share one value.
     pub shared: bool,
-    /// Source of the bounds.
     pub source: String,
 }
 
-/// Quantity that a parameter changes.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum Target {
-    /// A number of the task file, by its path.
     Task(String),
     /// The width of the socket's opening, mm.
     Clearance,
     /// The radius of the edges that lead in, mm, where the task has them sharp.
     Edges,
-    /// Compliance and assembly stiffness of the finger.
     Stiffness,
-    /// Tilting stiffness of the finger.
     Tilting,
-    /// Distance of the finger's remote centre.
     Centre,
     /// All stiffnesses of a robot that is a soft flange.
     Flange,
@@ -69,24 +54,11 @@ const NAMED: [(&str, Target); 6] = [
     ("robot.stiffness_n_per_mm", Target::Flange),
 ];
 
-/// Way in which a parameter changes a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Way {
-    /// It multiplies it.
     Factor,
-    /// It is added to it.
     Shift,
-}
-
-/// Quantity that is drawn evenly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scale {
-    /// The parameter.
-    Linear,
-    /// Its logarithm.
-    Log,
 }
 
 impl TryFrom<String> for Target {
@@ -125,7 +97,6 @@ impl Parameter {
 }
 
 impl Priors {
-    /// Reads and checks priors; `file` is named in errors.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let priors: Priors = read(text, file)?;
         let all = &priors.parameters;

@@ -43,13 +43,10 @@ const NOISE: (f64, f64) = (0.05, 0.7);
 /// Standard deviations in units of the task's scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hyperparameters {
-    /// Of each linear term.
     pub terms: [f64; TERMS],
-    /// Of the process.
     pub process: f64,
     /// Length of the process, in standard deviations of the stiffness.
     pub length: f64,
-    /// Of one measurement.
     pub noise: f64,
 }
 
@@ -65,7 +62,6 @@ impl Hyperparameters {
         }
     }
 
-    /// Prior covariance of two fingers.
     pub fn covariance(&self, a: &Finger, b: &Finger) -> f64 {
         let (x, y) = (a.terms(), b.terms());
         let linear: f64 = (0..TERMS).map(|i| self.terms[i].powi(2) * x[i] * y[i]).sum();
@@ -77,14 +73,11 @@ impl Hyperparameters {
 /// A finger as simulated, in units of the task's scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
-    /// Its stiffness.
     pub place: Place,
-    /// Its simulated range.
     pub simulated: f64,
 }
 
 impl Finger {
-    /// Factors of the linear terms.
     pub fn terms(&self) -> [f64; TERMS] {
         [1.0, self.simulated - 1.0, self.place[0], self.place[1]]
     }
@@ -93,9 +86,7 @@ impl Finger {
 /// The bench, conditioned on its measurements.
 #[derive(Debug, Clone)]
 pub struct Conditioned {
-    /// Standard deviations.
     pub hyperparameters: Hyperparameters,
-    /// The measured fingers.
     pub fingers: Vec<Finger>,
     /// Fingers whose range is this or more.
     pub bounds: Vec<(Finger, f64)>,

@@ -16,11 +16,9 @@ use insertion::trial::{Conditions, Grasp};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Starts that are tried in turn where the task's own does not insert, mm from it: a person
-/// teaches the start where it inserts.
+/// Starts tried where the task's own does not insert, mm from it: a person teaches one that does.
 const TAUGHT_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 
-/// Simulates fingers on one task.
 pub struct Simulation<'a> {
     evaluator: &'a Evaluator,
     template: &'a Template,
@@ -33,8 +31,7 @@ pub struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
-    /// With those of the parameters that this task and robot have; once `stop` is set windows are
-    /// worthless, and none is kept.
+    /// With those of the parameters that this task and robot have.
     pub fn new(
         evaluator: &'a Evaluator,
         template: &'a Template,
@@ -52,11 +49,7 @@ impl<'a> Simulation<'a> {
         Simulation { evaluator, template, parameters, cache, stop }
     }
 
-    /// The window of a design with each parameter at this share of its prior; without shares
-    /// everything is as in the files.
-    ///
-    /// # Errors
-    /// If the design cannot be simulated.
+    /// The window of a design at these shares of the priors; without shares as in the files.
     pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
         let (specimen, robot) = self.specimen(design, shares)?;
         let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;

@@ -17,15 +17,11 @@ const MOST_FINGERS: u64 = 4000;
 /// Measured fingers, or simulations, near a finger that say how it fails.
 const NEAR: usize = 3;
 
-/// One task with its fingers.
 pub struct Subject {
-    /// Name of the task.
     pub task: String,
     /// The fingers: first those of the space, then other measured or published ones.
     pub designs: Vec<Design>,
-    /// Number of fingers of the space.
     pub of_space: usize,
-    /// The simulator's stand-in.
     pub emulator: Emulator,
     /// Measurements on this task, with the number of the finger.
     pub experiments: Vec<(usize, Experiment)>,
@@ -36,9 +32,6 @@ pub struct Subject {
 
 impl Subject {
     /// The fingers of a space on a task, those of `more` and those measured.
-    ///
-    /// # Errors
-    /// If a measured finger does not lie in the space.
     pub fn new(
         evaluator: &Evaluator,
         template: &Template,
@@ -75,12 +68,10 @@ impl Subject {
         Ok(Subject { task, designs, of_space, emulator, experiments: measured, places, shares })
     }
 
-    /// The number of a design, if it is among the fingers.
     pub fn finger(&self, design: &Design) -> Option<usize> {
         self.designs.iter().position(|known| known == design)
     }
 
-    /// Measured fingers.
     pub fn measured(&self) -> BTreeSet<usize> {
         self.experiments.iter().map(|(number, _)| *number).collect()
     }
@@ -95,15 +86,14 @@ impl Subject {
             simulator: self,
             places: &self.places,
             observations: self.experiments.iter().filter_map(observation).collect(),
-            scale_mm: self.emulator.mean_mm().max(1.0),
+            scale_mm: self.emulator.mean_mm.max(1.0),
             error_mm: self.emulator.error_mm,
             parameters,
             first,
         }
     }
 
-    /// Failure of a finger at either end: as most of the nearest measured ones do, or the
-    /// nearest simulated ones where nothing was measured.
+    /// Failure at either end: as of most of the nearest measured fingers, else of simulated ones.
     pub fn failures(&self, finger: usize) -> [Option<FailureClass>; 2] {
         let here = self.places[finger];
         let distance = |number: usize| {
@@ -155,11 +145,7 @@ fn fingers(space: &Space) -> Vec<Design> {
     (0..size).map(|rest| point(number(rest))).collect()
 }
 
-/// A measured design with all parameters of the space: what its line does not set is as in the
-/// task file.
-///
-/// # Errors
-/// If the line sets what the space does not have, or a value beyond it.
+/// A measured design with all parameters of the space, by default as in the task file.
 pub fn whole(
     space: &Space,
     template: &Template,
@@ -188,7 +174,6 @@ pub fn whole(
     Ok(design)
 }
 
-/// A design as shares of its space.
 fn shares(space: &Space, design: &Design) -> Vec<f64> {
     let share = |parameter: &Parameter| {
         let value = design.get(&parameter.key).unwrap_or(parameter.low);

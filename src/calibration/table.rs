@@ -1,11 +1,11 @@
-//! A calibration as JSON, as CSV and as text.
+//! A calibration as JSON, as CSV, as text, and as a study keeps it.
 
-use super::calibrate::{Calibration, Coordinate, TaskResult};
-use super::loo::{Accuracy, LeftOut};
-use super::predict::INTERVAL;
+use super::calibrate::{Accuracy, Calibration, Coordinate, LeftOut, Prediction, TaskResult};
+use super::predict::{INTERVAL, Predicted};
 use super::subject::Subject;
 use crate::calibration::statistics::mean;
-use insertion::outcome::FailureClass;
+use crate::study::{BenchEffort, BenchFinger, OnBench, Provenance, Trust};
+use insertion::evaluation::Evaluation;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde_json::{Map, Value, json};
 
@@ -14,12 +14,9 @@ const MOVED: (f64, f64) = (0.75, 0.5);
 /// Correlation at which two parameters cannot be told apart.
 const TOGETHER: f64 = 0.5;
 
-/// One parameter before and after.
 #[derive(Debug, Clone)]
 pub struct Moved {
-    /// Its name.
     pub name: String,
-    /// The task it belongs to, unless all share it.
     pub task: Option<String>,
     /// The 10th, 50th and 90th percentile before, in its own unit.
     pub prior: [f64; 3],
@@ -29,7 +26,6 @@ pub struct Moved {
     pub moved: bool,
 }
 
-/// What the measurements did to each parameter.
 pub fn moved(calibration: &Calibration) -> Vec<Moved> {
     let one = |(i, Coordinate { parameter, task }): (usize, &Coordinate)| {
         let values = coordinate(calibration, i);
@@ -55,7 +51,7 @@ pub fn moved(calibration: &Calibration) -> Vec<Moved> {
 }
 
 fn coordinate(calibration: &Calibration, i: usize) -> Vec<f64> {
-    calibration.posterior.samples.iter().map(|state| state[i]).collect()
+    calibration.posterior.iter().map(|state| state[i]).collect()
 }
 
 /// Pairs of parameters that the measurements cannot tell apart, with their correlation.
@@ -90,7 +86,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
 pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     let accuracy = Accuracy::of(&result.left_out);
     let mut lines = Vec::new();
-    let scale = subject.emulator.mean_mm().max(1.0);
+    let scale = subject.emulator.mean_mm.max(1.0);
     if accuracy.fingers < 3 {
         let words = "fewer than 3 measured fingers: the intervals rest on the priors";
         lines.push(words.to_owned());
@@ -118,28 +114,32 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     lines
 }
 
-/// The design's keys.
 pub fn design_json(design: &Design) -> Map<String, Value> {
     design.0.iter().map(|(key, value)| (key.clone(), json!(value))).collect()
 }
 
-fn class(failure: Option<FailureClass>) -> Value {
-    json!(failure.map(FailureClass::number))
+/// Numbers of a prediction: key, value, and decimals in a table.
+fn numbers(prediction: &Prediction) -> [(&'static str, f64, usize); 5] {
+    let Predicted { mean_mm, low_mm, high_mm, simulated_mm } = prediction.range;
+    [
+        ("range_mm", mean_mm, 3),
+        ("low_mm", low_mm, 3),
+        ("high_mm", high_mm, 3),
+        ("probability_best", prediction.best, 4),
+        ("simulated_mm", simulated_mm, 3),
+    ]
 }
 
-/// The JSON of a calibration.
 pub fn json(calibration: &Calibration, subjects: &[Subject]) -> Value {
     let tasks =
         subjects.iter().zip(&calibration.tasks).map(|(subject, result)| task_json(subject, result));
-    let parameters = moved(calibration).into_iter().map(|parameter| {
-        let three = |[low, median, high]: [f64; 3]| (low, median, high);
-        let (prior, posterior) = (three(parameter.prior), three(parameter.posterior));
+    let parameters = moved(calibration).into_iter().map(|Moved { name, task, prior, posterior, moved }| {
         json!({
-            "name": parameter.name,
-            "task": parameter.task,
-            "prior_low": prior.0, "prior_median": prior.1, "prior_high": prior.2,
-            "posterior_low": posterior.0, "posterior_median": posterior.1, "posterior_high": posterior.2,
-            "moved": parameter.moved,
+            "name": name,
+            "task": task,
+            "prior_low": prior[0], "prior_median": prior[1], "prior_high": prior[2],
+            "posterior_low": posterior[0], "posterior_median": posterior[1], "posterior_high": posterior[2],
+            "moved": moved,
         })
     });
     let together = together(calibration)
@@ -156,14 +156,10 @@ fn task_json(subject: &Subject, result: &TaskResult) -> Value {
     let accuracy = Accuracy::of(&result.left_out);
     let predictions = result.predictions.iter().map(|prediction| {
         let mut fields = design_json(&subject.designs[prediction.finger]);
+        fields.extend(numbers(prediction).map(|(key, value, _)| (key.to_owned(), json!(value))));
         let [below, above] = subject.failures(prediction.finger);
-        fields.insert("range_mm".into(), json!(prediction.range.mean_mm));
-        fields.insert("low_mm".into(), json!(prediction.range.low_mm));
-        fields.insert("high_mm".into(), json!(prediction.range.high_mm));
-        fields.insert("probability_best".into(), json!(prediction.best));
-        fields.insert("simulated_mm".into(), json!(prediction.range.simulated_mm));
-        fields.insert("failure_negative".into(), class(below));
-        fields.insert("failure_positive".into(), class(above));
+        fields.insert("failure_negative".into(), json!(below));
+        fields.insert("failure_positive".into(), json!(above));
         Value::Object(fields)
     });
     let left_out = result.left_out.iter().map(|one| {
@@ -201,26 +197,15 @@ pub fn predictions_csv(subject: &Subject, result: &TaskResult) -> String {
     for prediction in &result.predictions {
         let design = &subject.designs[prediction.finger];
         let values: Vec<String> = keys.iter().map(|key| design.0[*key].to_string()).collect();
-        let range = &prediction.range;
-        let ends = subject
-            .failures(prediction.finger)
-            .map(|end| end.map_or(String::new(), |c| c.number().to_string()));
-        text += &format!(
-            "{},{},{:.3},{:.3},{:.3},{:.4},{:.3},{}\n",
-            subject.task,
-            values.join(","),
-            range.mean_mm,
-            range.low_mm,
-            range.high_mm,
-            prediction.best,
-            range.simulated_mm,
-            ends.join(",")
-        );
+        let numbers = numbers(prediction).map(|(_, value, digits)| format!("{value:.digits$}"));
+        let ends = subject.failures(prediction.finger);
+        let ends = ends.map(|end| end.map_or(String::new(), |class| class.number().to_string()));
+        let cells = [values.join(","), numbers.join(","), ends.join(",")].join(",");
+        text += &format!("{},{cells}\n", subject.task);
     }
     text
 }
 
-/// `leave_one_out.csv` of all tasks.
 pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
     let head =
         format!("task,{DENSITY_KEY},{DIRECTION_KEY},measured_mm,range_mm,low_mm,high_mm,inside\n");
@@ -264,7 +249,6 @@ pub fn parameters_csv(calibration: &Calibration) -> String {
     head.to_owned() + &lines.collect::<String>()
 }
 
-/// Fingers that the text lists.
 const LISTED: usize = 5;
 
 /// A task's result within 80 columns.
@@ -290,9 +274,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
         "best on the bench                 range mm    80 % interval   is the best  simulated"
             .to_owned(),
     );
-    let mut order: Vec<_> = result.predictions.iter().collect();
-    order.sort_by(|a, b| b.range.mean_mm.total_cmp(&a.range.mean_mm));
-    for prediction in order.iter().take(LISTED) {
+    for prediction in by_range(result).iter().take(LISTED) {
         let design = &subject.designs[prediction.finger];
         let infill = format!(
             "  density {} %, direction {}°",
@@ -335,4 +317,48 @@ pub fn parameters_text(calibration: &Calibration) -> String {
         lines.push(format!("not told apart: {a} and {b} (correlation {correlation:+.2})"));
     }
     lines.join("\n") + "\n"
+}
+
+const KEPT: usize = 5;
+
+/// The fingers of the space by their predicted ranges, best first.
+pub fn by_range(result: &TaskResult) -> Vec<&Prediction> {
+    let mut order: Vec<&Prediction> = result.predictions.iter().collect();
+    order.sort_by(|a, b| b.range.mean_mm.total_cmp(&a.range.mean_mm));
+    order
+}
+
+/// Prediction of a calibration for a study's one task; `simulated` is the best finger's evaluation.
+pub fn on_bench(
+    subject: &Subject,
+    result: &TaskResult,
+    simulated: Evaluation,
+    provenance: Provenance,
+    effort: BenchEffort,
+) -> OnBench {
+    let accuracy = Accuracy::of(&result.left_out);
+    let finger = |prediction: &&Prediction| BenchFinger {
+        design: subject.designs[prediction.finger].clone(),
+        range_mm: prediction.range.mean_mm,
+        low_mm: prediction.range.low_mm,
+        high_mm: prediction.range.high_mm,
+        probability_best: prediction.best,
+        failures: subject.failures(prediction.finger),
+    };
+    OnBench {
+        provenance,
+        effort,
+        measured: subject.measured().len(),
+        fingers: result.predictions.len(),
+        trust: Trust {
+            fingers: accuracy.fingers,
+            mean_deviation_percent: accuracy.mean_deviation_percent,
+            spearman: accuracy.spearman,
+            inside: accuracy.inside,
+            emulator_error_mm: subject.emulator.error_mm,
+        },
+        warnings: warnings(subject, result),
+        best: by_range(result).iter().take(KEPT).map(finger).collect(),
+        simulated,
+    }
 }

@@ -1,9 +1,8 @@
 //! Made-up benches, whose truth is known.
 
-use super::bench::{Bench, Observation, Posterior, Simulator, share};
+use super::bench::{Bench, Effort, Observation, Settings, Simulator, sampled, share};
 use super::predict::{Of, Predicted, draws, predict};
 use super::process::{COORDINATES, Place};
-use super::sampler::{Effort, Settings};
 use ask_tell::stream::stream;
 use insertion::trial::NEVER;
 use rand::{Rng, RngExt};
@@ -53,14 +52,14 @@ impl MadeUp {
     }
 }
 
-fn posterior(bench: &Bench<'_>, random: &mut impl Rng) -> Posterior {
-    Posterior::sampled(std::slice::from_ref(bench), 2 + COORDINATES, &SETTINGS, random)
+fn posterior(bench: &Bench<'_>, random: &mut impl Rng) -> Vec<Vec<f64>> {
+    sampled(std::slice::from_ref(bench), 2 + COORDINATES, &SETTINGS, random)
 }
 
 /// One made-up bench after its calibration.
 struct Outcome {
     hidden: [f64; 2],
-    posterior: Posterior,
+    posterior: Vec<Vec<f64>>,
     truth: Vec<f64>,
     /// The fingers that were not measured, and what is predicted of them.
     predicted: Vec<(usize, Predicted)>,
@@ -116,7 +115,7 @@ fn the_simulator_with_hidden_parameters_is_found_again() {
     let coverage = coverage_percent(&outcomes);
     assert!((75.0..=85.0).contains(&coverage), "{coverage} % of the truths inside");
     let beyond = |outcome: &Outcome, i: usize| {
-        let (mean, sd) = moments(outcome.posterior.samples.iter().map(|state| state[i]));
+        let (mean, sd) = moments(outcome.posterior.iter().map(|state| state[i]));
         (mean - outcome.hidden[i]).abs() > 2.0 * sd
     };
     let far = outcomes.iter().flat_map(|o| [beyond(o, 0), beyond(o, 1)]).filter(|far| *far).count();
@@ -158,7 +157,7 @@ fn pure_noise_narrows_nothing() {
         };
         let bench = simulator.bench((0..FINGERS).step_by(2).map(&mut observation).collect());
         let posterior = posterior(&bench, &mut stream(number, 3, "posterior"));
-        spreads.extend((0..2).map(|i| moments(posterior.samples.iter().map(|s| s[i])).1));
+        spreads.extend((0..2).map(|i| moments(posterior.iter().map(|s| s[i])).1));
         let (_, scatter) = moments(bench.observations.iter().map(|one| one.range_mm));
         let interval = predict(&bench, &posterior, &[7], Of::Truth)[0];
         let least = 0.9 * 2.0 * 1.28 * scatter / 10_f64.sqrt();
@@ -195,7 +194,7 @@ fn draws_agree_with_the_formulas() {
     let known = |finger, range_mm| Observation { finger, range_mm, at_least: false, repeats: 2 };
     let bench = simulator.bench(vec![known(0, 4.0), known(7, 5.0), known(19, 7.0)]);
     let state = [0.3, -0.4, 0.0, 0.5, 0.2, -0.3, 0.0];
-    let posterior = Posterior { samples: vec![state.to_vec()] };
+    let posterior = vec![state.to_vec()];
     let fingers = [1, 7, 13];
     let drawn = draws(&bench, &posterior, &fingers, 4000, &mut stream(5, 0, "draws"));
     let at = bench.at(&state).unwrap();

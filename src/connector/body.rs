@@ -3,8 +3,9 @@
 use contact::scene::Pose;
 use contact::shapes;
 use input::units::MM;
+use insertion::task::geometry::outline_by;
 use insertion::task::{Part, Plug};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 use parry::query;
 use parry::shape::SharedShape;
 use rapier3d_f64::parry;
@@ -31,7 +32,6 @@ struct Placed {
 }
 
 impl<'a> ConvexBody<'a> {
-    /// Body of rigid parts.
     pub fn new(parts: &'a [Part]) -> Self {
         let place = |part: &Part| {
             let geom = part.geom();
@@ -52,8 +52,7 @@ impl<'a> ConvexBody<'a> {
         ConvexBody { yielding, ..ConvexBody::new(&plug.parts) }
     }
 
-    /// Depth of the deepest overlap with another body, m, if there is one, and the index of each
-    /// part in its own body.
+    /// Depth of the deepest overlap with another body, m, and the index of each part in its body.
     pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<(f64, [usize; 2])> {
         let stiff = (0..self.shapes.len()).filter(|i| !self.yielding.contains(i));
         let pairs = stiff.flat_map(|i| (0..other.shapes.len()).map(move |j| [i, j]));
@@ -110,7 +109,6 @@ impl<'a> ConvexBody<'a> {
         self.corners().map(|p| at * p).min_by(|a, b| a.z.total_cmp(&b.z))
     }
 
-    /// Corners of all parts, body frame, m.
     pub fn corners(&self) -> impl Iterator<Item = Point3<f64>> + '_ {
         self.parts.iter().flat_map(|part| part.solid.corners())
     }
@@ -143,12 +141,10 @@ pub fn extent<P: Borrow<Point3<f64>>>(
     span(points.into_iter().map(|p| p.borrow()[axis]))
 }
 
-/// Longest side of the bounding box of points.
 pub fn longest_side(points: &[Point3<f64>]) -> f64 {
     (0..3).map(|axis| width(extent(points, axis))).fold(0.0, f64::max)
 }
 
-/// Width of an interval.
 pub fn width([low, high]: [f64; 2]) -> f64 {
     high - low
 }
@@ -169,41 +165,11 @@ pub fn clipped(points: &[Point3<f64>], axis: usize, [from, to]: [f64; 2]) -> Vec
         };
         let crossings =
             kept.iter().flat_map(|p| beyond.iter().map(move |q| crossing(p, q))).collect();
-        kept.extend(outline(crossings, axis));
+        // Without those within the outline, repeated clipping does not multiply corners.
+        kept.extend(outline_by(crossings, |p| Point2::new(p[(axis + 1) % 3], p[(axis + 2) % 3])));
         kept
     };
     side(&side(points, to, 1.0), from, -1.0)
-}
-
-/// Convex hull of points in a plane across an axis (Andrew 1979), so that repeated clipping does
-/// not multiply corners.
-fn outline(mut points: Vec<Point3<f64>>, axis: usize) -> Vec<Point3<f64>> {
-    let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-    points.sort_by(|a, b| a[u].total_cmp(&b[u]).then(a[v].total_cmp(&b[v])));
-    points.dedup();
-    if points.len() < 3 {
-        return points;
-    }
-    let turn = |a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>| {
-        (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u])
-    };
-    let chain = |points: &mut dyn Iterator<Item = &Point3<f64>>| {
-        let mut chain: Vec<Point3<f64>> = Vec::new();
-        for p in points {
-            while let [.., a, b] = chain[..]
-                && turn(&a, &b, p) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(*p);
-        }
-        // Its last point begins the other chain.
-        chain.pop();
-        chain
-    };
-    let mut around = chain(&mut points.iter());
-    around.extend(chain(&mut points.iter().rev()));
-    around
 }
 
 #[cfg(test)]

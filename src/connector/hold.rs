@@ -30,8 +30,7 @@ pub fn pad_z(shoulder: f64) -> [f64; 2] {
     [shoulder + ROOF_GAP - Pad::PAPER.height, shoulder + ROOF_GAP]
 }
 
-/// Grasp of a plug by pads whose roofs rest at `shoulder`, m; the faces they press are where the
-/// plug is widest, or at `faces_y`, m.
+/// Grasp by pads whose roofs rest at `shoulder`, m, on the widest faces or those at `faces_y`, m.
 pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held {
     let pad_z = pad_z(shoulder);
     let mut pieces: Vec<Vec<Point3<f64>>> = vec![Vec::new(); plug.parts.len()];

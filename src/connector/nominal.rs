@@ -1,7 +1,7 @@
 //! Explanation of the trial at the nominal start.
 
 use super::body::ConvexBody;
-use super::path;
+use super::seat;
 use input::units::{DEG, MM};
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::task::{Stage, Task};
@@ -42,7 +42,7 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
 
 fn missed(task: &Task, trial: &Trial) -> String {
     let plug = ConvexBody::plug(&task.plug);
-    let commanded = path::waypoints(task, &plug);
+    let commanded = seat::waypoints(task, &plug);
     let in_search = |phase: &&PhaseEnd| {
         commanded.iter().any(|p| p.name == phase.name && p.stage == Stage::Search)
     };

@@ -1,8 +1,7 @@
 //! SVG of a task: plug at the start and seated, socket, fingertips, search path, clearances.
 
 use super::body::{ConvexBody, extent, span, width};
-use super::path::{self, Waypoint};
-use super::seat::{Seat, Seating, section};
+use super::seat::{self, Seat, Seating, Waypoint, section};
 use contact::scene::{Geom, Pose};
 use input::units::MM;
 use insertion::finger::Pad;
@@ -12,11 +11,8 @@ use insertion::trial::picture::escape;
 use nalgebra::{Point2, Point3};
 use std::fmt::Write;
 
-/// Side of a panel, pixels.
 const PANEL: f64 = 420.0;
-/// Side of a panel's drawing, pixels.
 const INSIDE: f64 = PANEL - 10.0;
-/// Styles of the drawn bodies.
 const SOCKET: &str = "fill=\"#b8c4d6\" fill-opacity=\"0.5\" stroke=\"#56657d\"";
 const PLUG: &str = "fill=\"#e8a33d\" fill-opacity=\"0.5\" stroke=\"#8a5a10\"";
 const SEATED: &str = "fill=\"none\" stroke=\"#8a5a10\" stroke-dasharray=\"4 3\"";
@@ -26,20 +22,13 @@ const MARGIN: f64 = 0.08;
 /// Socket shown beside the opening, m.
 const AROUND: f64 = 8.0 * MM;
 
-/// View of the task: title, and the axes to the right and up.
-struct View {
-    title: &'static str,
-    right: usize,
-    up: usize,
-}
-
-const VIEWS: [View; 3] = [
-    View { title: "from the side: y to the right, z up", right: 1, up: 2 },
-    View { title: "from the front: x to the right, z up", right: 0, up: 2 },
-    View { title: "from above: y to the right, x up", right: 1, up: 0 },
+/// Views of the task: title, and the axes to the right and up.
+const VIEWS: [(&str, [usize; 2]); 3] = [
+    ("from the side: y to the right, z up", [1, 2]),
+    ("from the front: x to the right, z up", [0, 2]),
+    ("from above: y to the right, x up", [1, 0]),
 ];
 
-/// Contents of the views.
 struct Drawing<'a> {
     task: &'a Task,
     way: Vec<Waypoint>,
@@ -48,13 +37,12 @@ struct Drawing<'a> {
     tip: [[f64; 2]; 2],
 }
 
-/// Stand-alone SVG of a task.
 pub fn svg(task: &Task) -> String {
     let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-    let way = path::waypoints(task, &plug);
+    let way = seat::waypoints(task, &plug);
     let seat = Seating::new(task, &plug, &socket).deepest();
     let tip = section(&plug, task.success.depth.min(seat.depth));
-    let start = path::plug_pose(task, way[0].tcp);
+    let start = seat::plug_pose(task, way[0].tcp);
     let drawing = Drawing { task, way, start, seat, tip };
     let (width, height) = (VIEWS.len() as f64 * PANEL, PANEL + 130.0);
     let [name, description] = [&task.name, &task.description].map(|text| escape(text));
@@ -64,8 +52,8 @@ pub fn svg(task: &Task) -> String {
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
          <text x=\"10\" y=\"20\" font-size=\"16\">{name}: {description}</text>\n"
     );
-    for (column, view) in VIEWS.iter().enumerate() {
-        drawing.panel(&mut out, view, column as f64 * PANEL, 34.0);
+    for (column, (title, axes)) in VIEWS.into_iter().enumerate() {
+        drawing.panel(&mut out, title, axes, [column as f64 * PANEL, 34.0]);
     }
     drawing.legend(&mut out, PANEL + 60.0);
     out.push_str("</svg>\n");
@@ -73,20 +61,18 @@ pub fn svg(task: &Task) -> String {
 }
 
 /// Projection of a view to pixels.
-struct Frame<'a> {
-    view: &'a View,
+struct Frame {
+    /// Axes to the right and up.
+    axes: [usize; 2],
     /// Left and top edge, m.
     corner: [f64; 2],
-    /// Scale, pixels per metre.
     scale: f64,
 }
 
-impl Frame<'_> {
+impl Frame {
     fn at(&self, p: &Point3<f64>) -> Point2<f64> {
-        Point2::new(
-            (p[self.view.right] - self.corner[0]) * self.scale,
-            (self.corner[1] - p[self.view.up]) * self.scale,
-        )
+        let [right, up] = self.axes;
+        Point2::new((p[right] - self.corner[0]) * self.scale, (self.corner[1] - p[up]) * self.scale)
     }
 }
 
@@ -110,18 +96,17 @@ impl Drawing<'_> {
         }
     }
 
-    fn panel(&self, out: &mut String, view: &View, x: f64, y: f64) {
-        let ([left, right], [bottom, top]) = (self.reach(view.right), self.reach(view.up));
+    fn panel(&self, out: &mut String, title: &str, axes: [usize; 2], [x, y]: [f64; 2]) {
+        let [[left, right], [bottom, top]] = axes.map(|axis| self.reach(axis));
         let size = (right - left).max(top - bottom) * (1.0 + 2.0 * MARGIN);
         let corner = [(left + right - size) / 2.0, (bottom + top + size) / 2.0];
-        let frame = Frame { view, corner, scale: INSIDE / size };
+        let frame = Frame { axes, corner, scale: INSIDE / size };
         let [text_x, text_y, panel_x, panel_y] = [x + 10.0, y + 10.0, x + 5.0, y + 16.0];
         let _ = write!(
             out,
-            "<text x=\"{text_x:.0}\" y=\"{text_y:.0}\">{}</text>\n\
+            "<text x=\"{text_x:.0}\" y=\"{text_y:.0}\">{title}</text>\n\
              <svg x=\"{panel_x:.0}\" y=\"{panel_y:.0}\" width=\"{INSIDE:.0}\" height=\"{INSIDE:.0}\">\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"none\" stroke=\"#ccc\"/>\n",
-            view.title
+             <rect width=\"100%\" height=\"100%\" fill=\"none\" stroke=\"#ccc\"/>\n"
         );
         for part in &self.task.socket {
             polygon(out, &frame, &part.geom(), &Pose::identity(), SOCKET);
@@ -129,11 +114,11 @@ impl Drawing<'_> {
         let seated = self.seated();
         // From above only the parts that enter the opening, which the rest would hide.
         let enters = |part: &Part| extent(part.solid.corners(), 2)[0] < self.task.success.depth;
-        for part in self.task.plug.parts.iter().filter(|part| view.up == 2 || enters(part)) {
+        for part in self.task.plug.parts.iter().filter(|part| axes[1] == 2 || enters(part)) {
             polygon(out, &frame, &part.geom(), &self.start, PLUG);
             polygon(out, &frame, &part.geom(), &seated, SEATED);
         }
-        match view.up {
+        match axes[1] {
             2 => self.fingers(out, &frame),
             _ => self.opening(out, &frame),
         }
@@ -163,7 +148,6 @@ impl Drawing<'_> {
         );
     }
 
-    /// Commanded path of the tip's lower edge.
     fn path(&self, out: &mut String, frame: &Frame) {
         let points: Vec<_> = self.way.iter().map(|point| frame.at(&point.edge)).collect();
         let line = coordinates(&points);

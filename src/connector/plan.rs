@@ -8,8 +8,7 @@
 
 use super::body::{ConvexBody, extent, width};
 use super::hold::held;
-use super::path;
-use super::seat::{Seat, Seating, section};
+use super::seat::{self, Seat, Seating, section};
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
 use insertion::task::{Ending, Part, Phase, Sensed, Solid, Stage, Success, Task};
@@ -45,7 +44,6 @@ const WITHIN: f64 = 0.9;
 /// Least depth of a plug that goes in, m.
 const LEAST_DEPTH: f64 = 1.0 * MM;
 
-/// Error of a plan.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum PlanError {
     /// The plug does not enter: depth, mm, and the parts of plug and socket that meet there.
@@ -54,16 +52,11 @@ pub enum PlanError {
          where `{1}` meets `{2}`; make the opening wider or the plug smaller"
     )]
     NoEntry(f64, String, String),
-    /// Nothing stops the plug.
     #[error("the plug falls through its socket: give the socket a floor, or the plug a shoulder")]
     NoFloor,
 }
 
-/// Task with grasp point, strategy and success derived from `plug`, `socket`, `opening` and the
-/// grip's shoulder and faces.
-///
-/// # Errors
-/// If the plug does not enter its socket, or falls through it.
+/// Task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
 pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
     let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));
@@ -92,14 +85,13 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
     };
     task.strategy.start = [0.0; 3];
     task.strategy.phases = Vec::new();
-    let edge = path::waypoints(&task, &plug)[0].edge;
+    let edge = seat::waypoints(&task, &plug)[0].edge;
     task.strategy.start =
         [round_mm(search.x), round_mm(search.edge_y - edge.y), round_mm(AIR[0] - edge.z)];
     task.strategy.phases = phases(&task, &search, seat.depth);
     Ok(task)
 }
 
-/// Start of the search and lengths of its moves, m.
 struct Moves {
     /// x of the plug's axis at the start.
     x: f64,
@@ -109,9 +101,7 @@ struct Moves {
     preload: f64,
     /// Moves along x: back, front, and while the tip moves to the side.
     across: [f64; 3],
-    /// Move down on the way to the front.
     down: f64,
-    /// Move along -y.
     side: f64,
 }
 

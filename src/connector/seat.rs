@@ -1,9 +1,11 @@
-//! Depth that an upright plug reaches in its socket, whatever the search does.
+//! Places of a plug: how deep it reaches upright, whatever the search does, and where the commanded
+//! search would bring it if nothing gave way.
 
 use super::body::{ConvexBody, clipped, extent};
 use contact::scene::Pose;
 use input::units::MM;
-use insertion::task::{Part, Task};
+use insertion::task::{Ending, Part, Stage, Task};
+use nalgebra::{Point3, UnitQuaternion, Vector3};
 
 /// Overlap that does not count, m: that of rounding to 0.01 mm.
 const TOLERANCE: f64 = 0.02 * MM;
@@ -20,7 +22,6 @@ const GRID: i32 = 8;
 /// Refinements of that grid about its best place.
 const REFINEMENTS: i32 = 4;
 
-/// Lowest place of an upright plug.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seat {
     /// Depth of the tip below the socket's top, m; 0 if it does not enter.
@@ -31,7 +32,6 @@ pub struct Seat {
     pub stopped_by: Option<[usize; 2]>,
 }
 
-/// Upright places of a plug over a socket.
 pub struct Seating<'a> {
     plug: &'a ConvexBody<'a>,
     socket: &'a ConvexBody<'a>,
@@ -39,12 +39,10 @@ pub struct Seating<'a> {
 }
 
 impl<'a> Seating<'a> {
-    /// Seating of a plug in the socket of its task.
     pub fn new(task: &Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
         Seating { plug, socket, opening: task.opening }
     }
 
-    /// Lowest place of the plug.
     pub fn deepest(&self) -> Seat {
         let [bottom, top] = self.plug.extent(2);
         let mut at = self.opening.map(|[low, high]| (low + high) / 2.0);
@@ -101,8 +99,7 @@ impl<'a> Seating<'a> {
         Seat { depth: (free - TOLERANCE).max(0.0), at, stopped_by }
     }
 
-    /// Free place at this depth, near `at` if there is one; otherwise the two parts in the way at
-    /// the best place.
+    /// Free place at this depth, near `at` if there is one; otherwise the two parts in the way.
     fn place(&self, depth: f64, mut at: [f64; 2]) -> Result<[f64; 2], [usize; 2]> {
         let mut best = self.overlap(depth, at);
         if best.0 <= TOLERANCE {
@@ -148,6 +145,61 @@ pub fn section(plug: &ConvexBody, depth: f64) -> [[f64; 2]; 2] {
     [0, 1].map(|axis| extent(&below, axis))
 }
 
+#[derive(Debug, Clone, PartialEq)]
+pub struct Waypoint {
+    /// Name of the phase that ends here; "start" for the first.
+    pub name: String,
+    pub stage: Stage,
+    /// Grasp point (TCP), task frame, m.
+    pub tcp: Vector3<f64>,
+    /// Lowest point of the tip, task frame, m.
+    pub edge: Point3<f64>,
+    /// Height above the socket's top at which a touch's stroke ends without reaching it, m.
+    pub short_by: Option<f64>,
+}
+
+/// Pose of the plug, tilted as the task says, with the TCP at `tcp`, task frame, m.
+pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), task.strategy.tilt);
+    Pose::from_parts(tcp.into(), turn) * Pose::translation(0.0, 0.0, -task.grip.tcp_z)
+}
+
+pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
+    let start = Vector3::from(task.strategy.start);
+    let lowest = plug.lowest(&plug_pose(task, start));
+    let edge = lowest.unwrap_or_else(Point3::origin) - start;
+    let mut at = Waypoint {
+        name: "start".to_owned(),
+        stage: Stage::Approach,
+        tcp: start,
+        edge: Point3::from(start + edge.coords),
+        short_by: None,
+    };
+    let mut found = vec![at.clone()];
+    for phase in &task.strategy.phases {
+        let mut by = Vector3::from(phase.displacement);
+        let mut short_by = None;
+        if let Ending::Touch { preload, .. } = phase.ending {
+            let end = at.edge.z + by.z;
+            if end > 0.0 || by.z >= 0.0 {
+                short_by = Some(end);
+            } else {
+                // Straight down to the surface, and on by the preload.
+                by *= (at.edge.z.max(0.0) + preload) / -by.z;
+            }
+        }
+        at = Waypoint {
+            name: phase.name.clone(),
+            stage: phase.stage,
+            tcp: at.tcp + by,
+            edge: at.edge + by,
+            short_by,
+        };
+        found.push(at.clone());
+    }
+    found
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -164,8 +216,7 @@ mod tests {
         Seating::new(task, &plug, &socket).deepest()
     }
 
-    /// usb: the body's shoulder on the housing; ket12: the floor; rj45: the floor beside its step
-    /// and, at the same depth, the guide blocks.
+    /// usb: shoulder on the housing; ket12: floor; rj45: floor and guide blocks at one depth.
     #[test]
     fn shipped_plugs_end_where_their_drawings_say() {
         for (name, depth_mm, by) in [
@@ -187,5 +238,17 @@ mod tests {
         let key = ["[-6.0, 6.0]", "[-6.2, 6.2]"].map(|y| y.to_owned() + "\nz_mm = [0.0, 50.0]");
         let seat = deepest(&changed("ket12", &key[0], &key[1]));
         assert!(seat.depth < 0.1 * MM, "{seat:?}");
+    }
+
+    /// usb: the lower edge over the opening's middle, touch to 0.3 mm below the top.
+    #[test]
+    fn the_commanded_edge_starts_over_the_opening_and_ends_below() {
+        let task = changed("usb", "", "");
+        let plug = ConvexBody::plug(&task.plug);
+        let way = waypoints(&task, &plug);
+        assert!(way[0].edge.y.abs() < 0.1 * MM, "{way:?}");
+        let touch = way.iter().find(|point| point.name == "touch").unwrap();
+        assert!((touch.edge.z + 0.3 * MM).abs() < 1e-12 && touch.short_by.is_none());
+        assert!(task.grip.tcp_z - way.last().unwrap().tcp.z > task.success.depth);
     }
 }

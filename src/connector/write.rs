@@ -8,16 +8,12 @@ use insertion::task::{
 use nalgebra::Point3;
 use std::fmt::Write;
 
-/// Comments of a task file.
 #[derive(Debug, Clone, Default)]
 pub struct Notes {
-    /// Lines at the top.
     pub head: Vec<String>,
-    /// Source of the plug's mass.
     pub mass: String,
 }
 
-/// Text of the file.
 pub fn task(task: &Task, notes: &Notes) -> String {
     let mut out = String::new();
     for line in &notes.head {
@@ -183,7 +179,6 @@ fn list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(", "))
 }
 
-/// TOML string.
 fn text(value: &str) -> String {
     toml::Value::String(value.to_owned()).to_string()
 }

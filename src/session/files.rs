@@ -4,7 +4,6 @@ use super::Failure;
 use super::request::DEFAULT_FINGER;
 use finray::printed::PrintedFinger;
 use input::shipped::{self, FINGERS, ROBOTS, STIFFNESS, Shipped, Source};
-use insertion::finger::computed::Touching;
 use insertion::finger::file::FingerFile;
 use insertion::finger::model::{ComputedFingers, FingerSource};
 use insertion::robot::Robot;
@@ -12,9 +11,6 @@ use insertion::stiffness;
 use insertion::stiffness::SurrogateError;
 use insertion::surrogate::{self, Model};
 use std::path::Path;
-
-/// What presses the pad of a computed finger; why is in `docs/notes/finger.md`.
-const TOUCHING: Touching = Touching::PadAndRoof;
 
 /// A finger file, read once: of fingers that are computed.
 pub(super) struct Fingers {
@@ -42,7 +38,7 @@ impl Fingers {
     pub fn made(self) -> FingerSource {
         match self.file {
             None => FingerSource::Paper,
-            Some(file) => FingerSource::Computed(Box::new(ComputedFingers::new(file, TOUCHING))),
+            Some(file) => FingerSource::Computed(Box::new(ComputedFingers::new(file))),
         }
     }
 }

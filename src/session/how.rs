@@ -2,7 +2,7 @@
 
 use super::failure::{wide, within};
 use super::{Failure, Setup};
-use crate::calibration::sampler::{Effort, Settings};
+use crate::calibration::bench::{Effort, Settings};
 use crate::study::{BenchEffort, Cache, Conclusion, IfChanged};
 use rayon::ThreadPool;
 use std::ops::RangeInclusive;

@@ -4,17 +4,14 @@ use super::Failure;
 use super::calibration::CalibrateRequest;
 use super::failure::{not_stopped, within};
 use super::{Prepared, Watch};
-use crate::calibration::bench::Posterior;
-use crate::calibration::next::{Advice, Question, advise};
+use crate::calibration::bench::sampled;
+use crate::calibration::next::{Advice, advise};
 use crate::calibration::published;
 use crate::calibration::subject::Subject;
 use ask_tell::stream::stream;
 use insertion::space::Design;
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
-
-/// Joint draws per sample of the posterior.
-const DRAWS: usize = 4;
 
 /// Fingers that may be printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -99,10 +96,9 @@ impl NextRequest {
         };
         let (dimension, settings) = (prepared.layout.dimension(), &prepared.settings);
         let mut random = stream(settings.seed, 0, "next");
-        let posterior = Posterior::sampled(&benches, dimension, settings, &mut random);
+        let posterior = sampled(&benches, dimension, settings, &mut random);
         let count = usize::from(self.count);
-        let question = Question { among: &among, count, cost_mm, draws: DRAWS };
-        Ok(advise(bench, &posterior, &question, &mut random))
+        Ok(advise(bench, &posterior, &among, count, cost_mm, &mut random))
     }
 }
 

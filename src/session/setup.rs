@@ -9,7 +9,6 @@ use input::shipped::{FINGERS, Source, UNCERTAINTIES};
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::sprung;
 use insertion::evaluation::template::{Template, printable};
 use insertion::evaluation::uncertainty::Uncertainty;
 use insertion::finger::model::{FingerModelKind, FingerSource};
@@ -183,7 +182,7 @@ fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), 
         fits(&template.task).map_err(Failure::input)?;
         template.check(space, file, &fits).map_err(Failure::input)?;
     }
-    sprung::check(evaluator, space, file).map_err(Failure::input)
+    printable::check_springs(evaluator, space, file).map_err(Failure::input)
 }
 
 /// A task that is given twice would count twice.

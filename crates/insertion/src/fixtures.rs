@@ -1,12 +1,13 @@
 //! Shipped inputs, fingers and predictions for tests.
 
 use crate::finger::Finger;
+use crate::finger::file::FingerFile;
 use crate::robot::Robot;
 use crate::surrogate::{Estimate, Prediction};
 use crate::task::Task;
 use crate::trial::run::EngineRig;
 use contact::direct::Direct;
-use input::shipped::{ROBOTS, Shipped, TASKS};
+use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS};
 use input::units::N_PER_MM;
 
 /// The text of a shipped task and its path.
@@ -22,6 +23,10 @@ pub fn task(name: &str) -> Task {
 pub fn robot(name: &str) -> Robot {
     let file = ROBOTS.iter().find(|file| file.name == name).unwrap();
     Robot::parse(file.text, file.file).unwrap()
+}
+
+pub fn finger_file() -> FingerFile {
+    FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
 }
 
 /// A finger of these stiffnesses, N/mm.

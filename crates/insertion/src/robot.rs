@@ -22,14 +22,20 @@ pub struct Robot {
 
 /// Suspension of a robot's flange.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Drive {
-    /// Rigid: the flange does not give.
+pub enum Suspension<A> {
+    /// Rigid: the flange follows its command exactly.
     Ideal,
     /// A spring and damper per Cartesian axis at the TCP.
     Servo(Servo),
     /// Six joints with servos.
-    Arm(Box<Arm>),
+    Arm(Box<A>),
 }
+
+/// Suspension of a flange, wherever the robot stands.
+pub type Drive = Suspension<Arm>;
+
+/// Suspension in place: of an arm its coupled spring, damper and mass at the TCP.
+pub type Flange = Suspension<Reduced>;
 
 /// A servo-compliant flange, SI units, axes of the task frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,17 +60,6 @@ pub struct Mounted {
     stop_force: f64,
 }
 
-/// Response of a flange to its command.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Flange {
-    /// Follows exactly.
-    Ideal,
-    /// Through a spring and damper per Cartesian axis at the TCP.
-    Servo(Servo),
-    /// Through an arm's coupled spring, damper and mass at the TCP.
-    Reduced(Box<Reduced>),
-}
-
 impl Robot {
     /// The robot at the start of a task whose frame is turned by `turn` about the
     /// base's z, with the TCP tilted by `tilt` about the task's x, rad.
@@ -75,7 +70,7 @@ impl Robot {
         let flange = match &self.drive {
             Drive::Ideal => Flange::Ideal,
             Drive::Servo(servo) => Flange::Servo(*servo),
-            Drive::Arm(arm) => Flange::Reduced(Box::new(arm.at_start(turn, tilt)?)),
+            Drive::Arm(arm) => Flange::Arm(Box::new(arm.at_start(turn, tilt)?)),
         };
         Ok(Mounted { flange, stop_force: self.stop_force })
     }
@@ -105,7 +100,7 @@ impl Mounted {
 
     fn arm(&self) -> Option<&Reduced> {
         match &self.flange {
-            Flange::Reduced(arm) => Some(arm),
+            Flange::Arm(arm) => Some(arm),
             Flange::Ideal | Flange::Servo(_) => None,
         }
     }

@@ -87,48 +87,31 @@ impl Measurement {
 /// Error of measurements that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurrogateError {
-    /// Not a CSV table with the columns of [`HEADER`].
-    #[error("{file}: {message}")]
-    Syntax {
-        /// The file as given.
-        file: String,
-        /// The reader's message, with the line.
-        message: String,
-    },
-    /// A value, or a column in another unit, that cannot be used.
-    #[error("{place}: {column}: {problem}")]
-    Value {
-        /// The file as given, with the line if it is one value; without a file the design.
-        place: String,
-        /// Column, as in the header of a file.
-        column: &'static str,
-        /// The problem, and what would be right.
-        problem: String,
-    },
+    /// Not a CSV table with the columns of [`HEADER`]: the file, and the reader's message.
+    #[error("{0}: {1}")]
+    Syntax(String, String),
+    /// A value, or a column in another unit, that cannot be used: the file with the line, or the
+    /// design; the column; the problem, and what would be right.
+    #[error("{0}: {1}: {2}")]
+    Value(String, &'static str, String),
     /// No design at all.
     #[error("no design is measured: give at least one")]
     None,
     /// So many designs that leaving each out in turn would take minutes.
     #[error(
-        "{found} measured designs are too many: {MOST} at most; give the average of fingers that \
-         are nearly alike"
+        "{0} measured designs are too many: {MOST} at most; give the average of fingers that are \
+         nearly alike"
     )]
-    TooMany {
-        /// Number of designs given.
-        found: usize,
-    },
+    TooMany(usize),
     /// A measured finger that cannot be computed.
     #[error(transparent)]
     Finger(#[from] FingerError),
-    /// No model could be fitted.
+    /// No model could be fitted along the axis of this [`Axis::label`].
     #[error(
-        "no stiffness model in the {axis} direction can be fitted: \
-         the designs must differ in density and in direction"
+        "no stiffness model in the {0} direction can be fitted: the designs must differ in density \
+         and in direction"
     )]
-    Unfittable {
-        /// Axis as [`Axis::label`] has it.
-        axis: &'static str,
-    },
+    Unfittable(&'static str),
 }
 
 /// Reads and checks a measurement file; `file` is named in errors.
@@ -144,7 +127,7 @@ fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     // The reader counts a line of a "\r\n" file too few.
     let text = text.replace("\r\n", "\n");
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let message = |message| SurrogateError::Syntax { file: file.to_owned(), message };
+    let message = |message| SurrogateError::Syntax(file.to_owned(), message);
     let syntax = |error: csv::Error| message(error.to_string());
     if reader.headers().map_err(syntax)?.iter().ne(HEADER) {
         let header = HEADER.join(",");
@@ -166,8 +149,7 @@ fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
 /// Stiffnesses that are so many times those of the shipped fingers are in another unit.
 const OTHER_UNIT: f64 = 100.0;
 
-/// Asks about columns that look as if they were in another unit: nobody prints a finger a hundred
-/// times as stiff or as soft as the measured ones.
+/// Asks about columns whose middle value is a hundred times, or a hundredth of, the shipped one.
 fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     let shipped = rows(STIFFNESS[0].text, STIFFNESS[0].file)?;
     for (axis, column) in [(Axis::Assembly, HEADER[3]), (Axis::Compliance, HEADER[4])] {
@@ -203,13 +185,13 @@ pub(crate) fn check_all(measurements: &[Measurement]) -> Result<(), SurrogateErr
 
 /// The error of a column at a place.
 fn refused(place: String) -> impl Fn((&'static str, String)) -> SurrogateError {
-    move |(column, problem)| SurrogateError::Value { place: place.clone(), column, problem }
+    move |(column, problem)| SurrogateError::Value(place.clone(), column, problem)
 }
 
 fn enough(measurements: &[Measurement]) -> Result<(), SurrogateError> {
     match measurements.len() {
         0 => Err(SurrogateError::None),
-        found if found > MOST => Err(SurrogateError::TooMany { found }),
+        found if found > MOST => Err(SurrogateError::TooMany(found)),
         _ => Ok(()),
     }
 }

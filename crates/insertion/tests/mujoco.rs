@@ -60,8 +60,7 @@ fn a_servo_pushes_to_its_limit_and_can_be_made_to_hold() {
     assert!((at(&*snapshot) - 3e-3).abs() < 1e-6, "{}", at(&*snapshot));
 }
 
-/// Damper and spring act between command and flange, so at a steady speed the
-/// flange does not trail.
+/// Damper and spring act between command and flange, which does not trail at a steady speed.
 #[test]
 fn a_driven_body_carries_the_flange_along_and_turns_it() {
     let servo = Servo {
@@ -106,8 +105,7 @@ fn numbers_that_mujoco_refuses_are_no_panic() {
     assert!(refused.to_string().contains("mass and inertia"), "{refused}");
 }
 
-/// What a latch on its plug weighs for a contact is what MuJoCo gives it, so that its contacts are
-/// as stiff as all others.
+/// A latch weighs for a contact what MuJoCo gives it, so its contacts are as stiff as all others.
 #[test]
 fn a_latch_weighs_what_mujoco_gives_it() {
     let text = include_str!("../../../tasks/rj45_latch.toml");

@@ -1,25 +1,29 @@
-//! T11: deflection of the UR5e under a load at the TCP, on its published servos and under position
-//! control.
+//! T11: deflection of the UR5e under a load at the TCP, on published servos and held in position.
 //!
 //! At rest a force F displaces the TCP by `J K^-1 J^T F`, with the Jacobian J of the six joints and
 //! their gains K (Salisbury 1980, 19th IEEE Conf. Decision and Control). Once as in the trials, one
 //! body on a coupled 6x6 spring; and once as six links with a sprung joint each (of the soft arm
 //! alone: the hinges give 0.8 um/N across their axes, which is 3 % beside gears).
+//!
+//! T13: a servo-compliant flange whose command sets off.
+//!
+//! Spring `k` and critical damper act between the command and the flange of mass `m`. If the command
+//! sets off at the speed `V`, `z'' + 2 w z' + w^2 z = 0` with `z(0) = 0`, `z'(0) = -V` and `w^2 =
+//! k/m`: the flange trails by `V t exp(-w t)`, most at `t = 1/w`, and then by nothing.
 
 use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
 use contact::Engine;
 use contact::scene::{Body, BodyId, Motion, Pose, Scene, Spring};
 use input::shipped::ROBOTS;
-use input::units::MM;
+use input::units::{MM, N_PER_MM};
 use insertion::arm::{Arm, JOINTS};
-use insertion::robot::{Drive, Mounted, Robot};
+use insertion::robot::{Drive, Flange, Mounted, Robot, Servo};
 use insertion::trial::cell;
 use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Robot file of the arm on its published servos.
 const SOFT: &str = "ur5e";
-/// Force at the TCP, N.
 const FORCE: f64 = 5.0;
 /// Time in which the servos come to rest, s: twelve times their damping over their gain.
 const REST: f64 = 2.4;
@@ -31,7 +35,6 @@ pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
     arms.into_iter().flat_map(|(words, file)| of_robot(engine, words, file)).collect()
 }
 
-/// Rows of a shipped robot.
 fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
     let Some((arm, mounted)) = shipped(file) else { return Vec::new() };
     let mut models = vec![("coupled spring", flange(&mounted))];
@@ -60,7 +63,6 @@ pub fn ur5e() -> Option<(Arm, Mounted)> {
     shipped(SOFT)
 }
 
-/// Shipped arm of a name, and its mount.
 fn shipped(name: &str) -> Option<(Arm, Mounted)> {
     let file = ROBOTS.iter().find(|file| file.name == name)?;
     let robot = Robot::parse(file.text, file.file).ok()?;
@@ -144,4 +146,44 @@ pub fn chain(arm: &Arm) -> Loaded {
         end = link;
     }
     Loaded { scene, end, tool: arm.tool, centre: arm.joints[JOINTS - 1].link.centre }
+}
+
+/// Flange like that of the shipped robot `servo`, from which the expected values are computed.
+const SERVO: Servo = Servo {
+    stiffness: [10.0 * N_PER_MM, 10.0 * N_PER_MM, 20.0 * N_PER_MM],
+    rotational_stiffness: [400.0; 3],
+    mass: 2.0,
+    inertia: 0.01,
+    damping_ratio: 1.0,
+};
+const SPEED: f64 = 100.0 * MM;
+
+pub(super) fn t13(engine: &dyn Engine) -> Vec<CheckRow> {
+    let rows = [(1, "y"), (2, "z")].map(|(axis, name)| {
+        let frequency = (SERVO.stiffness[axis] / SERVO.mass).sqrt();
+        let most = SPEED / (frequency * std::f64::consts::E) / MM;
+        let row = |text, time, expected, tolerance| {
+            let measured = trails(engine, axis, time).map(|by| by / MM);
+            let quantity = format!("flange trails its command along {name}, {text}");
+            CheckRow::new("T13", quantity, expected, measured, "mm", tolerance)
+        };
+        [
+            row("most", 1.0 / frequency, most, Tolerance::Relative(0.05)),
+            row("later", 20.0 / frequency, 0.0, Tolerance::Absolute(0.001)),
+        ]
+    });
+    rows.concat()
+}
+
+fn trails(engine: &dyn Engine, axis: usize, time: f64) -> Measured {
+    let mut scene = Scene::default();
+    let (command, flange) = cell::flange(&mut scene, &Flange::Servo(SERVO), Pose::identity());
+    let mut world = engine.world(&scene);
+    let mut at = Vector3::zeros();
+    for _ in 0..build::steps(world.as_ref(), time) {
+        at[axis] += SPEED * world.step_s();
+        world.drive(command, Pose::translation(at.x, at.y, at.z));
+        world.step()?;
+    }
+    Ok(at[axis] - world.pose(flange).translation.vector[axis])
 }

@@ -6,13 +6,11 @@ use contact::scene::{
 use contact::{Diverged, World};
 use nalgebra::{Point3, Vector3};
 
-/// Result of a simulation that may diverge.
 pub type Measured<T = f64> = Result<T, Diverged>;
 
 /// Standard gravity as in the trials, m/s2.
 pub const GRAVITY: f64 = 9.81;
 
-/// Box of a size, m, centred in a frame.
 pub fn cuboid(name: &str, size: Vector3<f64>, pose: Pose) -> Geom {
     Geom { name: name.into(), shape: Shape::Box { half: size / 2.0 }, pose, friction: None }
 }
@@ -24,12 +22,10 @@ pub fn box_inertia(mass: f64, size: Vector3<f64>, centre: Point3<f64>) -> Inerti
     Inertia { mass, centre, moments: moments * (mass / 12.0) }
 }
 
-/// Body that stays where it is.
 pub fn fixed(name: &str, pose: Pose, geoms: Vec<Geom>) -> Body {
     Body { name: name.into(), motion: Motion::Fixed, pose, geoms }
 }
 
-/// Body that is moved by commands.
 pub fn driven(name: &str, pose: Pose, geoms: Vec<Geom>) -> Body {
     Body { name: name.into(), motion: Motion::Driven, pose, geoms }
 }
@@ -53,7 +49,6 @@ pub fn joint(
     scene.joint(Joint { name: name.into(), parent, child, in_parent, in_child, springs });
 }
 
-/// Free block with its frame in its centre.
 pub fn block(name: &str, mass: f64, size: Vector3<f64>, pose: Pose) -> Body {
     Body {
         name: name.into(),
@@ -63,15 +58,11 @@ pub fn block(name: &str, mass: f64, size: Vector3<f64>, pose: Pose) -> Body {
     }
 }
 
-/// Number of steps in a time, s.
 pub fn steps(world: &dyn World, time: f64) -> usize {
     (time / world.step_s()).round() as usize
 }
 
 /// Simulates for a time, s.
-///
-/// # Errors
-/// If the simulation diverges.
 pub fn advance(world: &mut dyn World, time: f64) -> Measured<()> {
     for _ in 0..steps(world, time) {
         world.step()?;
@@ -80,9 +71,6 @@ pub fn advance(world: &mut dyn World, time: f64) -> Measured<()> {
 }
 
 /// Threshold between the bracket's ends by bisection; `low` tells whether a value lies below it.
-///
-/// # Errors
-/// If `low` fails.
 pub fn bisected(
     [mut from, mut to]: [f64; 2],
     bisections: usize,
@@ -96,8 +84,7 @@ pub fn bisected(
     Ok((from + to) / 2.0)
 }
 
-/// Pushes a body, whose centre of mass lies at `centre` in its frame, by a force, N, through a point
-/// of the world, and a moment, N m.
+/// Pushes a body with this centre of mass by a force, N, through a world point, and a moment, N m.
 pub fn push(
     world: &mut dyn World,
     body: BodyId,

@@ -17,7 +17,6 @@ use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Angles of the chamfer, degrees from the direction of insertion.
 const ANGLES: [f64; 2] = [30.0, 45.0];
-/// Friction of plug and socket.
 const FRICTION: f64 = 0.2;
 /// Speed of insertion, m/s: so slow that the springs' dampers carry nothing.
 const SPEED: f64 = 2.0 * MM;
@@ -29,7 +28,6 @@ const SIZE: [f64; 3] = [8.0 * MM, 12.0 * MM, 20.0 * MM];
 /// Rotational stiffness, N m/rad: the support turns by less than a milliradian.
 const UPRIGHT: f64 = 100.0;
 
-/// Insertion force over lateral force, T6 rows.
 pub fn t6(engine: &dyn Engine) -> Vec<CheckRow> {
     let turned = ANGLES.map(|angle| (angle, "chamfer", Some(chamfer(-SIZE[1] / 2.0, angle * DEG))));
     let cut = [(45.0, "cut edge", cut_edge(-SIZE[1] / 2.0))];
@@ -73,8 +71,7 @@ fn force_ratio(engine: &dyn Engine, socket: Body) -> Result<f64, Diverged> {
     Ok(along / across)
 }
 
-/// A block whose face goes through the line y, z = 0 and looks to +y and up,
-/// `angle` from the vertical.
+/// A block whose face goes through the line y, z = 0, looking to +y and up by `angle`.
 fn chamfer(y: f64, angle: f64) -> Body {
     let size = Vector3::new(20.0 * MM, 10.0 * MM, 10.0 * MM);
     // The block's face at +y, turned about x so that its normal rises by the angle.
@@ -84,8 +81,7 @@ fn chamfer(y: f64, angle: f64) -> Body {
     build::fixed("chamfer", pose, vec![build::cuboid("chamfer", size, Pose::identity())])
 }
 
-/// A block with a chamfer at 45 degrees along its edge, as a task has it; the chamfer's middle is
-/// the line y, z = 0.
+/// A block whose edge is cut at 45 degrees, the chamfer's middle being the line y, z = 0.
 fn cut_edge(y: f64) -> Option<Body> {
     let leg = 2.0 * MM;
     let max = Vector3::new(10.0 * MM, y + leg / 2.0, leg / 2.0);

@@ -1,20 +1,22 @@
-//! T8, first part: a block that is pushed over an edge.
+//! T8: a block that is pushed over an edge, and independence of the time step.
 //!
 //! Statics: it tips when its centre of mass is above the edge. The pusher touches it at its foot and
 //! without friction, so the couple of push and ground friction shifts the place by less than friction
 //! times the pusher's height, 0.1 mm.
+//!
+//! Halving the step changes no outcome of the cases that can end in two ways, each taken at both
+//! sides of its threshold; and a restored snapshot continues exactly like its world.
 
 use super::build::{self, GRAVITY};
-use super::{CheckRow, Tolerance};
+use super::{CheckRow, Make, Tolerance, incline, jamming};
 use contact::scene::{BodyId, Friction, Pose, Scene};
 use contact::{Diverged, Engine, World};
-use input::units::{GRAM, MM};
+use input::units::{DEG, GRAM, MM};
 use nalgebra::Vector3;
 
 /// The block, kg and m.
 const MASS: f64 = 20.0 * GRAM;
 const SIZE: [f64; 3] = [24.0 * MM, 12.0 * MM, 8.0 * MM];
-/// Friction of block and ground.
 const FRICTION: f64 = 0.1;
 /// Height of the pusher, m, and its speed, m/s.
 const PUSHER: f64 = 1.0 * MM;
@@ -25,17 +27,10 @@ const TO: f64 = 3.0 * MM;
 /// A block that leans by this tips, rad; it leans on by itself within 0.03 s.
 const TIPPING: f64 = 2e-3;
 /// Largest error of the place, m.
-pub(super) const ALLOWED: f64 = 0.5 * MM;
-
-/// Place at which a block tips, T8 rows.
-pub fn t8(engine: &dyn Engine) -> Vec<CheckRow> {
-    let place = tipping_place(engine).map(|place| place / MM);
-    let quantity = "block pushed over an edge tips at";
-    vec![CheckRow::new("T8", quantity, 0.0, place, "mm", Tolerance::Absolute(ALLOWED / MM))]
-}
+const ALLOWED: f64 = 0.5 * MM;
 
 /// Block on a ledge that ends at x = 0, and its pusher.
-pub(super) struct Push {
+struct Push {
     pub world: Box<dyn World>,
     pub block: BodyId,
     pusher: BodyId,
@@ -77,7 +72,7 @@ impl Push {
 }
 
 /// Place of the centre of mass when the block tips, m beyond the edge.
-pub(super) fn tipping_place(engine: &dyn Engine) -> Result<f64, Diverged> {
+fn tipping_place(engine: &dyn Engine) -> Result<f64, Diverged> {
     let mut push = Push::new(engine);
     for _ in 0..build::steps(push.world.as_ref(), (TO - FROM) / SPEED) {
         push.step()?;
@@ -87,4 +82,63 @@ pub(super) fn tipping_place(engine: &dyn Engine) -> Result<f64, Diverged> {
         }
     }
     Ok(TO)
+}
+
+/// Distance of the cases from their thresholds, as a share.
+const MARGIN: f64 = 0.02;
+/// A block that is slower than this rests, m/s.
+const RESTS: f64 = 0.01 * MM;
+const CASES_FRICTION: f64 = 0.3;
+/// Simulated time before the snapshot and after it, s: from the push to the fall.
+const BEFORE: f64 = 0.3;
+const AFTER: f64 = 0.3;
+
+/// Place of tipping, outcomes that change with the step, bits that change with a snapshot, T8 rows.
+pub fn t8(make: Make<'_>) -> Vec<CheckRow> {
+    let row = |text: &str, measured, unit, allowed| {
+        CheckRow::new("T8", text, 0.0, measured, unit, Tolerance::Absolute(allowed))
+    };
+    let engine = make(1.0);
+    let place = tipping_place(engine.as_ref()).map(|place| place / MM);
+    vec![
+        row("block pushed over an edge tips at", place, "mm", ALLOWED / MM),
+        row("outcomes changed by half the step", changed_outcomes(make), "-", 0.0),
+        row("steps changed by restoring a snapshot", changed_steps(engine.as_ref()), "-", 0.0),
+    ]
+}
+
+fn changed_outcomes(make: Make<'_>) -> Result<f64, Diverged> {
+    let (whole, half) = (outcomes(make(1.0).as_ref())?, outcomes(make(0.5).as_ref())?);
+    Ok(whole.iter().zip(&half).filter(|(a, b)| a != b).count() as f64)
+}
+
+/// Whether a block rests on an incline at two headings, a peg jams, a peg
+/// wedges, below and above their thresholds; whether a block tips at the edge.
+fn outcomes(engine: &dyn Engine) -> Result<Vec<bool>, Diverged> {
+    let mut all = Vec::new();
+    for share in [1.0 - MARGIN, 1.0 + MARGIN] {
+        for heading in [0.0, 37.0] {
+            all.push(incline::creep(engine, CASES_FRICTION, heading * DEG, share)? < RESTS);
+        }
+        all.push(jamming::jams_at(engine, share)?);
+        all.push(jamming::wedges(engine, CASES_FRICTION, share * CASES_FRICTION)?);
+    }
+    all.push(tipping_place(engine)?.abs() < ALLOWED);
+    Ok(all)
+}
+
+/// Steps after which a world and its restored snapshot differ at all.
+fn changed_steps(engine: &dyn Engine) -> Result<f64, Diverged> {
+    let mut first = Push::new(engine);
+    for _ in 0..build::steps(first.world.as_ref(), BEFORE) {
+        first.step()?;
+    }
+    let mut second = first.copy();
+    let mut changed = 0;
+    for _ in 0..build::steps(first.world.as_ref(), AFTER) {
+        first.step()?;
+        second.step()?;
+        changed += usize::from(first.world.pose(first.block) != second.world.pose(second.block));
+    }
+    Ok(changed as f64)
 }

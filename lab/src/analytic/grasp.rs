@@ -35,8 +35,7 @@ const TURNED: f64 = DRAWN / PATCH;
 /// Duration, s: nine times what an uneven face takes to come to rest in its turn.
 const DRAWING: f64 = 4.0;
 
-/// Moments of a pad's friction, T12 rows; on an engine without torsional friction only
-/// those that do not depend on it.
+/// Moments of a pad's friction, T12 rows; fewer on an engine without torsional friction.
 pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
     let drawn = |beside: f64| {
         let quantity = format!("moment of a face loaded {} mm beside", beside / MM);
@@ -64,14 +63,12 @@ fn turning(engine: &dyn Engine, speed: f64) -> Vec<CheckRow> {
     rows
 }
 
-/// Row of a moment, N m.
 fn moment(check: &'static str, quantity: String, expected: f64, held: Measured<Held>) -> CheckRow {
     let measured = held.map(|held| held.moment / MM);
     CheckRow::new(check, quantity, expected / MM, measured, "N mm", Tolerance::Relative(0.02))
 }
 
-/// Force along x and moment of the friction of a face that moves at `speed` along x and
-/// turns at `spin`, its four corners equally loaded, N and N m.
+/// Force along x, N, and moment, N m, of a moving and turning face on four equal corners.
 fn friction(speed: f64, spin: f64, angle: f64) -> (f64, f64) {
     let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
     corners.into_iter().fold((0.0, 0.0), |(force, moment), (x, y)| {
@@ -116,27 +113,20 @@ fn mean_lever(sides: [f64; 2]) -> f64 {
 /// Resistance of a block that a hand draws and turns over a floor.
 #[derive(Debug, Clone, Copy)]
 struct Held {
-    /// Force against the draw, N.
     force: f64,
-    /// Moment against the turn, N m.
     moment: f64,
-    /// Turn of the block, rad.
     angle: f64,
 }
 
-/// Motion of the hand and its springs.
 #[derive(Debug, Clone, Copy)]
 struct Case {
     torsion: Torsion,
     /// Distance of the load from the middle along y, m.
     beside: f64,
-    /// Speed of the hand, m/s.
     speed: f64,
-    /// Turning speed of the hand, rad/s.
     spin: f64,
     /// Springs along x and y, N/m.
     guide: f64,
-    /// Duration, s.
     time: f64,
 }
 
@@ -151,7 +141,6 @@ const TURNING: Case = Case {
 };
 
 impl Case {
-    /// Resistance at the end of the motion.
     fn hold(&self, engine: &dyn Engine) -> Measured<Held> {
         let Case { beside, speed, spin, guide, .. } = *self;
         let (scene, hand, block) = self.scene();
@@ -190,7 +179,6 @@ impl Case {
     }
 }
 
-/// Middle of the block's face in its frame.
 fn foot() -> Pose {
     Pose::translation(0.0, 0.0, -SIZE[2] / 2.0)
 }

@@ -4,8 +4,7 @@
 //! the rim at -y. With the width d of the peg, D of the hole and l the length of the peg below the
 //! rim (Whitney 1982, J. Dyn. Sys. Meas. Control 104:65, from the geometry): D = d cos t + l sin t.
 //!
-//! The frame of the peg lies in the middle of its tip, its z axis along the
-//! peg; the hole's rim lies in the plane z = 0.
+//! The frame of the peg: the middle of its tip, z along it; the hole's rim lies in the plane z = 0.
 
 use super::build::{self, Measured};
 use super::{CheckRow, Tolerance};
@@ -14,13 +13,11 @@ use contact::{Engine, World};
 use input::units::{GRAM, MM};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
-/// Length of a peg, m: that of a connector.
 const LENGTH: f64 = 20.0 * MM;
 /// Centre of mass of a peg, m.
 const CENTRE: Point3<f64> = Point3::new(0.0, 0.0, LENGTH / 2.0);
 /// Width of a peg in x, m.
 const DEPTH: f64 = 8.0 * MM;
-/// Thickness of the walls, m.
 const WALL: f64 = 10.0 * MM;
 
 /// Peg in a hole that is open along x.
@@ -32,13 +29,10 @@ pub(super) struct Peg {
     pub hole: f64,
     /// Length l of the peg below the rim, m.
     pub inside: f64,
-    /// Friction of peg and walls.
     pub friction: f64,
-    /// Mass of the peg, kg.
     pub mass: f64,
 }
 
-/// Peg of T3 and T4.
 pub(super) const REFERENCE: Peg =
     Peg { width: 12.0 * MM, hole: 12.1 * MM, inside: 8.0 * MM, friction: 0.3, mass: 20.0 * GRAM };
 
@@ -49,7 +43,6 @@ impl Peg {
         self.inside.atan2(self.width) - (self.hole / diagonal).acos()
     }
 
-    /// Pose in two-point contact.
     pub fn tilted(&self) -> Pose {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), self.tilt());
         // The tip's corner at +y lies on the wall, the rim's point on the flank at z = 0.
@@ -58,7 +51,6 @@ impl Peg {
         Pose::from_parts(Translation3::new(0.0, self.hole / 2.0 - corner.y, -rim.z), turn)
     }
 
-    /// Weightless body of the peg.
     pub fn body(&self, pose: Pose) -> Body {
         let size = Vector3::new(DEPTH, self.width, LENGTH);
         let middle = Pose::from(Translation3::from(CENTRE.coords));
@@ -79,7 +71,6 @@ impl Peg {
         build::fixed(name, pose, vec![geom])
     }
 
-    /// Peg and hole.
     pub fn scene(&self, pose: Pose) -> (Scene, BodyId) {
         let mut scene = Scene::default();
         let peg = scene.body(self.body(pose));
@@ -112,12 +103,10 @@ pub(super) fn turning(moment: f64) -> [Vector3<f64>; 2] {
     [Vector3::zeros(), Vector3::new(moment, 0.0, 0.0)]
 }
 
-/// Tilt of a peg that a moment turns in its hole, T3 rows.
 pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
     let peg = REFERENCE;
     let measured = settled(engine, &peg);
-    // The peg may have moved along the hole while it turned: the formula is
-    // judged at the length inside at which it came to rest.
+    // While it turned the peg may have moved: the formula is judged at the length inside at rest.
     let inside = measured.map_or(peg.inside, |(_, inside)| inside);
     let expected = Peg { inside, ..peg }.tilt();
     let tilt = measured.map(|(tilt, _)| tilt / 1e-3);
@@ -135,10 +124,8 @@ pub fn t3(engine: &dyn Engine) -> Vec<CheckRow> {
 /// Moment that turns the peg of T3, N m: presses each contact with 0.25 N. The
 /// formula is for rigid contacts; so lightly pressed, ours yield next to nothing.
 const TURNING: f64 = 0.002;
-/// Time to come to rest, s.
 const RESTING: f64 = 0.05;
 
-/// Tilt and length inside at rest.
 fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
     let (scene, body) = peg.scene(Pose::translation(0.0, 0.0, -peg.inside));
     let mut world = engine.world(&scene);
@@ -150,14 +137,12 @@ fn settled(engine: &dyn Engine, peg: &Peg) -> Measured<(f64, f64)> {
 
 /// Mass of the plug of T10, kg: an RJ45 plug.
 const LIGHT: f64 = 5.0 * GRAM;
-/// Forces on each of its contacts, N; an arm at its force limit of 100 N can wedge a plug with the
-/// second.
+/// Forces on each contact, N; an arm at its limit of 100 N can wedge a plug with the second.
 const WEDGING: [f64; 2] = [70.0, 200.0];
 /// Largest penetration under the first force, m: less than the clearance of a connector.
 const YIELD: f64 = 0.1 * MM;
 
-/// Penetration of a light plug into the walls that it is wedged between, T10 rows: little, and in
-/// proportion to the force.
+/// Penetration of a light plug into its walls, T10 rows: little, and in proportion to the force.
 pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
     let peg = Peg { mass: LIGHT, ..REFERENCE };
     let sunk = WEDGING.map(|force| sinking(engine, &peg, force));
@@ -175,7 +160,6 @@ pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
     rows.collect()
 }
 
-/// Depth of the tip's corner in the wall, and of the rim in the flank.
 fn sinking(engine: &dyn Engine, peg: &Peg, force: f64) -> Measured<[f64; 2]> {
     let (scene, body) = peg.scene(peg.tilted());
     let mut world = engine.world(&scene);

@@ -17,7 +17,6 @@ use nalgebra::{Point3, Vector3};
 const FORCE: f64 = 5.0;
 /// Moment of T1, N m: turns the softest axis by about one degree.
 const MOMENT: f64 = 0.02;
-/// Force of T7, N.
 const SIDE_FORCE: f64 = 0.5;
 /// Distance of the force of T7 from the remote centre, m.
 const OFFSET: f64 = 10.0 * MM;
@@ -25,8 +24,7 @@ const OFFSET: f64 = 10.0 * MM;
 const PART_MASS: f64 = 5.0 * GRAM;
 const PART_SIZE: f64 = 12.0 * MM;
 
-/// Time to come to rest, s: twenty time constants of the slowest axis, a rotation (damping over
-/// stiffness = 20 ms).
+/// Time to come to rest, s: twenty time constants of the slowest axis, a rotation (20 ms).
 fn rest_time(finger: &Finger) -> f64 {
     let slowest = finger.springs().map(|s| s.damping / s.stiffness).into_iter().fold(0.0, f64::max);
     20.0 * slowest
@@ -37,7 +35,6 @@ fn finger() -> Finger {
     Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM)
 }
 
-/// Deflection of the springs under a force and a moment on the remote centre, T1 rows.
 pub fn t1(engine: &dyn Engine) -> Vec<CheckRow> {
     let finger = finger();
     let names = ["x", "y", "z"];
@@ -93,7 +90,6 @@ fn centre_moved(pose: &Pose, finger: &Finger) -> Pose {
     centre.inverse() * pose * centre
 }
 
-/// Motion of a part that a finger holds, under a side force, T7 rows.
 pub fn t7(engine: &dyn Engine) -> Vec<CheckRow> {
     let finger = finger();
     let spring = |axis: usize| finger.springs()[axis].stiffness;
@@ -121,8 +117,7 @@ pub fn t7(engine: &dyn Engine) -> Vec<CheckRow> {
     rows.concat()
 }
 
-/// Motion of the remote centre when a part that is fixed to the finger at its pad is pushed along
-/// an axis at a height above the remote centre, m.
+/// Motion of the remote centre when a held part is pushed at a height above it, m.
 fn held_part(engine: &dyn Engine, finger: &Finger, along: usize, above: f64) -> Measured<Pose> {
     let (mut scene, holder) = mounted(finger);
     let size = Vector3::repeat(PART_SIZE);

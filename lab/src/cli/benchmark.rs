@@ -17,8 +17,7 @@ use std::time::Instant;
 
 /// Evaluations of the study whose time is estimated.
 const BUDGET: f64 = 200.0;
-/// Compliance and assembly stiffness of the finger, N/mm: measured design 5, in the middle of the
-/// space.
+/// Compliance and assembly stiffness of the finger, N/mm: those of measured design 5.
 const COMPLIANCE: f64 = 2.6;
 const ASSEMBLY: f64 = 45.0;
 
@@ -42,7 +41,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Speed on a task.
 #[derive(Serialize)]
 struct TaskSpeed {
     task: String,
@@ -52,7 +50,6 @@ struct TaskSpeed {
     study_s: f64,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let robot = session::robot(&arguments.robot)?;
     let rows = TASKS

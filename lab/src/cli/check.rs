@@ -1,5 +1,4 @@
-//! `lab check`: analytic checks of a contact engine, and whether the windows depend on its step or on
-//! the search.
+//! `lab check`: an engine against closed formulas, its windows at finer steps and other searches.
 
 use super::validate::{Fingers, search_name, tasks};
 use super::{Failure, print, print_json};
@@ -45,7 +44,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let engine = arguments.engine;
     if !engine.simulates() {
@@ -95,7 +93,6 @@ fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays,
     Ok(TaskWays { task, ways })
 }
 
-/// Ways of both searches on the same rig.
 fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
     let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
     let rig = Arc::new(rig);

@@ -32,7 +32,6 @@ pub struct Arguments {
     csv: Option<PathBuf>,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let landscapes =
         arguments.landscape.iter().map(|file| problem(file)).collect::<Result<Vec<_>, _>>()?;
@@ -48,7 +47,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&markdown(&runs))
 }
 
-/// Problem of a landscape, named after its file.
 fn problem(file: &Path) -> Result<GridProblem, Failure> {
     let path = file.display().to_string();
     let source = shipped::resolve("landscape", &[], &path).map_err(Failure::input)?;

@@ -1,7 +1,6 @@
 //! `lab validate`: our tolerance windows beside the published ones.
 
 use super::{Failure, print, print_json};
-use crate::compare::fingers::windows;
 use crate::compare::published as beside;
 use clap::{Args, ValueEnum};
 use finger_opt::calibration::published::{self, Origin};
@@ -15,7 +14,6 @@ use insertion::trial::engine::EngineKind;
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Selection of the measured fingers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Fingers {
     /// All 11
@@ -25,7 +23,6 @@ pub enum Fingers {
 }
 
 impl Fingers {
-    /// Infill and stiffness of the selected fingers.
     pub fn designs(self) -> Vec<Measurement> {
         match self {
             Fingers::All => published::designs(),
@@ -68,7 +65,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut tasks = tasks(&arguments.task)?;
     for task in &mut tasks {
@@ -78,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
     let fingers = arguments.finger_model.fingers()?;
     let designs = arguments.fingers.designs();
-    let tables = windows(&fingers, &robot, arguments.engine, search, &tasks, &designs);
+    let tables = beside::windows(&fingers, &robot, arguments.engine, search, &tasks, &designs);
     let tables = tables.map_err(Failure::input)?;
     let accuracy = beside::accuracy(&tables);
     write_file(&arguments.out.join("validation.csv"), &beside::csv(&tables))?;
@@ -105,7 +101,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     ))
 }
 
-/// Name of a search in tables.
 pub fn search_name(search: Search) -> &'static str {
     match search {
         Search::Walk => "walk",
@@ -114,9 +109,6 @@ pub fn search_name(search: Search) -> &'static str {
 }
 
 /// Task of a name, or `all`; only tasks with published windows.
-///
-/// # Errors
-/// If the task is not found, not valid or not published.
 pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
     let names = match name {
         "all" => TASKS.iter().map(|shipped| shipped.name).collect(),
@@ -125,7 +117,6 @@ pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
     names.into_iter().map(task).collect()
 }
 
-/// Task with published windows.
 fn task(name: &str) -> Result<Task, Failure> {
     let TaskFile { source, task } = session::read_task(name)?;
     if published::of_task(&task.name, Origin::Simulation).is_empty() {

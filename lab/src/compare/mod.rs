@@ -1,8 +1,6 @@
-//! Windows of the same fingers measured in several ways: by another search, at half the step, in
-//! another engine, and as published.
+//! Windows of the same fingers by another search, step or engine, and as published.
 
 pub mod engines;
-pub mod fingers;
 pub mod pairs;
 pub mod published;
 
@@ -23,17 +21,14 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// Way of measuring windows.
 #[derive(Clone)]
 pub struct Way {
-    /// Name in tables.
     pub name: String,
     pub rig: Arc<dyn Rig>,
     pub search: Search,
 }
 
 impl Way {
-    /// Evaluation of a finger: its window and its trials.
     pub fn evaluate(&self, finger: &Finger) -> Evaluation {
         tolerance::evaluate(&*self.rig, finger, self.search)
     }
@@ -45,7 +40,6 @@ pub struct TaskWays {
     pub ways: Vec<Way>,
 }
 
-/// Measured finger on a task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
     pub task: String,
@@ -55,7 +49,6 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Measured finger of a shape.
     pub fn new(task: &str, model: &FingerModel, design: Measurement) -> Self {
         let finger = Finger::new(design.compliance, design.assembly);
         let finger = finger.shaped(model, design.direction_deg);
@@ -82,8 +75,7 @@ fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
     fields
 }
 
-/// Results of every design on every task; measured in parallel, collected by task and design, so
-/// the number of threads changes nothing.
+/// Results by task and design, measured in parallel: the number of threads changes nothing.
 pub fn each<T: Send>(
     tasks: &[TaskWays],
     designs: &[Measurement],
@@ -105,7 +97,6 @@ fn failures(window: &Window) -> [Option<FailureClass>; 2] {
     })
 }
 
-/// JSON keys of a window, the same in every command.
 fn window_json(window: &Window) -> Value {
     let [negative, positive] = failures(window);
     json!({

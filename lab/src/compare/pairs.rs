@@ -6,14 +6,11 @@ use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
 use serde_json::{Value, json};
 
-/// Windows of a finger in two ways.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WindowPair {
     pub subject: Subject,
-    /// Names of the ways.
     pub ways: [String; 2],
     pub windows: [Window; 2],
-    /// Number of trials of each window.
     pub trials: [u32; 2],
 }
 
@@ -64,8 +61,7 @@ pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
     mean(&ends.collect::<Vec<_>>())
 }
 
-/// Aligned table at most 80 columns wide with a summary, and with a verdict on each pair if the
-/// grid steps that its ends may move are given.
+/// Table at most 80 columns wide with a summary, and verdicts if so many grid steps are `allowed`.
 pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     let first = pairs.first().map_or("", |pair| &pair.ways[0]);
     let mut text = format!(
@@ -92,7 +88,6 @@ pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     text + &summary(pairs)
 }
 
-/// Number of equal pairs, differences of the ranges, and numbers of trials.
 fn summary(pairs: &[WindowPair]) -> String {
     let differences: Vec<f64> = pairs
         .iter()
@@ -108,8 +103,7 @@ fn summary(pairs: &[WindowPair]) -> String {
     )
 }
 
-/// JSON list with the keys `way` for the name of the second way, and `windows` for the two windows;
-/// `allowed` as in [`text`].
+/// JSON list; `way` is the key of the second way's name, `windows` those of the two windows.
 pub fn json(
     pairs: &[WindowPair],
     allowed: Option<OffsetStep>,

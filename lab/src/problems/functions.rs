@@ -21,13 +21,11 @@ pub enum Function {
 }
 
 impl Function {
-    /// Name in tables and on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
     }
 
-    /// Value at `x`: of any dimension above 1 for the first four, in the unit cube of the function's
-    /// own dimension for the others.
+    /// Value at `x`; the last two are functions on the unit cube of their own dimension.
     pub fn value(self, x: &[f64]) -> f64 {
         match self {
             Self::Sphere => x.iter().map(|v| v * v).sum(),

@@ -17,10 +17,6 @@ pub struct Landscape {
 
 impl Landscape {
     /// Landscape of a CSV: a header, the axes, then `range_mm` (empty for no value), then anything.
-    /// `file` is named in errors.
-    ///
-    /// # Errors
-    /// If a row is malformed, or a combination of the axes' values is not there once.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let fail = |message: String| InputError::Syntax { file: file.to_owned(), message };
         let mut lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -66,18 +62,15 @@ impl Landscape {
         Ok(Landscape { grid, values })
     }
 
-    /// Range of a design of the grid, mm.
     pub fn value(&self, point: &GridPoint) -> Option<f64> {
         self.values.get(&point.0).copied().flatten()
     }
 
-    /// Largest range, mm.
     pub fn best(&self) -> f64 {
         self.values.values().flatten().copied().fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-/// Values of the axes and of the design.
 fn row(line: &str, axes: usize) -> Option<(Vec<f64>, Option<f64>)> {
     let number = |cell: &str| cell.parse::<f64>().ok().filter(|number| number.is_finite());
     let mut cells = line.split(',');

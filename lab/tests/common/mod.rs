@@ -16,7 +16,6 @@ pub fn command(arguments: &[&str]) -> Command {
     command
 }
 
-/// Runs the program to its end.
 pub fn lab(arguments: &[&str]) -> Ran {
     run(&mut command(arguments))
 }

@@ -1,8 +1,10 @@
 //! One line of a measurement file: its cells, and what they must say together.
 
-use super::{Experiment, NOT_MEASURABLE, cell, problem};
+use super::{Experiment, NOT_MEASURABLE, problem};
 use csv::StringRecord;
+use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use jiff::civil::Date;
 
 /// A range and the window beside it may differ by this, mm: both are rounded to 0.1.
 const ROUNDING_MM: f64 = 0.151;
@@ -37,7 +39,6 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// Reads a line.
 pub(super) fn experiment(
     header: &StringRecord,
     record: &StringRecord,
@@ -48,25 +49,24 @@ pub(super) fn experiment(
     if task.is_empty() {
         cells.problem("task", "is empty; name the task");
     }
-    let density = cells.read(DENSITY_KEY, cell::density).unwrap_or_default();
-    let direction = cells.read(DIRECTION_KEY, cell::direction).unwrap_or_default();
+    let density = cells.read(DENSITY_KEY, density).unwrap_or_default();
+    let direction = cells.read(DIRECTION_KEY, direction).unwrap_or_default();
     let mut design = Design::infill(density, direction);
     for key in header.iter().filter(|name| name.starts_with("task.") || name.starts_with("finger."))
     {
-        design.0.extend(cells.known(key, cell::number).map(|value| (key.to_owned(), value)));
+        design.0.extend(cells.known(key, number).map(|value| (key.to_owned(), value)));
     }
     let experiment = Experiment {
         line,
         task,
         design,
-        negative_mm: cells.known("negative_mm", cell::length),
-        positive_mm: cells.known("positive_mm", cell::length),
-        range_mm: cells.known("range_mm", cell::range).flatten(),
-        failures: ["failure_negative", "failure_positive"]
-            .map(|end| cells.known(end, cell::failure)),
-        repeats: cells.known("repeats", cell::repeats).unwrap_or(1),
-        peak_force_n: cells.known("peak_force_n", cell::force),
-        date: cells.known("date", cell::date),
+        negative_mm: cells.known("negative_mm", length),
+        positive_mm: cells.known("positive_mm", length),
+        range_mm: cells.known("range_mm", range).flatten(),
+        failures: ["failure_negative", "failure_positive"].map(|end| cells.known(end, failure)),
+        repeats: cells.known("repeats", repeats).unwrap_or(1),
+        peak_force_n: cells.known("peak_force_n", force),
+        date: cells.known("date", date),
         note: cells.text("note").to_owned(),
     };
     if cells.problems.is_empty() {
@@ -116,4 +116,93 @@ pub(super) fn twice(new: &Experiment, before: &[Experiment]) -> Option<String> {
         old.line
     );
     Some(problem(new.line, "task", &words))
+}
+
+/// Largest length that is taken for millimetres: no connector tolerates more.
+const MOST_MM: f64 = 100.0;
+/// Smallest that is not 0: a start is not set finer.
+const LEAST_MM: f64 = 0.02;
+/// Largest force that is taken for newtons.
+const MOST_N: f64 = 5000.0;
+
+fn number(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("`{text}` is not a number")),
+    }
+}
+
+fn density(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        share if share > 0.0 && share < 1.0 => {
+            Err(format!("{share} looks like a share; give percent, as in {}", 100.0 * share))
+        }
+        percent if percent > 0.0 && percent <= 100.0 => Ok(percent),
+        other => Err(format!("is {other}; it must lie above 0 and at most at 100 percent")),
+    }
+}
+
+fn direction(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        radians if radians.fract() != 0.0 && radians.abs() < 1.6 => Err(format!(
+            "{radians} looks like radians; give degrees, as in {:.0}",
+            radians.to_degrees()
+        )),
+        degrees if (0.0..=90.0).contains(&degrees) => Ok(degrees),
+        other => Err(format!("is {other}; it must lie from 0 to 90 degrees")),
+    }
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        long if long.abs() > MOST_MM => {
+            Err(format!("{long} looks like micrometres; give millimetres, as in {}", long / 1e3))
+        }
+        short if short != 0.0 && short.abs() < LEAST_MM => {
+            Err(format!("{short} looks like metres; give millimetres, as in {}", short * 1e3))
+        }
+        length => Ok(length),
+    }
+}
+
+/// A range, mm, or the words that there is none.
+fn range(text: &str) -> Result<Option<f64>, String> {
+    if text == NOT_MEASURABLE {
+        return Ok(None);
+    }
+    match length(text)? {
+        below if below < 0.0 => Err(format!("is {below}; a range is 0 or above")),
+        range => Ok(Some(range)),
+    }
+}
+
+fn failure(text: &str) -> Result<FailureClass, String> {
+    let class = text.parse::<u8>().ok().and_then(|number| FailureClass::try_from(number).ok());
+    let known = FailureClass::ALL.map(|class| format!("{} ({})", class.number(), class.label()));
+    class.ok_or_else(|| format!("`{text}` is no failure class; there are {}", known.join(", ")))
+}
+
+/// Number of measurements that the values are the mean of.
+fn repeats(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(count @ 1..=10_000) => Ok(count),
+        _ => Err(format!("`{text}` is not a whole number from 1 to 10000")),
+    }
+}
+
+fn force(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        large if large > MOST_N => {
+            Err(format!("{large} looks like millinewtons; give newtons, as in {}", large / 1e3))
+        }
+        below if below < 0.0 => Err(format!("is {below}; a largest force is 0 or above")),
+        force => Ok(force),
+    }
+}
+
+fn date(text: &str) -> Result<String, String> {
+    match text.parse::<Date>() {
+        Ok(day) => Ok(day.to_string()),
+        Err(_) => Err(format!("`{text}` is no day; write it as in 2026-03-31")),
+    }
 }

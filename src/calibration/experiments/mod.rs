@@ -3,13 +3,9 @@
 //! Only the task, the design and something that was measured are needed; columns may be left
 //! out, and further design parameters are further columns, named as in a space file.
 
-mod cell;
 mod line;
 #[cfg(test)]
 mod tests;
-mod write;
-
-pub use write::appended;
 
 use csv::StringRecord;
 use input::shipped::nearest;
@@ -20,8 +16,7 @@ use std::cmp::Ordering;
 /// The cell of `range_mm` that says: the finger was tried, and no range could be measured.
 pub const NOT_MEASURABLE: &str = "not measurable";
 
-/// The documented columns, in the order in which a new file has them; further ones are keys of a
-/// space file.
+/// The documented columns in the order of a new file; further ones are keys of a space file.
 pub const COLUMNS: [&str; 12] = [
     "task",
     DENSITY_KEY,
@@ -57,9 +52,7 @@ fn problem(line: u64, column: &str, words: &str) -> String {
 /// One line of a measurement file: one finger on one task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
-    /// Line in the file, from 1.
     pub line: u64,
-    /// Name of the task.
     pub task: String,
     /// The finger's infill, and what else its columns set.
     pub design: Design,
@@ -67,17 +60,14 @@ pub struct Experiment {
     pub negative_mm: Option<f64>,
     /// Most positive start that inserted, mm.
     pub positive_mm: Option<f64>,
-    /// Width of the window, mm.
     range_mm: Option<f64>,
     /// Failure below and above the window.
     pub failures: [Option<FailureClass>; 2],
     /// Measurements that the values are the mean of.
     pub repeats: u32,
-    /// Largest contact force of the insertions, N.
     pub peak_force_n: Option<f64>,
     /// Day of the measurement, `YYYY-MM-DD`.
     pub date: Option<String>,
-    /// Anything.
     pub note: String,
 }
 
@@ -101,26 +91,13 @@ impl Experiment {
             let ends = [line.negative_mm, line.positive_mm, line.range_mm, line.peak_force_n];
             ends.map(|number| number.unwrap_or(f64::NEG_INFINITY))
         };
-        let totally = |a: &f64, b: &f64| a.total_cmp(b);
-        let setting =
-            |a: (&String, &f64), b: (&String, &f64)| a.0.cmp(b.0).then(a.1.total_cmp(b.1));
-        let designs = || {
-            let (mut a, mut b) = (self.design.0.iter(), other.design.0.iter());
-            loop {
-                match (a.next(), b.next()) {
-                    (Some(a), Some(b)) if setting(a, b).is_eq() => {}
-                    (Some(a), Some(b)) => return setting(a, b),
-                    (a, b) => return a.is_some().cmp(&b.is_some()),
-                }
-            }
-        };
-        let numbers = || {
-            let pairs = numbers(self).into_iter().zip(numbers(other));
-            pairs.map(|(a, b)| totally(&a, &b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
-        };
-        let (task, date) = (self.task.cmp(&other.task), self.date.cmp(&other.date));
-        let repeats = self.repeats.cmp(&other.repeats);
-        task.then_with(designs).then(date).then_with(numbers).then(repeats)
+        let (own, theirs) = (&self.design.0, &other.design.0);
+        let settings = own.iter().zip(theirs).map(|(a, b)| a.0.cmp(b.0).then(a.1.total_cmp(b.1)));
+        let numbers = numbers(self).into_iter().zip(numbers(other)).map(|(a, b)| a.total_cmp(&b));
+        let task = self.task.cmp(&other.task);
+        let design = settings.fold(task, Ordering::then).then(own.len().cmp(&theirs.len()));
+        let date = design.then(self.date.cmp(&other.date));
+        numbers.fold(date, Ordering::then).then(self.repeats.cmp(&other.repeats))
     }
 
     /// The range, if it was measured whole, mm.
@@ -130,9 +107,6 @@ impl Experiment {
 }
 
 /// Reads and checks a measurement file; `file` is named in errors. An empty file has no lines.
-///
-/// # Errors
-/// All that is wrong with it, with line and column.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
     // The reader counts a line of a "\r\n" file too few; spreadsheets begin with a mark.
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
@@ -158,7 +132,6 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
     if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
 }
 
-/// Fault of a text that is no table.
 fn syntax(error: &csv::Error) -> String {
     let words = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
@@ -199,9 +172,6 @@ fn hint(name: &str, known: &[&str]) -> String {
 }
 
 /// Checks that each line's task is one of `known`.
-///
-/// # Errors
-/// The lines whose task is not, with the name most like it.
 pub fn check_tasks(experiments: &[Experiment], known: &[&str], file: &str) -> Result<(), Problems> {
     let unknown = experiments.iter().filter(|line| !known.contains(&&*line.task));
     let words = |Experiment { line, task, .. }: &Experiment| {
@@ -214,4 +184,43 @@ pub fn check_tasks(experiments: &[Experiment], known: &[&str], file: &str) -> Re
     };
     let problems: Vec<String> = unknown.map(words).collect();
     if problems.is_empty() { Ok(()) } else { Err(Problems::of(file, problems)) }
+}
+
+/// The file's text with one line more; `cells` are the columns that are not empty. Columns that
+/// the file does not have yet are added at its end; a new file has all the documented ones.
+pub fn appended(text: &str, cells: &[(&str, String)]) -> Result<String, csv::Error> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let mut header: Vec<String> = match text.trim().is_empty() {
+        true => COLUMNS.map(str::to_owned).to_vec(),
+        false => reader.headers()?.iter().map(|name| name.trim().to_owned()).collect(),
+    };
+    let had = header.len();
+    for (column, _) in cells {
+        if !header.iter().any(|name| name == column) {
+            header.push((*column).to_owned());
+        }
+    }
+    let new = header.iter().map(|name| {
+        let cell = cells.iter().find(|(column, _)| column == name);
+        cell.map_or("", |(_, text)| text.as_str())
+    });
+    let line = |cells: &mut dyn Iterator<Item = &str>| {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(cells)?;
+        let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+        Ok::<_, csv::Error>(String::from_utf8_lossy(&bytes).into_owned())
+    };
+    let last = line(&mut new.into_iter())?;
+    // What is there stays as it was written, unless a column is new.
+    if had == header.len() && !text.trim().is_empty() {
+        let end = if text.ends_with('\n') { "" } else { "\n" };
+        return Ok(format!("{text}{end}{last}"));
+    }
+    let mut whole = line(&mut header.iter().map(String::as_str))?;
+    for record in reader.records() {
+        let record = record?;
+        let more = std::iter::repeat_n("", header.len() - had);
+        whole += &line(&mut record.iter().chain(more))?;
+    }
+    Ok(whole + &last)
 }

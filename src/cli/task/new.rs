@@ -2,8 +2,7 @@
 
 use super::super::{Failure, print};
 use super::check;
-use crate::connector::draft::{DENSITY, Dimensions, Size, draft};
-use crate::connector::round::Hole;
+use crate::connector::draft::{DENSITY, Dimensions, Hole, Size, draft};
 use crate::connector::write::{self, Notes};
 use crate::session::{TaskCheck, TaskFile, read_task};
 use crate::study::write_file;

@@ -107,7 +107,6 @@ fn roof(case: &Case, held: &Held) -> Option<Problem> {
     Some(Problem::new("grip.shoulder_z_mm", problem, better(case)))
 }
 
-/// Advice on a grasp that works, if there is one.
 fn better(case: &Case) -> String {
     match find(&case.plug, LEAST_COVER) {
         Some((shoulder, faces)) => {

@@ -1,7 +1,6 @@
 //! Check of a task's geometry and commanded moves, without simulation.
 
 mod grasp;
-mod lengths;
 mod parts;
 mod socket;
 mod strategy;
@@ -59,7 +58,7 @@ pub fn problems(task: &Task) -> Vec<Problem> {
     let case =
         Case { task, plug: ConvexBody::plug(&task.plug), socket: ConvexBody::new(&task.socket) };
     // In a wrong unit everything else is wrong, too.
-    let mut found = lengths::problems(&case);
+    let mut found = parts::lengths(&case);
     if !found.is_empty() {
         return found;
     }

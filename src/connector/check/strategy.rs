@@ -2,8 +2,7 @@
 
 use super::{Case, Problem, mm, pair};
 use crate::connector::body::span;
-use crate::connector::path::{self, Waypoint};
-use crate::connector::seat::section;
+use crate::connector::seat::{self, Waypoint, section};
 use contact::scene::Pose;
 use input::units::MM;
 use insertion::task::{Ending, Phase, Stage};
@@ -19,7 +18,7 @@ const AIR: f64 = 1.0 * MM;
 const PRESS: f64 = 4.0 * MM;
 
 pub(super) fn problems(case: &Case) -> Vec<Problem> {
-    let way = path::waypoints(case.task, &case.plug);
+    let way = seat::waypoints(case.task, &case.plug);
     let mut found: Vec<Problem> = case.task.strategy.phases.iter().filter_map(upward).collect();
     found.extend(inside(case, &way));
     // Of moves that go up nothing else can be said.
@@ -57,7 +56,7 @@ fn upward(phase: &Phase) -> Option<Problem> {
 /// Collision at the start or on the approach.
 fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let collision = |tcp: Vector3<f64>| {
-        let pose = path::plug_pose(case.task, tcp);
+        let pose = seat::plug_pose(case.task, tcp);
         let (depth, [plug, socket]) = case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
         let names = [&case.plug.parts[plug].name, &case.socket.parts[socket].name];
         (depth > ROUNDING).then_some((depth, names))
@@ -89,7 +88,6 @@ fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     None
 }
 
-/// Fault of a touch whose stroke ends above the socket.
 fn short(point: &Waypoint) -> Option<Problem> {
     let by = point.short_by?;
     Some(Problem::new(

@@ -104,8 +104,7 @@ fn layer(surface: &Surface, [low, high]: [f64; 2]) -> Option<Vec<Outline>> {
     Some(outlines)
 }
 
-/// Edges of a face that cross the layer, in the order that keeps the solid to the left, seen from
-/// above.
+/// Edges of a face that cross the layer, in the order that keeps the solid to the left from above.
 fn crossing(
     surface: &Surface,
     face: &[usize; 3],
@@ -146,8 +145,7 @@ fn straightened(outline: Outline) -> Outline {
     without(outline, 2, straight)
 }
 
-/// A closed line without the corners that are straight with their neighbours, as long as it has
-/// more than `least`.
+/// A closed line of at least `least` corners, without those straight with their neighbours.
 pub fn without<T: Copy>(
     mut line: Vec<T>,
     least: usize,
@@ -263,7 +261,6 @@ fn solid_at(layer: &[Outline], p: &Point2<f64>) -> bool {
     };
     layer.iter().flat_map(|outline| edges(outline)).filter(crossed).count() % 2 == 1
 }
-/// Neighbouring risers, the last with the first.
 fn edges(outline: &[Riser]) -> impl Iterator<Item = (&Riser, &Riser)> {
     outline.iter().zip(outline.iter().cycle().skip(1))
 }

@@ -1,11 +1,14 @@
 //! Decomposition of a surface into convex solids: an exact cut, else VHACD.
 
 use super::surface::Surface;
-use super::{cut, intrusion, merge};
+use super::{cut, merge};
 use crate::connector::body::longest_side;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
 use nalgebra::{Point3, Vector3};
+use parry::math::Vector;
+use parry::query::PointQuery;
+use parry::shape::{TriMesh, TriMeshFlags};
 use parry::transformation::vhacd::{VHACD, VHACDParameters};
 use rapier3d_f64::parry;
 
@@ -19,13 +22,11 @@ const SHARED: f64 = 0.01;
 const NEAR: f64 = 2e-3 * MM;
 /// Most parts of an approximation while it is cut.
 const MOST_HULLS: u32 = 1024;
-/// Most voxels of an approximation times those along its longest side, to which its time is
-/// proportional: half a minute of processor time.
+/// Most voxels times those along the longest side: half a minute of processor time.
 const MOST_WORK: f64 = 2e8;
 /// Coarsest resolution, voxels along the longest side.
 pub const COARSEST: u32 = 8;
-/// Largest concavity of a part, as a share: a tenth of VHACD's default, since the rest fills the
-/// clearance.
+/// Largest concavity of a part, a tenth of VHACD's default, since the rest fills the clearance.
 const CONCAVITY: f64 = 0.001;
 
 /// Advice on a mesh that is not cut exactly.
@@ -34,9 +35,6 @@ const OTHERWISE: &str = "export the mesh with fewer flats (a circle of 32 is exa
 
 /// Convex solids of a surface, m, and whether they equal it: if no exact cut is found, it is
 /// approximated with `resolution` voxels along the longest side. `say` gets progress messages.
-///
-/// # Errors
-/// If the approximation would take minutes or has more parts than a task may have.
 pub fn decompose(
     surface: &Surface,
     resolution: u32,
@@ -97,12 +95,11 @@ fn is_whole(surface: &Surface, solids: &[Solid]) -> bool {
         let part =
             |solid: &Solid| Part { name: String::new(), solid: solid.clone(), friction: None };
         let parts: Vec<_> = solids.iter().map(part).collect();
-        intrusion::largest(surface, &parts, |_| true).is_some_and(|(depth, _)| depth < NEAR)
+        intrusion(surface, &parts, |_| true).is_some_and(|(depth, _)| depth < NEAR)
     }
 }
 
-/// Volumetric hierarchical approximate convex decomposition (Mamou 2016), of voxels, each part
-/// the hull of the surface within it.
+/// Approximate convex decomposition (VHACD, Mamou 2016): hulls of the surface in sets of voxels.
 fn approximate(surface: &Surface, resolution: u32) -> Vec<Solid> {
     let (points, faces) = surface.in_millimetres();
     let parameters = VHACDParameters {
@@ -122,4 +119,43 @@ fn approximate(surface: &Surface, resolution: u32) -> Vec<Solid> {
         Some(Solid::Hull { points })
     };
     corners.filter_map(solid).collect()
+}
+
+/// Spacing of the sample points on parts, m.
+const SPACING: f64 = 0.2 * MM;
+/// Most sample points along a side of a triangle.
+const MOST_SAMPLES: usize = 60;
+
+/// Largest intrusion, m, and its point, m, among the sample points that `counts` accepts.
+pub fn intrusion(
+    surface: &Surface,
+    parts: &[Part],
+    counts: impl Fn(&Point3<f64>) -> bool,
+) -> Option<(f64, Point3<f64>)> {
+    let (points, faces) = surface.in_millimetres();
+    let mesh = TriMesh::with_flags(points, faces, TriMeshFlags::ORIENTED).ok()?;
+    let outside = |at: Point3<f64>| {
+        let point: Vector = (at.coords / MM).into();
+        let found = mesh.project_local_point(point, true);
+        (if found.is_inside { 0.0 } else { (found.point - point).length() * MM }, at)
+    };
+    let samples = parts.iter().flat_map(samples).filter(|p| counts(p));
+    samples.map(outside).max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+fn samples(part: &Part) -> Vec<Point3<f64>> {
+    let Some((corners, faces)) = geometry::hull(&part.solid.corners()) else { return Vec::new() };
+    let mut found = Vec::new();
+    for face in faces {
+        let [a, b, c] = face.map(|corner| corners[corner]);
+        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+        let steps = ((longest / SPACING).ceil() as usize).clamp(1, MOST_SAMPLES);
+        for i in 0..=steps {
+            for j in 0..=steps - i {
+                let (u, v) = (i as f64 / steps as f64, j as f64 / steps as f64);
+                found.push(a + (b - a) * u + (c - a) * v);
+            }
+        }
+    }
+    found
 }

@@ -1,8 +1,7 @@
 //! Task from a mesh of a plug and one of its socket.
 
-use super::decompose::decompose;
 pub use super::decompose::{COARSEST, MOST_PARTS};
-use super::intrusion;
+use super::decompose::{decompose, intrusion};
 use super::reduce::{TOLERANCE, reduced};
 use super::surface::Surface;
 use super::{MeshError, cut};
@@ -56,8 +55,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// Rotation of this direction to -z. The file's y stays y; if the plug goes in along y, the
-    /// file's x becomes y.
+    /// Rotation of this direction to -z. y stays y; if the plug goes in along y, x becomes y.
     fn turn(self) -> Matrix3<f64> {
         let rows = match self {
             Along::MinusZ => [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -205,8 +203,7 @@ fn stand(surface: Surface, place: [f64; 2]) -> Surface {
     surface.moved(&Matrix3::identity(), by)
 }
 
-/// Socket with its top at z = 0 and the middle of its largest opening at `place`, with that
-/// opening.
+/// Socket with its top at z = 0, its largest opening's middle at `place`; and that opening.
 fn open(
     surface: Surface,
     place: [f64; 2],
@@ -236,8 +233,8 @@ fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(f64, Point3<f64>, &'
     let deep = task.success.depth + ABOUT;
     let [x, y] = task.opening;
     let about = |v: f64, [low, high]: [f64; 2]| low - ABOUT < v && v < high + ABOUT;
-    let plug = intrusion::largest(surfaces[0], &task.plug.parts, |p| p.z < deep);
-    let socket = intrusion::largest(surfaces[1], &task.socket, |p| {
+    let plug = intrusion(surfaces[0], &task.plug.parts, |p| p.z < deep);
+    let socket = intrusion(surfaces[1], &task.socket, |p| {
         p.z > -deep - ABOUT && about(p.x, x) && about(p.y, y)
     });
     let plug = plug.map(|(depth, at)| (depth, at, "plug"));

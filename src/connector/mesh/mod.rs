@@ -3,7 +3,6 @@
 mod cut;
 mod decompose;
 pub mod import;
-mod intrusion;
 mod merge;
 mod read;
 mod reduce;

@@ -15,11 +15,9 @@ const MOST_ABOUT: usize = 64;
 /// Least cosine between the normals of a face before and after.
 const LEAST_COSINE: f64 = 0.5;
 
-/// A surface whose edges are being collapsed.
 struct Collapsing {
     points: Vec<Point3<f64>>,
     faces: Vec<[usize; 3]>,
-    /// Faces about each corner.
     about: Vec<Vec<usize>>,
     /// How far the faces about a corner may be from the corners that have gone, m.
     error: Vec<f64>,
@@ -54,8 +52,7 @@ pub fn reduced(surface: Surface) -> Surface {
     mesh.surface(was_inward)
 }
 
-/// A collapse: its error in units of a picometre, the corner that goes and the one it goes to, and
-/// their versions.
+/// A collapse: its error, pm, the corner that goes and the one it goes to, and their versions.
 type Queued = Reverse<(u64, [usize; 2], [u32; 2])>;
 
 impl Collapsing {
@@ -80,7 +77,6 @@ impl Collapsing {
         }
     }
 
-    /// Whether two corners have a face in common.
     fn meet(&self, a: usize, b: usize) -> bool {
         let [few, other] = if self.about[a].len() < self.about[b].len() { [a, b] } else { [b, a] };
         self.about[few].iter().any(|&face| self.faces[face].contains(&other))

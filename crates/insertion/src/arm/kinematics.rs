@@ -12,7 +12,6 @@ use nalgebra::{
 const DAMPING: f64 = 0.02;
 /// Steps at most; a start near home takes fewer than twenty.
 const STEPS: usize = 200;
-/// Error of a solution, m and rad.
 const EXACT: f64 = 1e-10;
 
 /// The arm at some joint angles, base frame.
@@ -42,8 +41,7 @@ impl Arm {
         Posture { links, axes, tcp: frame * self.tool }
     }
 
-    /// `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: the sum over the links of
-    /// `m Jv^T Jv + Jw^T I Jw`, each about the link's centre of mass.
+    /// `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: `m Jv^T Jv + Jw^T I Jw` over the links.
     pub fn mass(&self, posture: &Posture) -> Matrix6<f64> {
         (0..JOINTS)
             .map(|i| {
@@ -77,10 +75,8 @@ impl Arm {
             let step = square.cholesky().ok_or(ArmError::Singular)?.solve(&error);
             angles += jacobian.tr_mul(&step);
         }
-        Err(ArmError::Unreachable {
-            miss_mm: error.fixed_rows::<3>(0).norm() / MM,
-            miss_deg: error.fixed_rows::<3>(3).norm() / DEG,
-        })
+        let [moved, turned] = [0, 3].map(|row| error.fixed_rows::<3>(row).norm());
+        Err(ArmError::Unreachable(moved / MM, turned / DEG))
     }
 }
 

@@ -91,17 +91,11 @@ pub struct Measured {
 /// Evaluates designs, several at a time.
 pub trait Evaluate: Sync {
     /// Measures one design; equal designs measure equal.
-    ///
-    /// # Errors
-    /// If the design cannot be simulated.
     fn evaluate(&self, design: &Design) -> Result<Measured, Impossible>;
 }
 
 impl Evaluator {
     /// The stiffness predicted for a design, which must name the infill.
-    ///
-    /// # Errors
-    /// If it rests on the computed stiffness and the finger cannot be computed.
     pub fn predict(&self, design: &Design) -> Result<Prediction, Impossible> {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
         let plain = self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?;
@@ -115,9 +109,6 @@ impl Evaluator {
     }
 
     /// A design of this stiffness on one of the tasks.
-    ///
-    /// # Errors
-    /// If it sets what does not exist, or to what cannot be.
     pub fn specimen(
         &self,
         template: &Template,
@@ -144,9 +135,6 @@ impl Evaluator {
 
     /// By how much the start of a specimen is moved, in grid steps; `None` if its task has no
     /// taught start, 0 if no start inserts. Ends early, with a worthless result, once `stop` is set.
-    ///
-    /// # Errors
-    /// If robot or engine cannot do the task.
     pub fn taught(
         &self,
         specimen: &Specimen,
@@ -159,11 +147,7 @@ impl Evaluator {
         Ok(Some(teach(&*rig, &specimen.finger, stop).unwrap_or(0)))
     }
 
-    /// Where trials of a specimen are run, with the engine's step times `step_factor`; from
-    /// the start that was [`taught`](Self::taught), if it was.
-    ///
-    /// # Errors
-    /// If robot or engine cannot do the task.
+    /// Where trials of a specimen are run, from its taught start, at `step_factor` times the step.
     pub fn rig(
         &self,
         specimen: &Specimen,
@@ -178,11 +162,7 @@ impl Evaluator {
         })
     }
 
-    /// Measures the window of a specimen, looked for by `search`, and what the plan adds; ends
-    /// early, with a worthless result, once `stop` is set.
-    ///
-    /// # Errors
-    /// If robot or engine cannot do the task.
+    /// Measures a specimen's window and what the plan adds; worthless once `stop` is set.
     pub fn measure(
         &self,
         specimen: &Specimen,
@@ -198,9 +178,6 @@ impl Evaluator {
     }
 
     /// As [`measure`](Self::measure); if the nominal start fails, once more with a taught start.
-    ///
-    /// # Errors
-    /// If robot or engine cannot do the task.
     pub fn measure_or_teach(
         &self,
         specimen: &Specimen,
@@ -219,9 +196,6 @@ impl Evaluator {
 
     /// The firm part of the window that was measured of a specimen, from the start taught then, by
     /// [`firm::REPEATS`] repeats that this seed names; worthless once `stop` is set.
-    ///
-    /// # Errors
-    /// If robot or engine cannot do the task.
     pub fn firm(
         &self,
         specimen: &Specimen,
@@ -240,9 +214,6 @@ impl Evaluator {
     }
 
     /// Measures a design on every task by `measure`, which may know the answer already.
-    ///
-    /// # Errors
-    /// If the design cannot be simulated.
     pub fn evaluate_by(
         &self,
         design: &Design,

@@ -5,7 +5,6 @@
 //! keep their place. What the computed stiffness gets wrong differs from finger to finger; the
 //! standard deviation of ln(measured / computed) over the measured fingers is added to the error.
 
-use crate::finger::computed::Touching;
 use crate::finger::file::is_shape;
 use crate::finger::model::ComputedFingers;
 use crate::space::Design;
@@ -16,8 +15,7 @@ use finray::mechanics::FingerStiffness;
 
 /// The prediction for a design whose infill has the prediction `plain`.
 ///
-/// The distance from the measured designs grows by the changed numbers: each counts as the
-/// logarithm of its change, and all are added by their squares.
+/// The squared logarithms of the changes add to the distance from the measured designs, squared.
 ///
 /// # Errors
 /// If a finger cannot be computed.
@@ -37,8 +35,8 @@ pub fn predict(
     }
     let infill = design.0.iter().filter(|(key, _)| !is_shape(key));
     let infill = Design(infill.map(|(key, value)| (key.clone(), *value)).collect());
-    let now = springs(fingers.touching, &fingers.stiffness(design)?);
-    let before = springs(fingers.touching, &fingers.stiffness(&infill)?);
+    let now = springs(&fingers.stiffness(design)?);
+    let before = springs(&fingers.stiffness(&infill)?);
     let scatter = scatter(fingers, measured)?;
     let scaled = |axis: usize, Estimate { mean, sd }: Estimate| {
         let factor = now[axis] / before[axis];
@@ -53,9 +51,8 @@ pub fn predict(
 }
 
 /// Computed stiffness in the compliance and in the assembly direction, N/m.
-fn springs(touching: Touching, computed: &FingerStiffness) -> [f64; 2] {
-    let plane = touching.of(computed);
-    [plane.in_compliance(), plane.in_assembly()]
+fn springs(computed: &FingerStiffness) -> [f64; 2] {
+    [computed.pad_and_roof.in_compliance(), computed.pad_and_roof.in_assembly()]
 }
 
 /// Standard deviation of ln(measured / computed) over the measured fingers, by axis; of fewer
@@ -64,7 +61,7 @@ fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 
     let ratios = measured.iter().map(|m| {
         let [density, direction] = m.infill();
         let computed = fingers.stiffness(&Design::infill(density, direction))?;
-        let [compliance, assembly] = springs(fingers.touching, &computed);
+        let [compliance, assembly] = springs(&computed);
         Ok([libm::log(m.compliance / compliance), libm::log(m.assembly / assembly)])
     });
     let ratios: Vec<[f64; 2]> = ratios.collect::<Result<_, FingerError>>()?;
@@ -79,17 +76,14 @@ fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finger::file::FingerFile;
-    use crate::fixtures::predicted;
+    use crate::fixtures::{finger_file, predicted};
     use crate::space::{DENSITY_KEY, DIRECTION_KEY};
-    use input::shipped::FINGERS;
     use input::units::N_PER_MM;
 
     const MODULUS: &str = "finger.material.modulus_gpa";
 
     fn fingers() -> ComputedFingers {
-        let file = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
-        ComputedFingers::new(file, Touching::Pad)
+        ComputedFingers::new(finger_file())
     }
 
     fn plain() -> Prediction {
@@ -106,7 +100,7 @@ mod tests {
         [(10.0, 2.0), (30.0, 0.5)]
             .map(|(density, factor)| {
                 let computed = fingers.stiffness(&Design::infill(density, 0.0)).unwrap();
-                let [compliance, assembly] = springs(Touching::Pad, &computed);
+                let [compliance, assembly] = springs(&computed);
                 Measurement {
                     design: 1,
                     density_percent: density,

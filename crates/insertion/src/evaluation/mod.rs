@@ -5,7 +5,6 @@ mod leaving;
 pub mod objective;
 pub mod robustness;
 mod schema;
-pub mod sprung;
 pub mod taught;
 pub mod template;
 pub mod tolerance;
@@ -74,8 +73,7 @@ pub fn grid_mm(steps: OffsetStep) -> f64 {
     f64::from(steps) / 10.0
 }
 
-/// Everything measured for one design on one task. The counts and times are those
-/// of the window search. Written in the one form of `schema.rs`.
+/// Everything measured for one design on one task; counts and times are the window search's.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// Tolerance window around the nominal start.

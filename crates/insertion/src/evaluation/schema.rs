@@ -4,7 +4,6 @@ use super::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
 use crate::outcome::{FailureClass, Outcome};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A [`Window`] in mm.
 #[derive(Serialize, Deserialize)]
 pub(super) struct WindowRow {
     range_mm: f64,

@@ -65,7 +65,6 @@ pub fn evaluate_in(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation {
     evaluation
 }
 
-/// One end of a window.
 #[derive(Clone, Copy)]
 struct End {
     /// The last inserting step, outward from the nominal start.

@@ -14,30 +14,10 @@ use super::{Finger, Pad};
 use crate::surrogate::Prediction;
 use crate::task::finger::Coupling;
 use finray::FingerError;
-use finray::mechanics::FingerStiffness;
 use finray::printed::{Outline, PrintedFinger};
 use finray::stiffness::PlanarStiffness;
 use input::units::{MM, N_PER_MM};
 use nalgebra::{Matrix3, Matrix6};
-
-/// Contact surfaces of a finger whose stiffness is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Touching {
-    /// The part touches the pad alone; whether it touches the roof, the contacts decide.
-    Pad,
-    /// Pad and roof are glued to the part.
-    PadAndRoof,
-}
-
-impl Touching {
-    /// The computed stiffness in the finger's plane.
-    pub fn of(self, computed: &FingerStiffness) -> &PlanarStiffness {
-        match self {
-            Touching::Pad => &computed.pad,
-            Touching::PadAndRoof => &computed.pad_and_roof,
-        }
-    }
-}
 
 /// Values of a task file or a design in place of the computed ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -71,69 +51,63 @@ impl Pad {
     }
 }
 
-/// A printed finger in a gripper, with what was computed of it.
-pub(super) struct Computed<'a> {
-    pub printed: &'a PrintedFinger,
-    /// Stiffness in its plane.
-    pub plane: PlanarStiffness,
-    /// Stiffness in x, ry and rz at the pad's middle.
-    pub across: Matrix3<f64>,
-    /// Height of the part's shoulder above the TCP, m.
-    pub shoulder: f64,
-}
-
-impl Computed<'_> {
-    /// The finger that is so stiff at the pad.
-    ///
-    /// # Errors
-    /// If turning about the centre alone gives way by more than that.
-    pub fn finger(&self, at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
-        let plane = self.plane;
-        let pad = Pad::of(&self.printed.outline);
-        let middle = pad.middle(self.shoulder);
-        let rcc = given.rcc.unwrap_or(plane.centre_below_pad() - middle);
-        let (below, ahead) = (rcc + middle, plane.centre_in_front());
-        let tilting = given.tilting.unwrap_or(plane.tilting());
-        // Compliances at the centre, m/N.
-        let at_centre = |name, stiffness: f64, lever: f64| {
-            let centre = 1.0 / stiffness - lever * lever / tilting;
-            if centre > 0.0 {
-                return Ok(centre);
-            }
-            let (at_pad, turning) = (stiffness / N_PER_MM, tilting / (lever * lever) / N_PER_MM);
-            let problem = format!(
-                "a finger of {at_pad:.2} N/mm in {name} at its pad cannot turn about a centre {:.1} mm \
-                 beside it at {tilting:.2} N m/rad: that alone gives way at {turning:.2} N/mm; bring \
-                 finger.rcc_mm nearer to the pad, or use --finger-model paper",
-                lever / MM
-            );
-            Err(FingerError::Unfit { file: self.printed.file.clone(), problem })
-        };
-        let in_y = at_centre("compliance", at_pad.compliance, below)?;
-        let in_z = at_centre("assembly", at_pad.assembly, ahead)?;
-        // x at the pad = x at the centre + ry below + rz ahead.
-        let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-        let across = to_pad.transpose() * self.across * to_pad;
-        // The stiffness on all six axes at the centre.
-        let mut matrix = Matrix6::zeros();
-        (matrix[(1, 1)], matrix[(2, 2)], matrix[(3, 3)]) = (1.0 / in_y, 1.0 / in_z, tilting);
-        for (i, row) in ACROSS.into_iter().enumerate() {
-            for (j, column) in ACROSS.into_iter().enumerate() {
-                matrix[(row, column)] = across[(i, j)];
-            }
+/// The finger that is so stiff at the pad, from the stiffness computed in its `plane` and, of x, ry and
+/// rz at the pad's middle, `across` it; the part's `shoulder` lies so far above the TCP, m.
+///
+/// # Errors
+/// If turning about the centre alone gives way by more than that.
+pub(super) fn finger(
+    printed: &PrintedFinger,
+    plane: PlanarStiffness,
+    across: Matrix3<f64>,
+    shoulder: f64,
+    at_pad: AtPad,
+    given: Given,
+) -> Result<Finger, FingerError> {
+    let pad = Pad::of(&printed.outline);
+    let middle = pad.middle(shoulder);
+    let rcc = given.rcc.unwrap_or(plane.centre_below_pad() - middle);
+    let (below, ahead) = (rcc + middle, plane.centre_in_front());
+    let tilting = given.tilting.unwrap_or(plane.tilting());
+    // Compliances at the centre, m/N.
+    let at_centre = |name, stiffness: f64, lever: f64| {
+        let centre = 1.0 / stiffness - lever * lever / tilting;
+        if centre > 0.0 {
+            return Ok(centre);
         }
-        Ok(Finger {
-            compliance: matrix[(1, 1)],
-            assembly: matrix[(2, 2)],
-            depth: matrix[(0, 0)],
-            rotation: [tilting, matrix[(4, 4)], matrix[(5, 5)]],
-            rcc,
-            ahead,
-            pad,
-            coupling: Coupling::of(&matrix),
-            ..Finger::new(at_pad.compliance, at_pad.assembly)
-        })
+        let (at_pad, turning) = (stiffness / N_PER_MM, tilting / (lever * lever) / N_PER_MM);
+        let problem = format!(
+            "a finger of {at_pad:.2} N/mm in {name} at its pad cannot turn about a centre {:.1} mm \
+             beside it at {tilting:.2} N m/rad: that alone gives way at {turning:.2} N/mm; bring \
+             finger.rcc_mm nearer to the pad, or use --finger-model paper",
+            lever / MM
+        );
+        Err(FingerError::Unfit { file: printed.file.clone(), problem })
+    };
+    let in_y = at_centre("compliance", at_pad.compliance, below)?;
+    let in_z = at_centre("assembly", at_pad.assembly, ahead)?;
+    // x at the pad = x at the centre + ry below + rz ahead.
+    let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+    let across = to_pad.transpose() * across * to_pad;
+    // The stiffness on all six axes at the centre.
+    let mut matrix = Matrix6::zeros();
+    (matrix[(1, 1)], matrix[(2, 2)], matrix[(3, 3)]) = (1.0 / in_y, 1.0 / in_z, tilting);
+    for (i, row) in ACROSS.into_iter().enumerate() {
+        for (j, column) in ACROSS.into_iter().enumerate() {
+            matrix[(row, column)] = across[(i, j)];
+        }
     }
+    Ok(Finger {
+        compliance: matrix[(1, 1)],
+        assembly: matrix[(2, 2)],
+        depth: matrix[(0, 0)],
+        rotation: [tilting, matrix[(4, 4)], matrix[(5, 5)]],
+        rcc,
+        ahead,
+        pad,
+        coupling: Coupling::of(&matrix),
+        ..Finger::new(at_pad.compliance, at_pad.assembly)
+    })
 }
 
 /// Places of x, ry and rz among the six axes.
@@ -142,15 +116,10 @@ const ACROSS: [usize; 3] = [0, 4, 5];
 #[cfg(test)]
 mod tests {
     use super::*;
-    use input::shipped::FINGERS;
     use nalgebra::Vector3;
 
     const SHOULDER: f64 = 3.5 * MM;
     const AT_PAD: AtPad = AtPad { compliance: 2.6e3, assembly: 45e3 };
-
-    fn printed() -> PrintedFinger {
-        PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
-    }
 
     /// Springs that sit so far below and in front of the pad, and a plate.
     fn stiffness(below: f64, ahead: f64, tilting: f64) -> (PlanarStiffness, Matrix3<f64>) {
@@ -163,10 +132,16 @@ mod tests {
 
     fn finger(at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
         let (plane, across) = stiffness(8.0 * MM, -2.0 * MM, 2.5);
-        Computed { printed: &printed(), plane, across, shoulder: SHOULDER }.finger(at_pad, given)
+        super::finger(
+            &crate::fixtures::finger_file().finger,
+            plane,
+            across,
+            SHOULDER,
+            at_pad,
+            given,
+        )
     }
 
-    /// Compliance of a finger at the middle of its pad, the finger at -y.
     fn at_pad_middle(finger: &Finger) -> Matrix6<f64> {
         let springs = finger.springs().map(|spring| spring.stiffness);
         let stiffness = finger.coupling.unwrap().stiffness(springs, -1.0);

@@ -17,8 +17,7 @@ pub struct FingerFile {
     pub finger: PrintedFinger,
 }
 
-/// Whether a key sets a number of a finger file: it names a table of it. (The numbers of a
-/// finger's springs, as `finger.rcc_mm`, stand in no table.)
+/// Whether a key sets a number of a finger file: in a table, as no number of its springs is.
 pub fn is_shape(key: &str) -> bool {
     key.strip_prefix("finger.").is_some_and(|path| path.contains('.'))
 }
@@ -50,20 +49,16 @@ impl FingerFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use input::shipped::FINGERS;
+    use crate::fixtures::finger_file;
     use input::units::MM;
 
-    fn finray9() -> FingerFile {
-        FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
-    }
-
     fn with(key: &str, value: f64) -> Result<PrintedFinger, InputError> {
-        finray9().with(&Design([(key.to_owned(), value)].into()))
+        finger_file().with(&Design([(key.to_owned(), value)].into()))
     }
 
     #[test]
     fn a_design_sets_what_it_names_and_nothing_else() {
-        let file = finray9();
+        let file = finger_file();
         assert_eq!(file.with(&Design::infill(20.0, 10.0)).unwrap(), file.finger);
         assert_eq!(with("finger.rcc_mm", 3.0).unwrap(), file.finger);
         let mut expected = file.finger.clone();

@@ -1,7 +1,7 @@
 //! Where the springs of a finger come from that were not measured: the paper, or its ribs.
 
 use super::Finger;
-use super::computed::{AtPad, Computed, Given, Touching};
+use super::computed::{self, AtPad, Given};
 use crate::finger::file::{FingerFile, is_shape};
 use crate::space::{DIRECTION_KEY, Design};
 use crate::task::Task;
@@ -51,8 +51,6 @@ pub enum FingerSource {
 pub struct ComputedFingers {
     /// File of shape and material.
     pub file: FingerFile,
-    /// Contact surfaces that the computed stiffness assumes.
-    pub touching: Touching,
     known: Known,
 }
 
@@ -127,8 +125,8 @@ impl FingerSource {
 
 impl ComputedFingers {
     /// Fingers of a file, with its rib phase.
-    pub fn new(file: FingerFile, touching: Touching) -> Self {
-        ComputedFingers { file, touching, known: Known::default() }
+    pub fn new(file: FingerFile) -> Self {
+        ComputedFingers { file, known: Known::default() }
     }
 
     /// The stiffness of a design from its ribs, computed once; NaN of the infill is refused.
@@ -150,14 +148,13 @@ impl ComputedFingers {
             return Err(FingerError::Coupled { task: task.name.clone() });
         }
         let computed = self.stiffness(design)?;
-        let mut plane = *self.touching.of(&computed);
+        // Pad and roof are glued to the part: `docs/notes/finger.md`.
+        let mut plane = computed.pad_and_roof;
         if design.0.keys().any(|key| is_shape(key)) {
-            // Fingers that nobody has measured: none may be refused because measured over computed
-            // stiffness of others does not suit its centre.
+            // Not measured: the ratio of others may not make their centre impossible.
             plane = plane.corrected(at_pad.compliance, at_pad.assembly).unwrap_or(plane);
         }
         let (printed, across) = (&self.file.with(design)?, computed.cross.matrix);
-        let shoulder = task.grip.shoulder();
-        Computed { printed, plane, across, shoulder }.finger(at_pad, given)
+        computed::finger(printed, plane, across, task.grip.shoulder(), at_pad, given)
     }
 }

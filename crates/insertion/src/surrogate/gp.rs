@@ -19,8 +19,7 @@
 //! likelihood: no random restarts, so the fit is the same on every run.
 
 use super::link::{Link, Sum};
-use super::standard::Standard;
-use super::{Estimate, Fitted, Measured, infills};
+use super::{Estimate, Fitted, Measured, Standard, infills};
 use crate::stiffness::{Axis, Infill};
 use ask_tell::process::{Process, matern52};
 use input::units::DEG;
@@ -36,7 +35,6 @@ pub(super) const READING_SD: f64 = 0.01;
 /// Densities below this are taken as this, percent: the law diverges at 0.
 const LEAST_DENSITY: f64 = 1.0;
 
-/// Hyperparameters, chosen by likelihood.
 #[derive(Debug, Clone, Copy)]
 struct Setting {
     /// Of the density in the feature.
@@ -88,7 +86,6 @@ pub(super) fn fit_ratio(ratios: &Measured) -> Option<PhysicalProcess<1>> {
     fit_about(Link { sum: Sum::Product, scale: None }, &[1.0], ratios)
 }
 
-/// Maximum likelihood over the grid.
 fn fit_about<const P: usize>(
     link: Link,
     exponents: &[f64],
@@ -127,7 +124,6 @@ impl<const P: usize> PhysicalProcess<P> {
     }
 }
 
-/// Terms of the mean and place in the process.
 fn scaled<const P: usize>(row: [f64; 3], scales: &[Standard; 3], theta: f64) -> ([f64; P], Place) {
     let [feature, u, v]: [f64; 3] = std::array::from_fn(|i| scales[i].apply(row[i]));
     (std::array::from_fn(|term| if term == 0 { 1.0 } else { feature }), [theta * u, theta * v])

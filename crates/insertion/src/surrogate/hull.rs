@@ -17,7 +17,6 @@ pub(super) struct Hull {
 const TOLERANCE: f64 = 1e-9;
 
 impl Hull {
-    /// The hull of at least one point.
     pub fn new(points: &[Infill]) -> Self {
         let bound = |axis: usize, pick: fn(f64, f64) -> f64| {
             points.iter().map(|p| p[axis]).reduce(pick).unwrap_or(0.0)

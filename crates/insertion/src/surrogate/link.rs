@@ -32,10 +32,8 @@ impl Link {
         Link { sum, scale: Some(smallest / 4.0) }
     }
 
-    /// The identity.
     pub const IDENTITY: Link = Link { sum: Sum::Parallel, scale: None };
 
-    /// From stiffness (N/m) to the linear scale.
     pub fn forward(self, stiffness: f64) -> f64 {
         let q = match self.sum {
             Sum::Parallel => stiffness,

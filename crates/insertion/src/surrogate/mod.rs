@@ -1,7 +1,6 @@
 //! From infill to stiffness: models fitted to measured fingers at start-up.
 //!
-//! The measurements are per finger. Three steps, once per axis (assembly z,
-//! compliance y), of at least seven fingers:
+//! Three steps, once per axis (assembly z, compliance y), of at least seven fingers:
 //!
 //! 1. fit each candidate of [`ModelKind`] to all measured designs;
 //! 2. leave each design out in turn, refit everything (link, exponent,
@@ -9,34 +8,28 @@
 //! 3. keep the candidate with the smallest mean absolute percentage error.
 //!
 //! Of fewer than seven fingers the models are of measured / computed stiffness: the ribs give the
-//! shape ([`Computed`]), the fingers its scale (`docs/notes/finger.md`).
+//! shape, the fingers its scale (`docs/notes/finger.md`).
 //!
 //! Nothing here is random, so equal measurements give bit-identical models.
 
 mod computed;
 mod gp;
 mod hull;
-mod kind;
 mod link;
-mod loo;
 mod model;
 mod ridge;
-mod row;
-mod scale;
-mod standard;
 #[cfg(test)]
 mod tests;
 
 use crate::stiffness::{Axis, Infill};
+use input::units::N_PER_MM;
 use linfa::prelude::Dataset;
 use ndarray::{Array1, Array2, Ix1};
 use rayon::prelude::*;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use computed::Computed;
-pub use kind::ModelKind;
-pub use loo::Loo;
-pub use model::{ENOUGH, Model, fit};
-pub(crate) use row::null_is_nan;
+pub use model::{ENOUGH, Loo, Model, ModelKind, fit};
 
 /// A value with its standard deviation, both in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,9 +40,9 @@ pub struct Estimate {
     pub sd: f64,
 }
 
-/// Predicted stiffness of one finger. Written in the one form of `row.rs`.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(into = "row::StiffnessRow", from = "row::StiffnessRow")]
+/// Predicted stiffness of one finger, written as a `StiffnessRow`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(into = "StiffnessRow", from = "StiffnessRow")]
 pub struct Prediction {
     /// In the compliance direction (y), N/m.
     pub compliance: Estimate,
@@ -80,6 +73,53 @@ impl Prediction {
     }
 }
 
+/// A [`Prediction`] in N/mm, to six decimals.
+#[derive(Serialize, Deserialize)]
+struct StiffnessRow {
+    #[serde(deserialize_with = "null_is_nan")]
+    compliance_n_per_mm: f64,
+    #[serde(deserialize_with = "null_is_nan")]
+    compliance_sd_n_per_mm: f64,
+    #[serde(deserialize_with = "null_is_nan")]
+    assembly_n_per_mm: f64,
+    #[serde(deserialize_with = "null_is_nan")]
+    assembly_sd_n_per_mm: f64,
+    #[serde(deserialize_with = "null_is_nan")]
+    hull_distance: f64,
+    inside_hull: bool,
+}
+
+/// JSON has no NaN: it is written as null.
+pub(crate) fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
+}
+
+impl From<Prediction> for StiffnessRow {
+    fn from(stiffness: Prediction) -> Self {
+        // To a millionth of a N/mm, so that what is read back is written alike.
+        let n_per_mm = |n_per_m: f64| (n_per_m / N_PER_MM * 1e6).round() / 1e6;
+        StiffnessRow {
+            compliance_n_per_mm: n_per_mm(stiffness.compliance.mean),
+            compliance_sd_n_per_mm: n_per_mm(stiffness.compliance.sd),
+            assembly_n_per_mm: n_per_mm(stiffness.assembly.mean),
+            assembly_sd_n_per_mm: n_per_mm(stiffness.assembly.sd),
+            hull_distance: stiffness.hull_distance,
+            inside_hull: stiffness.inside_hull(),
+        }
+    }
+}
+
+impl From<StiffnessRow> for Prediction {
+    fn from(row: StiffnessRow) -> Self {
+        let estimate = |mean: f64, sd: f64| Estimate { mean: mean * N_PER_MM, sd: sd * N_PER_MM };
+        Prediction {
+            compliance: estimate(row.compliance_n_per_mm, row.compliance_sd_n_per_mm),
+            assembly: estimate(row.assembly_n_per_mm, row.assembly_sd_n_per_mm),
+            hull_distance: row.hull_distance,
+        }
+    }
+}
+
 /// Designs (density in percent, direction in degrees) and their stiffness along one axis, N/m.
 type Measured = Dataset<f64, f64, Ix1>;
 
@@ -87,17 +127,14 @@ fn measured(infills: &[Infill], stiffness: &[f64]) -> Measured {
     Dataset::new(Array2::from(infills.to_vec()), Array1::from(stiffness.to_vec()))
 }
 
-/// The infill of each design.
 fn infills(measured: &Measured) -> impl Iterator<Item = Infill> {
     measured.records().rows().into_iter().map(|row| [row[0], row[1]])
 }
 
-/// A fitted model of one axis; stiffness in N/m.
 trait Fitted: std::fmt::Debug + Send + Sync {
     /// Mean and standard deviation for a finger yet to be printed.
     fn predict(&self, infill: Infill) -> Estimate;
 
-    /// Its parameters, in words.
     fn describe(&self) -> String;
 }
 
@@ -116,4 +153,29 @@ fn left_out(
         folds.into_par_iter().map(|fold| one(fold).unwrap_or(nothing)).collect();
     predicted.resize(count, nothing);
     predicted
+}
+
+/// Shift and scale that bring values to mean 0 and standard deviation 1.
+#[derive(Debug, Clone, Copy)]
+struct Standard {
+    /// Mean of the values.
+    pub mean: f64,
+    /// Their standard deviation; 1 of values that are all alike.
+    pub sd: f64,
+}
+
+impl Standard {
+    /// Of these values, their variance the sum of squares over as many less `lost`.
+    pub fn of(values: &[f64], lost: usize) -> Self {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+        let variance = squares / (n - lost as f64);
+        Standard { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }
+    }
+
+    /// A value in standard deviations about the mean.
+    pub fn apply(self, value: f64) -> f64 {
+        (value - self.mean) / self.sd
+    }
 }

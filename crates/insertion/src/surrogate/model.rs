@@ -1,12 +1,133 @@
-//! The chosen model of each axis, and the choice.
+//! The candidates for the model of each axis, their leave-one-out errors, and the choice.
 
 use super::hull::Hull;
-use super::loo::{Data, Loo};
-use super::{Computed, Estimate, Fitted, ModelKind, Prediction};
-use crate::stiffness::check_all;
-use crate::stiffness::{Axis, Infill, Measurement, SurrogateError};
+use super::link::{Link, Sum};
+use super::{
+    Computed, Estimate, Fitted, Measured, Prediction, computed, gp, left_out, measured, ridge,
+};
+use crate::stiffness::{Axis, Infill, Measurement, SurrogateError, check_all};
 use finray::FingerError;
 use finray::printed::PrintedFinger;
+use input::units::N_PER_MM;
+
+/// A model of one axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ModelKind {
+    /// `k = a + b density + c direction` by least squares: what the others are
+    /// measured against. Never chosen, since it turns negative outside the data.
+    Linear,
+    /// The same terms with a ridge penalty, through a link that stays positive.
+    RidgeLinear,
+    /// All terms up to second degree with a ridge penalty, through the same link.
+    RidgeQuadratic,
+    /// A Gaussian process about a physical mean.
+    GaussianProcess,
+    /// The computed stiffness times one number.
+    ComputedScale,
+    /// A Gaussian process of the logarithm of measured / computed about one number.
+    ComputedProcess,
+}
+
+impl ModelKind {
+    /// The models that know nothing of ribs, simplest first.
+    pub const MEASURED: [ModelKind; 4] = [
+        ModelKind::Linear,
+        ModelKind::RidgeLinear,
+        ModelKind::RidgeQuadratic,
+        ModelKind::GaussianProcess,
+    ];
+
+    /// A short name for tables.
+    pub fn label(self) -> &'static str {
+        match self {
+            ModelKind::Linear => "linear (reference)",
+            ModelKind::RidgeLinear => "ridge, degree 1",
+            ModelKind::RidgeQuadratic => "ridge, degree 2",
+            ModelKind::GaussianProcess => "Gaussian process, physical mean",
+            ModelKind::ComputedScale => "computed, scaled",
+            ModelKind::ComputedProcess => "Gaussian process, computed mean",
+        }
+    }
+}
+
+/// Fits one model on one axis; of a computed kind to ratios of measured and computed stiffness.
+fn fit_axis(axis: Axis, kind: ModelKind, measured: &Measured) -> Option<Box<dyn Fitted>> {
+    fn boxed<F: Fitted + 'static>(fitted: Option<F>) -> Option<Box<dyn Fitted>> {
+        fitted.map(|fitted| Box::new(fitted) as Box<dyn Fitted>)
+    }
+    let positive = Link::new(Sum::Parallel, measured.targets());
+    match kind {
+        ModelKind::Linear => boxed(ridge::fit(measured, 1, Link::IDENTITY, &[0.0])),
+        ModelKind::RidgeLinear => boxed(ridge::fit(measured, 1, positive, &ridge::PENALTIES)),
+        ModelKind::RidgeQuadratic => boxed(ridge::fit(measured, 2, positive, &ridge::PENALTIES)),
+        ModelKind::GaussianProcess => boxed(gp::fit(axis, measured)),
+        ModelKind::ComputedScale => boxed(computed::fit(axis, measured)),
+        ModelKind::ComputedProcess => boxed(gp::fit_ratio(measured)),
+    }
+}
+
+/// Leave-one-out error of one model on one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loo {
+    /// The axis.
+    pub axis: Axis,
+    /// The model.
+    pub model: ModelKind,
+    /// Root mean square error, N/mm; NaN if the model could not be fitted.
+    pub rmse_n_per_mm: f64,
+    /// Mean absolute error relative to the measured stiffness, percent.
+    pub mean_absolute_percent: f64,
+    /// Root mean square of error / predicted standard deviation: above 1 the model is too sure.
+    pub standardised_rms: f64,
+    /// Prediction for each design when it is left out, N/m, in input order.
+    pub left_out: Vec<f64>,
+    /// Whether the program uses this model on this axis.
+    pub chosen: bool,
+}
+
+struct Data {
+    axis: Axis,
+    /// Stiffness, N/m; of computed kinds measured / computed.
+    measured: Measured,
+    /// Unit of each design's value, N/m.
+    units: Vec<f64>,
+}
+
+impl Data {
+    /// Of these measurements, in units of each.
+    fn new(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
+        let infills: Vec<_> = measurements.iter().map(Measurement::infill).collect();
+        let values = measurements.iter().zip(&units).map(|(m, unit)| m.stiffness(axis) / unit);
+        Data { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }
+    }
+
+    /// A model of all designs.
+    fn fit(&self, kind: ModelKind) -> Option<Box<dyn Fitted>> {
+        fit_axis(self.axis, kind, &self.measured)
+    }
+
+    /// Fits `kind` without each design in turn and predicts that design.
+    fn leave_one_out(&self, kind: ModelKind) -> Loo {
+        let count = self.measured.targets().len();
+        let predicted = left_out(&self.measured, |others, infill| {
+            Some(fit_axis(self.axis, kind, others)?.predict(infill))
+        });
+        let mean = |term: &dyn Fn(f64, f64, f64) -> f64| {
+            let terms = predicted.iter().zip(self.measured.targets()).zip(&self.units);
+            let terms = terms.map(|((e, &k), unit)| term(e.mean * unit, e.sd * unit, k * unit));
+            terms.sum::<f64>() / count as f64
+        };
+        Loo {
+            axis: self.axis,
+            model: kind,
+            rmse_n_per_mm: mean(&|m, _, k| (m - k).powi(2)).sqrt() / N_PER_MM,
+            mean_absolute_percent: 100.0 * mean(&|m, _, k| (m / k - 1.0).abs()),
+            standardised_rms: mean(&|m, sd, k| ((m - k) / sd).powi(2)).sqrt(),
+            left_out: predicted.iter().zip(&self.units).map(|(e, unit)| e.mean * unit).collect(),
+            chosen: false,
+        }
+    }
+}
 
 /// Fewest designs that a model is fitted to without computing any: the quadratic has six
 /// terms, and a leave-one-out error needs one design more than that.
@@ -20,7 +141,6 @@ pub struct Model {
     /// The measurements it was fitted to.
     pub measurements: Vec<Measurement>,
     hull: Hull,
-    /// By axis.
     chosen: [Chosen; 2],
     /// Leave-one-out errors: one row per axis and model, assembly first.
     pub loo: Vec<Loo>,
@@ -74,7 +194,7 @@ fn choose(
     kinds: &[ModelKind],
 ) -> Result<(Chosen, Vec<Loo>), SurrogateError> {
     let mut loo: Vec<Loo> = kinds.iter().map(|&kind| data.leave_one_out(kind)).collect();
-    let unfittable = SurrogateError::Unfittable { axis: axis.label() };
+    let unfittable = SurrogateError::Unfittable(axis.label());
     // A single finger leaves no error, and no choice.
     let eligible = |row: &&mut Loo| match row.model {
         ModelKind::Linear => false,

@@ -7,15 +7,13 @@
 //! as it is, and along axes that are orthogonal one sweep of coordinate descent is exact.
 
 use super::link::Link;
-use super::standard::Standard;
-use super::{Estimate, Fitted, Measured, infills, left_out};
+use super::{Estimate, Fitted, Measured, Standard, infills, left_out};
 use crate::stiffness::Infill;
 use linfa::prelude::{Dataset, Fit};
 use linfa_elasticnet::ElasticNet;
 use nalgebra::{DMatrix, DVector};
 use ndarray::{Array1, Array2};
 
-/// Penalties tried, in units of the standardised terms.
 pub(super) const PENALTIES: [f64; 4] = [1e-6, 1e-4, 1e-3, 1e-2];
 
 /// A fitted polynomial in (density, direction) on the scale of its link.
@@ -33,7 +31,6 @@ pub(super) struct Ridge {
     penalty: f64,
 }
 
-/// The terms of a polynomial without its constant.
 fn terms(infill: Infill, degree: u8) -> Vec<f64> {
     // About the middle of the printable range, so that terms are less alike.
     let (u, v) = (infill[0] / 20.0 - 1.0, infill[1] / 20.0 - 1.0);
@@ -120,8 +117,7 @@ mod tests {
     use crate::stiffness::parse;
     use input::shipped::STIFFNESS;
 
-    /// At the smallest penalised square error its gradient is 0: every term's product with the
-    /// residuals is the penalty's pull on its coefficient.
+    /// At the minimum a term's product with the residuals is the penalty's pull on its coefficient.
     #[test]
     fn one_sweep_along_the_principal_axes_is_the_minimum() {
         let shipped = parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();

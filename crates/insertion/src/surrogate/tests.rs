@@ -230,7 +230,7 @@ fn a_density_that_cannot_be_printed_is_named() {
 /// The scatter expected of another material is that of the shipped one.
 #[test]
 fn the_shipped_fingers_scatter_about_the_computed_ones_as_said() {
-    for (axis, said) in scale::SCATTER {
+    for (axis, said) in super::computed::SCATTER {
         let shipped = shipped();
         let log = |m: &Measurement| {
             (m.stiffness(axis) / computed().stiffness(axis, m.infill()).unwrap()).ln()
@@ -238,7 +238,7 @@ fn the_shipped_fingers_scatter_about_the_computed_ones_as_said() {
         let logs: Vec<f64> = shipped.iter().map(log).collect();
         let mean = logs.iter().sum::<f64>() / logs.len() as f64;
         let squares: f64 = logs.iter().map(|each| (each - mean).powi(2)).sum();
-        let scatter = (squares / scale::FREEDOM).sqrt();
+        let scatter = (squares / super::computed::FREEDOM).sqrt();
         assert!((scatter - said).abs() < 0.005, "{axis:?}: {scatter}");
     }
 }

@@ -1,6 +1,7 @@
-//! Chamfers and radii along the edges of a box: the hull that they leave.
+//! Chamfers and radii along the edges of a box: the hull they leave, and round edges for a task.
 
 use super::geometry::{self, Solid};
+use super::{Part, Task};
 use input::units::MM;
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
@@ -46,32 +47,23 @@ pub fn named(text: &str) -> Option<Vec<Edge>> {
     Some(sides.map(|side| [first, side]).collect())
 }
 
-/// Whether two edges are the same.
 pub fn same(a: &Edge, b: &Edge) -> bool {
     a == b || *a == [b[1], b[0]]
 }
 
-/// All points with `normal . p <= distance`.
-struct HalfSpace {
-    normal: Vector3<f64>,
-    distance: f64,
-}
+/// All points with `normal . p <= distance`: normal and distance.
+type HalfSpace = (Vector3<f64>, f64);
 
-impl HalfSpace {
-    fn through(point: &Vector3<f64>, normal: Vector3<f64>) -> Self {
-        HalfSpace { normal, distance: normal.dot(point) }
-    }
+fn through(point: &Vector3<f64>, normal: Vector3<f64>) -> HalfSpace {
+    (normal, normal.dot(point))
 }
 
 impl Face {
     fn outward(self) -> Vector3<f64> {
-        let mut normal = Vector3::zeros();
-        normal[self.axis] = if self.high { 1.0 } else { -1.0 };
-        normal
+        Vector3::ith(self.axis, if self.high { 1.0 } else { -1.0 })
     }
 }
 
-/// Problem of cuts that take more than a face has.
 const ROOM: &str = "take off more than the part has; make them smaller";
 /// Problem of so thin, or so small, a part that corners of the hull would be lost.
 const THIN: &str = "need a part that is not so thin or so small; leave its edges sharp";
@@ -90,8 +82,7 @@ pub fn cut(
     }
     let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
     let corner = |face: Face| if face.high { max } else { min };
-    let mut spaces: Vec<_> =
-        faces.map(|face| HalfSpace::through(corner(face), face.outward())).collect();
+    let mut spaces: Vec<_> = faces.map(|face| through(corner(face), face.outward())).collect();
     for ([first, second], cut) in edges {
         let mut at = *corner(*first);
         at[second.axis] = corner(*second)[second.axis];
@@ -129,14 +120,14 @@ fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
 fn flats(spaces: &mut Vec<HalfSpace>, [a, b]: [Vector3<f64>; 2], edge: &Vector3<f64>, cut: Cut) {
     match cut {
         Cut::Chamfer(leg) => {
-            spaces.push(HalfSpace::through(&(edge - a * leg), (a + b).normalize()));
+            spaces.push(through(&(edge - a * leg), (a + b).normalize()));
         }
         Cut::Radius(radius) => {
             let centre = edge - (a + b) * radius;
             for i in 1..=FLATS {
                 let turn = FRAC_PI_2 * i as f64 / (FLATS + 1) as f64;
                 let normal = a * libm::cos(turn) + b * libm::sin(turn);
-                spaces.push(HalfSpace::through(&(centre + normal * radius), normal));
+                spaces.push(through(&(centre + normal * radius), normal));
             }
         }
     }
@@ -149,8 +140,8 @@ fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
         for (j, b) in spaces.iter().enumerate().skip(i + 1) {
             for c in &spaces[j + 1..] {
                 let Some(point) = meeting([a, b, c]) else { continue };
-                let inside = |space: &HalfSpace| {
-                    space.normal.dot(&point.coords) <= space.distance + SAME / 10.0
+                let inside = |(normal, distance): &HalfSpace| {
+                    normal.dot(&point.coords) <= distance + SAME / 10.0
                 };
                 if spaces.iter().all(inside) && !found.iter().any(|p| (p - point).norm() < SAME) {
                     found.push(point);
@@ -163,12 +154,66 @@ fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
 
 /// The point that three planes share, unless they meet in a line or nowhere.
 fn meeting(planes: [&HalfSpace; 3]) -> Option<Point3<f64>> {
-    let normals = Matrix3::from_rows(&planes.map(|plane| plane.normal.transpose()));
+    let normals = Matrix3::from_rows(&planes.map(|(normal, _)| normal.transpose()));
     if normals.determinant().abs() < 1e-6 {
         return None;
     }
-    let distances = Vector3::from(planes.map(|plane| plane.distance));
+    let distances = Vector3::from(planes.map(|(_, distance)| *distance));
     normals.try_inverse().map(|inverse| Point3::from(inverse * distances))
+}
+
+/// Boxes that begin so near to the plug's tip lead in, m.
+const LEAD: f64 = 2.0 * MM;
+/// Largest radius, as a share of a box's smallest side: sheet metal is round at its edge.
+const MOST: f64 = 0.49;
+/// A wall that is so near to the opening is its wall, m.
+const BESIDE: f64 = 0.15 * MM;
+
+impl Task {
+    /// The same with a radius, m, on the edges that lead in: those at the bottom of the plug's boxes
+    /// at its tip, and those of the socket's boxes along the opening; of a thin box, what its
+    /// thickness allows. What is no box stays as it is.
+    pub fn rounded(&self, radius: f64) -> Task {
+        let mut task = self.clone();
+        let corners = self.plug.parts.iter().flat_map(|part| part.solid.corners());
+        let tip = corners.map(|p| p.z).fold(f64::INFINITY, f64::min);
+        for part in &mut task.plug.parts {
+            round(part, radius, |min, _| if min.z < tip + LEAD { named("-z") } else { None });
+        }
+        let [x, y] = self.opening;
+        for part in &mut task.socket {
+            round(part, radius, |min, max| {
+                let walls = [
+                    (max.x - x[0], "+x+z"),
+                    (min.x - x[1], "-x+z"),
+                    (max.y - y[0], "+y+z"),
+                    (min.y - y[1], "-y+z"),
+                ];
+                let beside =
+                    walls.iter().filter(|(off, _)| max.z.abs() < SAME && off.abs() < BESIDE);
+                Some(beside.filter_map(|(_, edge)| named(edge)).flatten().collect())
+            });
+        }
+        task
+    }
+}
+
+/// Rounds the edges of a box that `which` finds by its smallest and largest corner.
+fn round(
+    part: &mut Part,
+    radius: f64,
+    which: impl Fn(&Vector3<f64>, &Vector3<f64>) -> Option<Vec<Edge>>,
+) {
+    let Solid::Box { min, max } = &part.solid else { return };
+    let edges = which(min, max).unwrap_or_default();
+    let radius = radius.min(MOST * (max - min).min());
+    let cuts: Vec<_> = edges.into_iter().map(|edge| (edge, Cut::Radius(radius))).collect();
+    if cuts.is_empty() {
+        return;
+    }
+    if let Ok(solid) = cut(min, max, &cuts) {
+        part.solid = solid;
+    }
 }
 
 #[cfg(test)]
@@ -184,7 +229,6 @@ mod tests {
         super::cut(&Vector3::zeros(), &(Vector3::from(SIZE) * MM), &edges)
     }
 
-    /// Volume that is missing, mm3.
     fn missing(text: &str, cut: Cut) -> f64 {
         let [x, y, z] = SIZE;
         x * y * z - volume(&left(text, cut).unwrap()) / (MM * MM * MM)
@@ -256,5 +300,25 @@ mod tests {
         for wrong in ["", "z", "-", "-q", "+x-x", "-z+", "-z+xy", "+x+y+z", "\u{e9}z"] {
             assert_eq!(named(wrong), None, "{wrong}");
         }
+    }
+
+    /// The key's four edges at the tip and the slot's four at its mouth are round, nothing else is.
+    #[test]
+    fn the_edges_that_lead_in_are_rounded() {
+        let task = crate::fixtures::task("ket8");
+        let round = task.rounded(0.3 * MM);
+        let missing = |before: &Part, after: &Part| volume(&before.solid) - volume(&after.solid);
+        // Along the 30 mm about the tip, but for the corners, where two cuts meet.
+        let along = 30.0 * (1.0 - PI / 4.0) * 0.09;
+        let tip = missing(&task.plug.parts[0], &round.plug.parts[0]) / (MM * MM * MM);
+        assert!((tip / along - 1.0).abs() < 0.05, "{tip} of {along} mm3");
+        for (before, after) in task.socket.iter().zip(&round.socket) {
+            let less = missing(before, after) > 0.0;
+            assert_eq!(less, before.name != "floor", "{}", before.name);
+            let inner =
+                |part: &Part| part.solid.corners().iter().map(|p| p.y.abs()).fold(9.0, f64::min);
+            assert!((inner(before) - inner(after)).abs() < SAME, "{}", before.name);
+        }
+        assert_eq!(task.opening, round.opening);
     }
 }

@@ -41,11 +41,6 @@ impl Rcc {
         }
         self.at_zero + self.per_degree * direction_deg
     }
-
-    /// Whether the direction matters.
-    pub fn varies(&self) -> bool {
-        self.per_degree != 0.0
-    }
 }
 
 impl Coupling {
@@ -69,8 +64,7 @@ impl Coupling {
         })))
     }
 
-    /// The stiffness matrix of springs that are coupled so. The finger at +y (`side` +1) is
-    /// the same printed part turned by 180 degrees about z.
+    /// The stiffness of such springs; the finger at +y (`side` +1) is turned by 180° about z.
     pub fn stiffness(&self, springs: [f64; 6], side: f64) -> Matrix6<f64> {
         let flips = [side, side, -1.0, side, side, -1.0];
         Matrix6::from_fn(|i, j| {
@@ -90,17 +84,11 @@ pub(super) struct RawFinger {
 }
 
 #[derive(Deserialize, Clone, Copy)]
-#[serde(untagged, expecting = "a number of mm, or { at_0_deg = mm, per_deg = mm }")]
+#[serde(untagged, deny_unknown_fields)]
+#[serde(expecting = "a number of mm, or { at_0_deg = mm, per_deg = mm }")]
 enum RawRcc {
     Fixed(f64),
-    ByDirection(RawByDirection),
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(deny_unknown_fields)]
-struct RawByDirection {
-    at_0_deg: f64,
-    per_deg: f64,
+    ByDirection { at_0_deg: f64, per_deg: f64 },
 }
 
 #[derive(Deserialize)]
@@ -130,7 +118,7 @@ fn rcc(check: Check<'_>, raw: RawRcc) -> Result<Rcc, InputError> {
     let key = "finger.rcc_mm";
     let rcc = match raw {
         RawRcc::Fixed(mm) => Rcc { at_zero: check.positive(key, mm)? * MM, per_degree: 0.0 },
-        RawRcc::ByDirection(RawByDirection { at_0_deg, per_deg }) => Rcc {
+        RawRcc::ByDirection { at_0_deg, per_deg } => Rcc {
             at_zero: check.positive("finger.rcc_mm.at_0_deg", at_0_deg)? * MM,
             per_degree: check.finite("finger.rcc_mm.per_deg", per_deg)? * MM,
         },

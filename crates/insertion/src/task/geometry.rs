@@ -149,22 +149,32 @@ pub(crate) fn other_axes(axis: usize) -> (usize, usize) {
 }
 
 /// Convex hull of points in a plane, counter-clockwise, by Andrew's monotone chain.
-pub fn convex_outline(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+pub fn convex_outline(points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
+    outline_by(points, |p| *p)
+}
+
+/// As [`convex_outline`], of points whose place in the plane `at` tells.
+pub fn outline_by<P: Copy + PartialEq>(
+    mut points: Vec<P>,
+    at: impl Fn(&P) -> Point2<f64>,
+) -> Vec<P> {
+    let order = |a: Point2<f64>, b: Point2<f64>| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+    points.sort_by(|a, b| order(at(a), at(b)));
     points.dedup();
     if points.len() < 3 {
         return points;
     }
-    let half = |points: &mut dyn Iterator<Item = &Point2<f64>>| {
-        let mut corners: Vec<Point2<f64>> = Vec::new();
-        for &p in points {
-            while let [.., a, b] = corners[..]
-                && cross(a, b, p) <= 0.0
+    let half = |points: &mut dyn Iterator<Item = &P>| {
+        let mut corners: Vec<P> = Vec::new();
+        for p in points {
+            while let [.., a, b] = &corners[..]
+                && cross(at(a), at(b), at(p)) <= 0.0
             {
                 corners.pop();
             }
-            corners.push(p);
+            corners.push(*p);
         }
+        // Its last point begins the other half.
         corners.pop();
         corners
     };
@@ -232,8 +242,7 @@ pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
 /// A hull of less volume is flat, m3.
 const FLAT: f64 = 1e-3 * MM * MM * MM;
 
-/// Volume, centroid and second moments about it of what a closed surface of outward triangles
-/// holds: the sum of the tetrahedra between each and the origin.
+/// Volume, centroid and second moments about it within a closed surface of outward triangles.
 pub fn surface_moments(
     corners: &[Point3<f64>],
     faces: &[[usize; 3]],

@@ -1,13 +1,12 @@
 //! Tasks: plug, socket, grip, friction, search strategy and success, from one TOML file.
 
-pub mod duration;
+pub(crate) mod duration;
 mod edges;
 pub mod finger;
 pub mod geometry;
 mod latch;
 mod raw;
 mod raw_part;
-mod rounded;
 
 pub use geometry::{Part, Solid};
 pub use latch::Latch;

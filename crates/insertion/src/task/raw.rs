@@ -170,7 +170,6 @@ fn check(raw: RawTask, file: &str) -> Result<Task, InputError> {
     })
 }
 
-/// The name becomes part of a folder's name.
 fn name(check: Check<'_>, name: &str) -> Result<(), InputError> {
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if name.is_empty() || !name.chars().all(plain) {

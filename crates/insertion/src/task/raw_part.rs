@@ -127,7 +127,6 @@ fn outline(check: Check<'_>, key: &str, outline: &[[f64; 2]]) -> Result<Vec<[f64
     Ok(outline.iter().map(|p| [p[0] * MM, p[1] * MM]).collect())
 }
 
-/// The solid that is left of a box.
 fn without_edges(
     check: Check<'_>,
     key: &str,

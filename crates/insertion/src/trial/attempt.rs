@@ -2,10 +2,9 @@
 
 use super::cell::{self, Hand, WorkCell};
 use super::classify::{Facts, Placement, classify};
-use super::leading::LeadingEdge;
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
-use super::watch::Watch;
+use super::watch::{LeadingEdge, Watch};
 use super::{NEVER, PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
 use crate::robot::Mounted;
@@ -25,7 +24,6 @@ pub mod driven;
 /// Rest after a move that has none of its own, s.
 const REST: f64 = 0.03;
 
-/// Cause of an early end of an attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Stop {
     Lost,
@@ -45,9 +43,7 @@ impl From<Diverged> for Stop {
 #[derive(Clone)]
 pub(super) struct Attempt<'a> {
     robot: Arc<Mounted>,
-    /// Set when it is to end at once.
     stop: &'a AtomicBool,
-    /// The task under the conditions of this attempt.
     task: Arc<Task>,
     pub cell: WorkCell,
     pub world: Box<dyn World>,
@@ -55,9 +51,7 @@ pub(super) struct Attempt<'a> {
     stage: Stage,
     /// First phase of the search, as far as it has been made already.
     begun: Option<Begun>,
-    /// Turn of the socket, rad.
     pub yaw: f64,
-    /// From the world to the socket.
     pub socket: Pose,
     time: f64,
     /// Grasp point in each finger's frame right after the grasp.
@@ -65,9 +59,7 @@ pub(super) struct Attempt<'a> {
     watch: Watch,
     edge: LeadingEdge,
     phases: Vec<PhaseEnd>,
-    /// Samples, if they are wanted.
     pub trace: Option<Trace>,
-    /// Films it, if that was asked for.
     pub recorder: Option<Recorder>,
 }
 
@@ -209,7 +201,6 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Commands a move and then rests, s.
     fn follow(&mut self, motion: Move, rest: f64) -> Result<(), Stop> {
         let steps = self.steps(motion.duration + rest);
         for i in 1..=steps {
@@ -260,7 +251,6 @@ impl<'a> Attempt<'a> {
         self.follow(Move::new(self.target, to, speed), self.rest_time())
     }
 
-    /// One step of the command, the engine and the monitors.
     fn step(&mut self) -> Result<(), Stop> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(Stop::Interrupted);
@@ -304,7 +294,6 @@ impl<'a> Attempt<'a> {
         points.map(|point| point.seen(&self.socket))
     }
 
-    /// Force of the socket on the plug and its latch.
     fn socket_force(&self) -> ContactForce {
         let mut sum = self.world.contact(self.cell.socket, self.cell.plug);
         if let Some(latch) = self.cell.latch {
@@ -334,7 +323,6 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Shortest rest after a move, s.
     fn rest_time(&self) -> f64 {
         REST.max(self.robot.settling())
     }
@@ -404,11 +392,9 @@ impl<'a> Attempt<'a> {
         self.phases.push(end);
     }
 
-    /// Result of an attempt that ended so.
     pub fn result(self, end: Result<(), Stop>) -> Trial {
         let placement = self.placement();
-        // Judged at rest after the push, or where a bottomed part stopped the robot:
-        // a part that only passes through a good pose may tip on.
+        // At rest, or where a bottomed part stopped the robot: what passes by may tip on.
         let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
         let facts = Facts {
             seated: held && self.stage == Stage::Assembly && placement.seated(&self.task),

@@ -18,7 +18,6 @@ use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 const PICK_UP_HEIGHT: f64 = 10.0 * MM;
 /// Gap between each pad and the plug before the grasp, m.
 const OPENING: f64 = 0.5 * MM;
-/// Mass of a jaw, kg.
 const JAW_MASS: f64 = 0.05;
 /// Gain of the jaw's position servo, N/m (paper, Table "Simulation Inputs").
 const JAW_GAIN: f64 = 1000.0;
@@ -112,11 +111,11 @@ pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) 
     let (motion, springs) = match model {
         Flange::Ideal => return (command, command),
         Flange::Servo(servo) => servo_flange(servo),
-        Flange::Reduced(arm) => (Motion::Mechanism(arm.mass), arm.servo()),
+        Flange::Arm(arm) => (Motion::Mechanism(arm.mass), arm.servo()),
     };
     let flange = scene.body(body("flange", motion, tcp, Vec::new()));
     scene.joint(joint("servo", [command, flange], [Pose::identity(); 2], springs));
-    if let Flange::Reduced(arm) = model {
+    if let Flange::Arm(arm) = model {
         brake(scene, arm, flange, tcp);
     }
     (command, flange)
@@ -166,7 +165,6 @@ fn plug_body(task: &Task, pose: Pose) -> Body {
     body("plug", Motion::Free(inertia), pose, task.plug.rigid().map(Part::geom).collect())
 }
 
-/// The latch's share of the plug's mass, kg.
 fn latch_mass(task: &Task) -> f64 {
     let volume = |part: &Part| geometry::volume(&part.solid);
     let sprung: f64 = task.plug.sprung().map(volume).sum();

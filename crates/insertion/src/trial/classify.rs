@@ -16,7 +16,6 @@ use crate::task::{Stage, Task};
 use contact::scene::Pose;
 use nalgebra::Vector3;
 
-/// Placement of the part against its socket.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placement {
     /// Tip of the plug, task frame, m.
@@ -26,13 +25,11 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// From the plug's pose in the task frame.
     pub fn new(plug: &Pose) -> Self {
         let tilt = (plug * Vector3::z()).z.clamp(-1.0, 1.0).acos();
         Placement { tip: plug.translation.vector, tilt }
     }
 
-    /// Whether it lies where it belongs.
     pub fn seated(&self, task: &Task) -> bool {
         let [x, y] = task.opening;
         // Deep beside the socket is not inserted.
@@ -60,10 +57,8 @@ pub(super) fn within(value: f64, [from, to]: [f64; 2]) -> bool {
     from <= value && value <= to
 }
 
-/// Input of the classification rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Facts {
-    /// In the opening, deep and upright enough, at the end.
     pub seated: bool,
     /// Neither finger has been off it for long at the end.
     pub gripped: bool,

@@ -59,8 +59,7 @@ impl EngineKind {
         <EngineKind as clap::ValueEnum>::from_str(name, false).ok()
     }
 
-    /// The engine with its production step times `factor`, and its settings. The closed formula
-    /// has no engine: another stands in, which nobody asks.
+    /// The engine at `factor` times its step, and its settings; nobody asks the closed formula's.
     fn configured(self, factor: f64) -> (Box<dyn Engine>, toml::Table) {
         // Settings are flat structs of numbers, which TOML can always hold.
         macro_rules! scaled {
@@ -91,8 +90,7 @@ impl EngineKind {
         self.name() != "fake"
     }
 
-    /// Where trials of one task with one robot and such fingers are run, with the engine's step
-    /// times `step_factor`.
+    /// Where trials of one task, robot and pair of fingers run, at `step_factor` times the step.
     ///
     /// # Errors
     /// If they do not go together.

@@ -9,13 +9,12 @@ use std::sync::atomic::AtomicBool;
 
 mod attempt;
 pub mod cell;
-pub mod classify;
-pub mod conditions;
+mod classify;
+mod conditions;
 pub mod engine;
 #[cfg(any(test, feature = "fake-engine"))]
 pub mod fake;
-mod leading;
-pub mod motion;
+mod motion;
 pub mod picture;
 pub mod record;
 pub mod run;
@@ -114,14 +113,13 @@ pub trait Rig: Send + Sync {
         self.hold(Grasp::of(finger))
     }
 
-    /// The trial of such a grasp with the start shifted by `offset` metres along y, filmed from the
-    /// grasp on; `None` if there is nothing to be seen.
+    /// The trial of a grasp, its start shifted by `offset` metres along y, filmed if it can be.
     fn record(&self, _grasp: Grasp<'_>, _offset: f64) -> Option<Recording> {
         None
     }
 
     /// The trial of such a grasp whose moves the caller commands, once it is made whatever becomes of
-    /// the grasp's flag; `None` where nothing is simulated.
+    /// the grasp's flag, if it is simulated.
     fn driven(&self, _grasp: Grasp<'_>) -> Option<Driven> {
         None
     }
@@ -129,8 +127,7 @@ pub trait Rig: Send + Sync {
 
 /// A part held and tilted, ready for a trial at any offset.
 pub trait Grasped: Send + Sync {
-    /// One trial with the start shifted by `offset` metres along y; sampled each `every_s` seconds
-    /// from the search on, if that is asked for and it is simulated.
+    /// One trial with the start shifted by `offset` metres along y; sampled each `every_s` seconds.
     fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>);
 
     /// The trial alone.

@@ -4,23 +4,19 @@ use crate::task::duration::SHORTEST_MOVE_S;
 use contact::scene::Pose;
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
-/// A TCP target: position, and tilt about x.
+/// A TCP target: position, m, and tilt about x, rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tcp {
-    /// Position of the TCP, m.
     pub position: Vector3<f64>,
-    /// Tilt about x, rad.
     pub tilt: f64,
 }
 
 impl Tcp {
-    /// The target as a pose.
     pub fn pose(&self) -> Pose {
         let rotation = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), self.tilt);
         Pose::from_parts(Translation3::from(self.position), rotation)
     }
 
-    /// The target displaced by a vector, m.
     pub fn moved(&self, by: Vector3<f64>) -> Tcp {
         Tcp { position: self.position + by, tilt: self.tilt }
     }
@@ -31,18 +27,15 @@ impl Tcp {
 pub struct Move {
     from: Tcp,
     to: Tcp,
-    /// Time it takes, s.
     pub duration: f64,
 }
 
 impl Move {
-    /// A move at a mean speed (m/s).
     pub fn new(from: Tcp, to: Tcp, speed: f64) -> Self {
         let duration = ((to.position - from.position).norm() / speed).max(SHORTEST_MOVE_S);
         Move { from, to, duration }
     }
 
-    /// A move that takes a given time (s).
     pub fn lasting(from: Tcp, to: Tcp, duration: f64) -> Self {
         Move { from, to, duration: duration.max(SHORTEST_MOVE_S) }
     }

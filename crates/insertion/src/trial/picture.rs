@@ -12,9 +12,7 @@ use input::units::MM;
 use nalgebra::Point2;
 use std::fmt::Write;
 
-/// Scale of the picture, pixels per millimetre.
 const SCALE: f64 = 3.2;
-/// Room about what is drawn, mm.
 const ROOM: f64 = 3.0;
 /// Room for the title above and the legend below, pixels.
 const HEAD: f64 = 44.0;

@@ -11,7 +11,6 @@ use input::units::{DEG, MM};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-/// Time between two frames, s.
 const INTERVAL: f64 = 1e-3;
 
 /// One moment of a trial; task frame.
@@ -132,7 +131,6 @@ pub struct Sample {
     pub slip_mm: f64,
 }
 
-/// Samples taken on the way.
 #[derive(Debug, Clone)]
 pub(super) struct Trace {
     every_s: f64,
@@ -151,7 +149,6 @@ impl Trace {
         time_s > self.next_s - 0.5 * step_s
     }
 
-    /// Keeps a sample and sets the time of the next.
     pub fn take(&mut self, sample: Sample) {
         self.samples.push(sample);
         self.next_s = sample.time_s + self.every_s;

@@ -24,16 +24,9 @@ pub struct EngineRig {
 /// Error of task, robot and engine that do not go together.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
-    /// The robot cannot do the task, or not in time.
-    #[error("the robot `{robot}` on the task `{task}`: {problem}")]
-    Robot {
-        /// Name of the robot.
-        robot: String,
-        /// Name of the task.
-        task: String,
-        /// Defect of the arm, or the phase that takes too long.
-        problem: String,
-    },
+    /// Names of robot and task, and why the robot cannot do it, or not in time.
+    #[error("the robot `{0}` on the task `{1}`: {2}")]
+    Robot(String, String, String),
     /// The engine cannot simulate the two.
     #[error(transparent)]
     Engine(#[from] Unsupported),
@@ -60,11 +53,7 @@ impl EngineRig {
         finger: &Finger,
         engine: Box<dyn Engine>,
     ) -> Result<Self, RigError> {
-        let refused = |problem| RigError::Robot {
-            robot: robot.name.clone(),
-            task: task.name.clone(),
-            problem,
-        };
+        let refused = |problem| RigError::Robot(robot.name.clone(), task.name.clone(), problem);
         let mounted = robot.mount(task.turn, task.strategy.tilt);
         let mounted = mounted.map_err(|error| refused(error.to_string()))?;
         let lead = |phase: &Phase| match Vector3::from(phase.displacement).try_normalize(0.0) {

@@ -1,6 +1,10 @@
-//! Monitors of an attempt: the force of plug and socket, and whether the fingers hold the plug.
+//! Monitors of an attempt: force, grip, and whether the leading edge has found the opening.
 
-use nalgebra::Vector3;
+use super::classify::within;
+use crate::task::Task;
+use contact::scene::Pose;
+use input::units::MM;
+use nalgebra::{Point3, Vector3};
 
 /// Time constant of the force filter, s, as of a wrist sensor: a step's impact is numerics.
 const FORCE_FILTER: f64 = 0.005;
@@ -9,14 +13,10 @@ const LOSS_TIME: f64 = 0.02;
 /// A finger that presses with less is off, N.
 const LOSS_FORCE: f64 = 0.01;
 
-/// Force and grasp monitors of an attempt.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Watch {
-    /// Filtered net force plug-socket, N.
     pub force: Vector3<f64>,
-    /// Largest filtered force in the attempt, N.
     pub peak_force: f64,
-    /// Largest filtered force in the phase, N.
     pub phase_peak: f64,
     /// Whether the leading edge is inside the opening; as it was when the search ended.
     pub entered: bool,
@@ -25,7 +25,6 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Takes in the net force plug-socket over a step of `dt` seconds, N.
     pub fn see_force(&mut self, net: &Vector3<f64>, dt: f64) {
         self.force += (net - self.force) * (dt / FORCE_FILTER);
         self.peak_force = self.peak_force.max(self.force.norm());
@@ -39,13 +38,82 @@ impl Watch {
         }
     }
 
-    /// Whether both fingers have let go.
     pub fn dropped(&self) -> bool {
         self.loose_for.iter().all(|&time| time > LOSS_TIME)
     }
 
-    /// Whether neither finger has let go.
     pub fn gripped(&self) -> bool {
         self.loose_for.iter().all(|&time| time <= LOSS_TIME)
+    }
+}
+
+/// Depth of an edge that is inside, m: more than contacts sink, less than any preload.
+const DEPTH: f64 = 0.15 * MM;
+/// Overlap of an edge that leans on a wall, m: more than contacts sink, less than a clearance.
+const LEANING: f64 = 0.02 * MM;
+
+#[derive(Debug, Clone)]
+pub(super) struct LeadingEdge {
+    /// Plug frame: z from the tip.
+    corners: Vec<Point3<f64>>,
+    opening: [[f64; 2]; 2],
+}
+
+impl LeadingEdge {
+    pub fn new(task: &Task) -> Self {
+        // A latch gives way, and leads nothing.
+        let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
+        LeadingEdge {
+            corners: corners.filter(|corner| corner.z < task.success.depth).collect(),
+            opening: task.opening.map(|[from, to]| [from - LEANING, to + LEANING]),
+        }
+    }
+
+    /// Whether it is inside the opening: its lowest corner is below the top, and no corner on the side
+    /// of the plug that leans down stands over the housing; `plug` is the plug's pose in the task frame.
+    pub fn inside(&self, plug: &Pose) -> bool {
+        // Towards where the plug leans up, in its own frame.
+        let up = plug.inverse_transform_vector(&Vector3::z());
+        let leads = |corner: &&Point3<f64>| corner.x * up.x + corner.y * up.y <= 0.0;
+        let [x, y] = self.opening;
+        let mut lowest = f64::INFINITY;
+        for corner in self.corners.iter().filter(leads) {
+            let place = plug * corner;
+            if !within(place.x, x) || !within(place.y, y) {
+                return false;
+            }
+            lowest = lowest.min(place.z);
+        }
+        lowest < -DEPTH
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::task;
+    use input::units::DEG;
+
+    fn inside(name: &str, at_mm: [f64; 3], tilt_deg: f64) -> bool {
+        let tilt = Pose::rotation(Vector3::x() * tilt_deg * DEG);
+        let [x, y, z] = at_mm.map(|mm| mm * MM);
+        LeadingEdge::new(&task(name)).inside(&(Pose::translation(x, y, z) * tilt))
+    }
+
+    #[test]
+    fn an_edge_over_the_housing_is_not_inside_though_its_latch_is_lower() {
+        for (name, at_mm, expected) in [
+            // Plug and cavity of rj45 are 7 mm wide in x, the plug 0.5 mm off their middle.
+            ("rj45", [-0.5, 0.0, 0.0], true),
+            ("rj45", [2.0, 0.0, -0.1], false),
+            // High over the opening.
+            ("rj45", [-0.5, 0.0, 2.0], false),
+            // The trailing side may stand over the housing.
+            ("ket8", [0.0, 1.0, 0.0], true),
+            ("ket8", [0.0, 20.0, 0.0], false),
+            ("ket8", [0.0, -20.0, 0.0], false),
+        ] {
+            assert_eq!(inside(name, at_mm, 10.0), expected, "{name} {at_mm:?}");
+        }
     }
 }

@@ -1,13 +1,17 @@
 //! F1: a cantilever (Timoshenko 1921, Phil. Mag. 41:744), a frame, and a wall on edge that
 //! bends and twists (Vlasov 1961, Thin-Walled Elastic Beams).
+//!
+//! F2, the patch test (Irons and Razzaque 1972): under any even strain displacements inside and
+//! the work done are exact, whatever the mesh.
 
 use super::super::{CheckRow, Tolerance};
 use finray::condense::{Condensed, Element, Role, condense};
 use finray::elasticity::{PlaneStress, Slab};
 use finray::mesh::Mesh;
 use finray::plate::MindlinPlate;
-use finray::polygon::Ring;
-use nalgebra::{DMatrix, Matrix3, Point2};
+use finray::polygon::{Ring, area};
+use nalgebra::{DMatrix, DVector, Matrix3, Point2};
+use std::collections::BTreeSet;
 
 const E: f64 = 2e9;
 const NU: f64 = 0.4;
@@ -20,23 +24,20 @@ const SHEAR: f64 = 5.0 / 6.0;
 const ON: f64 = 1e-9;
 
 /// Slab of PETG, as deep as the finger.
-pub(super) const SLAB: Slab = Slab { modulus: E, poisson: NU, thickness: DEPTH };
-pub(super) const PLANE: PlaneStress = PlaneStress(SLAB);
+const SLAB: Slab = Slab { modulus: E, poisson: NU, thickness: DEPTH };
+const PLANE: PlaneStress = PlaneStress(SLAB);
 const PLATE: MindlinPlate = MindlinPlate(SLAB);
 
-/// Counter-clockwise rectangle, m.
-pub(super) fn rectangle(x: [f64; 2], y: [f64; 2]) -> Ring {
+fn rectangle(x: [f64; 2], y: [f64; 2]) -> Ring {
     [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])]
         .map(|(x, y)| Point2::new(x, y))
         .to_vec()
 }
 
-/// Stiffness of beams and a frame, F1 rows.
 pub fn f1() -> Vec<CheckRow> {
     [cantilever(), frame(), wall()].concat()
 }
 
-/// Row of an entry of a matrix; without a matrix it fails.
 fn row(
     text: &str,
     expected: f64,
@@ -150,4 +151,47 @@ fn wall() -> Vec<CheckRow> {
         row("wall on edge, turn", length / (E * inertia), found, (2, 2), ("rad/Nm", 1.0), 0.01),
         row("wall on edge, twist", twist, found, (1, 1), ("rad/Nm", 1.0), 0.02),
     ]
+}
+
+/// Displacement of an even strain by place.
+fn field(p: &Point2<f64>) -> [f64; 2] {
+    [0.1 * p.x + 0.3 * p.y, -0.2 * p.x + 0.4 * p.y]
+}
+
+/// Strains of that field: XX, YY and the shear.
+const STRAIN: [f64; 3] = [0.1, 0.4, 0.3 - 0.2];
+
+pub fn f2() -> Vec<CheckRow> {
+    let [xx, yy, xy] = STRAIN;
+    let (nu, width, height) = (SLAB.poisson, 1.3, 1.0);
+    let plane = SLAB.modulus * SLAB.thickness / (1.0 - nu * nu);
+    let density = xx * xx + yy * yy + 2.0 * nu * xx * yy + (1.0 - nu) / 2.0 * xy * xy;
+    let hole: Ring = [(0.4, 0.3), (0.5, 0.7), (0.8, 0.4)].map(|(x, y)| Point2::new(x, y)).to_vec();
+    let outer = rectangle([0.0, width], [0.0, height]);
+    let solid = area(&outer) - area(&hole).abs();
+    let found = Mesh::new(&outer, &[hole], 0.2).ok();
+    let found = found.and_then(|mesh| patch(&mesh)).ok_or(());
+    let (error, work) = (found.map(|found| found[0]), found.map(|found| found[1]));
+    let (none, close) = (Tolerance::Absolute(1e-12), Tolerance::Relative(1e-10));
+    vec![
+        CheckRow::new("F2", "patch test, largest error inside", 0.0, error, "m", none),
+        CheckRow::new("F2", "patch test, work", plane * density * solid, work, "J", close),
+    ]
+}
+
+/// Largest error of a displacement, and twice the work, with the edges moved evenly.
+fn patch(mesh: &Mesh) -> Option<[f64; 2]> {
+    let edge: BTreeSet<usize> = mesh.boundary().into_iter().flatten().collect();
+    let role = |node| if edge.contains(&node) { Role::Kept } else { Role::Free };
+    let roles: Vec<Role> = (0..mesh.nodes.len()).map(role).collect();
+    let condensed = condense(mesh, &PLANE, &roles, true).ok()?;
+    let kept = condensed.nodes.iter().flat_map(|&node| field(&mesh.nodes[node as usize]));
+    let kept = DVector::from_iterator(2 * condensed.nodes.len(), kept);
+    let moved = condensed.expand(&kept);
+    let error = |(node, found): (&Point2<f64>, &[f64])| {
+        let expected = field(node);
+        (found[0] - expected[0]).abs() + (found[1] - expected[1]).abs()
+    };
+    let error = mesh.nodes.iter().zip(moved.chunks(2)).map(error).fold(0.0, f64::max);
+    Some([error, (kept.transpose() * &condensed.stiffness * &kept)[0]])
 }

@@ -16,7 +16,6 @@ const CHANGE_PERCENT: f64 = 2.0;
 /// Rounding, as a share of the springs that an entry couples.
 const ROUNDING: f64 = 1e-9;
 
-/// Changes by the mesh, and properties of the matrices, F3 rows.
 pub fn f3() -> Vec<CheckRow> {
     let row = |text: &str, measured: Option<f64>, unit, allowed| {
         CheckRow::new("F3", text, 0.0, measured.ok_or(()), unit, Tolerance::Absolute(allowed))

@@ -9,7 +9,6 @@
 
 mod beams;
 mod mesh;
-mod patch;
 mod reference;
 
 use super::CheckRow;
@@ -18,12 +17,10 @@ use finray::infill::Design;
 use finray::printed::PrintedFinger;
 use input::shipped::FINGERS;
 
-/// Results of F1 to F4, in order.
 pub fn run() -> Vec<CheckRow> {
-    [beams::f1, patch::f2, mesh::f3, reference::f4].iter().flat_map(|check| check()).collect()
+    [beams::f1, beams::f2, mesh::f3, reference::f4].iter().flat_map(|check| check()).collect()
 }
 
-/// Shipped finger of the measured designs.
 fn finray9() -> Option<PrintedFinger> {
     let shipped = FINGERS.first()?;
     PrintedFinger::parse(shipped.text, shipped.file).ok()

@@ -27,8 +27,7 @@ const TABLE: [Row; 11] = [
     ([30.0, 40.0, 0.653], 3.51, [[39.6, 52.1], [2.12, 5.68], [7.7, 18.1], [-0.6, 6.1]]),
 ];
 
-/// The reference held the mesh nodes within 2.5 mm of the notch's corner; with nodes every
-/// 0.2 mm the last of them lies here.
+/// The reference held nodes within 2.5 mm of the notch's corner, every 0.2 mm: the last lies here.
 const HELD_ROOF: f64 = 2.4 * MM;
 /// A centre is given to 0.1 mm, and moves by as much with the mesh, mm.
 const CENTRE: f64 = 0.2;

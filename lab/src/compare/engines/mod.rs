@@ -4,30 +4,25 @@
 //! the softest and the stiffest measured finger on every task start at fixed distances from both ends
 //! of the first engine's window, inside and outside, and in its middle.
 
-mod text;
-mod time;
-
 #[cfg(test)]
 mod tests;
 
-pub use text::{json, text};
-pub use time::{time, time_json, time_text};
-
 use super::pairs::{self, WindowPair};
-use super::{Subject, TaskWays, Way, each};
-use insertion::evaluation::{OffsetStep, Window, tolerance};
+use super::{Subject, TaskWays, Way, each, subject_json};
+use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
 use insertion::trial::Trial;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
+use std::time::Instant;
 
 /// Least share of the trials on which the engines agree.
 pub const AGREEMENT: f64 = 0.9;
 /// Largest mean difference of the windows' ends, mm.
 pub const END_DIFFERENCE_MM: f64 = 0.5;
 
-/// Offsets of the trials about a window, grid steps, without those inside that are nearer to the
-/// other end; if `reduced`, a few far from the ends.
+/// Offsets of the trials about a window, grid steps; if `reduced`, a few far from the ends.
 pub fn offsets(window: &Window, reduced: bool) -> Vec<OffsetStep> {
     let [inside, outside]: [&[OffsetStep]; 2] = match reduced {
         false => [&[1, 3, 10, 20], &[1, 3, 10, 20, 40]],
@@ -42,11 +37,9 @@ pub fn offsets(window: &Window, reduced: bool) -> Vec<OffsetStep> {
     all.into_iter().collect()
 }
 
-/// Trial in both engines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialPair {
     pub subject: Subject,
-    /// Offset of the start, grid steps.
     pub offset: OffsetStep,
     /// Distance beyond the nearer end of the first engine's window, grid steps; negative inside.
     pub from_end: OffsetStep,
@@ -63,12 +56,9 @@ impl TrialPair {
     }
 }
 
-/// Results of both engines.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CrossCheck {
-    /// Trials by task, finger and offset.
     pub trials: Vec<TrialPair>,
-    /// Windows, if the set has them.
     pub windows: Vec<WindowPair>,
 }
 
@@ -83,15 +73,13 @@ impl CrossCheck {
         pairs::mean_end_difference_mm(&self.windows)
     }
 
-    /// Whether both targets are met.
     pub fn passed(&self) -> bool {
         self.agreement() >= AGREEMENT
             && self.end_difference_mm().is_none_or(|by| by <= END_DIFFERENCE_MM)
     }
 }
 
-/// Results of the first two ways of every task, in parallel over tasks and fingers; if `reduced`, of
-/// fewer trials and without the windows of the second way.
+/// Results of the first two ways of every task; if `reduced`, of few trials and without windows.
 pub fn run(tasks: &[TaskWays], designs: &[Measurement], reduced: bool) -> CrossCheck {
     let results = each(tasks, designs, |subject, ways| match ways {
         [first, second, ..] => in_both(subject, [first, second], reduced),
@@ -133,4 +121,160 @@ fn tip_distance(trials: &[Trial; 2]) -> Option<f64> {
     let [a, b] = trials.each_ref().map(tip);
     let square: f64 = a?.iter().zip(b?).map(|(a, b)| (a - b) * (a - b)).sum();
     Some(square.sqrt())
+}
+
+pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
+    let verdict = |met| if met { "met" } else { "MISSED" };
+    let mut text = format!("T9: the same trials in {first} and {second}\n\n");
+    if let Some(mean) = check.end_difference_mm() {
+        text += &pairs::text(&check.windows, None);
+        text += &format!(
+            "mean difference of an end {mean:.2} mm; target {END_DIFFERENCE_MM} mm: {}\n\n",
+            verdict(mean <= END_DIFFERENCE_MM)
+        );
+    }
+    let others: Vec<&TrialPair> = check.trials.iter().filter(|pair| !pair.agrees()).collect();
+    let total = check.trials.len();
+    let [share, target] = [check.agreement(), AGREEMENT].map(|share| 100.0 * share);
+    text += &format!(
+        "alike in {} of {total} trials, {share:.1} %; target {target:.0} %: {}\n",
+        total - others.len(),
+        verdict(check.agreement() >= AGREEMENT)
+    );
+    let mut tips: Vec<f64> = check.trials.iter().filter_map(|pair| pair.tip_mm).collect();
+    tips.sort_by(f64::total_cmp);
+    let count = tips.len();
+    if let (Some(median), Some(largest)) = (tips.get(count / 2), tips.last()) {
+        text += &format!(
+            "tips of the {count} plugs that both insert: {median:.3} mm apart (median), {largest:.3} mm at most\n"
+        );
+    }
+    if !others.is_empty() {
+        text += &format!(
+            "\n{:<7}{:<13}{:>10}{:>15}  {first:<27}{second}\n",
+            "task", "finger", "offset mm", "beyond end mm"
+        );
+    }
+    for pair in others {
+        let [a, b] = pair.outcomes.map(Outcome::label);
+        let (task, infill) = (&pair.subject.task, pair.subject.infill());
+        let [offset, beyond] = [pair.offset, pair.from_end].map(grid_mm);
+        text += &format!("{task:<7}{infill:<13}{offset:>10.1}{beyond:>15.1}  {a:<27}{b}\n");
+    }
+    text
+}
+
+pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
+    let trial = |pair: &TrialPair| {
+        let measured = json!({
+            "finger": pair.subject.infill(),
+            "offset_mm": grid_mm(pair.offset),
+            "beyond_end_mm": grid_mm(pair.from_end),
+            "outcomes": pair.outcomes.map(Outcome::label),
+            "agrees": pair.agrees(),
+            "tip_distance_mm": pair.tip_mm,
+        });
+        subject_json(&pair.subject.task, &pair.subject.design, measured)
+    };
+    json!({
+        "engines": names,
+        "agreement": check.agreement(),
+        "agreement_target": AGREEMENT,
+        "end_difference_mm": check.end_difference_mm(),
+        "end_difference_target_mm": END_DIFFERENCE_MM,
+        "passed": check.passed(),
+        "trials": check.trials.iter().map(trial).collect::<Vec<_>>(),
+        "windows": pairs::json(&check.windows, None, "engine", ["first", "second"]),
+    })
+}
+
+/// Runs of each trial, of which the median counts.
+const RUNS: usize = 5;
+
+/// Times of a finger's nominal trial, from the grasp to the end, in both engines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timing {
+    pub subject: Subject,
+    pub outcomes: [Outcome; 2],
+    pub simulated_s: [f64; 2],
+    /// Wall time, s: median of 5.
+    pub wall_s: [f64; 2],
+}
+
+impl Timing {
+    /// Wall time per simulated time of the first engine over that of the second.
+    pub fn ratio(&self) -> f64 {
+        let [first, second] = [0, 1].map(|i| self.wall_s[i] / self.simulated_s[i]);
+        first / second
+    }
+}
+
+/// Times of every design on every task in the first two ways, one after the other on this thread.
+pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
+    let timing = |on: &TaskWays, design: &Measurement| {
+        let subject = Subject::new(&on.task.name, &on.task.finger, *design);
+        let mut walls = [Vec::new(), Vec::new()];
+        let mut ends = [(Outcome::Diverged, 0.0); 2];
+        for _ in 0..RUNS {
+            for (i, way) in on.ways.iter().take(2).enumerate() {
+                let clock = Instant::now();
+                let trial = way.rig.grasp(&subject.finger).trial(0.0);
+                walls[i].push(clock.elapsed().as_secs_f64());
+                ends[i] = (trial.outcome, trial.simulated_s);
+            }
+        }
+        let median = |mut walls: Vec<f64>| {
+            walls.sort_by(f64::total_cmp);
+            walls[RUNS / 2]
+        };
+        Timing {
+            subject,
+            outcomes: ends.map(|end| end.0),
+            simulated_s: ends.map(|end| end.1),
+            wall_s: walls.map(median),
+        }
+    };
+    tasks.iter().flat_map(|task| designs.iter().map(move |design| timing(task, design))).collect()
+}
+
+pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
+    let unit = "wall s (simulated)";
+    let mut text = format!(
+        "one nominal trial from the grasp to the end, one thread, medians of {RUNS}\n\n\
+         task   finger       {first:>20}{second:>20}   ratio\n{:20}{unit:>20}{unit:>20}{:8}\n",
+        "", ""
+    );
+    for row in rows {
+        let [a, b] = [0, 1].map(|i| format!("{:.3} ({:.2})", row.wall_s[i], row.simulated_s[i]));
+        let same = (row.outcomes[0] == Outcome::Inserted) == (row.outcomes[1] == Outcome::Inserted);
+        text += &format!(
+            "{:<7}{:<13}{a:>20}{b:>20}{:>8.3}{}\n",
+            row.subject.task,
+            row.subject.infill(),
+            row.ratio(),
+            if same { "" } else { "  another outcome" }
+        );
+    }
+    text + &format!("mean ratio of wall to simulated time: {:.3}\n", mean_ratio(rows))
+}
+
+pub fn time_json(rows: &[Timing], names: [&str; 2]) -> Value {
+    json!({
+        "engines": names,
+        "runs": RUNS,
+        "mean_ratio": mean_ratio(rows),
+        "trials": rows.iter().map(|row| {
+            let measured = json!({
+                "finger": row.subject.infill(),
+                "simulated_s": row.simulated_s,
+                "wall_s": row.wall_s,
+                "ratio": row.ratio(),
+            });
+            subject_json(&row.subject.task, &row.subject.design, measured)
+        }).collect::<Vec<_>>(),
+    })
+}
+
+fn mean_ratio(rows: &[Timing]) -> f64 {
+    rows.iter().map(Timing::ratio).sum::<f64>() / rows.len() as f64
 }

@@ -1,7 +1,6 @@
 //! `validation.csv`, `accuracy.md` and the JSON of the command.
 
-use super::agreement::deviation_percent;
-use super::{Agreement, COMPARISONS, DesignRow, RangeSource, TaskTable};
+use super::{Agreement, COMPARISONS, DesignRow, RangeSource, TaskTable, deviation_percent};
 use crate::compare::{subject_json, window_json};
 use input::units::N_PER_MM;
 use insertion::outcome::{FailureClass, Outcome};

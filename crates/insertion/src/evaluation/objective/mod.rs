@@ -2,17 +2,18 @@
 
 mod aggregate;
 mod constraint;
-mod list;
 mod measure;
-mod plateau;
 
 pub use aggregate::{Aggregate, AggregateKind};
 pub use constraint::{Bound, Constraint};
-pub use list::Objectives;
 pub use measure::Measure;
 
-use crate::evaluation::Evaluation;
+use crate::evaluation::{Evaluation, OFFSET_STEP_MM};
+use crate::outcome::Outcome;
+use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
+use std::fmt;
+use std::str::FromStr;
 
 /// Study files keep these as they are written on the command line.
 macro_rules! kept_as_text {
@@ -33,6 +34,77 @@ macro_rules! kept_as_text {
 }
 
 kept_as_text!(Aggregate, Constraint, Objectives);
+
+/// Most objectives: a front of more is no help in choosing.
+const MOST: usize = 3;
+
+/// One to three different measures to be optimized, in the order given.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct Objectives(Vec<Measure>);
+
+impl Objectives {
+    /// A single objective.
+    pub fn of(measure: Measure) -> Self {
+        Objectives(vec![measure])
+    }
+
+    /// All objectives, at least one.
+    pub fn measures(&self) -> &[Measure] {
+        &self.0
+    }
+
+    /// The first one: what plots show.
+    pub fn first(&self) -> Measure {
+        self.0[0]
+    }
+
+    /// The only one, `None` if there are several.
+    pub fn single(&self) -> Option<Measure> {
+        (self.0.len() == 1).then_some(self.0[0])
+    }
+
+    /// A key for each in tables and JSON: `objective_mm`; `objective_1_mm`, `objective_2_n`.
+    pub fn keys(&self) -> Vec<String> {
+        match self.single() {
+            Some(measure) => vec![format!("objective_{}", measure.key())],
+            None => {
+                let numbered = (1..).zip(&self.0);
+                numbered.map(|(n, measure)| format!("objective_{n}_{}", measure.key())).collect()
+            }
+        }
+    }
+
+    /// Values with their names and units: `range 4.7 mm, peak-force 5.0 N`.
+    pub fn show(&self, values: &[f64]) -> String {
+        let shown = self.0.iter().zip(values);
+        let words: Vec<String> =
+            shown.map(|(measure, &value)| format!("{measure} {}", measure.show(value))).collect();
+        words.join(", ")
+    }
+}
+
+impl fmt::Display for Objectives {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.0.iter().map(|measure| measure.name()).collect::<Vec<_>>().join(","))
+    }
+}
+
+impl FromStr for Objectives {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let all: Vec<Measure> =
+            text.split(',').map(|name| name.trim().parse()).collect::<Result<_, _>>()?;
+        if let Some(twice) = all.iter().enumerate().find(|(i, measure)| all[..*i].contains(measure))
+        {
+            return Err(format!("{} is given twice; give each objective once", twice.1));
+        }
+        match all.len() {
+            ..=MOST => Ok(Objectives(all)),
+            count => Err(format!("there are {count} objectives; give at most {MOST}")),
+        }
+    }
+}
 
 /// Objectives and constraints of a study.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,8 +151,7 @@ impl Goals {
         self.objectives.measures().iter().copied().chain(constrained)
     }
 
-    /// Objectives and violations of one design, evaluated on each task; `None` if any of
-    /// the measures has no value on any of them.
+    /// Objectives and violations of a design; `None` if a measure has no value on one of the tasks.
     pub fn score(&self, tasks: &[&Evaluation]) -> Option<Score> {
         let of = |measure: Measure| -> Option<Vec<f64>> {
             tasks.iter().map(|evaluation| measure.value(evaluation)).collect()
@@ -115,11 +186,52 @@ impl Score {
     }
 }
 
+// Windows are measured on a grid of 0.1 mm, so many designs have the same range, and all whose nominal
+// start fails have none. Optimizers are told where within the last grid step the outcome turns, too;
+// the study's values stay on the grid.
+impl Goals {
+    /// Values for an optimizer of a design evaluated on each task: as of
+    /// [`score`](Goals::score), larger being better, with the slope. `None` if there is no score.
+    pub fn told(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
+        let of = |&measure: &Measure| {
+            let values: Option<Vec<f64>> = tasks
+                .iter()
+                .map(|task| Some(measure.value(task)? + slope(measure, task)))
+                .collect();
+            Some(measure.sense() * self.aggregate.of(measure.sense(), &values?))
+        };
+        self.objectives.measures().iter().map(of).collect()
+    }
+}
+
+/// Less than one grid step, so that of two different ranges the larger stays the larger:
+/// at each end half of the step's share that still inserts; below 0, by how clearly the
+/// nominal start fails, where it does. 0 for what is not taken on the grid.
+fn slope(measure: Measure, evaluation: &Evaluation) -> f64 {
+    if !matches!(measure, Measure::Range | Measure::CentredRange) {
+        return 0.0;
+    }
+    let (window, [below, above]) = (&evaluation.window, evaluation.end_shares);
+    if window.nominal != Outcome::Inserted {
+        return OFFSET_STEP_MM * below.min(0.0);
+    }
+    let share = match (measure, -window.negative_steps - window.positive_steps) {
+        (Measure::CentredRange, smaller_below) if smaller_below < 0 => below,
+        (Measure::CentredRange, smaller_above) if smaller_above > 0 => above,
+        (Measure::CentredRange, _) => below.min(above),
+        _ => (below + above) / 2.0,
+    };
+    OFFSET_STEP_MM * share
+}
+
 #[cfg(test)]
 mod tests {
     use super::measure::tests::evaluation;
     use super::*;
-    use crate::outcome::{FailureClass, Outcome};
+    use crate::evaluation::tolerance::{self, Search};
+    use crate::fixtures::finger;
+    use crate::outcome::FailureClass;
+    use crate::trial::fake::FakeRig;
 
     fn goals(objectives: &str, constraints: &[&str], aggregate: Aggregate) -> Goals {
         Goals {
@@ -170,5 +282,58 @@ mod tests {
         assert!(goals.order(&[3.0, 1.0], &[3.0, 2.0]).is_lt());
         assert!(goals.order(&[3.0, 1.0], &[3.0, 1.0]).is_eq());
         assert!(goals.need(Measure::Range) && !goals.need(Measure::Slip) && !goals.need_draws());
+    }
+
+    #[test]
+    fn lists_read_back_and_have_keys_with_units() {
+        let two: Objectives = "range, peak-force".parse().unwrap();
+        assert_eq!((two.first(), two.single()), (Measure::Range, None));
+        assert_eq!(two.to_string().parse(), Ok(two.clone()));
+        assert_eq!(two.keys(), ["objective_1_mm", "objective_2_n"]);
+        assert_eq!(two.show(&[4.0, 5.25]), "range 4.0 mm, peak-force 5.2 N");
+        assert_eq!(Objectives::of(Measure::SuccessRate).keys(), ["objective_share"]);
+        assert!("range,".parse::<Objectives>().unwrap_err().contains("``"));
+    }
+
+    fn told(measure: Measure, evaluation: &Evaluation) -> f64 {
+        Goals::of(measure).told(&[evaluation]).unwrap()[0]
+    }
+
+    fn measured(compliance: f64, assembly: f64) -> Evaluation {
+        tolerance::evaluate(&FakeRig::default(), &finger(compliance, assembly), Search::Strides)
+    }
+
+    /// -3.333 and 1.400 mm in the closed form: 0.033 and nothing beyond the grid.
+    #[test]
+    fn the_slope_is_half_of_what_the_grid_cuts_off() {
+        let evaluation = measured(3.0, 20.0);
+        let beyond = told(Measure::Range, &evaluation) - 4.7;
+        assert!((beyond - 0.033_333 / 2.0).abs() < 1e-5, "{beyond}");
+        let centred = told(Measure::CentredRange, &evaluation) - 2.8;
+        assert!(centred.abs() < 1e-5, "{centred}");
+        assert_eq!(told(Measure::PeakForce, &evaluation), -evaluation.peak_force_n);
+    }
+
+    #[test]
+    fn plateaus_have_a_slope_and_the_order_of_ranges_stays() {
+        let fingers = (0..200).map(|i| measured(3.0, 20.0 + 0.05 * f64::from(i)));
+        let found: Vec<(f64, f64)> = fingers
+            .map(|evaluation| (evaluation.window.range_mm(), told(Measure::Range, &evaluation)))
+            .collect();
+        assert!(found.windows(2).filter(|pair| pair[0].0 == pair[1].0).count() > 150);
+        for pair in found.windows(2) {
+            assert!(pair[0].1 < pair[1].1 + 1e-9, "{pair:?}");
+        }
+    }
+
+    #[test]
+    fn the_nearer_to_inserting_the_better_where_the_nominal_start_fails() {
+        let failed = |share: f64| {
+            let mut evaluation = measured(3.0, 20.0);
+            evaluation.window.nominal = Outcome::Failed(FailureClass::Jammed);
+            evaluation.end_shares = [share; 2];
+            told(Measure::Range, &evaluation)
+        };
+        assert!(failed(-1.0) < failed(-0.2) && failed(-0.2) < 0.0 && failed(-1.0) >= -0.1);
     }
 }

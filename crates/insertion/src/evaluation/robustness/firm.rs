@@ -89,8 +89,7 @@ mod tests {
     use crate::trial::Grasp;
     use crate::trial::fake::FakeRig;
 
-    /// The lower end of the closed form, -3.33 mm, moves with friction to as near as -3.03 mm;
-    /// the upper one, 1.40 mm, with the start alone, by 0.02 mm.
+    /// The lower end, -3.33 mm, moves with friction to -3.03 mm; the upper with the start alone.
     #[test]
     fn the_firm_window_is_the_innermost_of_the_repeats() {
         let (rig, finger) = (FakeRig::default(), finger(3.0, 20.0));

@@ -35,8 +35,7 @@ impl Plan {
     }
 }
 
-/// Measures a grasp in the world as the task file has it, by fingers whose stiffness was predicted
-/// with an error: its window, and what the plan adds.
+/// Measures a grasp by fingers of this predicted stiffness: its window, and what the plan adds.
 pub fn evaluate(
     rig: &dyn Rig,
     grasp: Grasp,

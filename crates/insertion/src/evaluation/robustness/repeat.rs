@@ -131,8 +131,7 @@ mod tests {
     use crate::fixtures::finger;
     use crate::trial::fake::FakeRig;
 
-    /// The lower end of the closed form, -3.33 mm, moves by a tenth with friction, to
-    /// -3.03 and -3.70; the upper one, 1.40 mm, with the start alone.
+    /// The lower end, -3.33 mm, moves by a tenth with friction; the upper one with the start alone.
     #[test]
     fn the_bands_are_as_wide_as_the_closed_form_says() {
         let rig = FakeRig::default();

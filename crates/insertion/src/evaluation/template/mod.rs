@@ -105,7 +105,7 @@ impl Template {
         }
         let task = self.changed(&of_task)?;
         let direction = design.get(DIRECTION_KEY);
-        if task.finger.rcc.is_some_and(|rcc| rcc.varies()) && direction.is_none() {
+        if task.finger.rcc.is_some_and(|rcc| rcc.per_degree != 0.0) && direction.is_none() {
             let problem = "is missing: the task's finger.rcc_mm depends on it";
             return Ok(DESIGN.fail(DIRECTION_KEY, problem)?);
         }

@@ -1,6 +1,10 @@
-//! Whether every finger of a space can be printed, asked before the first one is simulated.
+//! Whether every finger of a space can be printed, and has springs, asked before one is simulated.
 
+use super::{Impossible, is_infill};
+use crate::evaluation::evaluator::Evaluator;
+use crate::finger::computed::AtPad;
 use crate::finger::file::{FingerFile, is_shape};
+use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
 use crate::space::{Design, Parameter, Space, corners};
 use finray::geometry::Geometry;
 use input::{Check, InputError};
@@ -22,7 +26,7 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
             }
         }
     }
-    let sets = |p: &&Parameter| shape(p) || super::is_infill(&p.key);
+    let sets = |p: &&Parameter| shape(p) || is_infill(&p.key);
     for design in corners(space.parameters.iter().filter(sets), usize::MAX) {
         let finger = finger.with(&design)?;
         if let Err(error) = Geometry::new(&finger, &design.printed(None)) {
@@ -32,17 +36,46 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
     Ok(())
 }
 
+/// A space read from `file` that sets a computed finger's remote centre or tilting stiffness may ask
+/// for what no springs give: a centre so far away that turning about it alone is softer than measured.
+/// The more so the farther and the softer, so the extreme values are tried, of the infill, too.
+///
+/// # Errors
+/// The first combination that has no springs.
+pub fn check_springs(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), InputError> {
+    let sets = |key: &str| [RCC_KEY, TILTING_KEY].contains(&key);
+    let computed = matches!(evaluator.fingers, FingerSource::Computed(_));
+    let Some(first) = space.parameters.iter().find(|p| computed && sets(&p.key)) else {
+        return Ok(());
+    };
+    let tried = |p: &&Parameter| sets(&p.key) || is_infill(&p.key);
+    for design in corners(space.parameters.iter().filter(tried), usize::MAX) {
+        if let Err(error) = springs(evaluator, &design) {
+            return Check { file }.fail(&first.key, format!("{design} has no springs: {error}"));
+        }
+    }
+    Ok(())
+}
+
+fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), Impossible> {
+    let stiffness = evaluator.predict(design)?;
+    let at_pad = AtPad::of(&stiffness);
+    for template in &evaluator.templates {
+        evaluator.fingers.make(at_pad, design, &template.task)?;
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use input::shipped::{FINGERS, SPACES};
+    use input::shipped::SPACES;
 
     fn shipped(change: [&str; 2]) -> Result<(), InputError> {
         let file = SPACES.iter().find(|space| space.name == "finger").unwrap();
         assert!(file.text.contains(change[0]));
         let space = Space::parse(&file.text.replace(change[0], change[1]), file.file).unwrap();
-        let finger = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
-        check(&space, file.file, &finger)
+        check(&space, file.file, &crate::fixtures::finger_file())
     }
 
     #[test]

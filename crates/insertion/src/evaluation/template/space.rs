@@ -83,7 +83,7 @@ mod tests {
         };
         let text: String = infill.iter().chain(parameters).map(parameter).collect();
         let text = format!("name = 's'\ndescription = ''\n{text}");
-        let file = TASKS.iter().find(|task| task.name == "usb").unwrap();
+        let file = crate::fixtures::task_file("usb");
         let template = Template::parse(file.text, file.file).unwrap();
         template.check(&Space::parse(&text, "s.toml").unwrap(), "s.toml", &|_| Ok(()))
     }

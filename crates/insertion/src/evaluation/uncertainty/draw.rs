@@ -96,7 +96,6 @@ mod tests {
         Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap().errors
     }
 
-    /// Mean and standard deviation.
     fn moments(values: impl Iterator<Item = f64>) -> (f64, f64) {
         let values: Vec<f64> = values.collect();
         let n = values.len() as f64;

@@ -1,11 +1,13 @@
 //! Errors from one insertion to the next, over which a success rate and a robust range are taken.
 
 mod draw;
-mod raw;
 
 pub use draw::{Draw, draws};
 
 use crate::evaluation::tolerance::Search;
+use input::units::{DEG, MM, PERCENT};
+use input::{Check, InputError, read};
+use serde::Deserialize;
 
 /// A checked distribution of errors, and how many draws each measure takes; SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,4 +70,221 @@ pub enum Statistic {
     MeanMinusSd(f64),
     /// Mean of the lowest share (0 to 1) of the samples, at least one of them.
     LowerTail(f64),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawUncertainty {
+    name: String,
+    description: String,
+    offset: RawOffset,
+    yaw: RawYaw,
+    friction: RawFriction,
+    stiffness: RawStiffness,
+    clearance: RawClearance,
+    grasp: RawGrasp,
+    success_rate: RawSuccess,
+    robust_range: RawRobust,
+}
+
+/// An error's fields, and where their values come from.
+macro_rules! raw_error {
+    ($($name:ident { $($field:ident),* })*) => {
+        $(#[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct $name {
+            $($field: f64,)*
+            source: String,
+        })*
+    };
+}
+
+raw_error! {
+    RawOffset { sd_mm }
+    RawYaw { sd_deg }
+    RawFriction { half_width_percent }
+    RawStiffness { sd_factor }
+    RawClearance { half_width_mm }
+    RawGrasp { across_sd_mm, low_max_mm }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSuccess {
+    trials: u32,
+    confidence_percent: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRobust {
+    samples: u32,
+    statistic: RawStatistic,
+    sd_factor: Option<f64>,
+    tail_percent: Option<f64>,
+    search: Search,
+}
+
+#[derive(Deserialize, Clone, Copy)]
+#[serde(rename_all = "kebab-case")]
+enum RawStatistic {
+    MeanMinusSd,
+    LowerTail,
+}
+
+/// Largest error of a length, mm: no part is placed so badly.
+const LARGEST_MM: f64 = 20.0;
+const LARGEST_CLEARANCE_MM: f64 = 2.0;
+const LARGEST_DEG: f64 = 30.0;
+const LARGEST_FACTOR: f64 = 10.0;
+const MOST: u32 = 100_000;
+
+impl Uncertainty {
+    /// Reads and checks a distribution; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not such a file, or a value cannot be used.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let raw: RawUncertainty = read(text, file)?;
+        let check = Check { file };
+        sources(check, &raw)?;
+        let rate = &raw.success_rate;
+        Ok(Uncertainty {
+            errors: errors(check, &raw)?,
+            success: SuccessSettings {
+                trials: count(check, "success_rate.trials", rate.trials, 1)?,
+                confidence: share(
+                    check,
+                    "success_rate.confidence_percent",
+                    rate.confidence_percent,
+                )?,
+            },
+            robust: RobustSettings {
+                // A standard deviation needs two.
+                samples: count(check, "robust_range.samples", raw.robust_range.samples, 2)?,
+                statistic: statistic(check, &raw.robust_range)?,
+                search: raw.robust_range.search,
+            },
+            name: raw.name,
+            description: raw.description,
+        })
+    }
+}
+
+fn sources(check: Check<'_>, raw: &RawUncertainty) -> Result<(), InputError> {
+    for (key, source) in [
+        ("offset.source", &raw.offset.source),
+        ("yaw.source", &raw.yaw.source),
+        ("friction.source", &raw.friction.source),
+        ("stiffness.source", &raw.stiffness.source),
+        ("clearance.source", &raw.clearance.source),
+        ("grasp.source", &raw.grasp.source),
+    ] {
+        if source.trim().is_empty() {
+            return check.fail(key, "is empty; say where the value comes from");
+        }
+    }
+    Ok(())
+}
+
+fn errors(check: Check<'_>, raw: &RawUncertainty) -> Result<Errors, InputError> {
+    let friction = "friction.half_width_percent";
+    let half_width = check.not_negative(friction, raw.friction.half_width_percent)?;
+    if half_width >= 100.0 {
+        return check.fail(friction, "must be below 100: friction cannot be negative");
+    }
+    // In SI units; `unit` is one of the file's.
+    let error = |key, value, largest, unit| match check.not_negative(key, value)? <= largest {
+        true => Ok(value * unit),
+        false => check.fail(key, format!("is {value}; it may be {largest} at most")),
+    };
+    let (gap, grasp) = (raw.clearance.half_width_mm, &raw.grasp);
+    Ok(Errors {
+        offset_sd: error("offset.sd_mm", raw.offset.sd_mm, LARGEST_MM, MM)?,
+        yaw_sd: error("yaw.sd_deg", raw.yaw.sd_deg, LARGEST_DEG, DEG)?,
+        friction_half_width: half_width * PERCENT,
+        stiffness_sd_factor: error(
+            "stiffness.sd_factor",
+            raw.stiffness.sd_factor,
+            LARGEST_FACTOR,
+            1.0,
+        )?,
+        clearance_half_width: error("clearance.half_width_mm", gap, LARGEST_CLEARANCE_MM, MM)?,
+        grasp_across_sd: error("grasp.across_sd_mm", grasp.across_sd_mm, LARGEST_MM, MM)?,
+        grasp_low_max: error("grasp.low_max_mm", grasp.low_max_mm, LARGEST_MM, MM)?,
+    })
+}
+
+fn count(check: Check<'_>, key: &str, count: u32, least: u32) -> Result<u32, InputError> {
+    if (least..=MOST).contains(&count) {
+        return Ok(count);
+    }
+    check.fail(key, format!("is {count}; it must lie in {least} .. {MOST}"))
+}
+
+fn share(check: Check<'_>, key: &str, percent: f64) -> Result<f64, InputError> {
+    if percent > 0.0 && percent < 100.0 {
+        return Ok(percent * PERCENT);
+    }
+    check.fail(key, format!("is {percent}; it must lie between 0 and 100"))
+}
+
+fn statistic(check: Check<'_>, raw: &RawRobust) -> Result<Statistic, InputError> {
+    let problem = match (raw.statistic, raw.sd_factor, raw.tail_percent) {
+        (RawStatistic::MeanMinusSd, Some(factor), None) => {
+            let factor = check.not_negative("robust_range.sd_factor", factor)?;
+            return Ok(Statistic::MeanMinusSd(factor));
+        }
+        (RawStatistic::LowerTail, None, Some(percent)) => {
+            let share = share(check, "robust_range.tail_percent", percent)?;
+            return Ok(Statistic::LowerTail(share));
+        }
+        (RawStatistic::MeanMinusSd, ..) => {
+            "\"mean-minus-sd\" goes with sd_factor, and without tail_percent"
+        }
+        (RawStatistic::LowerTail, ..) => {
+            "\"lower-tail\" goes with tail_percent, and without sd_factor"
+        }
+    };
+    check.fail("robust_range.statistic", problem)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use input::shipped::UNCERTAINTIES;
+
+    #[test]
+    fn the_shipped_file_reads_in_si_units() {
+        let file = UNCERTAINTIES[0];
+        let typical = Uncertainty::parse(file.text, file.file).unwrap();
+        assert_eq!(typical.name, "typical");
+        assert!((typical.errors.offset_sd - 2e-3).abs() < 1e-15);
+        assert!((typical.errors.friction_half_width - 0.2).abs() < 1e-15);
+        assert_eq!(typical.robust.statistic, Statistic::MeanMinusSd(1.0));
+    }
+
+    #[test]
+    fn each_bad_field_is_named() {
+        let good = UNCERTAINTIES[0].text;
+        for (from, to, key, word) in [
+            ("sd_mm = 2.0", "sd_mm = -2.0", "offset.sd_mm", "0 or above"),
+            ("half_width_percent = 20.0", "half_width_percent = 100.0", "friction", "below 100"),
+            ("trials = 100", "trials = 0", "success_rate.trials", "1 .."),
+            ("samples = 12", "samples = 1", "robust_range.samples", "2 .."),
+            ("confidence_percent = 95.0", "confidence_percent = 100.0", "confidence", "between"),
+            ("\nsd_factor = 1.0\n#", "\ntail_percent = 10.0\n#", "range.statistic", "sd_factor"),
+            ("sd_deg = 1.0", "sd_rad = 1.0", "sd_rad", "sd_deg"),
+            ("search = \"walk\"", "search = \"run\"", "run", "walk"),
+        ] {
+            let text = good.replacen(from, to, 1);
+            assert_ne!(text, good, "{from}");
+            let error = Uncertainty::parse(&text, "u.toml").unwrap_err().to_string();
+            assert!([key, word, "u.toml"].iter().all(|part| error.contains(part)), "{error}");
+        }
+        let tail =
+            good.replace("mean-minus-sd\"\nsd_factor = 1.0", "lower-tail\"\ntail_percent = 10.0");
+        let tail = Uncertainty::parse(&tail, "u").unwrap();
+        assert_eq!(tail.robust.statistic, Statistic::LowerTail(0.1));
+    }
 }

@@ -11,12 +11,9 @@ const CLEAR: f64 = 0.3 * MM;
 /// ... and was, if it is still this far above at its end, m: a fast move may come nearer.
 const UNTOUCHED: f64 = 0.25 * MM;
 
-/// A phase that has begun.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Begun {
-    /// Move of the phase.
     pub motion: Move,
-    /// Steps made of it.
     pub steps: usize,
 }
 
@@ -50,7 +47,6 @@ impl<'a> Attempt<'a> {
         lowest - self.heights(self.cell.socket).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Heights of a body's corners, m.
     fn heights(&self, body: BodyId) -> impl Iterator<Item = f64> {
         let pose = self.world.pose(body);
         let geoms = &self.cell.scene.bodies[body.0].geoms;

@@ -303,11 +303,11 @@ fn exhausted(optimizer: &dyn Optimizer) -> Ending {
 impl Study {
     /// The journal holds this evaluation where another design is proposed now.
     fn other_design(&self, found: &Recorded, proposed: &str) -> StudyError {
-        StudyError::Replay {
-            path: self.journal.path().to_owned(),
-            index: found.index,
-            found: found.design.to_string(),
-            proposed: proposed.to_owned(),
-        }
+        let problem = format!(
+            "evaluation {} is of {}, but this version of the program proposes {proposed}: the journal \
+             was written by another version; continue it with that one, or start a new study",
+            found.index, found.design
+        );
+        StudyError::file(self.journal.path(), problem)
     }
 }

@@ -93,7 +93,13 @@ impl Study {
         if file.try_exists().map_err(StudyError::io("look for", &file))? {
             let found = read_config(dir)?;
             if let Some(differences) = found.differences(config) {
-                return Err(StudyError::Different { dir: dir.to_owned(), differences });
+                return Err(StudyError::file(
+                    dir,
+                    format!(
+                        "holds a study of another configuration; give another --out, or the same \
+                         configuration (only the budget may be raised):\n{differences}"
+                    ),
+                ));
             }
             let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
             let raised = study.config.budget < config.budget;
@@ -106,8 +112,10 @@ impl Study {
         }
         let journal = dir.join(JOURNAL_FILE);
         if journal.exists() {
-            let problem = "there is no study.toml beside it; give another --out".to_owned();
-            return Err(StudyError::Foreign { path: journal, problem });
+            return Err(StudyError::file(
+                &journal,
+                "not the journal of this study: there is no study.toml beside it; give another --out",
+            ));
         }
         write_inputs(dir, 1, inputs)?;
         // Last, so that a folder with a configuration is complete.
@@ -152,11 +160,24 @@ impl Study {
     ) -> Result<(), StudyError> {
         let Some(differences) = self.provenance().differences(now) else { return Ok(()) };
         if if_changed == IfChanged::Refuse {
-            return Err(StudyError::Changed { dir: self.dir.clone(), differences });
+            return Err(StudyError::file(
+                &self.dir,
+                format!(
+                    "was measured with other settings than now:\n{differences}\ngive another --out, \
+                     or --accept-changed to go on in a new segment (the best design is then taken \
+                     from that)"
+                ),
+            ));
         }
         let (first, evaluations) = (self.evaluations.len() as u64, self.config.evaluations());
         if first >= evaluations && !self.provenance().simulates_like(now) {
-            return Err(StudyError::Spent { dir: self.dir.clone(), evaluations, differences });
+            return Err(StudyError::file(
+                &self.dir,
+                format!(
+                    "simulates otherwise than before, and all its {evaluations} evaluations are \
+                     done:\n{differences}\nraise --budget to measure with that, or give another --out"
+                ),
+            ));
         }
         write_inputs(&self.dir, self.segments.len() + 1, inputs)?;
         let segment = Segment { first, provenance: now.clone() };
@@ -218,8 +239,7 @@ impl Study {
     /// If the file cannot be written.
     pub fn keep_on_bench(&self, found: &OnBench) -> Result<(), StudyError> {
         let path = self.dir.join(BENCH_FILE);
-        let text = serde_json::to_string(found)
-            .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
+        let text = serde_json::to_string(found).map_err(|error| StudyError::file(&path, error))?;
         write_own_file(&path, &(text + "\n"))
     }
 
@@ -294,13 +314,12 @@ pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
     let text = match files::read_own(&path, LARGEST_OWN) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Err(StudyError::NotAStudy { dir: dir.to_owned() });
+            return Err(StudyError::file(dir, "not a study: it has no study.toml"));
         }
         Err(error) => return Err(StudyError::io("read", &path)(error)),
     };
-    let wrong = |problem: String| StudyError::File {
-        path: path.clone(),
-        problem: format!("{}; restore the file from a copy", problem.trim_end()),
+    let wrong = |problem: String| {
+        StudyError::file(&path, format!("{}; restore the file from a copy", problem.trim_end()))
     };
     let config: StudyConfig = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let table = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
@@ -324,10 +343,8 @@ fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
     let found = sha256(&inputs);
     for (role, hash) in expected {
         if found.get(role) != Some(hash) {
-            return Err(StudyError::File {
-                path: input_path(dir, number, role),
-                problem: format!("was changed: its SHA-256 is not the {hash} of the study"),
-            });
+            let problem = format!("was changed: its SHA-256 is not the {hash} of the study");
+            return Err(StudyError::file(&input_path(dir, number, role), problem));
         }
     }
     Ok(inputs)
@@ -358,8 +375,7 @@ pub fn input_path(dir: &Path, segment: usize, role: &str) -> PathBuf {
 
 fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
     let path = dir.join(CONFIG_FILE);
-    let text = toml::to_string(config)
-        .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
+    let text = toml::to_string(config).map_err(|error| StudyError::file(&path, error))?;
     write_own_file(&path, &text)
 }
 

@@ -163,7 +163,9 @@ pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
 }
 
 fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
-    let foreign = |problem: String| StudyError::Foreign { path: path.to_owned(), problem };
+    let foreign = |problem: String| {
+        StudyError::file(path, format!("not the journal of this study: {problem}"))
+    };
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
     let lines: Vec<&[u8]> = bytes[..whole].split_inclusive(|&byte| byte == b'\n').collect();
     let beginning = Segment { first: 0, provenance: config.provenance.clone() };
@@ -183,10 +185,12 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, St
     let text = |line: &[u8]| String::from_utf8_lossy(line).trim_end_matches('\n').to_owned();
     header::check(&text(first), &text(second), config).map_err(foreign)?;
     for (number, line) in (3..).zip(rest) {
-        contents.add(&text(line), config).map_err(|source| StudyError::Line {
-            path: path.to_owned(),
-            line: number,
-            source,
+        contents.add(&text(line), config).map_err(|problem| {
+            let mend = format!(
+                "restore the file from a copy, or delete line {number} and all below it to measure \
+                 them again"
+            );
+            StudyError::file(path, format!("line {number}: {problem}; {mend}"))
         })?;
     }
     Ok(contents)

@@ -87,7 +87,7 @@ pub struct Refused {
 }
 
 /// When an evaluation was measured and how long that took.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Timing {
     /// Begin, UTC, `YYYY-MM-DDTHH:MM:SS.ffffff`.
     pub datetime_start: String,
@@ -96,6 +96,7 @@ pub struct Timing {
     /// Wall-clock duration, s.
     pub wall_s: f64,
     /// For each task whether its values came from the cache; empty where that is not known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cached: Vec<bool>,
 }
 

@@ -27,8 +27,7 @@ pub fn evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<String, Study
     let table = |record| -> Result<String, Box<dyn std::error::Error>> {
         Ok(String::from_utf8(csv(record)?)?)
     };
-    table(record)
-        .map_err(|error| StudyError::File { path: dir.join(TABLE), problem: error.to_string() })
+    table(record).map_err(|error| StudyError::file(&dir.join(TABLE), error))
 }
 
 fn csv(record: &StudyRecord) -> Result<Vec<u8>, Box<dyn std::error::Error>> {

@@ -54,14 +54,6 @@ struct Done {
     tasks: Vec<Evaluation>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Times {
-    datetime_start: String,
-    datetime_complete: String,
-    wall_s: f64,
-}
-
 /// Why a work was not done, or its result is not believed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WorkError {
@@ -173,9 +165,8 @@ impl Work {
             stiffness: measured.stiffness,
             tasks: measured.tasks,
         };
-        let Timing { datetime_start, datetime_complete, wall_s, .. } = timing.clone();
-        let times = Times { datetime_start, datetime_complete, wall_s };
-        let line = seal(&done, Some(&times))
+        let timing = Timing { cached: Vec::new(), ..timing.clone() };
+        let line = seal(&done, Some(&timing))
             .map_err(|error| WorkError::Bytes { what: "result", problem: error.to_string() })?;
         Ok(line.into_bytes())
     }
@@ -186,10 +177,11 @@ impl Work {
     /// # Errors
     /// If anything about it is wrong.
     pub fn check(&self, bytes: &[u8], stiffness: &Prediction) -> Result<Arrived, WorkError> {
-        let again = |done: &Done, times: &Times| seal(done, Some(times));
-        let (done, times) = read(bytes, "result", again)?;
-        let Times { datetime_start, datetime_complete, wall_s } = times;
-        let timing = Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() };
+        // What a worker took from its own cache it does not say.
+        let again = |done: &Done, timing: &Timing| {
+            seal(done, Some(&Timing { cached: Vec::new(), ..timing.clone() }))
+        };
+        let (done, timing) = read(bytes, "result", again)?;
         if let Some(problem) = self.problem(&done, &timing, stiffness)? {
             return Err(WorkError::Poisoned { worker: done.worker, problem });
         }

@@ -1,43 +1,7 @@
-//! The options that several commands share, beside those of the requests.
+//! The options that studies share, beside those of the requests.
 
-use crate::session::{
-    CacheRequest, CalibrateRequest, DEFAULT_PRIORS, EffortRequest, RunRequest, SetupRequest,
-};
+use crate::session::{EffortRequest, RunRequest};
 use clap::Args;
-use std::path::PathBuf;
-
-/// How a calibration is computed.
-#[derive(Debug, Clone, Args)]
-pub struct CalibrationArguments {
-    /// What nobody measured, and its bounds: bench, or the path of a file
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
-    priors: String,
-    #[command(flatten)]
-    effort: EffortRequest,
-    /// Seed; the same seed gives the same answer
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Folder of simulations shared with studies; safe to delete [default: results/.cache]
-    #[arg(long, value_name = "DIR")]
-    cache: Option<PathBuf>,
-    /// Simulate anew, and keep nothing
-    #[arg(long, conflicts_with = "cache")]
-    no_cache: bool,
-}
-
-impl CalibrationArguments {
-    /// What is asked for, of this setup and these measurements.
-    pub fn request(&self, setup: SetupRequest, measurements: &str) -> CalibrateRequest {
-        CalibrateRequest {
-            setup,
-            measurements: measurements.to_owned(),
-            priors: self.priors.clone(),
-            effort: self.effort,
-            seed: self.seed,
-            cache: CacheRequest { dir: self.cache.clone(), off: self.no_cache },
-        }
-    }
-}
 
 /// How a study is run, as opposed to what it measures.
 #[derive(Debug, Args)]

@@ -21,21 +21,47 @@ use std::sync::atomic::AtomicBool;
 /// Priors unless others are named.
 pub const DEFAULT_PRIORS: &str = "bench";
 
-/// What to calibrate, and how.
-#[derive(Debug, Clone)]
-pub struct CalibrateRequest {
+/// Fingers on the bench: of which tasks, and what was measured of them.
+#[derive(Debug, Clone, clap::Args)]
+pub struct BenchRequest {
     /// Tasks, robot, space, finger model.
+    #[command(flatten)]
     pub setup: SetupRequest,
-    /// What was measured on the bench: a shipped name, or the path of a file.
+    /// What was measured on the bench: published, or the path of a file
+    #[arg(long, value_name = "FILE")]
     pub measurements: String,
-    /// What nobody measured, and its bounds: a shipped name, or the path of a file.
+}
+
+/// How a calibration is computed.
+#[derive(Debug, Clone, clap::Args)]
+#[command(mut_arg("cache", |cache| cache.help(
+    "Folder of simulations shared with studies; safe to delete [default: results/.cache]"
+)))]
+#[command(mut_arg("no_cache", |off| off.help("Simulate anew, and keep nothing")))]
+pub struct HowCalibrated {
+    /// What nobody measured, and its bounds: bench, or the path of a file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
     pub priors: String,
     /// How much is computed.
+    #[command(flatten)]
     pub effort: EffortRequest,
-    /// Seed; the same seed gives the same answer.
+    /// Seed; the same seed gives the same answer
+    #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Where simulations are kept.
+    #[command(flatten)]
     pub cache: CacheRequest,
+}
+
+/// What to calibrate, and how.
+#[derive(Debug, Clone, clap::Args)]
+pub struct CalibrateRequest {
+    /// Tasks and measurements.
+    #[command(flatten)]
+    pub bench: BenchRequest,
+    /// How it is computed.
+    #[command(flatten)]
+    pub how: HowCalibrated,
 }
 
 /// What a calibration found.
@@ -47,7 +73,7 @@ pub struct Calibrated {
 }
 
 /// Tasks with all that is needed to calibrate them.
-pub struct Prepared<'a> {
+pub(super) struct Prepared<'a> {
     /// The tasks' fingers, in order.
     pub subjects: Vec<Subject>,
     /// What each coordinate is.
@@ -57,42 +83,31 @@ pub struct Prepared<'a> {
 }
 
 impl CalibrateRequest {
-    /// Of this setup and these measurements, all else as usual.
-    pub fn new(setup: SetupRequest, measurements: String) -> Self {
-        CalibrateRequest {
-            setup,
-            measurements,
-            priors: DEFAULT_PRIORS.to_owned(),
-            effort: EffortRequest::default(),
-            seed: 0,
-            cache: CacheRequest::default(),
-        }
-    }
-
     /// Predicts every finger of the space on each task.
     ///
     /// # Errors
     /// If a file cannot be used, or nothing can be fitted; if `stop` is set meanwhile.
     pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Calibrated, Failure> {
-        let Prepared { subjects, layout, settings, .. } = self.prepare(&[], stop, watch)?;
+        let Prepared { subjects, layout, settings } =
+            self.how.prepare(&self.bench, &[], stop, watch)?;
         let found = Calibration::new(layout, &subjects, &settings);
         not_stopped(stop)?;
         Ok(Calibrated { subjects, found })
     }
+}
 
+impl HowCalibrated {
     /// Simulates the tasks, and reads what was measured on them; `more` are fingers that are
     /// asked for beside those of the space.
-    ///
-    /// # Errors
-    /// As [`run`](Self::run).
-    pub fn prepare<'a>(
+    pub(super) fn prepare<'a>(
         &self,
+        bench: &BenchRequest,
         more: &[Design],
         stop: &'a AtomicBool,
         watch: &mut Watch<'_>,
     ) -> Result<Prepared<'a>, Failure> {
-        let setup = self.setup.setup()?;
-        let experiments = measured::read(&self.measurements, &setup.task_names())?;
+        let setup = bench.setup.setup()?;
+        let experiments = measured::read(&bench.measurements, &setup.task_names())?;
         let priors = measured::priors(&find("file of priors", PRIORS, &self.priors)?)?;
         let effort = self.effort.or(None)?;
         let ground = Ground {
@@ -103,7 +118,7 @@ impl CalibrateRequest {
             cache: self.cache.folder(&setup)?,
             stop,
         };
-        let (subjects, layout) = ground.subjects(&self.measurements, &experiments, more, watch)?;
+        let (subjects, layout) = ground.subjects(&bench.measurements, &experiments, more, watch)?;
         Ok(Prepared { subjects, layout, settings: settings(effort, self.seed, stop) })
     }
 }

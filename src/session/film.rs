@@ -121,11 +121,9 @@ pub(super) fn boundary(
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
         for (end, outward) in ENDS {
             let file = dir.join(pair_file(at, end));
-            let pair = match found.as_ref().and_then(|found| Some((found, found.recorded.on(at)?)))
-            {
+            let pair = match found.and_then(|best| Some((best, best.on(at)?))) {
                 None => None,
-                Some((found, task)) => {
-                    let best = found.recorded;
+                Some((best, task)) => {
                     let specimen = setup
                         .evaluator
                         .specimen(template, &best.design, best.stiffness)

@@ -35,11 +35,10 @@ mod tests;
 mod trial;
 mod unusable;
 
-pub use calibration::{CalibrateRequest, Calibrated, DEFAULT_PRIORS, Prepared};
+pub use calibration::{BenchRequest, CalibrateRequest, Calibrated, HowCalibrated};
 pub use driven::Insertion;
 pub use evaluate::{EvaluateRequest, Evaluated};
 pub use failure::Failure;
-pub(crate) use failure::wide;
 pub use files::robot;
 pub use film::FilmRequest;
 pub use finger::{Chosen, FingerRequest};

@@ -40,7 +40,6 @@ pub use journal::Journal;
 pub use line::{decode, encode};
 pub use on_bench::{BenchEffort, BenchFinger, OnBench, Trust};
 pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
-pub use recommendation::Recommendation;
 pub use record::{
     ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume,
 };

@@ -1,7 +1,8 @@
 //! What those need of the command line who call the library from elsewhere: `--executor`'s words as
 //! requests, and what is printed.
 
-use super::{Failure, recommended, study, summary};
+use super::study::{Arguments, ResumeArguments, Shown};
+use super::{Failure, recommended, summary};
 use crate::session::{AnyStudy, Ended};
 use crate::study::StudyRecord;
 use clap::{Args, Parser};
@@ -32,17 +33,19 @@ pub struct Asked {
 /// # Errors
 /// If they ask for no study.
 pub fn asked(words: &[OsString]) -> Result<Asked, Failure> {
-    let (study, run) = match words {
+    let (study, executor, Shown { quiet, json }) = match words {
         [first, rest @ ..] if first == "resume" => {
-            let arguments: study::ResumeArguments = read(rest)?;
-            (AnyStudy::Resumed(arguments.request()), arguments.run)
+            let ResumeArguments { request, shown } = read(rest)?;
+            let executor = request.run.executor.clone();
+            (AnyStudy::Resumed(request), executor, shown)
         }
         words => {
-            let arguments: study::Arguments = read(words)?;
-            (AnyStudy::Asked(Box::new(arguments.request())), arguments.run)
+            let Arguments { request, shown } = read(words)?;
+            let executor = request.run.executor.clone();
+            (AnyStudy::Asked(Box::new(request)), executor, shown)
         }
     };
-    Ok(Asked { study, executor: run.executor, quiet: run.quiet, json: run.json })
+    Ok(Asked { study, executor, quiet, json })
 }
 
 fn read<T: Args>(words: &[OsString]) -> Result<T, Failure> {

@@ -1,6 +1,5 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
-pub mod arguments;
 mod ask_tell;
 mod calibrate;
 pub mod call;
@@ -63,8 +62,8 @@ impl Cli {
     /// Where a study is to be measured, if not here.
     fn executor(&self) -> Option<&str> {
         let run = match &self.command {
-            None => &self.study.0.as_ref()?.run,
-            Some(Command::Resume(arguments)) => &arguments.run,
+            None => &self.study.0.as_ref()?.request.run,
+            Some(Command::Resume(arguments)) => &arguments.request.run,
             Some(_) => return None,
         };
         run.executor.as_deref()
@@ -219,13 +218,13 @@ fn survive_size_limit() {
 fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => match cli.study.0 {
-            Some(arguments) => study::to_its_end(arguments.request().open(None)?, &arguments.run),
+            Some(arguments) => study::to_its_end(arguments.request.open(None)?, &arguments.shown),
             None => Err(Failure::usage(
                 "give --task NAME and --budget N, or a subcommand; see `optimize --help`",
             )),
         },
         Some(Command::Resume(arguments)) => {
-            study::to_its_end(arguments.request().open()?, &arguments.run)
+            study::to_its_end(arguments.request.open()?, &arguments.shown)
         }
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),

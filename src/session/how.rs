@@ -99,8 +99,13 @@ pub struct RunRequest {
     /// file, in a new segment; the best design is then taken from that
     #[arg(long)]
     pub accept_changed: bool,
+    /// Where designs are measured, by the installed Python package: dask://HOST:PORT, slurm,
+    /// slurm:JOBS, processes or processes:N [default: on the threads of this process]
+    // Whoever opens the study hands it over; here threads measure.
+    #[arg(long, value_name = "WHERE")]
+    pub executor: Option<String>,
     /// How much is computed for the bench.
-    #[arg(skip)]
+    #[command(flatten)]
     pub effort: EffortRequest,
 }
 

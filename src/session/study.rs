@@ -88,7 +88,7 @@ pub struct StudyRequest {
     )]
     pub out: Option<PathBuf>,
     /// How it is run.
-    #[arg(skip)]
+    #[command(flatten)]
     pub run: RunRequest,
 }
 
@@ -98,7 +98,7 @@ pub struct ResumeRequest {
     /// Folder of the study
     pub dir: PathBuf,
     /// How it is run.
-    #[arg(skip)]
+    #[command(flatten)]
     pub run: RunRequest,
 }
 

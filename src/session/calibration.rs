@@ -153,9 +153,17 @@ impl<'a> Ground<'a> {
         more: &[Design],
         watch: &mut Watch<'_>,
     ) -> Result<(Vec<Subject>, Layout), Failure> {
-        let templates = &self.setup.evaluator.templates;
-        let subject = |template| self.subject(template, experiments, more, watch);
-        let subjects = templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
+        let Setup { evaluator, space, .. } = self.setup;
+        let subject = |template: &'a Template| {
+            let (task, count) = (&template.task.name, self.simulations);
+            if evaluator.engine.simulates() {
+                watch(Event::Simulating { task, count });
+            }
+            let simulation = self.simulation(template);
+            let emulator = Emulator::new(&simulation, space, task, count, self.seed)?;
+            Subject::new(evaluator, template, space, emulator, experiments, more)
+        };
+        let subjects = evaluator.templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
         not_stopped(self.stop)?;
         let subjects = subjects.map_err(|error| match error {
             CalibrationError::NoFit(..) => Failure::running(error.to_string()),
@@ -165,23 +173,7 @@ impl<'a> Ground<'a> {
         let of_task = |template: &'a Template| {
             (template.task.name.clone(), self.simulation(template).parameters)
         };
-        let of_tasks: Vec<_> = templates.iter().map(of_task).collect();
+        let of_tasks: Vec<_> = evaluator.templates.iter().map(of_task).collect();
         Ok((subjects, Layout::new(&of_tasks)))
-    }
-
-    fn subject(
-        &self,
-        template: &'a Template,
-        experiments: &[Experiment],
-        more: &[Design],
-        watch: &mut Watch<'_>,
-    ) -> Result<Subject, CalibrationError> {
-        let (evaluator, space) = (&self.setup.evaluator, &self.setup.space);
-        let (task, count) = (&template.task.name, self.simulations);
-        if evaluator.engine.simulates() {
-            watch(Event::Simulating { task, count });
-        }
-        let emulator = Emulator::new(&self.simulation(template), space, task, count, self.seed)?;
-        Subject::new(evaluator, template, space, emulator, experiments, more)
     }
 }

@@ -68,10 +68,6 @@ pub struct FingerRequest {
 pub struct Chosen {
     /// Task and finger.
     pub specimen: Specimen,
-    /// Infill density, percent, if it was given.
-    pub density: Option<f64>,
-    /// Infill direction, degrees, if it was given.
-    pub direction: Option<f64>,
     /// Name of the robot.
     pub robot: String,
     /// Where its springs come from that were not measured.
@@ -131,8 +127,6 @@ impl FingerRequest {
         let specimen = evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
         Ok(Chosen {
             specimen,
-            density: self.density,
-            direction: self.direction,
             robot: evaluator.robot.name.clone(),
             finger_model: evaluator.fingers.kind(),
             design,

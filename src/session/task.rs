@@ -2,7 +2,6 @@
 
 use super::Failure;
 use super::files::{find, robot};
-use super::request::DEFAULT_ROBOT;
 use crate::calibration::published::three;
 use crate::connector::check::{Problem, problems};
 use crate::connector::nominal;
@@ -84,23 +83,11 @@ pub struct TaskCheck {
 }
 
 impl TaskCheck {
-    /// Checks the task of that name, or of the file at that path.
-    ///
-    /// # Errors
-    /// If there is no such file, or robot or engine cannot do the task.
-    pub fn named(name: &str, robot_name: &str, engine: EngineKind) -> Result<Self, Failure> {
-        TaskCheck::of(find("task", TASKS, name)?, robot_name, engine)
-    }
-
-    /// Checks a task file with the usual robot.
+    /// Checks a task file with the robot of that name.
     ///
     /// # Errors
     /// If robot or engine cannot do the task.
-    pub fn of_text(source: Source, engine: EngineKind) -> Result<Self, Failure> {
-        TaskCheck::of(source, DEFAULT_ROBOT, engine)
-    }
-
-    fn of(source: Source, robot_name: &str, engine: EngineKind) -> Result<Self, Failure> {
+    pub fn of(source: Source, robot_name: &str, engine: EngineKind) -> Result<Self, Failure> {
         let task = match Task::parse(&source.text, &source.file) {
             Ok(task) => task,
             Err(error) => {

@@ -13,11 +13,10 @@
 //! .lock            held by the process that writes
 //! ```
 
-use super::bench_file::{self, BENCH_FILE};
 use super::config::{Conclusion, StudyConfig};
 use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
-use super::on_bench::OnBench;
+use super::on_bench::{BENCH_FILE, OnBench};
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
@@ -179,9 +178,10 @@ impl Study {
                 ),
             ));
         }
-        write_inputs(&self.dir, self.segments.len() + 1, inputs)?;
+        let number = self.segments.len() + 1;
+        write_inputs(&self.dir, number, inputs)?;
         let segment = Segment { first, provenance: now.clone() };
-        self.journal.begin_segment(segment.clone())?;
+        self.journal.begin_segment(number, &segment)?;
         self.segments.push(segment);
         Ok(())
     }
@@ -211,7 +211,7 @@ impl Study {
     pub fn rescue(&self, error: StudyError) -> StudyError {
         match error {
             StudyError::Interfered { path, problem, .. } => {
-                let kept = self.journal.rescue(&self.evaluations);
+                let kept = self.journal.rescue(&self.evaluations, &self.segments);
                 StudyError::Interfered { path, problem, kept: kept.map_err(|e| e.to_string()) }
             }
             other => other,
@@ -266,13 +266,13 @@ impl StudyRecord {
         evaluations: Vec<Recorded>,
         foreign: usize,
     ) -> Self {
-        let (walked, firm_values) = Default::default();
         let finger = read_inputs(dir, &segments)
             .ok()
             .and_then(|inputs| FingerFile::parse(inputs.get(FINGER)?, "inputs/finger").ok());
         let on_bench = segments
             .last()
-            .and_then(|segment| bench_file::read(dir, &segment.provenance, &config.space));
+            .and_then(|segment| OnBench::read(dir, &segment.provenance, &config.space));
+        let (walked, firm_values) = Default::default();
         let mut record = StudyRecord {
             config,
             segments,

@@ -20,8 +20,6 @@ pub struct Journal {
     path: PathBuf,
     store: Box<dyn Store>,
     config: StudyConfig,
-    /// What its lines were measured with.
-    segments: Vec<Segment>,
     /// Bytes of whole, synced lines.
     len: u64,
     /// A write failed: what follows could not be trusted.
@@ -60,7 +58,6 @@ impl Journal {
             path: path.to_owned(),
             store,
             config: config.clone(),
-            segments: parsed.segments.clone(),
             len: parsed.whole as u64,
             broken: false,
         };
@@ -77,12 +74,10 @@ impl Journal {
         self.write(&line.map_err(|error| self.failed(error.into()))?)
     }
 
-    /// Begins a segment: what is appended from now on belongs to it.
-    pub(super) fn begin_segment(&mut self, segment: Segment) -> Result<(), StudyError> {
-        let line = header::encode_segment(self.segments.len() + 1, &segment);
-        self.write(&line.map_err(|error| self.failed(error.into()))?)?;
-        self.segments.push(segment);
-        Ok(())
+    /// Begins the segment of this number, counted from 1: what is appended from now on belongs to it.
+    pub(super) fn begin_segment(&mut self, n: usize, segment: &Segment) -> Result<(), StudyError> {
+        let line = header::encode_segment(n, segment);
+        self.write(&line.map_err(|error| self.failed(error.into()))?)
     }
 
     /// Whether the journal is still what was written.
@@ -98,9 +93,13 @@ impl Journal {
     }
 
     /// Writes a whole journal of these evaluations beside the lost one.
-    pub(super) fn rescue(&self, evaluations: &[Recorded]) -> io::Result<PathBuf> {
+    pub(super) fn rescue(
+        &self,
+        evaluations: &[Recorded],
+        segments: &[Segment],
+    ) -> io::Result<PathBuf> {
         let mut text = header::encode(&self.config)?;
-        let mut further = (2..).zip(self.segments.iter().skip(1)).peekable();
+        let mut further = (2..).zip(segments.iter().skip(1)).peekable();
         for index in 0..=evaluations.len() {
             let begins = |(_, segment): &(usize, &Segment)| segment.first == index as u64;
             while let Some((number, segment)) = further.next_if(begins) {

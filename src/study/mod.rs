@@ -1,7 +1,6 @@
 //! Studies: seeded runs of one optimizer on one task and space, in a folder
 //! that survives whatever happens to the process.
 
-mod bench_file;
 mod cache;
 mod config;
 mod course;
@@ -27,7 +26,7 @@ mod walk;
 mod walked;
 mod work;
 
-pub use cache::{Cache, Key};
+pub use cache::Cache;
 pub use config::{Conclusion, LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
 pub use course::{Arrived, Course, Ending, Next, Wanted};
 pub use error::{LineError, StudyError};

@@ -3,7 +3,7 @@
 use super::super::{Failure, print, print_json, trial};
 use crate::connector::check::Problem;
 use crate::connector::picture;
-use crate::session::{DEFAULT_ROBOT, TaskCheck};
+use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskSource};
 use crate::study::write_file;
 use clap::Args;
 use input::units::N_PER_MM;
@@ -32,7 +32,8 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let checked = TaskCheck::named(&arguments.file, &arguments.robot, arguments.engine)?;
+    let source = TaskSource::Named(arguments.file.clone()).read()?;
+    let checked = TaskCheck::of(source, &arguments.robot, arguments.engine)?;
     let drawn = match (&arguments.svg, &checked.task) {
         (Some(file), Some(task)) => {
             write_file(file, &picture::svg(task))?;

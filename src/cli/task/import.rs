@@ -7,7 +7,7 @@ use crate::connector::mesh::import::{
 };
 use crate::connector::mesh::{Surface, read};
 use crate::connector::write::{self, Notes};
-use crate::session::{TaskCheck, TaskFile, read_task};
+use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskFile, read_task};
 use crate::study::write_file;
 use clap::{Args, ValueEnum};
 use input::shipped::Source;
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         text: write::task(&imported.task, &notes(arguments, &imported)),
     })?;
     write_file(out, &written.source.text)?;
-    let checked = TaskCheck::of_text(written.source, arguments.engine)?;
+    let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, arguments.engine)?;
     report(arguments, &imported, inward, &checked)
 }
 

@@ -5,7 +5,7 @@ use super::check;
 use crate::connector::draft::{DENSITY, Dimensions, Size, draft};
 use crate::connector::round::Hole;
 use crate::connector::write::{self, Notes};
-use crate::session::{TaskCheck, TaskFile, read_task};
+use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskFile, read_task};
 use crate::study::write_file;
 use clap::Args;
 use input::shipped::Source;
@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::usage(format!("{file} exists; name another file with --out")));
     }
     write_file(&out, &written.source.text)?;
-    let checked = TaskCheck::of_text(written.source, arguments.engine)?;
+    let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, arguments.engine)?;
     print(&format!(
         "written       {file}\n{}next          optimize task check {file} --svg {}.svg\n",
         check::text(&checked),

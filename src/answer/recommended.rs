@@ -101,7 +101,6 @@ impl<'a> Recommended<'a> {
     }
 }
 
-/// Common part of all windows.
 fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     windows
         .fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])

@@ -29,9 +29,6 @@ pub struct Asked {
 }
 
 /// Reads the words of `optimize` or `optimize resume`; the text of a failure is clap's.
-///
-/// # Errors
-/// If they ask for no study.
 pub fn asked(words: &[OsString]) -> Result<Asked, Failure> {
     let (study, executor, Shown { quiet, json }) = match words {
         [first, rest @ ..] if first == "resume" => {

@@ -146,7 +146,7 @@ enum Command {
     #[command(
         after_help = "Example: optimize ask-tell < session.jsonl; docs/guide/python.md has the lines"
     )]
-    AskTell(ask_tell::Arguments),
+    AskTell,
     /// List tasks, spaces, robots and uncertainties
     #[command(after_help = "Example: optimize tasks --json")]
     Tasks(tasks::Arguments),
@@ -237,7 +237,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Next(arguments)) => next::run(&arguments),
         Some(Command::Measure(arguments)) => measure::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),
-        Some(Command::AskTell(arguments)) => ask_tell::run(&arguments),
+        Some(Command::AskTell) => ask_tell::run(),
         Some(Command::Tasks(arguments)) => tasks::run(&arguments),
         Some(Command::Task(arguments)) => task::run(&arguments),
         Some(Command::Completions(arguments)) => manual::completions(&arguments),

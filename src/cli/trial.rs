@@ -54,7 +54,6 @@ pub fn json(done: &TrialDone) -> Value {
     fields
 }
 
-/// How a trial ended.
 pub(super) fn ended(trial: &Trial) -> Value {
     json!({
         "outcome": trial.outcome.word(),

@@ -156,7 +156,6 @@ fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
     ]
 }
 
-/// Whether two studies measure the same.
 fn alike(
     (first, ours): &(String, StudyRecord),
     (second, theirs): &(String, StudyRecord),

@@ -10,9 +10,6 @@ use plotters::prelude::*;
 const COLOURS: [Colour; 6] = [BLUE, ORANGE, GREEN, RED, MUTED, INK];
 
 /// `compare.svg`: best so far of each optimizer, the median as a line and the quartiles as a band.
-///
-/// # Errors
-/// If the drawing library refuses.
 pub fn svg(comparison: &Comparison) -> Result<String, ReportError> {
     sheet("the comparison", (880, 480), |area| draw(area, comparison))
 }

@@ -11,7 +11,6 @@ use maud::{Markup, html};
 /// Key of the remote centre, where a space has it among its parameters.
 const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
 
-/// The statements, one after the other.
 pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     let record = answer.record;
     let goals = record.config.goals();

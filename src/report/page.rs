@@ -26,9 +26,6 @@ pub struct Beside {
 
 /// The report of a study as a page that opens offline. `model` is the stiffness model of the
 /// study; the map marks the designs it was fitted to.
-///
-/// # Errors
-/// If the drawing library refuses.
 pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<String, ReportError> {
     let (config, title) = (&record.config, title(record));
     let sections = sections(&Answer::of(record), model, beside)?;

@@ -72,7 +72,6 @@ fn row(name: &str, recorded: &Recorded) -> Vec<String> {
     ]
 }
 
-/// How much more range, and at what force.
 fn gain(alone: &Recorded, best: &Recorded) -> String {
     let of = |(before, now): (&Evaluation, &Evaluation)| {
         let [force, other] = [now, before].map(|task| Measure::PeakForce.show(task.peak_force_n));

@@ -60,7 +60,6 @@ pub(super) fn decimals(value: f64, places: usize) -> String {
     if value.is_finite() { format!("{value:.places$}") } else { "-".to_owned() }
 }
 
-/// The axis in keys.
 pub(super) fn key(axis: Axis) -> &'static str {
     match axis {
         Axis::Assembly => "assembly",

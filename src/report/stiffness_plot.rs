@@ -12,9 +12,6 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 /// Four panels: both axes of stiffness against direction and against density, curves with a band of
 /// one standard deviation, and the measured designs.
-///
-/// # Errors
-/// If the drawing library refuses.
 pub fn svg(model: &Model) -> Result<String, ReportError> {
     sheet("the stiffness model", (1160, 880), |area| {
         let (head, body) = area.split_vertically(58);

@@ -84,9 +84,6 @@ pub(super) struct Prepared<'a> {
 
 impl CalibrateRequest {
     /// Predicts every finger of the space on each task.
-    ///
-    /// # Errors
-    /// If a file cannot be used, or nothing can be fitted; if `stop` is set meanwhile.
     pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Calibrated, Failure> {
         let Prepared { subjects, layout, settings } =
             self.how.prepare(&self.bench, &[], stop, watch)?;

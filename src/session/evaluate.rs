@@ -56,9 +56,6 @@ pub struct Evaluated {
 
 impl EvaluateRequest {
     /// Measures the finger.
-    ///
-    /// # Errors
-    /// If a file cannot be used or the finger cannot be simulated; if `stop` is set meanwhile.
     pub fn run(&self, stop: &AtomicBool) -> Result<Evaluated, Failure> {
         self.repeat.map_or(Ok(()), RepeatRequest::check)?;
         let mut setup = self.setup.setup()?;

@@ -66,7 +66,6 @@ impl FilmRequest {
         Ok(Some(recording))
     }
 
-    /// The files that are written.
     pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
         self.record.iter().chain(&self.plot)
     }

@@ -86,7 +86,6 @@ impl FingerRequest {
         self.stiffness_compliance.is_some() || self.stiffness_assembly.is_some()
     }
 
-    /// The finger, checked against the space.
     pub(super) fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
         self.by(setup, &setup.evaluator)
     }

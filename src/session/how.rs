@@ -11,11 +11,9 @@ use std::sync::atomic::AtomicBool;
 
 /// Folder of the cache unless another is named.
 const CACHE: &str = "results/.cache";
-/// Threads there may be.
 const THREADS: RangeInclusive<u16> = 1..=1024;
 /// Simulations per task that an emulator may be made of.
 const SIMULATIONS: RangeInclusive<u16> = 16..=4096;
-/// Samples of a posterior there may be.
 const SAMPLES: RangeInclusive<u16> = 20..=20_000;
 /// Simulations and samples unless others are asked for.
 const EFFORT: BenchEffort = BenchEffort { simulations: 200, samples: 300 };
@@ -60,13 +58,11 @@ pub struct EffortRequest {
 }
 
 impl EffortRequest {
-    /// Whether the numbers are within their ranges.
     fn check(self) -> Result<(), Failure> {
         within("--simulations", self.simulations, &SIMULATIONS)?;
         within("--samples", self.samples, &SAMPLES)
     }
 
-    /// What was asked for, or else what is known.
     pub(super) fn or(self, known: Option<BenchEffort>) -> Result<BenchEffort, Failure> {
         self.check()?;
         let other = known.unwrap_or(EFFORT);
@@ -77,7 +73,6 @@ impl EffortRequest {
     }
 }
 
-/// How to sample.
 pub(super) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Settings<'_> {
     let effort = Effort { warm_up: WARM_UP, samples: usize::from(effort.samples), thin: THIN };
     Settings { effort, seed, stop }
@@ -110,7 +105,6 @@ pub struct RunRequest {
 }
 
 impl RunRequest {
-    /// Whether the numbers are within their ranges.
     pub(super) fn check(&self) -> Result<(), Failure> {
         within("--threads", self.threads, &THREADS)?;
         self.effort.check()
@@ -136,7 +130,6 @@ impl RunRequest {
         usize::from(self.threads.unwrap_or(0))
     }
 
-    /// The threads that measure.
     pub(super) fn pool(&self) -> Result<ThreadPool, Failure> {
         rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads())

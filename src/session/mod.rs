@@ -1,8 +1,9 @@
 //! The door to all that comes before it: typed requests in, typed results out, for whoever asks:
 //! the command line, the program `lab`, Python.
 //!
-//! A request is checked when it is turned into what it is used as; nothing is printed here. What
-//! takes long ends, with a failure, once the `stop` that it is given is set.
+//! A request is checked when it is turned into what it is used as; nothing is printed here. It fails
+//! if a file that it names cannot be used or written, or if there is no such finger, task or study.
+//! What takes long ends, with a failure, once the `stop` that it is given is set.
 
 mod calibration;
 mod driven;

@@ -61,9 +61,6 @@ pub struct Advised {
 
 impl NextRequest {
     /// Says which finger to print next.
-    ///
-    /// # Errors
-    /// As [`CalibrateRequest::run`].
     pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Advised, Failure> {
         if self.bench.setup.tasks.len() != 1 {
             return Err(Failure::usage("give one --task: a finger is printed for one"));
@@ -93,7 +90,6 @@ impl NextRequest {
     }
 }
 
-/// The published fingers.
 fn infills() -> Vec<Design> {
     let designs = published::designs().into_iter();
     designs.map(|design| Design::infill(design.density_percent, design.direction_deg)).collect()

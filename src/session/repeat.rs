@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
-/// How often may be repeated.
 const REPEATS: RangeInclusive<u32> = 2..=10_000;
 
 /// How often to repeat, with friction within 10 %, start within 0.02 mm, and half the step by turns.

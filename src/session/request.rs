@@ -41,9 +41,6 @@ impl TaskSource {
     }
 
     /// Its file, unchecked.
-    ///
-    /// # Errors
-    /// If there is none.
     pub fn read(&self) -> Result<Source, Failure> {
         match self {
             TaskSource::Named(name) => find("task", TASKS, name),
@@ -107,9 +104,6 @@ impl Default for SetupRequest {
 
 impl SetupRequest {
     /// Reads and checks all that is named.
-    ///
-    /// # Errors
-    /// If a file cannot be used, or they do not go together.
     pub fn setup(&self) -> Result<Setup, Failure> {
         if self.tasks.is_empty() {
             return Err(Failure::usage("give --task"));
@@ -134,9 +128,6 @@ impl SetupRequest {
 
 impl FingerModelRequest {
     /// What makes fingers where no space is searched.
-    ///
-    /// # Errors
-    /// If the finger file cannot be used.
     pub fn fingers(&self) -> Result<FingerSource, Failure> {
         Ok(Fingers::parse(self.file(None)?)?.made())
     }

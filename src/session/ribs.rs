@@ -34,9 +34,6 @@ pub struct RibsRequest {
 
 impl RibsRequest {
     /// The ribs, and the stiffness that they give.
-    ///
-    /// # Errors
-    /// If the file cannot be used, or there is no such finger.
     pub fn run(&self) -> Result<(Geometry, FingerStiffness), Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(

@@ -20,9 +20,6 @@ pub struct SceneRequest {
 
 impl SceneRequest {
     /// Name of the task, and the scene as MJCF.
-    ///
-    /// # Errors
-    /// If a file cannot be used, or MJCF has no place for something of it.
     pub fn mjcf(&self) -> Result<(String, String), Failure> {
         let setup = self.setup.setup()?;
         let Specimen { task, finger, .. } = self.finger.choose(&setup)?.specimen;

@@ -12,7 +12,6 @@ use rayon::prelude::*;
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
-/// Rows there may be.
 const SAMPLES: RangeInclusive<u32> = 4..=10_000;
 
 /// What to vary, and what is looked at.
@@ -37,10 +36,6 @@ pub struct SensitivityRequest {
 
 impl SensitivityRequest {
     /// Simulates the sample and ranks the inputs.
-    ///
-    /// # Errors
-    /// If a file cannot be used, an input cannot be varied, or the objective is the same everywhere;
-    /// if `stop` is set meanwhile.
     pub fn run(&self, stop: &AtomicBool) -> Result<Found, Failure> {
         if !matches!(self.objective, Measure::Range | Measure::CentredRange) {
             let problem = "has no value where nothing inserts; use range or centred-range";

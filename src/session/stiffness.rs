@@ -25,18 +25,12 @@ impl Default for StiffnessRequest {
 
 impl StiffnessRequest {
     /// Fits the model.
-    ///
-    /// # Errors
-    /// If a file cannot be used.
     pub fn model(&self) -> Result<Model, Failure> {
         let finger = printed_finger(&self.finger)?;
         surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)
     }
 
     /// The stiffness of an infill: density, percent, and direction, degrees.
-    ///
-    /// # Errors
-    /// If there is no such finger, or a file cannot be used.
     pub fn predict(&self, density: f64, direction: f64) -> Result<Prediction, Failure> {
         Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
         self.model()?.predict(density, direction).map_err(Failure::input)

@@ -113,9 +113,6 @@ pub enum AnyStudy {
 
 impl AnyStudy {
     /// Opens it; where no batch is given a new study's is `workers`.
-    ///
-    /// # Errors
-    /// As of the request.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         match self {
             AnyStudy::Asked(request) => request.open(workers),
@@ -124,9 +121,6 @@ impl AnyStudy {
     }
 
     /// Its folder, with all checked that is asked for; nothing is written.
-    ///
-    /// # Errors
-    /// If it cannot be.
     pub fn folder(&self) -> Result<PathBuf, Failure> {
         match self {
             AnyStudy::Asked(request) => Ok(request.look()?.2),
@@ -137,9 +131,6 @@ impl AnyStudy {
 
 impl ResumeRequest {
     /// Opens the study to go on with it.
-    ///
-    /// # Errors
-    /// If there is none, or it is damaged, in use or was measured otherwise.
     pub fn open(&self) -> Result<OpenStudy, Failure> {
         self.run.check()?;
         let mut study = Study::resume(&self.dir)?;
@@ -174,9 +165,6 @@ impl StudyRequest {
     }
 
     /// Begins the study or goes on with it; where no batch is given a new study's is `workers`.
-    ///
-    /// # Errors
-    /// If it cannot be, or its folder cannot be used.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         let (setup, mut config, dir) = self.look()?;
         if self.batch.is_none() {

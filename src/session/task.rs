@@ -25,27 +25,18 @@ pub struct TaskFile {
 
 impl TaskFile {
     /// Checks the text of a task file.
-    ///
-    /// # Errors
-    /// If it cannot be used; the text names the key.
     pub fn parse(source: Source) -> Result<Self, Failure> {
         let task = Task::parse(&source.text, &source.file).map_err(Failure::input)?;
         Ok(TaskFile { source, task })
     }
 
     /// The fields of a task file, checked.
-    ///
-    /// # Errors
-    /// If it cannot be used.
     pub fn fields(source: Source) -> Result<toml::Table, Failure> {
         let Source { file, text } = TaskFile::parse(source)?.source;
         input::read(&text, &file).map_err(Failure::input)
     }
 
     /// The task file with these fields, checked; `file` is what messages call it.
-    ///
-    /// # Errors
-    /// If they make no task file.
     pub fn of_fields(file: &str, fields: &serde_json::Value) -> Result<Self, Failure> {
         let text =
             toml::to_string(fields).map_err(|error| Failure::usage(format!("{file}: {error}")))?;
@@ -54,17 +45,11 @@ impl TaskFile {
 }
 
 /// The task of that name, or of the file at that path.
-///
-/// # Errors
-/// If there is none, or it cannot be used.
 pub fn read_task(name: &str) -> Result<TaskFile, Failure> {
     TaskFile::parse(find("task", TASKS, name)?)
 }
 
 /// The space of that name, or of the file at that path.
-///
-/// # Errors
-/// If there is none, or it cannot be used.
 pub fn read_space(name: &str) -> Result<Space, Failure> {
     let source = find("space", SPACES, name)?;
     Space::parse(&source.text, &source.file).map_err(Failure::input)
@@ -84,9 +69,6 @@ pub struct TaskCheck {
 
 impl TaskCheck {
     /// Checks a task file with the robot of that name.
-    ///
-    /// # Errors
-    /// If robot or engine cannot do the task.
     pub fn of(source: Source, robot_name: &str, engine: EngineKind) -> Result<Self, Failure> {
         let task = match Task::parse(&source.text, &source.file) {
             Ok(task) => task,

@@ -77,10 +77,6 @@ pub struct TrialDone {
 
 impl TrialRequest {
     /// Simulates the insertion and writes what was asked for.
-    ///
-    /// # Errors
-    /// If a file cannot be used or written, or the finger cannot be simulated; if `stop` is set
-    /// meanwhile.
     pub fn run(&self, stop: &AtomicBool) -> Result<TrialDone, Failure> {
         let offset_mm = given_offset(self.offset_mm).map_err(|problem| {
             Failure::usage(format!("--offset-mm {}: {problem}", self.offset_mm))

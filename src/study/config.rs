@@ -101,10 +101,7 @@ impl StudyConfig {
         self.tasks().collect::<Vec<_>>().join("+")
     }
 
-    /// Whether it can be run as it is, whoever wrote it.
-    ///
-    /// # Errors
-    /// Which field cannot be so, and what would be right.
+    /// Whether it can be run as it is, whoever wrote it; if not, the field that is wrong.
     pub fn check(&self) -> Result<(), String> {
         for (key, value, [least, most]) in [
             ("budget", self.budget, [1, LARGEST_BUDGET]),

@@ -144,9 +144,6 @@ impl Course {
 
     /// Takes in what was measured of a design that was given out, and writes down what is in
     /// turn. False, and nothing is changed, if its result is not awaited: it came before.
-    ///
-    /// # Errors
-    /// If the journal cannot be written.
     pub fn take(
         &mut self,
         study: &mut Study,

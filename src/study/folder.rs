@@ -187,9 +187,6 @@ impl Study {
     }
 
     /// Settles how the study ends, whoever goes on with it.
-    ///
-    /// # Errors
-    /// If that cannot be written.
     pub fn conclude_by(&mut self, conclusion: Conclusion) -> Result<(), StudyError> {
         if self.config.conclusion != conclusion {
             self.config.conclusion = conclusion;
@@ -200,9 +197,6 @@ impl Study {
 
     /// Whether the journal is still what was written; if not, all that was measured is saved
     /// beside it.
-    ///
-    /// # Errors
-    /// [`StudyError::Interfered`].
     pub fn check_journal(&mut self) -> Result<(), StudyError> {
         self.journal.check().map_err(|error| self.rescue(error))
     }
@@ -234,9 +228,6 @@ impl Study {
     }
 
     /// Keeps what measurements say of its fingers.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub fn keep_on_bench(&self, found: &OnBench) -> Result<(), StudyError> {
         let path = self.dir.join(BENCH_FILE);
         let text = serde_json::to_string(found).map_err(|error| StudyError::file(&path, error))?;

@@ -47,6 +47,5 @@ pub use seal::strip_times;
 pub use simulated::Simulated;
 pub use store::{FileStore, Store};
 pub use table::{evaluations_csv, write_evaluations_csv};
-pub use time::now;
 pub use walk::Confirmer;
 pub use work::{Work, WorkError};

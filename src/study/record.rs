@@ -3,7 +3,7 @@
 use super::StudyConfig;
 use super::on_bench::OnBench;
 use super::provenance::Segment;
-use super::time::is_timestamp;
+use super::time::{is_timestamp, now};
 use ask_tell::pareto;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Goals, Measure, Score};
@@ -13,6 +13,7 @@ use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// A study read from its folder: all that a report may know of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,6 +102,14 @@ pub struct Timing {
 }
 
 impl Timing {
+    /// Measures something, and says when.
+    pub fn of<T>(measure: impl FnOnce() -> T) -> (T, Timing) {
+        let (datetime_start, clock) = (now(), Instant::now());
+        let measured = measure();
+        let (datetime_complete, wall_s) = (now(), clock.elapsed().as_secs_f64());
+        (measured, Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() })
+    }
+
     /// What is impossible about it, if anything is.
     pub fn implausible(&self) -> Option<&'static str> {
         let stamps = [&self.datetime_start, &self.datetime_complete];

@@ -5,7 +5,6 @@ use super::course::{Arrived, Course, Ending, Next, Wanted};
 use super::error::StudyError;
 use super::folder::Study;
 use super::record::{Recorded, Timing};
-use super::time;
 use ask_tell::Optimizer;
 use insertion::evaluation::evaluator::Evaluate;
 use rayon::ThreadPool;
@@ -13,7 +12,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
-use std::time::Instant;
 
 /// What a run works with.
 pub struct Runner<'a> {
@@ -107,8 +105,7 @@ impl Runner<'_> {
         if self.stop.load(Ordering::SeqCst) {
             return Ok(None);
         }
-        let (datetime_start, clock) = (time::now(), Instant::now());
-        let measured = self.evaluator.evaluate(design);
+        let (measured, timing) = Timing::of(|| self.evaluator.evaluate(design));
         // Once it is set the evaluator may have skipped trials.
         if self.stop.load(Ordering::SeqCst) {
             return Ok(None);
@@ -118,12 +115,7 @@ impl Runner<'_> {
             design: design.to_string(),
             source,
         })?;
-        let timing = Timing {
-            datetime_start,
-            datetime_complete: time::now(),
-            wall_s: clock.elapsed().as_secs_f64(),
-            cached: std::mem::take(&mut measured.cached),
-        };
+        let timing = Timing { cached: std::mem::take(&mut measured.cached), ..timing };
         Ok(Some(Arrived { proposal: *proposal, measured, timing }))
     }
 }

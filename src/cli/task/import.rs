@@ -72,7 +72,6 @@ enum Unit {
 }
 
 impl Unit {
-    /// In metres.
     fn metres(self) -> f64 {
         match self {
             Unit::Mm => MM,

@@ -18,7 +18,10 @@ pub(super) fn section(record: &StudyRecord, task: usize) -> Markup {
         return html! { p { "No ranges are published for the task " (name) "." } };
     }
     let row = |m: &Measurement| {
-        let found = of_design(record, m).and_then(|found| found.on(task));
+        let infill = (Some(m.density_percent), Some(m.direction_deg));
+        let same =
+            |r: &&Recorded| (r.design.get(DENSITY_KEY), r.design.get(DIRECTION_KEY)) == infill;
+        let found = record.evaluations.iter().find(same).and_then(|found| found.on(task));
         let mut row = vec![
             m.design.to_string(),
             format!("{} %, {}°", m.density_percent, m.direction_deg),
@@ -54,12 +57,4 @@ fn ours(window: &Window) -> String {
     };
     let [negative, positive] = [window.end_negative, window.end_positive].map(class);
     format!("{} ({negative} | {positive})", mm(window.range_mm()))
-}
-
-/// The evaluation of a measured design, if the study has one.
-fn of_design<'a>(record: &'a StudyRecord, m: &Measurement) -> Option<&'a Recorded> {
-    record.evaluations.iter().find(|r| {
-        r.design.get(DENSITY_KEY) == Some(m.density_percent)
-            && r.design.get(DIRECTION_KEY) == Some(m.direction_deg)
-    })
 }

@@ -84,24 +84,10 @@ impl Guided {
         self.accept(Arrived { proposal: wanted.proposal, measured, timing })
     }
 
-    fn give(&mut self, wanted: Wanted) -> Result<(u64, Vec<u8>), Failure> {
-        let work = self.work(wanted);
-        let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
-        let proposal = work.proposal;
-        self.measuring.insert(proposal, work);
-        Ok((proposal, bytes))
-    }
-
-    fn simulated<'a>(&'a self, stop: &'a AtomicBool) -> Simulated<'a> {
-        let OpenStudy { setup, plan, cache, .. } = &self.open;
-        let (evaluator, cache) = (&setup.evaluator, cache.as_ref());
-        Simulated { evaluator, search: Search::default(), plan, cache, stop }
-    }
-
-    fn work(&self, Wanted { proposal, design }: Wanted) -> Work {
+    fn give(&mut self, Wanted { proposal, design }: Wanted) -> Result<(u64, Vec<u8>), Failure> {
         let OpenStudy { study, setup, .. } = &self.open;
         let goals = study.config.goals();
-        Work {
+        let work = Work {
             proposal,
             design,
             seed: study.config.seed,
@@ -110,7 +96,16 @@ impl Guided {
             tasks: study.config.tasks.len() as u64,
             provenance: study.provenance().clone(),
             inputs: setup.inputs.clone(),
-        }
+        };
+        let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
+        self.measuring.insert(proposal, work);
+        Ok((proposal, bytes))
+    }
+
+    fn simulated<'a>(&'a self, stop: &'a AtomicBool) -> Simulated<'a> {
+        let OpenStudy { setup, plan, cache, .. } = &self.open;
+        let (evaluator, cache) = (&setup.evaluator, cache.as_ref());
+        Simulated { evaluator, search: Search::default(), plan, cache, stop }
     }
 
     /// Takes in the result of a proposal; false if it is not awaited (it came before).

@@ -67,7 +67,10 @@ impl NextRequest {
         }
         let published = match self.among {
             Among::Space => Vec::new(),
-            Among::Published => infills(),
+            Among::Published => published::designs()
+                .iter()
+                .map(|design| Design::infill(design.density_percent, design.direction_deg))
+                .collect(),
         };
         let prepared = self.how.prepare(&self.bench, &published, stop, watch)?;
         let Prepared { mut subjects, layout, settings } = prepared;
@@ -88,9 +91,4 @@ impl NextRequest {
         not_stopped(stop)?;
         Ok(Advised { subject: subjects.swap_remove(0), advice })
     }
-}
-
-fn infills() -> Vec<Design> {
-    let designs = published::designs().into_iter();
-    designs.map(|design| Design::infill(design.density_percent, design.direction_deg)).collect()
 }

@@ -79,7 +79,14 @@ impl TaskCheck {
         };
         let problems = problems(&task);
         let nominal = match problems.is_empty() {
-            true => Some(nominal_trial(&task, robot_name, engine)?),
+            true => {
+                let finger = middling()?;
+                let (shaped, robot) = (finger.shaped(&task.finger, 0.0), robot(robot_name)?);
+                let rig = engine.rig(&task, &robot, &shaped, 1.0).map_err(Failure::input)?;
+                let trial = rig.grasp(&shaped).trial(0.0);
+                let explanation = nominal::explain(&task, &trial);
+                Some((finger, trial, explanation))
+            }
             false => None,
         };
         Ok(TaskCheck { source, task: Some(task), problems, nominal })
@@ -90,20 +97,6 @@ impl TaskCheck {
         let outcome = self.nominal.as_ref().map(|(_, trial, _)| trial.outcome);
         outcome == Some(Outcome::Inserted)
     }
-}
-
-/// The nominal start of a task, tried with the middling finger, and explained.
-fn nominal_trial(
-    task: &Task,
-    robot_name: &str,
-    engine: EngineKind,
-) -> Result<(Finger, Trial, String), Failure> {
-    let finger = middling()?;
-    let shaped = finger.shaped(&task.finger, 0.0);
-    let rig = engine.rig(task, &robot(robot_name)?, &shaped, 1.0).map_err(Failure::input)?;
-    let trial = rig.grasp(&shaped).trial(0.0);
-    let explanation = nominal::explain(task, &trial);
-    Ok((finger, trial, explanation))
 }
 
 /// The shipped measured finger of middling compliance stiffness.

@@ -305,6 +305,6 @@ impl Study {
              was written by another version; continue it with that one, or start a new study",
             found.index, found.design
         );
-        StudyError::file(self.journal.path(), problem)
+        StudyError::file(&self.journal.path, problem)
     }
 }

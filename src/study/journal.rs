@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 /// An open journal.
 pub struct Journal {
-    path: PathBuf,
+    pub(super) path: PathBuf,
     store: Box<dyn Store>,
     config: StudyConfig,
     /// Bytes of whole, synced lines.
@@ -124,11 +124,6 @@ impl Journal {
             }
         }
         Err(io::Error::other("no name is left"))
-    }
-
-    /// Where it is kept.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     fn write(&mut self, lines: &str) -> Result<(), StudyError> {

@@ -11,22 +11,19 @@ impl StudyRecord {
     /// [`best`](Self::best). None of a front is.
     pub fn recommendation(&self) -> Option<&Recorded> {
         self.config.objective.single()?;
-        self.walked.first().map(|walked| &walked.recorded).or_else(|| self.best_searched())
+        let goals = self.config.goals();
+        let rule = Rule { goals: &goals, space: &self.config.space };
+        let searched = || match rule.by_windows() {
+            true => rule.candidates(self.current(), 1).first().copied(),
+            false => None,
+        };
+        let walked = self.walked.first().map(|walked| &walked.recorded);
+        walked.or_else(searched).or_else(|| self.best())
     }
 
     /// The recommended design, or of a front its first.
     pub fn recommended(&self) -> Option<&Recorded> {
         self.recommendation().or_else(|| self.best())
-    }
-
-    fn best_searched(&self) -> Option<&Recorded> {
-        let goals = self.config.goals();
-        let rule = Rule { goals: &goals, space: &self.config.space };
-        match rule.by_windows() {
-            true => rule.candidates(self.current(), 1).first().copied(),
-            false => None,
-        }
-        .or_else(|| self.best())
     }
 
     /// The designs whose search found as much as that of the evaluation `index`, with it, but for

@@ -181,11 +181,6 @@ impl StudyRecord {
         best(&self.config.goals(), self.current())
     }
 
-    /// The best of those current evaluations of which something holds.
-    pub fn best_where(&self, holds: impl Fn(&Recorded) -> bool) -> Option<&Recorded> {
-        best(&self.config.goals(), self.current().iter().filter(|recorded| holds(recorded)))
-    }
-
     /// The [`front`] of the [`current`](Self::current) evaluations.
     pub fn front(&self) -> Vec<&Recorded> {
         front(&self.config.goals(), self.current())

@@ -11,7 +11,6 @@ use rayon::ThreadPool;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
-use std::thread;
 
 /// What a run works with.
 pub struct Runner<'a> {
@@ -59,7 +58,11 @@ impl Runner<'_> {
                             for wanted in wanted {
                                 let sender = sender.clone();
                                 // The receiver is there until the scope ends.
-                                scope.spawn(move |_| drop(sender.send(self.caught(&wanted))));
+                                scope.spawn(move |_| {
+                                    // Whoever waits for it must learn of a panic.
+                                    let measure = AssertUnwindSafe(|| self.measure(&wanted));
+                                    drop(sender.send(catch_unwind(measure)));
+                                });
                             }
                             return Ok(None);
                         }
@@ -92,11 +95,6 @@ impl Runner<'_> {
                 }
             }
         })
-    }
-
-    /// A measurement, or the panic that ended it: whoever waits for it must learn of that.
-    fn caught(&self, wanted: &Wanted) -> thread::Result<Result<Option<Arrived>, StudyError>> {
-        catch_unwind(AssertUnwindSafe(|| self.measure(wanted)))
     }
 
     /// One measurement, `None` if the run was to stop before it was complete.

@@ -199,19 +199,16 @@ impl Work {
         } else if done.tasks.len() as u64 != self.tasks {
             format!("it has {} tasks in place of {}", done.tasks.len(), self.tasks)
         } else {
-            let doubtful = done.tasks.iter().find_map(|task| self.contradiction(task));
+            let asked = [self.success_rate, self.robust_range];
+            let doubtful = done.tasks.iter().find_map(|found| {
+                match asked == [found.success.is_some(), found.robust.is_some()] {
+                    true => fits::implausible(found),
+                    false => Some("it does not have what was asked for"),
+                }
+            });
             return Ok(doubtful.or_else(|| timing.implausible()).map(str::to_owned));
         };
         Ok(Some(problem))
-    }
-
-    /// What is impossible about an evaluation as the result of this work.
-    fn contradiction(&self, found: &Evaluation) -> Option<&'static str> {
-        let asked = [self.success_rate, self.robust_range];
-        match [found.success.is_some(), found.robust.is_some()] == asked {
-            true => fits::implausible(found),
-            false => Some("it does not have what was asked for"),
-        }
     }
 }
 

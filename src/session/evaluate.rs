@@ -73,7 +73,7 @@ impl EvaluateRequest {
             Some(repeat) => repeat.bands(&setup, &chosen, &evaluation, stop)?,
             None => None,
         };
-        let by_ribs = self.by_ribs(&setup, stop)?;
+        let by_ribs = self.by_ribs(&setup, &chosen, stop)?;
         Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s })
     }
 
@@ -84,15 +84,17 @@ impl EvaluateRequest {
     /// Measures the finger once more, from its ribs, with the start taught where the task's own does
     /// not insert; nothing if a finger model was asked for, if the finger is given by its springs, or
     /// if the engine has no such fingers.
-    fn by_ribs(&self, setup: &Setup, stop: &AtomicBool) -> Result<Option<ByRibs>, Failure> {
-        if !self.by_ribs
-            || self.setup.finger_model.kind.is_some()
-            || self.finger.springs_are_given()
-        {
+    fn by_ribs(
+        &self,
+        setup: &Setup,
+        chosen: &Chosen,
+        stop: &AtomicBool,
+    ) -> Result<Option<ByRibs>, Failure> {
+        if !self.by_ribs || self.setup.finger_model.kind.is_some() || chosen.given {
             return Ok(None);
         }
         let Some(evaluator) = setup.by_ribs() else { return Ok(None) };
-        let measured = self.finger.specimen(setup, &evaluator).and_then(|specimen| {
+        let measured = self.finger.by(setup, &evaluator).and_then(|Chosen { specimen, .. }| {
             let found = evaluator.measure_or_teach(&specimen, self.search(), &Plan::WINDOW, stop);
             found.map_err(Failure::input)
         });

@@ -36,10 +36,6 @@ impl TaskSource {
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }
 
-    fn parsed(names: &str) -> Result<Vec<Self>, Infallible> {
-        Ok(Self::list(names))
-    }
-
     /// Its file, unchecked.
     pub fn read(&self) -> Result<Source, Failure> {
         match self {
@@ -54,7 +50,7 @@ impl TaskSource {
 pub struct SetupRequest {
     /// Task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas
     // By its full path the whole list is one value of the option.
-    #[arg(long = "task", value_name = "NAME", value_parser = TaskSource::parsed)]
+    #[arg(long = "task", value_name = "NAME", value_parser = |names: &str| Ok::<_, Infallible>(TaskSource::list(names)))]
     pub tasks: std::vec::Vec<TaskSource>,
     /// Search space: infill, codesign, finger, or the path of a space file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]

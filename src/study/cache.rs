@@ -150,18 +150,11 @@ mod tests {
         assert_eq!(cache.get(&a), Some(measured(3e3)));
         assert_eq!((cache.get(&b), cache.found(), cache.problem()), (None, 1, None));
         let robot = Robot::parse(ROBOTS[1].text, ROBOTS[1].file).unwrap();
+        let (direct, rapier) = (EngineKind::Direct.record(), EngineKind::Rapier.record());
         let others = [
-            Cache::new(dir.path(), &robot, &EngineKind::Direct.record()),
-            Cache::new(
-                dir.path(),
-                &Robot { stop_force: 1.0, ..robot },
-                &EngineKind::Direct.record(),
-            ),
-            Cache::new(
-                dir.path(),
-                &Robot::parse(ROBOTS[0].text, "").unwrap(),
-                &EngineKind::Rapier.record(),
-            ),
+            Cache::new(dir.path(), &robot, &direct),
+            Cache::new(dir.path(), &Robot { stop_force: 1.0, ..robot }, &direct),
+            Cache::new(dir.path(), &Robot::parse(ROBOTS[0].text, "").unwrap(), &rapier),
         ];
         for other in others {
             assert_eq!(other.get(&other.key(&0.1)), None);

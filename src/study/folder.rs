@@ -139,7 +139,11 @@ impl Study {
     fn open_locked(dir: &Path, lock: File, store: Box<dyn Store>) -> Result<Study, StudyError> {
         let config = read_config(dir)?;
         let (journal, contents) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
-        sync_folder(dir)?;
+        // Makes the names of new files survive a power failure; not every system can.
+        if cfg!(unix) {
+            let sync = File::open(dir).and_then(|folder| folder.sync_all());
+            sync.map_err(StudyError::io("sync the folder", dir))?;
+        }
         files::remove_abandoned(dir);
         let Contents { evaluations, segments, foreign, .. } = contents;
         let dir = dir.to_owned();
@@ -394,15 +398,6 @@ fn plain(content: &[u8]) -> Cow<'_, [u8]> {
         Ok(text) if !content.contains(&0) => files::visible(text).into_bytes().into(),
         _ => content.into(),
     }
-}
-
-/// Makes the names of new files survive a power failure; not every system can.
-fn sync_folder(dir: &Path) -> Result<(), StudyError> {
-    if cfg!(unix) {
-        let sync = || File::open(dir)?.sync_all();
-        sync().map_err(StudyError::io("sync the folder", dir))?;
-    }
-    Ok(())
 }
 
 /// Whether a file has one name only: a second one would be overwritten with it.

@@ -90,12 +90,9 @@ const NO_TIMES: Option<&()> = None;
 
 /// Whether two lines begin a journal of this configuration, and if not, why.
 pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), String> {
-    for (number, line) in [(1, first), (2, second)] {
-        if unseal(line).is_err() {
-            return Err(format!("line {number} is damaged, or was not written by this program"));
-        }
-    }
-    let (attributes, _) = unseal(second).map_err(|error| error.to_string())?;
+    let damaged = |n: u8| format!("line {n} is damaged, or was not written by this program");
+    unseal(first).map_err(|_| damaged(1))?;
+    let (attributes, _) = unseal(second).map_err(|_| damaged(2))?;
     let version = serde_json::from_str::<Value>(&attributes)
         .ok()
         .and_then(|value| value["user_attr"][OURS]["schema_version"].as_u64());

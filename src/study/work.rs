@@ -7,7 +7,7 @@
 //! evaluations in their one form. Both are a line of JSON closed by its check, as in journals.
 //! Nothing of a result is believed before [`Work::check`] has looked at it.
 
-use super::course::{Arrived, Wanted};
+use super::course::Arrived;
 use super::fits;
 use super::folder::Inputs;
 use super::provenance::Provenance;
@@ -121,11 +121,6 @@ impl Work {
     pub fn decode(bytes: &[u8]) -> Result<Work, WorkError> {
         let again = |work: &Work, _: &NoTimes| seal(work, None::<&()>);
         Ok(read(bytes, "work", again)?.0)
-    }
-
-    /// What is measured, as the study's course names it.
-    pub fn wanted(&self) -> Wanted {
-        Wanted { proposal: self.proposal, design: self.design.clone() }
     }
 
     /// Whether a worker that measures with `own` may do it; `worker` is its host and process.

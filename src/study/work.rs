@@ -19,6 +19,7 @@ use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::fmt::Display;
 
 /// A design, and all that decides what is measured of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -56,51 +57,29 @@ struct Done {
 
 /// Why a work was not done, or its result is not believed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum WorkError {
-    /// The bytes are not a line of ours.
-    #[error("not a {what} of this program: {problem}")]
-    Bytes {
-        /// "work" or "result".
-        what: &'static str,
-        /// How that shows.
-        problem: String,
-    },
-    /// The worker would measure with something else.
-    #[error(
-        "the worker {worker} would measure with something else than the study:\n{differences}\n\
-         install the same version of finger-opt there"
-    )]
-    OtherSources {
-        /// Host and process.
-        worker: String,
-        /// One line for each difference.
-        differences: String,
-    },
-    /// A result that cannot be right.
-    #[error("the result of the worker {worker} is refused: {problem}")]
-    Poisoned {
-        /// Host and process, as the result says.
-        worker: String,
-        /// What is wrong with it.
-        problem: String,
-    },
+#[error("{0}")]
+pub struct WorkError(String);
+
+impl WorkError {
+    fn bytes(what: &str, problem: impl Display) -> Self {
+        WorkError(format!("not a {what} of this program: {problem}"))
+    }
 }
 
 /// Contents and times of a sealed line; `again` writes them anew, and must give the same bytes.
 fn read<T: DeserializeOwned, U: DeserializeOwned>(
     bytes: &[u8],
-    what: &'static str,
+    what: &str,
     again: impl Fn(&T, &U) -> Result<String, serde_json::Error>,
 ) -> Result<(T, U), WorkError> {
-    let wrong = |problem: String| WorkError::Bytes { what, problem };
-    let text = std::str::from_utf8(bytes).map_err(|error| wrong(error.to_string()))?;
+    let json = |error: serde_json::Error| WorkError::bytes(what, error);
+    let text = std::str::from_utf8(bytes).map_err(|error| WorkError::bytes(what, error))?;
     let line = text.strip_suffix('\n').unwrap_or(text);
-    let (contents, times) = unseal(line).map_err(|error| wrong(error.to_string()))?;
-    let json = |error: serde_json::Error| wrong(error.to_string());
+    let (contents, times) = unseal(line).map_err(|error| WorkError::bytes(what, error))?;
     let contents: T = serde_json::from_str(&contents).map_err(json)?;
     let times: U = serde_json::from_str(&times).map_err(json)?;
     if again(&contents, &times).map_err(json)? != text {
-        return Err(wrong("it contradicts itself".to_owned()));
+        return Err(WorkError::bytes(what, "it contradicts itself"));
     }
     Ok((contents, times))
 }
@@ -112,9 +91,8 @@ struct NoTimes {}
 impl Work {
     /// As bytes.
     pub fn encode(&self) -> Result<Vec<u8>, WorkError> {
-        let line = seal(self, None::<&()>)
-            .map_err(|error| WorkError::Bytes { what: "work", problem: error.to_string() })?;
-        Ok(line.into_bytes())
+        let line = seal(self, None::<&()>);
+        Ok(line.map_err(|error| WorkError::bytes("work", error))?.into_bytes())
     }
 
     /// The work of these bytes.
@@ -129,9 +107,10 @@ impl Work {
     /// If it may not; the text says in what they differ.
     pub fn admit(&self, own: &Provenance, worker: &str) -> Result<(), WorkError> {
         match self.provenance.differences(own) {
-            Some(differences) if !self.provenance.simulates_like(own) => {
-                Err(WorkError::OtherSources { worker: worker.to_owned(), differences })
-            }
+            Some(differences) if !self.provenance.simulates_like(own) => Err(WorkError(format!(
+                "the worker {worker} would measure with something else than the study:\n\
+                     {differences}\ninstall the same version of finger-opt there"
+            ))),
             _ => Ok(()),
         }
     }
@@ -152,9 +131,8 @@ impl Work {
             tasks: measured.tasks,
         };
         let timing = Timing { cached: Vec::new(), ..timing.clone() };
-        let line = seal(&done, Some(&timing))
-            .map_err(|error| WorkError::Bytes { what: "result", problem: error.to_string() })?;
-        Ok(line.into_bytes())
+        let line = seal(&done, Some(&timing));
+        Ok(line.map_err(|error| WorkError::bytes("result", error))?.into_bytes())
     }
 
     /// The result of this work, if it can be one; `stiffness` is what the study's own model
@@ -166,7 +144,9 @@ impl Work {
         };
         let (done, timing) = read(bytes, "result", again)?;
         if let Some(problem) = self.problem(&done, &timing, stiffness)? {
-            return Err(WorkError::Poisoned { worker: done.worker, problem });
+            let worker = done.worker;
+            let problem = format!("the result of the worker {worker} is refused: {problem}");
+            return Err(WorkError(problem));
         }
         Ok(Arrived {
             proposal: self.proposal,

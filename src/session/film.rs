@@ -51,14 +51,13 @@ impl FilmRequest {
         })?;
         not_stopped(stop)?;
         let label = shifted(offset_mm);
-        let film = Film {
-            label: &label,
-            task: &specimen.task,
-            pad: &specimen.finger.pad,
-            recording: &recording,
-        };
+        let film = film(&label, specimen, &recording);
         if let Some(file) = &self.record {
-            write(file, &film)?;
+            let content = match extension(file).as_deref() {
+                Some("csv") => replay::csv(&recording),
+                _ => replay::page(&format!("{}, {label}", specimen.task.name), &[film]),
+            };
+            write_file(file, &content)?;
         }
         if let Some(file) = &self.plot {
             write_file(file, &replay::curve_svg(&film)?)?;
@@ -84,19 +83,12 @@ fn filmable(file: &Path) -> Result<(), String> {
     }
 }
 
-fn write(file: &Path, film: &Film) -> Result<(), Failure> {
-    match extension(file).as_deref() {
-        Some("csv") => write_file(file, &replay::csv(film.recording))?,
-        _ => {
-            let title = format!("{}, {}", film.task.name, film.label);
-            write_file(file, &replay::page(&title, &[*film]))?;
-        }
-    }
-    Ok(())
-}
-
 fn extension(file: &Path) -> Option<String> {
     Some(file.extension()?.to_str()?.to_lowercase())
+}
+
+fn film<'a>(label: &'a str, specimen: &'a Specimen, recording: &'a Recording) -> Film<'a> {
+    Film { label, task: &specimen.task, pad: &specimen.finger.pad, recording }
 }
 
 fn shifted(offset_mm: f64) -> String {
@@ -168,17 +160,12 @@ fn pair(
     }
     let rig = setup.evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
     let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
-    let film = |step| rig.record(grasp, offset(step));
-    let (inside, outside) = pool.install(|| rayon::join(|| film(last), || film(last + outward)));
+    let record = |step| rig.record(grasp, offset(step));
+    let (inside, outside) =
+        pool.install(|| rayon::join(|| record(last), || record(last + outward)));
     let Some((inside, outside)) = inside.zip(outside) else { return Ok(None) };
     let labels = [last, last + outward].map(|step| shifted(grid_mm(step)));
-    let film = |label, recording| Film {
-        label,
-        task: &specimen.task,
-        pad: &specimen.finger.pad,
-        recording,
-    };
-    let films = [film(&labels[0], &inside), film(&labels[1], &outside)];
+    let films = [film(&labels[0], specimen, &inside), film(&labels[1], specimen, &outside)];
     let title = format!("{}: the {end} end of the window", specimen.task.name);
     Ok(Some(replay::page(&title, &films)))
 }

@@ -6,7 +6,6 @@
 //! What takes long ends, with a failure, once the `stop` that it is given is set.
 
 mod calibration;
-mod driven;
 mod evaluate;
 mod failure;
 mod files;
@@ -24,7 +23,6 @@ mod repeat;
 mod report;
 mod request;
 mod ribs;
-mod scene;
 mod sensitivity;
 mod setup;
 mod standing;
@@ -37,7 +35,6 @@ mod trial;
 mod unusable;
 
 pub use calibration::{BenchRequest, CalibrateRequest, Calibrated, HowCalibrated};
-pub use driven::Insertion;
 pub use evaluate::{EvaluateRequest, Evaluated};
 pub use failure::Failure;
 pub use files::robot;
@@ -52,14 +49,13 @@ pub use repeat::RepeatRequest;
 pub use report::{PAGE, rewrite};
 pub use request::{DEFAULT_ROBOT, FingerModelRequest, SetupRequest, TaskSource};
 pub use ribs::{PrintRequest, RibsRequest};
-pub use scene::SceneRequest;
 pub use sensitivity::SensitivityRequest;
 pub use setup::Setup;
 pub use standing::Standing;
 pub use stiffness::StiffnessRequest;
 pub use study::{AnyStudy, POLISH, ResumeRequest, StudyRequest};
 pub use task::{TaskCheck, TaskFile, read_space, read_task};
-pub use trial::{TrialDone, TrialRequest};
+pub use trial::{Insertion, SceneRequest, TrialDone, TrialRequest};
 
 use crate::study::Recorded;
 

@@ -184,8 +184,25 @@ impl StudyRequest {
         within("--polish", self.polish, &POLISHES)?;
         within("--seed", self.seed, &SEEDS)?;
         within("--batch", self.batch, &BATCHES)?;
-        let setup = self.under_errors(self.setup.setup()?)?;
-        let setup = self.measured(setup)?;
+        let mut setup = self.setup.setup()?;
+        let constrained = self.constraints.iter().map(|constraint| constraint.measure);
+        let mut measures = self.objective.measures().iter().copied().chain(constrained);
+        match (measures.any(Measure::is_drawn), &self.uncertainty) {
+            (false, None) => {}
+            (false, Some(_)) => {
+                return Err(Failure::usage(
+                    "--uncertainty is for success-rate and robust-range; make one of them an \
+                     --objective or a --constraint",
+                ));
+            }
+            (true, name) => {
+                setup = setup.under_named(name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY))?;
+            }
+        }
+        if let Some(name) = &self.measurements {
+            let priors = find("file of priors", PRIORS, DEFAULT_PRIORS)?;
+            setup = setup.with_measurements(measured::file(name)?, priors)?;
+        }
         let config = self.config(&setup)?;
         check(self.optimizer, &config)?;
         if setup.measured.is_some() {
@@ -193,27 +210,6 @@ impl StudyRequest {
         }
         let dir = self.out.clone().unwrap_or_else(|| default_folder(&config));
         Ok((setup, config, dir))
-    }
-
-    /// With the errors that the goals need.
-    fn under_errors(&self, setup: Setup) -> Result<Setup, Failure> {
-        let constrained = self.constraints.iter().map(|constraint| constraint.measure);
-        let mut measures = self.objective.measures().iter().copied().chain(constrained);
-        match (measures.any(Measure::is_drawn), &self.uncertainty) {
-            (false, None) => Ok(setup),
-            (false, Some(_)) => Err(Failure::usage(
-                "--uncertainty is for success-rate and robust-range; make one of them an \
-                 --objective or a --constraint",
-            )),
-            (true, name) => setup.under_named(name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY)),
-        }
-    }
-
-    /// With what was measured on the bench.
-    fn measured(&self, setup: Setup) -> Result<Setup, Failure> {
-        let Some(name) = &self.measurements else { return Ok(setup) };
-        let priors = find("file of priors", PRIORS, DEFAULT_PRIORS)?;
-        setup.with_measurements(measured::file(name)?, priors)
     }
 
     /// How the values of several tasks become one; `None` for one task.

@@ -8,7 +8,7 @@ use super::{Event, Failure, Setup, Watch, measured};
 use crate::calibration::calibrate::{Calibration, Layout};
 use crate::calibration::emulator::{CalibrationError, Emulator};
 use crate::calibration::experiments::Experiment;
-use crate::calibration::prior::Parameter;
+use crate::calibration::prior::{Parameter, Priors};
 use crate::calibration::sampler::Settings;
 use crate::calibration::simulation::Simulation;
 use crate::calibration::subject::Subject;
@@ -105,7 +105,8 @@ impl HowCalibrated {
     ) -> Result<Prepared<'a>, Failure> {
         let setup = bench.setup.setup()?;
         let experiments = measured::read(&bench.measurements, &setup.task_names())?;
-        let priors = measured::priors(&find("file of priors", PRIORS, &self.priors)?)?;
+        let priors = find("file of priors", PRIORS, &self.priors)?;
+        let priors = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
         let effort = self.effort.or(None)?;
         let ground = Ground {
             setup: &setup,

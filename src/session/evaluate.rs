@@ -10,6 +10,7 @@ use insertion::evaluation::Evaluation;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::repeat::Bands;
 use insertion::evaluation::tolerance::Search;
+use insertion::outcome::Outcome;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -69,10 +70,13 @@ impl EvaluateRequest {
         let evaluation = evaluation.map_err(Failure::input)?;
         not_stopped(stop)?;
         let wall_s = clock.elapsed().as_secs_f64();
-        let bands = match &self.repeat {
-            Some(repeat) => repeat.bands(&setup, &chosen, &evaluation, stop)?,
-            None => None,
+        let window = &evaluation.window;
+        let bands = |repeat: RepeatRequest| {
+            let (specimen, taught) = (&chosen.specimen, evaluation.taught);
+            repeat.of(&setup, specimen, taught, stop, |repeats| repeats.bands(window))
         };
+        let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
+        let bands = repeat.map(bands).transpose()?;
         let by_ribs = self.by_ribs(&setup, &chosen, stop)?;
         Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s })
     }

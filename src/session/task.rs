@@ -7,7 +7,6 @@ use crate::connector::check::{Problem, problems};
 use crate::connector::nominal;
 use input::shipped::{SPACES, STIFFNESS, Source, TASKS};
 use insertion::finger::Finger;
-use insertion::outcome::Outcome;
 use insertion::space::Space;
 use insertion::stiffness;
 use insertion::task::Task;
@@ -90,12 +89,6 @@ impl TaskCheck {
             false => None,
         };
         Ok(TaskCheck { source, task: Some(task), problems, nominal })
-    }
-
-    /// Whether nothing is wrong and the plug goes in.
-    pub fn inserts(&self) -> bool {
-        let outcome = self.nominal.as_ref().map(|(_, trial, _)| trial.outcome);
-        outcome == Some(Outcome::Inserted)
     }
 }
 

@@ -11,6 +11,7 @@ use contact::mjcf::{self, MjcfSettings};
 use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::{OffsetStep, tolerance};
+use insertion::outcome::Outcome;
 use insertion::trial::{Driven, Grasp, Sample, State, Trial, cell, picture};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -107,10 +108,20 @@ impl TrialRequest {
             write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
         }
         drop(rig);
-        let repeats = self.repeat.as_ref();
-        let repeats = repeats
-            .map(|repeat| repeat.outcomes(&setup, &chosen, (taught, offset), stop))
-            .transpose()?;
+        let outcomes = |repeat: RepeatRequest| {
+            repeat.of(&setup, specimen, taught, stop, |repeats| repeats.outcomes(offset))
+        };
+        let repeats = self.repeat.map(outcomes).transpose()?.map(|outcomes| {
+            let mut counts = BTreeMap::new();
+            for outcome in outcomes {
+                let word = match outcome {
+                    Outcome::Failed(class) => format!("failed: {}", class.label()),
+                    outcome => outcome.word().to_owned(),
+                };
+                *counts.entry(word).or_default() += 1;
+            }
+            counts
+        });
         let written = self.svg.iter().chain(self.film.files()).cloned().collect();
         Ok(TrialDone { chosen, offset_mm, taught, trial, samples, repeats, written })
     }

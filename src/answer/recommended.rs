@@ -44,8 +44,6 @@ pub struct OnTask<'a> {
     pub name: &'a str,
     /// Window, its ends, errors drawn.
     pub measured: &'a Evaluation,
-    /// Largest force between plug and socket over the inserted trials, N.
-    pub peak_force_n: Option<f64>,
     /// Firm part of the window, if its ends were repeated.
     pub firm: Option<&'a Firm>,
 }
@@ -74,7 +72,6 @@ impl<'a> Recommended<'a> {
         let on = |(at, (name, measured)): (usize, (&'a str, &'a Evaluation))| OnTask {
             name,
             measured,
-            peak_force_n: Measure::PeakForce.value(measured),
             firm: firm.and_then(|firm| firm.get(at)),
         };
         let tasks = design.tasks();

@@ -3,6 +3,7 @@
 
 use super::study::{Arguments, ResumeArguments, Shown};
 use super::{Failure, recommended, summary};
+use crate::answer::Answer;
 use crate::session::{AnyStudy, Ended};
 use crate::study::StudyRecord;
 use clap::{Args, Parser};
@@ -61,7 +62,7 @@ pub fn text(Ended { dir, record, ending, known, .. }: &Ended, json: bool) -> Str
 /// The `recommended` design of `--json`; of several objectives the first of the front. Null
 /// while there is none.
 pub fn best(record: &StudyRecord) -> Value {
-    let recommended = recommended::to_json(record)["recommended"].take();
+    let recommended = recommended::json(&Answer::of(record))["recommended"].take();
     match (recommended.is_null(), record.front().first()) {
         (true, Some(first)) if record.config.objective.single().is_none() => {
             summary::recorded_json(record, first)

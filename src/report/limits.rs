@@ -1,6 +1,6 @@
 //! What the numbers of a study do not say.
 
-use crate::answer::{Answer, TaskOrder};
+use crate::answer::Answer;
 use crate::calibration::order::{Order, OrderSource, rank_correlation};
 use crate::study::StudyRecord;
 use insertion::evaluation::objective::Measure;
@@ -60,7 +60,7 @@ fn gaps(answer: &Answer) -> String {
 }
 
 fn published_order(answer: &Answer) -> String {
-    let here = |&TaskOrder { task, order: Order { spearman, fingers, source } }: &TaskOrder| {
+    let here = |&(task, Order { spearman, fingers, source }): &(&str, Order)| {
         let whose = match source {
             OrderSource::Study => "this study's",
             OrderSource::Validation => "our validated",

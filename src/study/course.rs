@@ -1,27 +1,22 @@
 //! The course of a study: what is to be measured next, and what was. Who measures, and where,
 //! is not known here.
 //!
-//! # What is guaranteed
+//! # Guarantee
 //!
-//! The journal is a function of the configuration without its budget; the
-//! budget only says where it ends (or where a polish begins, and then it cannot be
-//! raised). It does not depend on who measures or on the
-//! number of threads or workers, nor on how often the study was interrupted or its budget raised:
-//! 20 evaluations and then 20 more are the same as 40 at once. This holds because
+//! The journal is a function of the configuration; the budget only says where it ends (or where a
+//! polish begins, and then it cannot be raised). Neither workers and threads nor interruptions change
+//! it: 20 evaluations and then 20 more are the same as 40 at once. This holds because
 //!
-//! - the optimizer is always asked for whole batches and told whole batches; a
-//!   budget that ends within a batch evaluates its first designs and tells nothing;
-//! - a study that goes on starts its optimizer anew and repeats asks and tells
-//!   with the values of the journal, so its state is what it would have been;
-//!   what it proposes on the way must be what the journal holds;
+//! - the optimizer is asked for whole batches and told whole batches; a budget that ends within a
+//!   batch evaluates its first designs and tells nothing;
+//! - a study that goes on starts its optimizer anew and repeats asks and tells with the values of the
+//!   journal; what it proposes on the way must be what the journal holds;
 //! - evaluations that end out of order wait in memory until all earlier ones are written;
 //! - of results that come twice the first counts.
 //!
-//! An asynchronous study has no batches: `batch` designs are proposed at
-//! first, and one more for each result, which is told at once; designs that are being measured
-//! are known to the optimizer as asked and not told. Its journal has the results in the order
-//! in which they arrived, each with the number of its proposal. So it depends on who was fast,
-//! but repeats: asks and tells follow from that order alone.
+//! An asynchronous study has no batches: `batch` designs are proposed at first, and one more for each
+//! result, which is told at once. Its journal has the results in the order in which they arrived, each
+//! with the number of its proposal: it depends on who was fast, but repeats from that order alone.
 
 use super::error::StudyError;
 use super::fits;

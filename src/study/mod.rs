@@ -43,7 +43,7 @@ pub use record::{
     ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume,
 };
 pub use runner::Runner;
-pub use seal::strip_times;
+pub use seal::{sha256_hex, strip_times};
 pub use simulated::Simulated;
 pub use store::{FileStore, Store};
 pub use table::{evaluations_csv, write_evaluations_csv};

@@ -83,21 +83,6 @@ pub struct Comparison {
     pub groups: Vec<OptimizerGroup>,
 }
 
-impl OptimizerGroup {
-    fn of(optimizer: String, batch: u64, records: &[&StudyRecord], target_mm: f64) -> Self {
-        let to_target: Vec<Option<u64>> = records.iter().map(|r| reached(r, target_mm)).collect();
-        let late = |n: &Option<u64>| n.map_or(f64::INFINITY, |n| n as f64);
-        OptimizerGroup {
-            optimizer,
-            batch,
-            studies: records.len(),
-            reached: to_target.iter().flatten().count(),
-            evaluations_to_target: Quartiles::of(to_target.iter().map(late).collect()),
-            best_so_far_mm: band(records),
-        }
-    }
-}
-
 /// Compares studies, each with a name for messages.
 ///
 /// # Errors
@@ -130,8 +115,20 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
         best.ok_or("no evaluation of these studies has a value: there is nothing to compare")?;
     let target_mm = best_known_mm - TOLERANCE_MM;
     let group = |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| {
-        let records: Vec<&StudyRecord> = studies.iter().map(|(_, record)| record).collect();
-        OptimizerGroup::of(optimizer, batch, &records, target_mm)
+        let to_target: Vec<Option<u64>> =
+            studies.iter().map(|(_, record)| reached(record, target_mm)).collect();
+        let late = |n: &Option<u64>| n.map_or(f64::INFINITY, |n| n as f64);
+        let shortest = studies.iter().map(|(_, record)| record.evaluations.len()).min();
+        let curves: Vec<Vec<f64>> = studies.iter().map(|(_, record)| curve(record)).collect();
+        let band = |n| Quartiles::of(curves.iter().map(|curve| curve[n]).collect());
+        OptimizerGroup {
+            optimizer,
+            batch,
+            studies: studies.len(),
+            reached: to_target.iter().flatten().count(),
+            evaluations_to_target: Quartiles::of(to_target.iter().map(late).collect()),
+            best_so_far_mm: (0..shortest.unwrap_or(0)).map(band).collect(),
+        }
     };
     Ok(Comparison {
         task: first.1.config.task_name(),
@@ -142,18 +139,14 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
     })
 }
 
-fn constraints(config: &StudyConfig) -> String {
-    let constraints: Vec<String> = config.constraints.iter().map(Constraint::to_string).collect();
-    if constraints.is_empty() { "none".to_owned() } else { constraints.join(", ") }
-}
-
 /// What a study asks, each part with its name.
 fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
+    let limits: Vec<String> = config.constraints.iter().map(Constraint::to_string).collect();
     let aggregate = config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string);
     [
         ("task", config.task_name()),
         ("objective", config.objective.to_string()),
-        ("constraints", constraints(config)),
+        ("constraints", if limits.is_empty() { "none".to_owned() } else { limits.join(", ") }),
         ("aggregate", aggregate),
         ("robot", config.robot.clone()),
         ("engine", config.provenance.engine.name.clone()),
@@ -180,12 +173,6 @@ fn reached(record: &StudyRecord, target: f64) -> Option<u64> {
     let values = record.evaluations.iter().map(|r| r.feasible()?.first().copied());
     let place = values.into_iter().position(|v| v.is_some_and(|v| v >= target - ROUNDING_MM));
     place.map(|index| index as u64 + 1)
-}
-
-fn band(records: &[&StudyRecord]) -> Vec<Quartiles> {
-    let shortest = records.iter().map(|record| record.evaluations.len()).min().unwrap_or(0);
-    let curves: Vec<Vec<f64>> = records.iter().map(|record| curve(record)).collect();
-    (0..shortest).map(|n| Quartiles::of(curves.iter().map(|curve| curve[n]).collect())).collect()
 }
 
 /// Best so far after each evaluation; minus infinity before the first value.

@@ -181,25 +181,23 @@ pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>,
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let alone =
         alone.map_err(|error| Failure::running(format!("cannot start a thread: {error}")))?;
-    alone.install(|| measure(bytes, worker, stop))
-}
-
-fn measure(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>, Failure> {
-    let work = Work::decode(bytes).map_err(Failure::input)?;
-    let setup = set_up(&work)?;
-    work.admit(&setup.provenance(), worker).map_err(Failure::input)?;
-    let plan = setup.plan(work.seed, |measure| match measure {
-        Measure::SuccessRate => work.success_rate,
-        Measure::RobustRange => work.robust_range,
-        _ => false,
-    })?;
-    let (evaluator, search) = (&setup.evaluator, Search::default());
-    let simulated = Simulated { evaluator, search, plan: &plan, cache: None, stop };
-    let (measured, timing) = Timing::of(|| simulated.evaluate(&work.design));
-    let measured = measured.map_err(|source| {
-        let (index, design) = (work.proposal, work.design.to_string());
-        StudyError::Impossible { index, design, source }
-    })?;
-    not_stopped(stop)?;
-    work.done(measured, &timing, worker).map_err(|error| Failure::running(error.to_string()))
+    alone.install(|| {
+        let work = Work::decode(bytes).map_err(Failure::input)?;
+        let setup = set_up(&work)?;
+        work.admit(&setup.provenance(), worker).map_err(Failure::input)?;
+        let plan = setup.plan(work.seed, |measure| match measure {
+            Measure::SuccessRate => work.success_rate,
+            Measure::RobustRange => work.robust_range,
+            _ => false,
+        })?;
+        let (evaluator, search) = (&setup.evaluator, Search::default());
+        let simulated = Simulated { evaluator, search, plan: &plan, cache: None, stop };
+        let (measured, timing) = Timing::of(|| simulated.evaluate(&work.design));
+        let measured = measured.map_err(|source| {
+            let (index, design) = (work.proposal, work.design.to_string());
+            StudyError::Impossible { index, design, source }
+        })?;
+        not_stopped(stop)?;
+        work.done(measured, &timing, worker).map_err(|error| Failure::running(error.to_string()))
+    })
 }

@@ -80,7 +80,15 @@ impl Cache {
     /// Keeps an evaluation. What cannot be kept is measured again next time, so a failure is
     /// only noted ([`problem`](Self::problem)).
     pub fn put(&self, key: &str, evaluation: &Evaluation) {
-        if let Err(error) = self.write(key, evaluation)
+        let write = || {
+            let measured_sha256 = sha256_hex(serde_json::to_string(evaluation)?.as_bytes());
+            let (key, measured) = (key.to_owned(), evaluation.clone());
+            let path = self.path(&key);
+            let text = seal(&Entry { key, measured_sha256, measured }, None)?;
+            fs::create_dir_all(path.parent().unwrap_or(&self.dir))?;
+            files::write_own(&path, text.as_bytes())
+        };
+        if let Err(error) = write()
             && let Ok(mut problem) = self.problem.lock()
         {
             problem.get_or_insert(error);
@@ -101,16 +109,6 @@ impl Cache {
     fn path(&self, key: &str) -> PathBuf {
         let (folder, name) = key.split_at(2);
         self.dir.join(folder).join(format!("{name}.json"))
-    }
-
-    fn write(&self, key: &str, measured: &Evaluation) -> io::Result<()> {
-        let measured_sha256 = sha256_hex(serde_json::to_string(measured)?.as_bytes());
-        let entry = Entry { key: key.to_owned(), measured_sha256, measured: measured.clone() };
-        let text = seal(&entry, None::<&()>)?;
-        let path = self.path(key);
-        let folder = path.parent().unwrap_or(&self.dir);
-        fs::create_dir_all(folder)?;
-        files::write_own(&path, text.as_bytes())
     }
 }
 

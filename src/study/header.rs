@@ -37,7 +37,7 @@ fn attribute(name: String, value: impl Serialize) -> Result<String, serde_json::
         study_id: 0,
         user_attr: BTreeMap::from([(name, value)]),
     };
-    seal(&line, NO_TIMES)
+    seal(&line, None)
 }
 
 /// The configuration without what may change while the journal stays the same: how the study ends, and
@@ -64,7 +64,7 @@ pub fn encode(config: &StudyConfig) -> Result<String, serde_json::Error> {
         "study_name": config.name(),
         "directions": config.objective.measures().iter().map(direction).collect::<Vec<_>>(),
     });
-    Ok(seal(&create, NO_TIMES)? + &attribute(OURS.to_owned(), identity(config)?)?)
+    Ok(seal(&create, None)? + &attribute(OURS.to_owned(), identity(config)?)?)
 }
 
 /// The line of the segment with this number, counted from 1: it begins a further segment.
@@ -85,8 +85,6 @@ pub fn decode_segment(line: &str) -> Result<Option<Segment>, LineError> {
         None => Err(LineError::Format("a segment without its provenance".to_owned())),
     }
 }
-
-const NO_TIMES: Option<&()> = None;
 
 /// Whether two lines begin a journal of this configuration, and if not, why.
 pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), String> {

@@ -91,13 +91,13 @@ struct NoTimes {}
 impl Work {
     /// As bytes.
     pub fn encode(&self) -> Result<Vec<u8>, WorkError> {
-        let line = seal(self, None::<&()>);
+        let line = seal(self, None);
         Ok(line.map_err(|error| WorkError::bytes("work", error))?.into_bytes())
     }
 
     /// The work of these bytes.
     pub fn decode(bytes: &[u8]) -> Result<Work, WorkError> {
-        let again = |work: &Work, _: &NoTimes| seal(work, None::<&()>);
+        let again = |work: &Work, _: &NoTimes| seal(work, None);
         Ok(read(bytes, "work", again)?.0)
     }
 

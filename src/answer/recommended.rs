@@ -59,7 +59,6 @@ pub struct AsGood<'a> {
 }
 
 impl<'a> Recommended<'a> {
-    /// The recommended design of a study, if there is one.
     pub(super) fn of(record: &'a StudyRecord) -> Option<Self> {
         let (config, found) = (&record.config, record.recommendation());
         let design = found.or_else(|| record.best())?;

@@ -74,7 +74,6 @@ fn none(answer: &Answer) -> Markup {
     }
 }
 
-/// That the best design is of no use on a task.
 fn unusable(task: &OnTask, on: &str) -> Markup {
     let nominal = task.measured.window.nominal;
     html! {

@@ -139,7 +139,6 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
     })
 }
 
-/// What a study asks, each part with its name.
 fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
     let limits: Vec<String> = config.constraints.iter().map(Constraint::to_string).collect();
     let aggregate = config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string);

@@ -72,7 +72,6 @@ pub struct Calibrated {
     pub found: Calibration,
 }
 
-/// Tasks with all that is needed to calibrate them.
 pub(super) struct Prepared<'a> {
     /// The tasks' fingers, in order.
     pub subjects: Vec<Subject>,
@@ -121,7 +120,6 @@ impl HowCalibrated {
     }
 }
 
-/// What a calibration simulates with.
 pub(super) struct Ground<'a> {
     /// Tasks, robot, fingers, space.
     pub setup: &'a Setup,

@@ -27,7 +27,6 @@ pub struct FilmRequest {
 }
 
 impl FilmRequest {
-    /// Whether what is asked for can be written.
     pub(super) fn check(&self) -> Result<(), Failure> {
         let problem =
             |file| filmable(file).map_err(|why| Failure::usage(format!("--record: {why}")));

@@ -127,7 +127,6 @@ impl FingerRequest {
         })
     }
 
-    /// The stiffness that was given, if it was.
     fn springs(&self) -> Result<Option<Prediction>, Failure> {
         match (self.stiffness_compliance, self.stiffness_assembly) {
             (Some(compliance), Some(assembly)) => {

@@ -9,7 +9,6 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-/// Folder of the cache unless another is named.
 const CACHE: &str = "results/.cache";
 const THREADS: RangeInclusive<u16> = 1..=1024;
 /// Simulations per task that an emulator may be made of.

@@ -16,17 +16,12 @@ use std::path::{Path, PathBuf};
 
 /// Seeds there are: TOML, in which studies keep theirs, has no larger whole numbers.
 const SEEDS: RangeInclusive<u64> = 0..=i64::MAX as u64;
-/// Budgets there are.
 const BUDGETS: RangeInclusive<u64> = 1..=LARGEST_BUDGET;
 /// Length of a polish that is asked for without a number.
 pub const POLISH: u64 = 20;
-/// Lengths of a polish there are.
 const POLISHES: RangeInclusive<u64> = 0..=LARGEST_BUDGET;
-/// Batches there are.
 const BATCHES: RangeInclusive<u64> = 1..=LARGEST_BATCH;
-/// Batch of a new study unless another is given.
 const DEFAULT_BATCH: u64 = 4;
-/// Errors used unless others are named.
 const DEFAULT_UNCERTAINTY: &str = "typical";
 
 /// Which study to begin or to go on with.

@@ -8,7 +8,6 @@ use insertion::trial::{Grasp, picture};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// Picture of the nominal trial in the study's folder.
 const PICTURE: &str = "nominal.svg";
 
 /// Fails, with what the design that comes nearest does at the nominal start, if none inserts there;

@@ -284,7 +284,6 @@ impl Course {
     }
 }
 
-/// Why there is nothing more to propose.
 fn exhausted(optimizer: &dyn Optimizer) -> Ending {
     match optimizer.stop() {
         Some(StopReason::Converged) => Ending::Converged,

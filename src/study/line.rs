@@ -51,7 +51,6 @@ struct TrialLine {
 #[derive(Serialize, Deserialize)]
 struct UserAttributes {
     stiffness: Prediction,
-    /// What was measured on each task.
     tasks: Vec<Evaluation>,
 }
 

@@ -10,7 +10,6 @@ use insertion::space::{Design, Space};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Name of the file.
 pub(super) const BENCH_FILE: &str = "bench.json";
 
 /// The prediction of a calibration for the fingers of a study.

@@ -43,7 +43,6 @@ pub struct Work {
     pub inputs: Inputs,
 }
 
-/// What was measured of one work.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Done {

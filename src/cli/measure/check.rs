@@ -21,7 +21,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// How much is known of one task.
 #[derive(Debug, Default)]
 struct Known {
     lines: usize,

@@ -16,7 +16,6 @@ use insertion::trial::engine::EngineKind;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Finest resolution there is.
 const FINEST: u32 = 1000;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;

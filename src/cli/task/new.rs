@@ -98,7 +98,6 @@ fn drafted(arguments: &Arguments, like: Option<&TaskFile>) -> Result<String, Fai
     Ok(write::task(&task, &Notes { head, mass }))
 }
 
-/// As given, or those of the example.
 fn dimensions(arguments: &Arguments) -> Result<(Dimensions, bool), Failure> {
     let tip = arguments.plug.or(arguments.round);
     if let (Some(plug), Some(clearance)) = (tip, arguments.clearance) {

@@ -17,7 +17,7 @@ use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Measured;
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 
@@ -83,10 +83,6 @@ fn read<T: DeserializeOwned, U: DeserializeOwned>(
     Ok((contents, times))
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct NoTimes {}
-
 impl Work {
     /// As bytes.
     pub fn encode(&self) -> Result<Vec<u8>, WorkError> {
@@ -96,7 +92,7 @@ impl Work {
 
     /// The work of these bytes.
     pub fn decode(bytes: &[u8]) -> Result<Work, WorkError> {
-        let again = |work: &Work, _: &NoTimes| seal(work, None);
+        let again = |work: &Work, _: &IgnoredAny| seal(work, None);
         Ok(read(bytes, "work", again)?.0)
     }
 

@@ -212,6 +212,7 @@ impl<'py> Keywords<'py> {
             cache: CacheRequest { dir: self.take("cache")?, off: self.flag("no_cache")? },
             no_confirm: self.flag("no_confirm")?,
             accept_changed: self.flag("accept_changed")?,
+            executor: None,
             effort: EffortRequest {
                 simulations: self.take("simulations")?,
                 samples: self.take("samples")?,

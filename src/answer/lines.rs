@@ -1,7 +1,8 @@
 //! An answer line by line, each a name and what it says: terminal and page show the same.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
-use super::{Answer, AsGood, OnTask, Recommended, TaskOrder};
+use super::{Answer, AsGood, OnTask, Recommended};
+use crate::calibration::order::Order;
 use crate::study::{ByRibs, OnBench, Recorded};
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
@@ -42,7 +43,7 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
             None => line("firm window", "none: a repeat fails even at the nominal start"),
             Some(window) => line("firm window", format!("{} mm", span(window))),
         }));
-        lines.extend(task.peak_force_n.map(|peak_n| {
+        lines.extend(Measure::PeakForce.value(task.measured).map(|peak_n| {
             let peak = Measure::PeakForce.show(peak_n);
             let between = "between plug and socket, over the inserted trials";
             line("peak force", format!("{peak} {between}"))
@@ -94,9 +95,11 @@ fn equivalent(as_good: &AsGood, of: usize) -> Vec<Line> {
 }
 
 /// How the robot orders the designs, as far as that is known.
-fn robot(known: &TaskOrder) -> Line {
-    let TaskOrder { task, order } = known;
-    let chance = match known.beyond_chance() {
+fn robot((task, order): &(&str, Order)) -> Line {
+    // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
+    // normal: it does as well in less than 5 % of cases.
+    let beyond_chance = order.spearman * (order.fingers as f64 - 1.0).sqrt() > 1.645;
+    let chance = match beyond_chance {
         true => "",
         false => "; no more than chance gives: measure the best few",
     };

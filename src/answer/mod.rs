@@ -38,7 +38,7 @@ pub struct Answer<'a> {
     /// The smallest and the largest range of the designs, mm; `None` if none has a range.
     pub spread_mm: Option<[f64; 2]>,
     /// How our simulation orders fingers on the bench, for the tasks of which that is known.
-    pub orders: Vec<TaskOrder<'a>>,
+    pub orders: Vec<(&'a str, Order)>,
 }
 
 /// Designs none of which is at least as good as another in all objectives.
@@ -48,23 +48,6 @@ pub struct Front<'a> {
     pub designs: Vec<&'a Recorded>,
     /// Volume that they dominate.
     pub volume: Volume,
-}
-
-/// The order of fingers on the bench and in simulation, on one task.
-#[derive(Debug, Clone, Copy)]
-pub struct TaskOrder<'a> {
-    /// Name of the task.
-    pub task: &'a str,
-    /// Rank correlation, its source, and what it rests on.
-    pub order: Order,
-}
-
-impl TaskOrder<'_> {
-    /// Whether a random order would do as well in less than 5 % of cases: of `n` fingers its rank
-    /// correlation has mean 0 and variance 1 / (n - 1), taken as normal.
-    pub fn beyond_chance(&self) -> bool {
-        self.order.spearman * (self.order.fingers as f64 - 1.0).sqrt() > 1.645
-    }
 }
 
 impl<'a> Answer<'a> {
@@ -79,7 +62,7 @@ impl<'a> Answer<'a> {
             let firm: Vec<f64> = walked.firm.iter().map(Firm::range_mm).collect();
             (&walked.recorded, record.aggregated(Measure::Range, &firm))
         };
-        let order = |(at, task)| Some(TaskOrder { task, order: order_on_bench(record, at)? });
+        let order = |(at, task)| Some((task, order_on_bench(record, at)?));
         Answer {
             record,
             designs: current.len(),

@@ -1,7 +1,7 @@
 //! The recommended design: what it tolerates, how firm that is, and what is as good.
 
 use super::words;
-use crate::study::{ByRibs, Recommendation, Recorded, StudyRecord};
+use crate::study::{ByRibs, Recorded, StudyRecord};
 use input::units::N_PER_MM;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
@@ -44,8 +44,6 @@ pub struct OnTask<'a> {
     pub name: &'a str,
     /// Window, its ends, errors drawn.
     pub measured: &'a Evaluation,
-    /// Largest force between plug and socket over the inserted trials, N.
-    pub peak_force_n: Option<f64>,
     /// Firm part of the window, if its ends were repeated.
     pub firm: Option<&'a Firm>,
 }
@@ -61,18 +59,18 @@ pub struct AsGood<'a> {
 }
 
 impl<'a> Recommended<'a> {
-    /// The recommended design of a study, if there is one.
     pub(super) fn of(record: &'a StudyRecord) -> Option<Self> {
         let (config, found) = (&record.config, record.recommendation());
-        let design = found.as_ref().map_or_else(|| record.best(), |found| Some(found.recorded))?;
-        let firm = found.as_ref().and_then(|found| found.firm);
+        let design = found.or_else(|| record.best())?;
+        let walked = record.walked.first().filter(|_| found.is_some());
+        let firm = walked.map(|walked| &walked.firm[..]);
         let windows: Option<Vec<[f64; 2]>> =
             firm.and_then(|firm| firm.iter().map(Firm::window_mm).collect());
-        let firm_ranges = found.as_ref().and_then(Recommendation::firm_ranges_mm);
+        let firm_ranges: Option<Vec<f64>> =
+            firm.map(|firm| firm.iter().map(Firm::range_mm).collect());
         let on = |(at, (name, measured)): (usize, (&'a str, &'a Evaluation))| OnTask {
             name,
             measured,
-            peak_force_n: Measure::PeakForce.value(measured),
             firm: firm.and_then(|firm| firm.get(at)),
         };
         let tasks = design.tasks();
@@ -87,9 +85,9 @@ impl<'a> Recommended<'a> {
             firm_window_mm: windows.map(|windows| common(windows.into_iter())),
             peak_force_n: record.measure(design, Measure::PeakForce),
             tasks: config.tasks().zip(&design.tasks).enumerate().map(on).collect(),
-            by_ribs: found.as_ref().and_then(|found| found.by_ribs),
+            by_ribs: walked.and_then(|walked| walked.by_ribs.as_ref()),
             searched: searched(record, design),
-            as_good: found.as_ref().map(|found| as_good(record, &found.equivalent)),
+            as_good: found.map(|found| as_good(record, &record.equivalent(found.index))),
         })
     }
 
@@ -99,7 +97,6 @@ impl<'a> Recommended<'a> {
     }
 }
 
-/// Common part of all windows.
 fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     windows
         .fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])

@@ -2,15 +2,10 @@
 
 use super::{Failure, print};
 use ask_tell::protocol::{LONGEST_LINE, Session};
-use clap::Args;
 use std::io::{self, BufRead, Read};
 
-/// Optimize anything: JSON lines on standard input and output, see docs/guide/python.md.
-#[derive(Debug, Args)]
-pub struct Arguments {}
-
 /// Runs the command: answers each line before it reads the next, until the input ends.
-pub fn run(_: &Arguments) -> Result<(), Failure> {
+pub fn run() -> Result<(), Failure> {
     let mut session = Session::new();
     let mut input = io::stdin().lock();
     let mut line = Vec::new();

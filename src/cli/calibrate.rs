@@ -1,10 +1,9 @@
 //! `optimize calibrate`: what few measurements say of every finger.
 
-use super::arguments::CalibrationArguments;
 use super::progress::Progress;
 use super::{Failure, print, print_json};
 use crate::calibration::table;
-use crate::session::{Calibrated, SetupRequest};
+use crate::session::{CalibrateRequest, Calibrated};
 use crate::study::write_file;
 use clap::Args;
 use insertion::trial::NEVER;
@@ -18,12 +17,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupRequest,
-    /// What was measured on the bench: published, or the path of a file
-    #[arg(long, value_name = "FILE")]
-    measurements: String,
-    #[command(flatten)]
-    calibration: CalibrationArguments,
+    request: CalibrateRequest,
     /// Folder that tables are written to
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -36,11 +30,10 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { setup, measurements, calibration, .. } = arguments;
-    let request = calibration.request(setup.clone(), measurements);
     let quiet = arguments.quiet || arguments.json;
-    let mut progress = Progress::of_simulations(request.simulations(), quiet);
-    let Calibrated { subjects, found } = request.run(&NEVER, &mut |event| progress.see(event))?;
+    let mut progress = Progress::of_simulations(arguments.request.simulations(), quiet);
+    let see = &mut |event: crate::session::Event<'_>| progress.see(event);
+    let Calibrated { subjects, found } = arguments.request.run(&NEVER, see)?;
     drop(progress);
     if let Some(out) = &arguments.out {
         for (subject, result) in subjects.iter().zip(&found.tasks) {

@@ -1,7 +1,9 @@
 //! What those need of the command line who call the library from elsewhere: `--executor`'s words as
 //! requests, and what is printed.
 
-use super::{Failure, recommended, study, summary};
+use super::study::{Arguments, ResumeArguments, Shown};
+use super::{Failure, recommended, summary};
+use crate::answer::Answer;
 use crate::session::{AnyStudy, Ended};
 use crate::study::StudyRecord;
 use clap::{Args, Parser};
@@ -28,21 +30,20 @@ pub struct Asked {
 }
 
 /// Reads the words of `optimize` or `optimize resume`; the text of a failure is clap's.
-///
-/// # Errors
-/// If they ask for no study.
 pub fn asked(words: &[OsString]) -> Result<Asked, Failure> {
-    let (study, run) = match words {
+    let (study, executor, Shown { quiet, json }) = match words {
         [first, rest @ ..] if first == "resume" => {
-            let arguments: study::ResumeArguments = read(rest)?;
-            (AnyStudy::Resumed(arguments.request()), arguments.run)
+            let ResumeArguments { request, shown } = read(rest)?;
+            let executor = request.run.executor.clone();
+            (AnyStudy::Resumed(request), executor, shown)
         }
         words => {
-            let arguments: study::Arguments = read(words)?;
-            (AnyStudy::Asked(Box::new(arguments.request())), arguments.run)
+            let Arguments { request, shown } = read(words)?;
+            let executor = request.run.executor.clone();
+            (AnyStudy::Asked(Box::new(request)), executor, shown)
         }
     };
-    Ok(Asked { study, executor: run.executor, quiet: run.quiet, json: run.json })
+    Ok(Asked { study, executor, quiet, json })
 }
 
 fn read<T: Args>(words: &[OsString]) -> Result<T, Failure> {
@@ -61,7 +62,7 @@ pub fn text(Ended { dir, record, ending, known, .. }: &Ended, json: bool) -> Str
 /// The `recommended` design of `--json`; of several objectives the first of the front. Null
 /// while there is none.
 pub fn best(record: &StudyRecord) -> Value {
-    let recommended = recommended::to_json(record)["recommended"].take();
+    let recommended = recommended::json(&Answer::of(record))["recommended"].take();
     match (recommended.is_null(), record.front().first()) {
         (true, Some(first)) if record.config.objective.single().is_none() => {
             summary::recorded_json(record, first)

@@ -6,6 +6,7 @@ use crate::session::Chosen;
 use input::units::{MM, N_PER_MM};
 use insertion::evaluation::evaluator::Specimen;
 use insertion::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
 use serde_json::{Value, json};
 
 /// The keys that say what was measured.
@@ -14,8 +15,8 @@ pub fn json(chosen: &Chosen) -> Value {
     json!({
         "task": specimen.task.name,
         "robot": chosen.robot,
-        "infill_density_percent": chosen.density,
-        "infill_direction_deg": chosen.direction,
+        "infill_density_percent": chosen.design.get(DENSITY_KEY),
+        "infill_direction_deg": chosen.design.get(DIRECTION_KEY),
         "set": chosen.set,
         "finger_model": chosen.finger_model.name(),
         "rcc_mm": specimen.finger.rcc / MM,

@@ -1,8 +1,7 @@
 //! `optimize compare DIR..`: studies of the same problem side by side.
 
 use super::{Failure, print, print_json};
-use crate::report::compare::{Comparison, TOLERANCE_MM, compare};
-use crate::report::compare_svg;
+use crate::report::compare::{Comparison, TOLERANCE_MM, compare, svg};
 use crate::study::{StudyRecord, write_file};
 use clap::Args;
 use serde_json::json;
@@ -27,7 +26,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let studies = arguments.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
     let comparison = compare(&studies).map_err(Failure::usage)?;
     if let Some(file) = &arguments.svg {
-        write_file(file, &compare_svg(&comparison)?)?;
+        write_file(file, &svg(&comparison)?)?;
     }
     if arguments.json {
         return print_json(&json!(comparison));

@@ -1,6 +1,5 @@
 //! The command line: arguments in, checked configuration out, one file per command.
 
-pub mod arguments;
 mod ask_tell;
 mod calibrate;
 pub mod call;
@@ -63,8 +62,8 @@ impl Cli {
     /// Where a study is to be measured, if not here.
     fn executor(&self) -> Option<&str> {
         let run = match &self.command {
-            None => &self.study.0.as_ref()?.run,
-            Some(Command::Resume(arguments)) => &arguments.run,
+            None => &self.study.0.as_ref()?.request.run,
+            Some(Command::Resume(arguments)) => &arguments.request.run,
             Some(_) => return None,
         };
         run.executor.as_deref()
@@ -147,7 +146,7 @@ enum Command {
     #[command(
         after_help = "Example: optimize ask-tell < session.jsonl; docs/guide/python.md has the lines"
     )]
-    AskTell(ask_tell::Arguments),
+    AskTell,
     /// List tasks, spaces, robots and uncertainties
     #[command(after_help = "Example: optimize tasks --json")]
     Tasks(tasks::Arguments),
@@ -219,13 +218,13 @@ fn survive_size_limit() {
 fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => match cli.study.0 {
-            Some(arguments) => study::to_its_end(arguments.request().open(None)?, &arguments.run),
+            Some(arguments) => study::to_its_end(arguments.request.open(None)?, &arguments.shown),
             None => Err(Failure::usage(
                 "give --task NAME and --budget N, or a subcommand; see `optimize --help`",
             )),
         },
         Some(Command::Resume(arguments)) => {
-            study::to_its_end(arguments.request().open()?, &arguments.run)
+            study::to_its_end(arguments.request.open()?, &arguments.shown)
         }
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
@@ -238,7 +237,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Next(arguments)) => next::run(&arguments),
         Some(Command::Measure(arguments)) => measure::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),
-        Some(Command::AskTell(arguments)) => ask_tell::run(&arguments),
+        Some(Command::AskTell) => ask_tell::run(),
         Some(Command::Tasks(arguments)) => tasks::run(&arguments),
         Some(Command::Task(arguments)) => task::run(&arguments),
         Some(Command::Completions(arguments)) => manual::completions(&arguments),

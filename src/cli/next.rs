@@ -1,12 +1,11 @@
 //! `optimize next`: which finger to print next.
 
-use super::arguments::CalibrationArguments;
 use super::progress::Progress;
 use super::{Failure, print, print_json};
 use crate::calibration::next::Advice;
 use crate::calibration::subject::Subject;
 use crate::calibration::table::design_json;
-use crate::session::{Advised, Among, NextRequest, SetupRequest, wide};
+use crate::session::{Advised, NextRequest};
 use clap::Args;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};
@@ -18,21 +17,7 @@ use serde_json::{Value, json};
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    setup: SetupRequest,
-    /// What was measured on the bench: published, or the path of a file
-    #[arg(long, value_name = "FILE")]
-    measurements: String,
-    /// Fingers to print at a time
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(wide(&NextRequest::COUNTS)))]
-    count: u16,
-    /// Fingers that may be printed
-    #[arg(long, value_enum, default_value = "space")]
-    among: Among,
-    /// Gain of range that is worth the print and the measurement, mm; below it: stop
-    #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = cost)]
-    print_cost_mm: f64,
-    #[command(flatten)]
-    calibration: CalibrationArguments,
+    request: NextRequest,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -41,26 +26,15 @@ pub struct Arguments {
     quiet: bool,
 }
 
-fn cost(text: &str) -> Result<f64, String> {
-    NextRequest::given_cost(text.parse().unwrap_or(f64::NAN))
-}
-
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let calibration = &arguments.calibration;
-    let request = NextRequest {
-        calibration: calibration.request(arguments.setup.clone(), &arguments.measurements),
-        count: arguments.count,
-        among: arguments.among,
-        print_cost_mm: arguments.print_cost_mm,
-    };
-    let quiet = arguments.quiet || arguments.json;
-    let mut progress = Progress::of_simulations(request.calibration.simulations(), quiet);
+    let Arguments { request, json, quiet } = arguments;
+    let mut progress = Progress::of_simulations(request.how.simulations(), *quiet || *json);
     let Advised { subject, advice } = request.run(&NEVER, &mut |event| progress.see(event))?;
     drop(progress);
-    if arguments.json {
+    if *json {
         return print_json(&to_json(&subject, &advice));
     }
-    print(&text(&subject, &advice, arguments.print_cost_mm))
+    print(&text(&subject, &advice, request.print_cost_mm))
 }
 
 fn to_json(subject: &Subject, advice: &Advice) -> Value {

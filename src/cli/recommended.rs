@@ -5,11 +5,6 @@ use crate::study::{ByRibs, OnBench, StudyRecord};
 use insertion::evaluation::objective::Measure;
 use serde_json::{Value, json};
 
-/// The [`json()`] of a study's answer.
-pub fn to_json(record: &StudyRecord) -> Value {
-    json(&Answer::of(record))
-}
-
 /// `recommended`, `equivalent_designs` and `spread_mm`.
 pub fn json(answer: &Answer) -> Value {
     let one = answer.recommended.as_ref().filter(|_| answer.front.is_none());

@@ -1,15 +1,7 @@
-//! What `--repeat` prints.
+//! What `--repeat` prints of a window.
 
 use insertion::evaluation::robustness::repeat::{Band, Bands};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-
-/// `repeats       18 inserted, 2 failed: jammed`.
-pub fn outcomes_text(counts: &BTreeMap<String, usize>) -> String {
-    let parts: Vec<String> =
-        counts.iter().map(|(outcome, count)| format!("{count} {outcome}")).collect();
-    format!("repeats       {}\n", parts.join(", "))
-}
 
 pub fn bands_text(bands: &Bands) -> String {
     let width = |band: &Band| {

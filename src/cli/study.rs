@@ -1,6 +1,5 @@
 //! `optimize --task T --budget N`: begins or continues a study.
 
-use super::arguments::RunArguments;
 use super::progress::Progress;
 use super::{Failure, print, say, summary};
 use crate::session::{Ended, OpenStudy, ResumeRequest, StudyRequest};
@@ -14,41 +13,40 @@ use std::time::Duration;
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    request: StudyRequest,
+    pub request: StudyRequest,
     #[command(flatten)]
-    pub run: RunArguments,
-}
-
-impl Arguments {
-    pub fn request(&self) -> StudyRequest {
-        StudyRequest { run: self.run.request(), ..self.request.clone() }
-    }
+    pub shown: Shown,
 }
 
 /// Continue a study.
 #[derive(Debug, Args)]
 pub struct ResumeArguments {
     #[command(flatten)]
-    request: ResumeRequest,
+    pub request: ResumeRequest,
     #[command(flatten)]
-    pub run: RunArguments,
+    pub shown: Shown,
 }
 
-impl ResumeArguments {
-    pub fn request(&self) -> ResumeRequest {
-        ResumeRequest { run: self.run.request(), ..self.request.clone() }
-    }
+/// What is shown of a study.
+#[derive(Debug, Args)]
+pub struct Shown {
+    /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Show no progress
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// Runs an open study until its budget is spent, shows how far it is, and prints its result.
-pub fn to_its_end(open: OpenStudy, arguments: &RunArguments) -> Result<(), Failure> {
+pub fn to_its_end(open: OpenStudy, shown: &Shown) -> Result<(), Failure> {
     let stop = stop_on_interrupt(open.study().dir())?;
-    let mut progress = Progress::new(open.study(), arguments.quiet);
+    let mut progress = Progress::new(open.study(), shown.quiet);
     let Ended { dir, record, ending, known, unusable } =
         open.run(&stop, &mut |event| progress.see(event))?;
     drop(progress);
     record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));
-    print(&summary::printed(&dir, &record, ending, known, arguments.json))?;
+    print(&summary::printed(&dir, &record, ending, known, shown.json))?;
     unusable.map_or(Ok(()), Err)
 }
 

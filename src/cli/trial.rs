@@ -2,7 +2,7 @@
 
 use super::terminal::merge;
 use super::words;
-use super::{Failure, chosen, print, print_json, repeat};
+use super::{Failure, chosen, print, print_json};
 use crate::answer::lines;
 use crate::answer::words::number;
 use crate::session::{TrialDone, TrialRequest};
@@ -28,7 +28,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         return print_json(&json(&done));
     }
-    let repeats = done.repeats.as_ref().map(repeat::outcomes_text).unwrap_or_default();
+    // `repeats       18 inserted, 2 failed: jammed`.
+    let repeats = done.repeats.as_ref().map_or(String::new(), |counts| {
+        let counts = counts.iter().map(|(outcome, count)| format!("{count} {outcome}"));
+        format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))
+    });
     let start = words::lines(lines::taught(done.taught));
     let wrote = done.written.iter().map(|file| format!("wrote         {}\n", file.display()));
     let wrote: String = wrote.collect();
@@ -54,7 +58,6 @@ pub fn json(done: &TrialDone) -> Value {
     fields
 }
 
-/// How a trial ended.
 pub(super) fn ended(trial: &Trial) -> Value {
     json!({
         "outcome": trial.outcome.word(),

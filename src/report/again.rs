@@ -1,6 +1,6 @@
 //! The command that runs a study again, option by option.
 
-use crate::study::{FINGER, Inputs, Provenance, StudyRecord, input_path, sha256};
+use crate::study::{FINGER, Provenance, StudyRecord, input_path, sha256_hex};
 use input::shipped::{FINGERS, ROBOTS, SPACES, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
 use insertion::evaluation::objective::Aggregate;
 use insertion::trial::engine::EngineKind;
@@ -56,10 +56,7 @@ pub(super) fn words(record: &StudyRecord) -> Vec<String> {
 /// The name of the shipped file that an input is.
 fn name(provenance: &Provenance, role: &str, shipped: &[Shipped]) -> Option<&'static str> {
     let hash = provenance.input_sha256.get(role)?;
-    let own = |one: &&Shipped| {
-        let text = Inputs::from([(String::new(), one.text.to_owned())]);
-        sha256(&text).values().next() == Some(hash)
-    };
+    let own = |one: &&Shipped| sha256_hex(one.text.as_bytes()) == *hash;
     shipped.iter().find(own).map(|one| one.name)
 }
 

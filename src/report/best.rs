@@ -82,7 +82,6 @@ fn none(answer: &Answer) -> Markup {
     }
 }
 
-/// That the best design is of no use on a task.
 fn unusable(task: &OnTask, on: &str) -> Markup {
     let nominal = task.measured.window.nominal;
     html! {
@@ -110,7 +109,7 @@ fn figures(found: &Recommended) -> Vec<[String; 3]> {
         let [below, above] = [window.end_negative, window.end_positive].map(end);
         let note = format!("{} mm: {below} below, {above} above", span(ends_mm(window)));
         figures.push([format!("range{on}"), mm(window.range_mm()), note]);
-        figures.extend(task.peak_force_n.map(|force| {
+        figures.extend(Measure::PeakForce.value(task.measured).map(|force| {
             let note = "between plug and socket, over the inserted trials".to_owned();
             [format!("peak force{on}"), format!("{force:.0} N"), note]
         }));

@@ -71,7 +71,6 @@ pub(super) fn axes<'a, 'b>(
     Ok(chart)
 }
 
-/// A legend in a corner, from the series' labels.
 pub(super) fn legend<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>, corner: SeriesLabelPosition) -> Drawn {
     chart
         .configure_series_labels()
@@ -90,7 +89,6 @@ pub(super) fn font(size: u32) -> FontDesc<'static> {
     ("sans-serif", size).into_font().transform(FontTransform::None)
 }
 
-/// Text style with an anchor.
 pub(super) fn words(size: u32, colour: Colour, h: HPos, v: VPos) -> TextStyle<'static> {
     font(size).color(&colour.rgb()).pos(Pos::new(h, v))
 }
@@ -102,7 +100,6 @@ pub(super) fn tick(value: f64) -> String {
     format!("{}", rounded + 0.0)
 }
 
-/// A range about values with some room; something sensible for none.
 pub(super) fn around(values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for value in values.filter(|v| v.is_finite()) {

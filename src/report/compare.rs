@@ -1,8 +1,13 @@
 //! Studies of the same problem beside each other: optimizers against evaluations.
 
+use super::ReportError;
+use super::chart::{Area, Drawn, around, axes, legend, message, sheet};
 use super::convergence::best_so_far;
+use super::marks::{line, stairs};
+use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
 use crate::study::{StudyConfig, StudyRecord};
 use insertion::evaluation::objective::{Aggregate, Constraint};
+use plotters::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -78,21 +83,6 @@ pub struct Comparison {
     pub groups: Vec<OptimizerGroup>,
 }
 
-impl OptimizerGroup {
-    fn of(optimizer: String, batch: u64, records: &[&StudyRecord], target_mm: f64) -> Self {
-        let to_target: Vec<Option<u64>> = records.iter().map(|r| reached(r, target_mm)).collect();
-        let late = |n: &Option<u64>| n.map_or(f64::INFINITY, |n| n as f64);
-        OptimizerGroup {
-            optimizer,
-            batch,
-            studies: records.len(),
-            reached: to_target.iter().flatten().count(),
-            evaluations_to_target: Quartiles::of(to_target.iter().map(late).collect()),
-            best_so_far_mm: band(records),
-        }
-    }
-}
-
 /// Compares studies, each with a name for messages.
 ///
 /// # Errors
@@ -125,8 +115,20 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
         best.ok_or("no evaluation of these studies has a value: there is nothing to compare")?;
     let target_mm = best_known_mm - TOLERANCE_MM;
     let group = |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| {
-        let records: Vec<&StudyRecord> = studies.iter().map(|(_, record)| record).collect();
-        OptimizerGroup::of(optimizer, batch, &records, target_mm)
+        let to_target: Vec<Option<u64>> =
+            studies.iter().map(|(_, record)| reached(record, target_mm)).collect();
+        let late = |n: &Option<u64>| n.map_or(f64::INFINITY, |n| n as f64);
+        let shortest = studies.iter().map(|(_, record)| record.evaluations.len()).min();
+        let curves: Vec<Vec<f64>> = studies.iter().map(|(_, record)| curve(record)).collect();
+        let band = |n| Quartiles::of(curves.iter().map(|curve| curve[n]).collect());
+        OptimizerGroup {
+            optimizer,
+            batch,
+            studies: studies.len(),
+            reached: to_target.iter().flatten().count(),
+            evaluations_to_target: Quartiles::of(to_target.iter().map(late).collect()),
+            best_so_far_mm: (0..shortest.unwrap_or(0)).map(band).collect(),
+        }
     };
     Ok(Comparison {
         task: first.1.config.task_name(),
@@ -137,18 +139,13 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
     })
 }
 
-fn constraints(config: &StudyConfig) -> String {
-    let constraints: Vec<String> = config.constraints.iter().map(Constraint::to_string).collect();
-    if constraints.is_empty() { "none".to_owned() } else { constraints.join(", ") }
-}
-
-/// What a study asks, each part with its name.
 fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
+    let limits: Vec<String> = config.constraints.iter().map(Constraint::to_string).collect();
     let aggregate = config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string);
     [
         ("task", config.task_name()),
         ("objective", config.objective.to_string()),
-        ("constraints", constraints(config)),
+        ("constraints", if limits.is_empty() { "none".to_owned() } else { limits.join(", ") }),
         ("aggregate", aggregate),
         ("robot", config.robot.clone()),
         ("engine", config.provenance.engine.name.clone()),
@@ -156,7 +153,6 @@ fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
     ]
 }
 
-/// Whether two studies measure the same.
 fn alike(
     (first, ours): &(String, StudyRecord),
     (second, theirs): &(String, StudyRecord),
@@ -178,18 +174,57 @@ fn reached(record: &StudyRecord, target: f64) -> Option<u64> {
     place.map(|index| index as u64 + 1)
 }
 
-fn band(records: &[&StudyRecord]) -> Vec<Quartiles> {
-    let shortest = records.iter().map(|record| record.evaluations.len()).min().unwrap_or(0);
-    let curves: Vec<Vec<f64>> = records.iter().map(|record| curve(record)).collect();
-    (0..shortest).map(|n| Quartiles::of(curves.iter().map(|curve| curve[n]).collect())).collect()
-}
-
 /// Best so far after each evaluation; minus infinity before the first value.
 fn curve(record: &StudyRecord) -> Vec<f64> {
     let known = best_so_far(record);
     let none = record.evaluations.len() - known.len();
     let values = known.into_iter().map(|(_, value)| value);
     std::iter::repeat_n(f64::NEG_INFINITY, none).chain(values).collect()
+}
+
+const COLOURS: [Colour; 6] = [BLUE, ORANGE, GREEN, RED, MUTED, INK];
+
+/// `compare.svg`: best so far of each optimizer, the median as a line and the quartiles as a band.
+pub fn svg(comparison: &Comparison) -> Result<String, ReportError> {
+    sheet("the comparison", (880, 480), |area| draw(area, comparison))
+}
+
+fn draw(area: &Area<'_>, comparison: &Comparison) -> Drawn {
+    let groups = &comparison.groups;
+    let longest = groups.iter().map(|g| g.best_so_far_mm.len()).max().unwrap_or(0).max(1) as f64;
+    let values = groups.iter().flat_map(|g| g.best_so_far_mm.iter().flat_map(|q| q.all()));
+    let range = around(values.flatten().chain([comparison.best_known_mm]), 0.06);
+    let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
+    let label = format!("{} (mm)", comparison.objective);
+    let x = ("number of evaluations", 0.0..longest * 1.02 + 0.5);
+    let mut chart = axes(area, &title, x, (&label, range))?;
+    let coloured = || groups.iter().zip(COLOURS.iter().cycle());
+    for (group, colour) in coloured().filter(|(group, _)| group.studies > 1) {
+        let mut outline = quartile(group, 0);
+        outline.extend(quartile(group, 2).into_iter().rev());
+        if !outline.is_empty() {
+            let band = Polygon::new(outline, colour.rgb().mix(0.16).filled());
+            chart.draw_series([band]).map_err(message)?;
+        }
+    }
+    let several =
+        |g: &OptimizerGroup| groups.iter().filter(|o| o.optimizer == g.optimizer).count() > 1;
+    for (group, colour) in coloured() {
+        let batch = if several(group) { format!(", batch {}", group.batch) } else { String::new() };
+        let plural = if group.studies == 1 { "study" } else { "studies" };
+        let label = format!("{}{batch} ({} {plural})", group.optimizer, group.studies);
+        line(&mut chart, quartile(group, 1), colour.rgb().stroke_width(3), label)?;
+    }
+    let target = vec![(0.0, comparison.target_mm), (longest, comparison.target_mm)];
+    let label = format!("best known - {TOLERANCE_MM} mm");
+    line(&mut chart, target, MUTED.rgb().stroke_width(1), label)?;
+    legend(&mut chart, SeriesLabelPosition::LowerRight)
+}
+
+/// One of the quartiles as stairs, from the first evaluation on at which it is known.
+fn quartile(group: &OptimizerGroup, which: usize) -> Vec<(f64, f64)> {
+    let numbered = (1..).zip(&group.best_so_far_mm);
+    stairs(numbered.filter_map(|(n, quartiles)| Some((f64::from(n), quartiles.all()[which]?))))
 }
 
 #[cfg(test)]

@@ -15,14 +15,10 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 /// Value of each evaluation and best so far (of several objectives the hypervolume) against the
 /// number of evaluations, on a white ground; `size` pixels.
-///
-/// # Errors
-/// If the drawing library refuses.
 pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError> {
     sheet("the convergence", size, |area| draw(area, record))
 }
 
-/// The plot with what it shows.
 pub(super) fn section(record: &StudyRecord, size: (u32, u32)) -> Result<Markup, ReportError> {
     let caption = match record.config.objective.single() {
         Some(Measure::Range | Measure::CentredRange) => {

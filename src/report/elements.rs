@@ -23,7 +23,6 @@ pub(super) fn document(title: &str, style: &str, body: Markup) -> String {
     page.into_string()
 }
 
-/// A list of names and values.
 pub(super) fn definitions(pairs: &[(String, String)]) -> Markup {
     html! {
         dl { @for (name, value) in pairs { dt { (name) } dd { (value) } } }

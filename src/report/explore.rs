@@ -11,7 +11,6 @@ use insertion::space::label;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
-/// Views, what is chosen, data and script.
 pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     record.best()?;
     let view = |id: &str, label: &str, caption: &str| {

@@ -14,9 +14,6 @@ use plotters::prelude::*;
 
 /// The first two objectives of all evaluations and the front, on a white ground, `size` pixels;
 /// `None` if there is one objective only or nothing has values.
-///
-/// # Errors
-/// If the drawing library refuses.
 pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
     let several = record.config.objective.single().is_none();
     let any = record.evaluations.iter().any(|recorded| recorded.score.is_some());
@@ -63,7 +60,6 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     legend(&mut chart, SeriesLabelPosition::UpperLeft)
 }
 
-/// Hypervolume and designs of the front.
 fn designs(answer: &Answer, Front { designs: front, volume: found }: &Front) -> Markup {
     let objectives = &answer.record.config.objective;
     if front.is_empty() {

@@ -1,6 +1,6 @@
 //! What the numbers of a study do not say.
 
-use crate::answer::{Answer, TaskOrder};
+use crate::answer::Answer;
 use crate::calibration::order::{Order, OrderSource, rank_correlation};
 use crate::study::StudyRecord;
 use insertion::evaluation::objective::Measure;
@@ -11,7 +11,6 @@ use maud::{Markup, html};
 /// Key of the remote centre, where a space has it among its parameters.
 const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
 
-/// The statements, one after the other.
 pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     let record = answer.record;
     let goals = record.config.goals();
@@ -61,7 +60,7 @@ fn gaps(answer: &Answer) -> String {
 }
 
 fn published_order(answer: &Answer) -> String {
-    let here = |&TaskOrder { task, order: Order { spearman, fingers, source } }: &TaskOrder| {
+    let here = |&(task, Order { spearman, fingers, source }): &(&str, Order)| {
         let whose = match source {
             OrderSource::Study => "this study's",
             OrderSource::Validation => "our validated",

@@ -18,12 +18,10 @@ impl PointMark {
         PointMark { cross: false, size, style: colour.rgb().mix(0.55).filled() }
     }
 
-    /// A filled circle.
     pub fn disc(colour: Colour, size: i32) -> Self {
         PointMark { cross: false, size, style: colour.rgb().filled() }
     }
 
-    /// An open circle.
     pub fn ring(colour: Colour, size: i32, width: u32) -> Self {
         PointMark { cross: false, size, style: colour.rgb().stroke_width(width) }
     }
@@ -76,7 +74,6 @@ pub(super) fn line(
     Ok(())
 }
 
-/// A thin dashed line between two points.
 pub(super) fn dashed(chart: &mut Chart<'_, '_>, ends: [(f64, f64); 2]) -> Drawn {
     let line = DashedLineSeries::new(ends, 5, 4, MUTED.rgb().stroke_width(1));
     chart.draw_series(line).map(|_| ()).map_err(message)

@@ -6,7 +6,6 @@ mod bench;
 mod best;
 mod chart;
 pub mod compare;
-mod compare_plot;
 mod convergence;
 mod drawn;
 mod elements;
@@ -22,14 +21,12 @@ pub mod replay;
 pub mod sensitivity;
 mod shape;
 pub mod stiffness;
-mod stiffness_plot;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod theme;
 mod windows;
 
-pub use compare_plot::svg as compare_svg;
 pub use convergence::svg as convergence_svg;
 pub use front::svg as front_svg;
 pub use page::{Beside, card, page};

@@ -26,9 +26,6 @@ pub struct Beside {
 
 /// The report of a study as a page that opens offline. `model` is the stiffness model of the
 /// study; the map marks the designs it was fitted to.
-///
-/// # Errors
-/// If the drawing library refuses.
 pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<String, ReportError> {
     let (config, title) = (&record.config, title(record));
     let sections = sections(&Answer::of(record), model, beside)?;
@@ -80,8 +77,8 @@ type Section = (&'static str, String, Markup);
 /// Id, title and body of each section; what does not apply is left out.
 fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Section>, ReportError> {
     let record = answer.record;
-    let windows = each_task(record, |task| Ok(windows::section(record, task)))?;
-    let published = each_task(record, |task| published::section(record, task, PLOT))?;
+    let windows = each_task(record, |task| windows::section(record, task));
+    let published = each_task(record, |task| published::section(record, task));
     let section = |id, title: &str, body| Some((id, title.to_owned(), body));
     let (best, played) = match record.on_bench {
         None => ("Best design", "Both ends of its window, played"),
@@ -129,18 +126,13 @@ fn films(replays: &[(String, String)]) -> Option<Markup> {
 }
 
 /// A part for each task, under its name if there are several.
-fn each_task(
-    record: &StudyRecord,
-    part: impl Fn(usize) -> Result<Markup, ReportError>,
-) -> Result<Markup, ReportError> {
-    let parts = (0..record.config.tasks().count()).map(part).collect::<Result<Vec<_>, _>>()?;
-    let several = parts.len() > 1;
-    Ok(html! {
-        @for (name, part) in record.config.tasks().zip(parts) {
-            @if several { h3 { (name) } }
-            (part)
+fn each_task(record: &StudyRecord, part: impl Fn(usize) -> Markup) -> Markup {
+    html! {
+        @for (at, name) in record.config.tasks().enumerate() {
+            @if record.config.several_tasks() { h3 { (name) } }
+            (part(at))
         }
-    })
+    }
 }
 
 fn style() -> String {

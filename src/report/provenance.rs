@@ -7,7 +7,6 @@ use insertion::evaluation::Evaluation;
 use insertion::outcome::{FailureClass, Outcome};
 use maud::{Markup, html};
 
-/// How the trials of the study ended.
 pub(super) fn outcomes(record: &StudyRecord) -> Markup {
     let searches = || record.evaluations.iter().flat_map(Recorded::tasks);
     let count = |of: &dyn Fn(&Evaluation) -> u32| -> u64 {
@@ -41,7 +40,6 @@ pub(super) fn outcomes(record: &StudyRecord) -> Markup {
     }
 }
 
-/// What decided the results.
 pub(super) fn provenance(record: &StudyRecord) -> Markup {
     let config = &record.config;
     let mut rows: Vec<(String, String)> = Vec::new();

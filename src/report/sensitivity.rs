@@ -101,9 +101,6 @@ const ROW: i32 = 34;
 const WIDTH: u32 = 900;
 
 /// A bar for each input with its interval, most first.
-///
-/// # Errors
-/// If the drawing library refuses.
 pub fn svg(found: &Found) -> Result<String, ReportError> {
     let height = 110 + ROW as u32 * found.factors.len() as u32;
     sheet("the sensitivity", (WIDTH, height), |area| draw(area, found))

@@ -22,9 +22,11 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
         .iter()
         .filter_map(|p| Some((p.key.as_str(), p.value(p.nearest(file.numbers.number(&p.key)?)))))
         .collect();
-    let alone = record.best_where(|recorded| {
+    let is_plain = |recorded: &&Recorded| {
         plain.iter().all(|(key, value)| recorded.design.get(key) == Some(*value))
-    });
+    };
+    let alone =
+        crate::study::best(&record.config.goals(), record.current().iter().filter(is_plain));
     let head = ["", "range", "largest contact force", "compliance", "assembly"];
     let mut rows = Vec::new();
     if let Some(alone) = alone {
@@ -72,7 +74,6 @@ fn row(name: &str, recorded: &Recorded) -> Vec<String> {
     ]
 }
 
-/// How much more range, and at what force.
 fn gain(alone: &Recorded, best: &Recorded) -> String {
     let of = |(before, now): (&Evaluation, &Evaluation)| {
         let [force, other] = [now, before].map(|task| Measure::PeakForce.show(task.peak_force_n));

@@ -1,11 +1,16 @@
 //! `optimize stiffness`: how well the stiffness model fits, as table, JSON and plot.
 
-use insertion::stiffness::Axis;
-use insertion::surrogate::Model;
+use super::ReportError;
+use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
+use super::marks::{PointMark, dashed, line, points};
+use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
+use input::units::N_PER_MM;
+use insertion::stiffness::{Axis, Measurement};
+use insertion::surrogate::{Estimate, Model};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
 use serde_json::{Value, json};
 use std::fmt::Write;
-
-pub use super::stiffness_plot::svg;
 
 /// Leave-one-out errors of every model on both axes, and what was chosen.
 pub fn table(model: &Model) -> String {
@@ -56,12 +61,11 @@ pub fn table(model: &Model) -> String {
 }
 
 /// A number, or a dash where there is none.
-pub(super) fn decimals(value: f64, places: usize) -> String {
+fn decimals(value: f64, places: usize) -> String {
     if value.is_finite() { format!("{value:.places$}") } else { "-".to_owned() }
 }
 
-/// The axis in keys.
-pub(super) fn key(axis: Axis) -> &'static str {
+fn key(axis: Axis) -> &'static str {
     match axis {
         Axis::Assembly => "assembly",
         Axis::Compliance => "compliance",
@@ -92,4 +96,124 @@ pub fn json(model: &Model) -> Value {
         "models": models.collect::<Vec<_>>(),
         "used": { "assembly": used(Axis::Assembly), "compliance": used(Axis::Compliance) },
     })
+}
+
+/// Four panels: both axes of stiffness against direction and against density, curves with a band of
+/// one standard deviation, and the measured designs.
+pub fn svg(model: &Model) -> Result<String, ReportError> {
+    sheet("the stiffness model", (1160, 880), |area| {
+        let (head, body) = area.split_vertically(58);
+        let style = |size, colour| words(size, colour, HPos::Left, VPos::Top);
+        let title = "Stiffness of one finger: model and measurements";
+        head.draw_text(title, &style(20, INK), (20, 8)).map_err(message)?;
+        let note = "band: ± 1 standard deviation of a new finger    filled: measured at the \
+                     curve's value    open: measured in between (colour of the nearest curve)    \
+                     dashed: limits of the measurements";
+        head.draw_text(note, &style(15, MUTED), (20, 36)).map_err(message)?;
+        let panels = body.split_evenly((2, 2));
+        for (panel, (axis, by)) in panels.iter().zip(PANELS) {
+            draw(panel, model, axis, by)?;
+        }
+        Ok(())
+    })
+}
+
+/// Axis of stiffness, and whether a panel has the direction along x, not the density.
+const PANELS: [(Axis, bool); 4] = [
+    (Axis::Compliance, true),
+    (Axis::Compliance, false),
+    (Axis::Assembly, true),
+    (Axis::Assembly, false),
+];
+
+/// Steps along a curve of a model that computes no finger.
+const SAMPLES: u32 = 80;
+
+const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
+
+fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn {
+    // Value along x, and value that tells the curves apart; the other way round as well.
+    let swapped = |(density, direction): (f64, f64)| match by_direction {
+        true => (direction, density),
+        false => (density, direction),
+    };
+    let of = |m: &Measurement| swapped((m.density_percent, m.direction_deg));
+    let predict = |x: f64, curve: f64| {
+        let (density, direction) = swapped((x, curve));
+        let Estimate { mean, sd } = model.predict(density, direction).map_err(message)?.axis(axis);
+        Ok::<_, String>((x, Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }))
+    };
+    let name = |curve: f64| match by_direction {
+        true => format!("density {curve} %"),
+        false => format!("direction {curve}°"),
+    };
+    let measured = &model.measurements;
+    let limits = around(measured.iter().map(|m| of(m).0), 0.0);
+    let span = limits.end - limits.start;
+    let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
+    let curves = levels(measured.iter().map(|m| of(m).1));
+    // Each place may take the mechanics of a finger, a third of a second: then only the ends and where
+    // the other panel of the axis has its curves, so that both share them.
+    let places: Vec<f64> = if model.ratios {
+        let levels = levels(measured.iter().map(|m| of(m).0));
+        [x.start].into_iter().chain(levels).chain([x.end]).collect()
+    } else {
+        let at = |i| x.start + (x.end - x.start) * f64::from(i) / f64::from(SAMPLES);
+        (0..=SAMPLES).map(at).collect()
+    };
+    let band = |&curve: &f64| places.iter().map(|&x| predict(x, curve)).collect();
+    let bands: Vec<Vec<(f64, Estimate)>> =
+        curves.iter().map(band).collect::<Result<_, String>>()?;
+    let tops = bands.iter().flatten().map(|(_, e)| e.mean + e.sd);
+    let readings = measured.iter().map(|m| m.stiffness(axis) / N_PER_MM);
+    let mut y = around(tops.chain(readings).chain([0.0]), 0.05);
+    y.start = 0.0;
+    let top = y.end;
+    let label = format!("stiffness in {} (N/mm)", axis.label());
+    let x_axis = (if by_direction { "infill direction (°)" } else { "infill density (%)" }, x);
+    let mut chart = axes(area, "", x_axis, (&label, y))?;
+    for limit in [limits.start, limits.end] {
+        dashed(&mut chart, [(limit, 0.0), (limit, top)])?;
+    }
+    for (band, colour) in bands.iter().zip(SERIES) {
+        let upper = band.iter().map(|(x, e)| (*x, e.mean + e.sd));
+        let lower = band.iter().rev().map(|(x, e)| (*x, (e.mean - e.sd).max(0.0)));
+        let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
+        chart
+            .draw_series([Polygon::new(outline, colour.rgb().mix(0.15).filled())])
+            .map_err(message)?;
+    }
+    for ((band, colour), &curve) in bands.iter().zip(SERIES).zip(&curves) {
+        let means = band.iter().map(|(x, e)| (*x, e.mean)).collect();
+        line(&mut chart, means, colour.rgb().stroke_width(2), name(curve))?;
+    }
+    for m in measured {
+        let (x, level) = of(m);
+        let at = (x, m.stiffness(axis) / N_PER_MM);
+        points(&mut chart, [at], mark(level, &curves), "")?;
+    }
+    let corner = match axis {
+        Axis::Compliance => SeriesLabelPosition::LowerRight,
+        Axis::Assembly => SeriesLabelPosition::UpperRight,
+    };
+    legend(&mut chart, corner)
+}
+
+/// In the colour of the nearest curve, filled if the design lies on it.
+fn mark(level: f64, curves: &[f64]) -> PointMark {
+    let distances = curves.iter().map(|curve| (curve - level).abs()).zip(SERIES);
+    let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0));
+    let (distance, colour) = nearest.unwrap_or((f64::INFINITY, MUTED));
+    if distance < 1e-9 { PointMark::disc(colour, 5) } else { PointMark::ring(colour, 5, 2) }
+}
+
+/// Smallest, middle and largest of the distinct values.
+fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    match sorted.len() {
+        0..=3 => sorted,
+        n => vec![sorted[0], sorted[n / 2], sorted[n - 1]],
+    }
 }

@@ -12,29 +12,20 @@ pub(super) struct Colour {
 }
 
 macro_rules! colours {
-    ($($(#[$doc:meta])* $id:ident = $name:literal, $light:expr, $dark:literal;)*) => {
-        $($(#[$doc])* pub(super) const $id: Colour =
-            Colour { name: $name, light: $light, dark: $dark };)*
+    ($($id:ident = $name:literal, $light:expr, $dark:literal;)*) => {
+        $(pub(super) const $id: Colour = Colour { name: $name, light: $light, dark: $dark };)*
         const ALL: &[Colour] = &[$($id),*];
     };
 }
 
 colours! {
-    /// Background.
     PAPER = "paper", (254, 254, 253), "#15181c";
-    /// Text and axes.
     INK = "ink", (31, 35, 40), "#e6e8eb";
-    /// Less important text.
     MUTED = "muted", (96, 103, 112), "#9aa3ad";
-    /// Grid lines.
     LINES = "lines", (222, 225, 230), "#30363d";
-    /// Series.
     BLUE = "blue", (24, 103, 178), "#6cb2f2";
-    /// Series.
     ORANGE = "orange", (196, 88, 16), "#f0a060";
-    /// Series.
     GREEN = "green", (38, 132, 82), "#62c894";
-    /// Series; failures.
     RED = "red", (190, 50, 44), "#f2837b";
 }
 

@@ -5,7 +5,6 @@ use crate::answer::words::{self, ends_mm, span};
 use crate::study::{Recorded, StudyRecord};
 use maud::{Markup, html};
 
-/// How many designs are shown.
 const SHOWN: usize = 10;
 
 /// The best evaluations that keep all constraints, best first; equals in the order they were

@@ -9,7 +9,7 @@ use crate::calibration::bench::Settings;
 use crate::calibration::calibrate::{Calibration, Layout};
 use crate::calibration::emulator::{CalibrationError, Emulator, Set};
 use crate::calibration::experiments::Experiment;
-use crate::calibration::prior::Parameter;
+use crate::calibration::prior::{Parameter, Priors};
 use crate::calibration::simulation::Simulation;
 use crate::calibration::subject::Subject;
 use input::shipped::PRIORS;
@@ -22,21 +22,47 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// Priors unless others are named.
 pub const DEFAULT_PRIORS: &str = "bench";
 
-/// What to calibrate, and how.
-#[derive(Debug, Clone)]
-pub struct CalibrateRequest {
+/// Fingers on the bench: of which tasks, and what was measured of them.
+#[derive(Debug, Clone, clap::Args)]
+pub struct BenchRequest {
     /// Tasks, robot, space, finger model.
+    #[command(flatten)]
     pub setup: SetupRequest,
-    /// What was measured on the bench: a shipped name, or the path of a file.
+    /// What was measured on the bench: published, or the path of a file
+    #[arg(long, value_name = "FILE")]
     pub measurements: String,
-    /// What nobody measured, and its bounds: a shipped name, or the path of a file.
+}
+
+/// How a calibration is computed.
+#[derive(Debug, Clone, clap::Args)]
+#[command(mut_arg("cache", |cache| cache.help(
+    "Folder of simulations shared with studies; safe to delete [default: results/.cache]"
+)))]
+#[command(mut_arg("no_cache", |off| off.help("Simulate anew, and keep nothing")))]
+pub struct HowCalibrated {
+    /// What nobody measured, and its bounds: bench, or the path of a file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
     pub priors: String,
     /// How much is computed.
+    #[command(flatten)]
     pub effort: EffortRequest,
-    /// Seed; the same seed gives the same answer.
+    /// Seed; the same seed gives the same answer
+    #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Where simulations are kept.
+    #[command(flatten)]
     pub cache: CacheRequest,
+}
+
+/// What to calibrate, and how.
+#[derive(Debug, Clone, clap::Args)]
+pub struct CalibrateRequest {
+    /// Tasks and measurements.
+    #[command(flatten)]
+    pub bench: BenchRequest,
+    /// How it is computed.
+    #[command(flatten)]
+    pub how: HowCalibrated,
 }
 
 /// What a calibration found.
@@ -47,8 +73,7 @@ pub struct Calibrated {
     pub found: Calibration,
 }
 
-/// Tasks with all that is needed to calibrate them.
-pub struct Prepared<'a> {
+pub(super) struct Prepared<'a> {
     /// The tasks' fingers, in order.
     pub subjects: Vec<Subject>,
     /// What each coordinate is.
@@ -58,50 +83,42 @@ pub struct Prepared<'a> {
 }
 
 impl CalibrateRequest {
-    /// Of this setup and these measurements, all else as usual.
-    pub fn new(setup: SetupRequest, measurements: String) -> Self {
-        CalibrateRequest {
-            setup,
-            measurements,
-            priors: DEFAULT_PRIORS.to_owned(),
-            effort: EffortRequest::default(),
-            seed: 0,
-            cache: CacheRequest::default(),
-        }
-    }
-
     /// Simulations in all.
     pub fn simulations(&self) -> usize {
-        self.setup.tasks.len() * self.effort.count()
+        self.bench.setup.tasks.len() * self.how.simulations()
     }
 
     /// Predicts every finger of the space on each task.
-    ///
-    /// # Errors
-    /// If a file cannot be used, or nothing can be fitted; if `stop` is set meanwhile.
     pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Calibrated, Failure> {
-        let Prepared { subjects, layout, settings, .. } = self.prepare(&[], stop, watch)?;
+        let Prepared { subjects, layout, settings } =
+            self.how.prepare(&self.bench, &[], stop, watch)?;
         let watch = Mutex::new(watch);
         let done = |[done, of]: [usize; 2]| tell(&watch, folds(done, of));
         let found = Calibration::new(layout, &subjects, &Settings { done: &done, ..settings });
         not_stopped(stop)?;
         Ok(Calibrated { subjects, found })
     }
+}
+
+impl HowCalibrated {
+    /// Simulations per task.
+    pub fn simulations(&self) -> usize {
+        self.effort.count()
+    }
 
     /// Simulates the tasks, and reads what was measured on them; `more` are fingers that are
     /// asked for beside those of the space.
-    ///
-    /// # Errors
-    /// As [`run`](Self::run).
-    pub fn prepare<'a>(
+    pub(super) fn prepare<'a>(
         &self,
+        bench: &BenchRequest,
         more: &[Design],
         stop: &'a AtomicBool,
         watch: &mut Watch<'_>,
     ) -> Result<Prepared<'a>, Failure> {
-        let setup = self.setup.setup()?;
-        let experiments = measured::read(&self.measurements, &setup.task_names())?;
-        let priors = measured::priors(&find("file of priors", PRIORS, &self.priors)?)?;
+        let setup = bench.setup.setup()?;
+        let experiments = measured::read(&bench.measurements, &setup.task_names())?;
+        let priors = find("file of priors", PRIORS, &self.priors)?;
+        let priors = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
         let effort = self.effort.or(None)?;
         let ground = Ground {
             setup: &setup,
@@ -111,7 +128,7 @@ impl CalibrateRequest {
             cache: self.cache.folder(&setup)?,
             stop,
         };
-        let (subjects, layout) = ground.subjects(&self.measurements, &experiments, more, watch)?;
+        let (subjects, layout) = ground.subjects(&bench.measurements, &experiments, more, watch)?;
         Ok(Prepared { subjects, layout, settings: settings(effort, self.seed, stop) })
     }
 }
@@ -121,7 +138,6 @@ pub(super) fn folds(done: usize, of: usize) -> Part {
     Part { what: "fingers left out".to_owned(), done, of, cost: COSTS[3] }
 }
 
-/// What a calibration simulates with.
 pub(super) struct Ground<'a> {
     /// Tasks, robot, fingers, space.
     pub setup: &'a Setup,
@@ -151,9 +167,20 @@ impl<'a> Ground<'a> {
         more: &[Design],
         watch: &mut Watch<'_>,
     ) -> Result<(Vec<Subject>, Layout), Failure> {
-        let templates = &self.setup.evaluator.templates;
-        let subject = |template| self.subject(template, experiments, more, watch);
-        let subjects = templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
+        let Setup { evaluator, space, .. } = self.setup;
+        let subject = |template: &'a Template| {
+            let (task, count) = (&template.task.name, self.simulations);
+            let (counted, watch) = (AtomicUsize::new(0), Mutex::new(&mut *watch));
+            let done = || {
+                let done = counted.fetch_add(1, Ordering::Relaxed) + 1;
+                let what = format!("{task}: simulations");
+                tell(&watch, Part { what, done, of: count, cost: COSTS[2] });
+            };
+            let set = Set { task, count, seed: self.seed };
+            let emulator = Emulator::new(&self.simulation(template), space, set, &done)?;
+            Subject::new(evaluator, template, space, emulator, experiments, more)
+        };
+        let subjects = evaluator.templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
         not_stopped(self.stop)?;
         let subjects = subjects.map_err(|error| match error {
             CalibrationError::NoFit(..) => Failure::running(error.to_string()),
@@ -163,28 +190,7 @@ impl<'a> Ground<'a> {
         let of_task = |template: &'a Template| {
             (template.task.name.clone(), self.simulation(template).parameters)
         };
-        let of_tasks: Vec<_> = templates.iter().map(of_task).collect();
+        let of_tasks: Vec<_> = evaluator.templates.iter().map(of_task).collect();
         Ok((subjects, Layout::new(&of_tasks)))
-    }
-
-    fn subject(
-        &self,
-        template: &'a Template,
-        experiments: &[Experiment],
-        more: &[Design],
-        watch: &mut Watch<'_>,
-    ) -> Result<Subject, CalibrationError> {
-        let (evaluator, space) = (&self.setup.evaluator, &self.setup.space);
-        let (task, count) = (&template.task.name, self.simulations);
-        let (counted, watch) = (AtomicUsize::new(0), Mutex::new(watch));
-        let done = || {
-            let done = counted.fetch_add(1, Ordering::Relaxed) + 1;
-            let part =
-                Part { what: format!("{task}: simulations"), done, of: count, cost: COSTS[2] };
-            tell(&watch, part);
-        };
-        let set = Set { task, count, seed: self.seed };
-        let emulator = Emulator::new(&self.simulation(template), space, set, &done)?;
-        Subject::new(evaluator, template, space, emulator, experiments, more)
     }
 }

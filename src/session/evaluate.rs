@@ -10,6 +10,7 @@ use insertion::evaluation::Evaluation;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::repeat::Bands;
 use insertion::evaluation::tolerance::Search;
+use insertion::outcome::Outcome;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -56,9 +57,6 @@ pub struct Evaluated {
 
 impl EvaluateRequest {
     /// Measures the finger.
-    ///
-    /// # Errors
-    /// If a file cannot be used or the finger cannot be simulated; if `stop` is set meanwhile.
     pub fn run(&self, stop: &AtomicBool) -> Result<Evaluated, Failure> {
         self.repeat.map_or(Ok(()), RepeatRequest::check)?;
         let mut setup = self.setup.setup()?;
@@ -72,11 +70,14 @@ impl EvaluateRequest {
         let evaluation = evaluation.map_err(Failure::input)?;
         not_stopped(stop)?;
         let wall_s = clock.elapsed().as_secs_f64();
-        let bands = match &self.repeat {
-            Some(repeat) => repeat.bands(&setup, &chosen, &evaluation, stop)?,
-            None => None,
+        let window = &evaluation.window;
+        let bands = |repeat: RepeatRequest| {
+            let (specimen, taught) = (&chosen.specimen, evaluation.taught);
+            repeat.of(&setup, specimen, taught, stop, |repeats| repeats.bands(window))
         };
-        let by_ribs = self.by_ribs(&setup, stop)?;
+        let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
+        let bands = repeat.map(bands).transpose()?;
+        let by_ribs = self.by_ribs(&setup, &chosen, stop)?;
         Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s })
     }
 
@@ -87,15 +88,17 @@ impl EvaluateRequest {
     /// Measures the finger once more, from its ribs, with the start taught where the task's own does
     /// not insert; nothing if a finger model was asked for, if the finger is given by its springs, or
     /// if the engine has no such fingers.
-    fn by_ribs(&self, setup: &Setup, stop: &AtomicBool) -> Result<Option<ByRibs>, Failure> {
-        if !self.by_ribs
-            || self.setup.finger_model.kind.is_some()
-            || self.finger.springs_are_given()
-        {
+    fn by_ribs(
+        &self,
+        setup: &Setup,
+        chosen: &Chosen,
+        stop: &AtomicBool,
+    ) -> Result<Option<ByRibs>, Failure> {
+        if !self.by_ribs || self.setup.finger_model.kind.is_some() || chosen.given {
             return Ok(None);
         }
         let Some(evaluator) = setup.by_ribs() else { return Ok(None) };
-        let measured = self.finger.specimen(setup, &evaluator).and_then(|specimen| {
+        let measured = self.finger.by(setup, &evaluator).and_then(|Chosen { specimen, .. }| {
             let found = evaluator.measure_or_teach(&specimen, self.search(), &Plan::WINDOW, stop);
             found.map_err(Failure::input)
         });

@@ -53,9 +53,6 @@ pub(super) fn not_stopped(stop: &AtomicBool) -> Result<(), Failure> {
 }
 
 /// Whether a number lies in its range, if it is given; `option` is what gives it.
-///
-/// # Errors
-/// If it does not.
 pub(super) fn within<T: PartialOrd + fmt::Display>(
     option: &str,
     number: impl Into<Option<T>>,

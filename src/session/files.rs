@@ -72,9 +72,6 @@ pub fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Sourc
 }
 
 /// The robot of that name, or of the file at that path.
-///
-/// # Errors
-/// If there is none, or it cannot be used.
 pub fn robot(name: &str) -> Result<Robot, Failure> {
     let source = find("robot", ROBOTS, name)?;
     Robot::parse(&source.text, &source.file).map_err(Failure::input)

@@ -27,7 +27,6 @@ pub struct FilmRequest {
 }
 
 impl FilmRequest {
-    /// Whether what is asked for can be written.
     pub(super) fn check(&self) -> Result<(), Failure> {
         let problem =
             |file| filmable(file).map_err(|why| Failure::usage(format!("--record: {why}")));
@@ -51,14 +50,13 @@ impl FilmRequest {
         })?;
         not_stopped(stop)?;
         let label = shifted(offset_mm);
-        let film = Film {
-            label: &label,
-            task: &specimen.task,
-            pad: &specimen.finger.pad,
-            recording: &recording,
-        };
+        let film = film(&label, specimen, &recording);
         if let Some(file) = &self.record {
-            write(file, &film)?;
+            let content = match extension(file).as_deref() {
+                Some("csv") => replay::csv(&recording),
+                _ => replay::page(&format!("{}, {label}", specimen.task.name), &[film]),
+            };
+            write_file(file, &content)?;
         }
         if let Some(file) = &self.plot {
             write_file(file, &replay::curve_svg(&film)?)?;
@@ -66,7 +64,6 @@ impl FilmRequest {
         Ok(Some(recording))
     }
 
-    /// The files that are written.
     pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
         self.record.iter().chain(&self.plot)
     }
@@ -85,19 +82,12 @@ fn filmable(file: &Path) -> Result<(), String> {
     }
 }
 
-fn write(file: &Path, film: &Film) -> Result<(), Failure> {
-    match extension(file).as_deref() {
-        Some("csv") => write_file(file, &replay::csv(film.recording))?,
-        _ => {
-            let title = format!("{}, {}", film.task.name, film.label);
-            write_file(file, &replay::page(&title, &[*film]))?;
-        }
-    }
-    Ok(())
-}
-
 fn extension(file: &Path) -> Option<String> {
     Some(file.extension()?.to_str()?.to_lowercase())
+}
+
+fn film<'a>(label: &'a str, specimen: &'a Specimen, recording: &'a Recording) -> Film<'a> {
+    Film { label, task: &specimen.task, pad: &specimen.finger.pad, recording }
 }
 
 fn shifted(offset_mm: f64) -> String {
@@ -121,11 +111,9 @@ pub(super) fn boundary(
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
         for (end, outward) in ENDS {
             let file = dir.join(pair_file(at, end));
-            let pair = match found.as_ref().and_then(|found| Some((found, found.recorded.on(at)?)))
-            {
+            let pair = match found.and_then(|best| Some((best, best.on(at)?))) {
                 None => None,
-                Some((found, task)) => {
-                    let best = found.recorded;
+                Some((best, task)) => {
                     let specimen = setup
                         .evaluator
                         .specimen(template, &best.design, best.stiffness)
@@ -171,17 +159,12 @@ fn pair(
     }
     let rig = setup.evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
     let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
-    let film = |step| rig.record(grasp, offset(step));
-    let (inside, outside) = pool.install(|| rayon::join(|| film(last), || film(last + outward)));
+    let record = |step| rig.record(grasp, offset(step));
+    let (inside, outside) =
+        pool.install(|| rayon::join(|| record(last), || record(last + outward)));
     let Some((inside, outside)) = inside.zip(outside) else { return Ok(None) };
     let labels = [last, last + outward].map(|step| shifted(grid_mm(step)));
-    let film = |label, recording| Film {
-        label,
-        task: &specimen.task,
-        pad: &specimen.finger.pad,
-        recording,
-    };
-    let films = [film(&labels[0], &inside), film(&labels[1], &outside)];
+    let films = [film(&labels[0], specimen, &inside), film(&labels[1], specimen, &outside)];
     let title = format!("{}: the {end} end of the window", specimen.task.name);
     Ok(Some(replay::page(&title, &films)))
 }

@@ -68,10 +68,6 @@ pub struct FingerRequest {
 pub struct Chosen {
     /// Task and finger.
     pub specimen: Specimen,
-    /// Infill density, percent, if it was given.
-    pub density: Option<f64>,
-    /// Infill direction, degrees, if it was given.
-    pub direction: Option<f64>,
     /// Name of the robot.
     pub robot: String,
     /// Where its springs come from that were not measured.
@@ -85,36 +81,29 @@ pub struct Chosen {
 }
 
 impl FingerRequest {
-    /// Whether the finger is given by two springs, not by its infill.
-    pub(super) fn springs_are_given(&self) -> bool {
-        self.stiffness_compliance.is_some() || self.stiffness_assembly.is_some()
-    }
-
-    /// The finger, checked against the space.
     pub(super) fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
         self.by(setup, &setup.evaluator)
     }
 
     /// The same finger by the models of another evaluator of the same setup.
-    pub(super) fn specimen(&self, setup: &Setup, by: &Evaluator) -> Result<Specimen, Failure> {
-        Ok(self.by(setup, by)?.specimen)
-    }
-
-    fn by(&self, setup: &Setup, evaluator: &Evaluator) -> Result<Chosen, Failure> {
+    pub(super) fn by(&self, setup: &Setup, evaluator: &Evaluator) -> Result<Chosen, Failure> {
         let template = setup.only_task()?;
+        let mut infill = Design::default();
         for (flag, key, value) in [
             ("--density", DENSITY_KEY, self.density),
             ("--direction", DIRECTION_KEY, self.direction),
         ] {
             if let Some(value) = value {
                 check(setup, flag, key, value)?;
+                infill.0.insert(key.to_owned(), value);
             }
         }
         let set = self.settings(setup)?;
         let mut design = set.clone();
-        design.0.extend(self.density.map(|density| (DENSITY_KEY.to_owned(), density)));
-        design.0.extend(self.direction.map(|direction| (DIRECTION_KEY.to_owned(), direction)));
-        let stiffness = match self.springs()? {
+        design.0.extend(infill.0);
+        let springs = self.springs()?;
+        let given = springs.is_some();
+        let stiffness = match springs {
             Some(_) if evaluator.fingers.kind() == FingerModelKind::Computed => {
                 return Err(Failure::usage(
                     "--stiffness-compliance and --stiffness-assembly are springs of the finger \
@@ -127,12 +116,9 @@ impl FingerRequest {
             }
             None => return Err(Failure::usage("give --density and --direction")),
         };
-        let given = self.springs_are_given();
         let specimen = evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
         Ok(Chosen {
             specimen,
-            density: self.density,
-            direction: self.direction,
             robot: evaluator.robot.name.clone(),
             finger_model: evaluator.fingers.kind(),
             design,
@@ -141,7 +127,6 @@ impl FingerRequest {
         })
     }
 
-    /// The stiffness that was given, if it was.
     fn springs(&self) -> Result<Option<Prediction>, Failure> {
         match (self.stiffness_compliance, self.stiffness_assembly) {
             (Some(compliance), Some(assembly)) => {

@@ -6,7 +6,7 @@ use super::open::{Ended, OpenStudy, hint, resume_hint};
 use super::standing::Standing;
 use super::{Failure, Setup, optimizer};
 use crate::study::{
-    Arrived, Course, Ending, Next, Simulated, StudyError, Timing, Wanted, Work, WorkError, now,
+    Arrived, Course, Ending, Next, Simulated, StudyError, Timing, Wanted, Work, WorkError,
 };
 use ask_tell::Optimizer;
 use insertion::evaluation::evaluator::Evaluate;
@@ -17,7 +17,6 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
 
 /// An open study and what is out.
 pub struct Guided {
@@ -79,37 +78,16 @@ impl Guided {
 
     /// Takes a design's evaluation from the cache; false if it is not there.
     fn recall(&mut self, wanted: &Wanted) -> Result<bool, Failure> {
-        let (datetime_start, clock) = (now(), Instant::now());
-        let Some(measured) = self.simulated(&NEVER).known(&wanted.design) else {
-            return Ok(false);
-        };
-        let timing = Timing {
-            datetime_start,
-            datetime_complete: now(),
-            wall_s: clock.elapsed().as_secs_f64(),
-            cached: measured.cached.clone(),
-        };
+        let (known, timing) = Timing::of(|| self.simulated(&NEVER).known(&wanted.design));
+        let Some(measured) = known else { return Ok(false) };
+        let timing = Timing { cached: measured.cached.clone(), ..timing };
         self.accept(Arrived { proposal: wanted.proposal, measured, timing })
     }
 
-    fn give(&mut self, wanted: Wanted) -> Result<(u64, Vec<u8>), Failure> {
-        let work = self.work(wanted);
-        let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
-        let proposal = work.proposal;
-        self.measuring.insert(proposal, work);
-        Ok((proposal, bytes))
-    }
-
-    fn simulated<'a>(&'a self, stop: &'a AtomicBool) -> Simulated<'a> {
-        let OpenStudy { setup, plan, cache, .. } = &self.open;
-        let (evaluator, cache) = (&setup.evaluator, cache.as_ref());
-        Simulated { evaluator, search: Search::default(), plan, cache, stop }
-    }
-
-    fn work(&self, Wanted { proposal, design }: Wanted) -> Work {
+    fn give(&mut self, Wanted { proposal, design }: Wanted) -> Result<(u64, Vec<u8>), Failure> {
         let OpenStudy { study, setup, .. } = &self.open;
         let goals = study.config.goals();
-        Work {
+        let work = Work {
             proposal,
             design,
             seed: study.config.seed,
@@ -118,7 +96,16 @@ impl Guided {
             tasks: study.config.tasks.len() as u64,
             provenance: study.provenance().clone(),
             inputs: setup.inputs.clone(),
-        }
+        };
+        let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
+        self.measuring.insert(proposal, work);
+        Ok((proposal, bytes))
+    }
+
+    fn simulated<'a>(&'a self, stop: &'a AtomicBool) -> Simulated<'a> {
+        let OpenStudy { setup, plan, cache, .. } = &self.open;
+        let (evaluator, cache) = (&setup.evaluator, cache.as_ref());
+        Simulated { evaluator, search: Search::default(), plan, cache, stop }
     }
 
     /// Takes in the result of a proposal; false if it is not awaited (it came before).
@@ -155,9 +142,6 @@ impl Guided {
     }
 
     /// Confirms what is recommended on the threads of this process, and writes tables and report.
-    ///
-    /// # Errors
-    /// If a file cannot be written; if `stop` is set meanwhile.
     pub fn finish(&mut self, ending: Ending, stop: &AtomicBool) -> Result<Ended, Failure> {
         let pool = self.open.how.pool()?;
         self.open.conclude(ending, &pool, stop, &mut |_| ())
@@ -197,28 +181,23 @@ pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>,
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let alone =
         alone.map_err(|error| Failure::running(format!("cannot start a thread: {error}")))?;
-    alone.install(|| measure(bytes, worker, stop))
-}
-
-fn measure(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>, Failure> {
-    let work = Work::decode(bytes).map_err(Failure::input)?;
-    let setup = set_up(&work)?;
-    work.admit(&setup.provenance(), worker).map_err(Failure::input)?;
-    let plan = setup.plan(work.seed, |measure| match measure {
-        Measure::SuccessRate => work.success_rate,
-        Measure::RobustRange => work.robust_range,
-        _ => false,
-    })?;
-    let (evaluator, search) = (&setup.evaluator, Search::default());
-    let simulated = Simulated { evaluator, search, plan: &plan, cache: None, stop };
-    let (datetime_start, clock) = (now(), Instant::now());
-    let measured = simulated.evaluate(&work.design).map_err(|source| {
-        let (index, design) = (work.proposal, work.design.to_string());
-        StudyError::Impossible { index, design, source }
-    })?;
-    not_stopped(stop)?;
-    let wall_s = clock.elapsed().as_secs_f64();
-    let datetime_complete = now();
-    let timing = Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() };
-    work.done(measured, &timing, worker).map_err(|error| Failure::running(error.to_string()))
+    alone.install(|| {
+        let work = Work::decode(bytes).map_err(Failure::input)?;
+        let setup = set_up(&work)?;
+        work.admit(&setup.provenance(), worker).map_err(Failure::input)?;
+        let plan = setup.plan(work.seed, |measure| match measure {
+            Measure::SuccessRate => work.success_rate,
+            Measure::RobustRange => work.robust_range,
+            _ => false,
+        })?;
+        let (evaluator, search) = (&setup.evaluator, Search::default());
+        let simulated = Simulated { evaluator, search, plan: &plan, cache: None, stop };
+        let (measured, timing) = Timing::of(|| simulated.evaluate(&work.design));
+        let measured = measured.map_err(|source| {
+            let (index, design) = (work.proposal, work.design.to_string());
+            StudyError::Impossible { index, design, source }
+        })?;
+        not_stopped(stop)?;
+        work.done(measured, &timing, worker).map_err(|error| Failure::running(error.to_string()))
+    })
 }

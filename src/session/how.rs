@@ -9,13 +9,10 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-/// Folder of the cache unless another is named.
 const CACHE: &str = "results/.cache";
-/// Threads there may be.
 const THREADS: RangeInclusive<u16> = 1..=1024;
 /// Simulations per task that an emulator may be made of.
 const SIMULATIONS: RangeInclusive<u16> = 16..=4096;
-/// Samples of a posterior there may be.
 const SAMPLES: RangeInclusive<u16> = 20..=20_000;
 /// Simulations and samples unless others are asked for.
 const EFFORT: BenchEffort = BenchEffort { simulations: 200, samples: 300 };
@@ -60,7 +57,6 @@ pub struct EffortRequest {
 }
 
 impl EffortRequest {
-    /// Whether the numbers are within their ranges.
     fn check(self) -> Result<(), Failure> {
         within("--simulations", self.simulations, &SIMULATIONS)?;
         within("--samples", self.samples, &SAMPLES)
@@ -71,7 +67,6 @@ impl EffortRequest {
         usize::from(self.simulations.unwrap_or(EFFORT.simulations))
     }
 
-    /// What was asked for, or else what is known.
     pub(super) fn or(self, known: Option<BenchEffort>) -> Result<BenchEffort, Failure> {
         self.check()?;
         let other = known.unwrap_or(EFFORT);
@@ -82,7 +77,6 @@ impl EffortRequest {
     }
 }
 
-/// How to sample.
 pub(super) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Settings<'_> {
     let effort = Effort { warm_up: WARM_UP, samples: usize::from(effort.samples), thin: THIN };
     Settings { effort, seed, stop, done: &|_| () }
@@ -104,13 +98,17 @@ pub struct RunRequest {
     /// file, in a new segment; the best design is then taken from that
     #[arg(long)]
     pub accept_changed: bool,
+    /// Where designs are measured, by the installed Python package: dask://HOST:PORT, slurm,
+    /// slurm:JOBS, processes or processes:N [default: on the threads of this process]
+    // Whoever opens the study hands it over; here threads measure.
+    #[arg(long, value_name = "WHERE")]
+    pub executor: Option<String>,
     /// How much is computed for the bench.
-    #[arg(skip)]
+    #[command(flatten)]
     pub effort: EffortRequest,
 }
 
 impl RunRequest {
-    /// Whether the numbers are within their ranges.
     pub(super) fn check(&self) -> Result<(), Failure> {
         within("--threads", self.threads, &THREADS)?;
         self.effort.check()
@@ -136,7 +134,6 @@ impl RunRequest {
         usize::from(self.threads.unwrap_or(0))
     }
 
-    /// The threads that measure.
     pub(super) fn pool(&self) -> Result<ThreadPool, Failure> {
         rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads())

@@ -60,11 +60,6 @@ pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure>
     Ok(found)
 }
 
-/// The priors of a file.
-pub fn priors(source: &Source) -> Result<Priors, Failure> {
-    Priors::parse(&source.text, &source.file).map_err(Failure::input)
-}
-
 /// Whether lines say something of the ranges of a task's fingers, and all of fingers in the space.
 pub fn check(
     file: &str,

@@ -1,11 +1,11 @@
 //! The door to all that comes before it: typed requests in, typed results out, for whoever asks:
 //! the command line, the program `lab`, Python.
 //!
-//! A request is checked when it is turned into what it is used as; nothing is printed here. What
-//! takes long ends, with a failure, once the `stop` that it is given is set.
+//! A request is checked when it is turned into what it is used as; nothing is printed here. It fails
+//! if a file that it names cannot be used or written, or if there is no such finger, task or study.
+//! What takes long ends, with a failure, once the `stop` that it is given is set.
 
 mod calibration;
-mod driven;
 mod evaluate;
 mod failure;
 mod files;
@@ -23,11 +23,9 @@ mod repeat;
 mod report;
 mod request;
 mod ribs;
-mod scene;
 mod sensitivity;
 mod setup;
 mod standing;
-mod stiffness;
 mod study;
 mod task;
 #[cfg(test)]
@@ -35,11 +33,9 @@ mod tests;
 mod trial;
 mod unusable;
 
-pub use calibration::{CalibrateRequest, Calibrated, DEFAULT_PRIORS, Prepared};
-pub use driven::Insertion;
+pub use calibration::{BenchRequest, CalibrateRequest, Calibrated, HowCalibrated};
 pub use evaluate::{EvaluateRequest, Evaluated};
 pub use failure::Failure;
-pub(crate) use failure::wide;
 pub use files::robot;
 pub use film::FilmRequest;
 pub use finger::{Chosen, FingerRequest};
@@ -51,15 +47,13 @@ pub use open::{Ended, OpenStudy};
 pub use repeat::RepeatRequest;
 pub use report::{PAGE, rewrite};
 pub use request::{DEFAULT_ROBOT, FingerModelRequest, SetupRequest, TaskSource};
-pub use ribs::{PrintRequest, RibsRequest};
-pub use scene::SceneRequest;
+pub use ribs::{PrintRequest, RibsRequest, StiffnessRequest};
 pub use sensitivity::SensitivityRequest;
 pub use setup::Setup;
 pub use standing::Standing;
-pub use stiffness::StiffnessRequest;
 pub use study::{AnyStudy, POLISH, ResumeRequest, StudyRequest};
 pub use task::{TaskCheck, TaskFile, read_space, read_task};
-pub use trial::{TrialDone, TrialRequest};
+pub use trial::{Insertion, SceneRequest, TrialDone, TrialRequest};
 
 use crate::study::Recorded;
 use std::sync::Mutex;

@@ -1,16 +1,14 @@
 //! Which finger to print next.
 
-use super::Failure;
-use super::calibration::CalibrateRequest;
-use super::failure::{not_stopped, within};
-use super::{Prepared, Watch};
+use super::calibration::{BenchRequest, HowCalibrated, Prepared};
+use super::failure::not_stopped;
+use super::{Failure, Watch};
 use crate::calibration::bench::sampled;
 use crate::calibration::next::{Advice, advise};
 use crate::calibration::published;
 use crate::calibration::subject::Subject;
 use ask_tell::stream::stream;
 use insertion::space::Design;
-use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
 /// Fingers that may be printed.
@@ -23,16 +21,31 @@ pub enum Among {
 }
 
 /// Which fingers may be printed, and what a print costs.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct NextRequest {
-    /// Task, measurements, effort; one task.
-    pub calibration: CalibrateRequest,
-    /// Fingers to print at a time.
+    /// Task and measurements; one task.
+    #[command(flatten)]
+    pub bench: BenchRequest,
+    /// Fingers to print at a time
+    #[arg(long, value_name = "K", default_value_t = 1,
+          value_parser = clap::value_parser!(u16).range(1..=100))]
     pub count: u16,
-    /// Fingers that may be printed.
+    /// Fingers that may be printed
+    #[arg(long, value_enum, default_value = "space")]
     pub among: Among,
-    /// Gain of range that is worth the print and the measurement, mm.
+    /// Gain of range that is worth the print and the measurement, mm; below it: stop
+    #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = cost)]
     pub print_cost_mm: f64,
+    /// How it is computed.
+    #[command(flatten)]
+    pub how: HowCalibrated,
+}
+
+fn cost(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(mm) if mm.is_finite() && mm >= 0.0 => Ok(mm),
+        _ => Err("a cost is a number, 0 or above, in mm of range".to_owned()),
+    }
 }
 
 /// What to print, of which fingers.
@@ -44,49 +57,22 @@ pub struct Advised {
 }
 
 impl NextRequest {
-    /// Fingers to print at a time.
-    pub const COUNTS: RangeInclusive<u16> = 1..=100;
-
-    /// Whether a print may be worth so much range, mm.
-    ///
-    /// # Errors
-    /// What would be right.
-    pub fn given_cost(mm: f64) -> Result<f64, String> {
-        match mm.is_finite() && mm >= 0.0 {
-            true => Ok(mm),
-            false => Err("a cost is a number, 0 or above, in mm of range".to_owned()),
-        }
-    }
-
     /// Says which finger to print next.
-    ///
-    /// # Errors
-    /// As [`CalibrateRequest::run`].
     pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Advised, Failure> {
-        if self.calibration.setup.tasks.len() != 1 {
+        if self.bench.setup.tasks.len() != 1 {
             return Err(Failure::usage("give one --task: a finger is printed for one"));
         }
-        within("--count", self.count, &Self::COUNTS)?;
-        let cost_mm = Self::given_cost(self.print_cost_mm).map_err(Failure::usage)?;
         let published = match self.among {
             Among::Space => Vec::new(),
-            Among::Published => infills(),
+            Among::Published => published::designs()
+                .iter()
+                .map(|design| Design::infill(design.density_percent, design.direction_deg))
+                .collect(),
         };
-        let mut prepared = self.calibration.prepare(&published, stop, watch)?;
-        let advice = self.advise(&prepared, &published, cost_mm)?;
-        not_stopped(stop)?;
-        let subject = prepared.subjects.swap_remove(0);
-        Ok(Advised { subject, advice })
-    }
-
-    fn advise(
-        &self,
-        prepared: &Prepared<'_>,
-        published: &[Design],
-        cost_mm: f64,
-    ) -> Result<Advice, Failure> {
-        let benches = prepared.layout.benches(&prepared.subjects);
-        let one = prepared.subjects.first().zip(benches.first());
+        let prepared = self.how.prepare(&self.bench, &published, stop, watch)?;
+        let Prepared { mut subjects, layout, settings } = prepared;
+        let benches = layout.benches(&subjects);
+        let one = subjects.first().zip(benches.first());
         let (subject, bench) = one.ok_or_else(|| Failure::usage("give one --task"))?;
         let among: Vec<usize> = match self.among {
             Among::Space => (0..subject.of_space).collect(),
@@ -94,16 +80,11 @@ impl NextRequest {
                 published.iter().filter_map(|design| subject.finger(design)).collect()
             }
         };
-        let (dimension, settings) = (prepared.layout.dimension(), &prepared.settings);
         let mut random = stream(settings.seed, 0, "next");
-        let posterior = sampled(&benches, dimension, settings, &mut random);
-        let count = usize::from(self.count);
-        Ok(advise(bench, &posterior, &among, count, cost_mm, &mut random))
+        let posterior = sampled(&benches, layout.dimension(), &settings, &mut random);
+        let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
+        let advice = advise(bench, &posterior, &among, count, cost_mm, &mut random);
+        not_stopped(stop)?;
+        Ok(Advised { subject: subjects.swap_remove(0), advice })
     }
-}
-
-/// The published fingers.
-fn infills() -> Vec<Design> {
-    let designs = published::designs().into_iter();
-    designs.map(|design| Design::infill(design.density_percent, design.direction_deg)).collect()
 }

@@ -3,13 +3,12 @@
 use super::calibration::{Ground, folds};
 use super::failure::not_stopped;
 use super::how::{RunRequest, settings};
-use super::measured::Measured;
 use super::{Failure, Setup, Watch, tell};
 use crate::calibration::bench::Settings;
 use crate::calibration::calibrate::Calibration;
 use crate::calibration::simulation::Simulation;
 use crate::calibration::table::{self, by_range, on_bench};
-use crate::study::{BenchEffort, OnBench, Provenance, Study, StudyConfig, write_own_file};
+use crate::study::{Study, StudyConfig, write_own_file};
 use insertion::evaluation::objective::{Measure, Objectives};
 use rayon::ThreadPool;
 use std::sync::Mutex;
@@ -56,34 +55,25 @@ pub(super) fn predict(
         stop,
     };
     let provenance = study.provenance().clone();
-    let (found, predictions) =
-        pool.install(|| all(&ground, measured, effort, provenance, watch))?;
+    let (found, predictions) = pool.install(|| {
+        let (subjects, layout) =
+            ground.subjects(&measured.file, &measured.experiments, &[], watch)?;
+        let watch = Mutex::new(watch);
+        let done = |[done, of]: [usize; 2]| tell(&watch, folds(done, of));
+        let settings = Settings { done: &done, ..settings(effort, ground.seed, stop) };
+        let calibration = Calibration::new(layout, &subjects, &settings);
+        not_stopped(stop)?;
+        let nothing = || Failure::running("the space has no finger to predict");
+        let one = subjects.first().zip(calibration.tasks.first());
+        let (subject, result) = one.ok_or_else(nothing)?;
+        let best = by_range(result).first().map(|best| best.finger).ok_or_else(nothing)?;
+        let (task, cache) = (setup.only_task()?, ground.cache.clone());
+        let simulation = Simulation::new(&setup.evaluator, task, &[], cache, stop);
+        let simulated = simulation.window(&subject.designs[best], &[]).map_err(Failure::input)?;
+        not_stopped(stop)?;
+        let found = on_bench(subject, result, simulated, provenance, effort);
+        Ok::<_, Failure>((found, table::predictions_csv(subject, result)))
+    })?;
     write_own_file(&study.dir().join(TABLE), &predictions)?;
     Ok(study.keep_on_bench(&found)?)
-}
-
-/// The best fingers, and a table of all.
-fn all(
-    ground: &Ground<'_>,
-    Measured { file, experiments, .. }: &Measured,
-    effort: BenchEffort,
-    provenance: Provenance,
-    watch: &mut Watch<'_>,
-) -> Result<(OnBench, String), Failure> {
-    let (subjects, layout) = ground.subjects(file, experiments, &[], watch)?;
-    let watch = Mutex::new(watch);
-    let done = |[done, of]: [usize; 2]| tell(&watch, folds(done, of));
-    let settings = Settings { done: &done, ..settings(effort, ground.seed, ground.stop) };
-    let calibration = Calibration::new(layout, &subjects, &settings);
-    not_stopped(ground.stop)?;
-    let nothing = || Failure::running("the space has no finger to predict");
-    let (subject, result) = subjects.first().zip(calibration.tasks.first()).ok_or_else(nothing)?;
-    let best = by_range(result).first().map(|best| best.finger).ok_or_else(nothing)?;
-    let Ground { setup, cache, stop, .. } = ground;
-    let task = setup.only_task()?;
-    let simulation = Simulation::new(&setup.evaluator, task, &[], cache.clone(), stop);
-    let simulated = simulation.window(&subject.designs[best], &[]).map_err(Failure::input)?;
-    not_stopped(stop)?;
-    let found = on_bench(subject, result, simulated, provenance, effort);
-    Ok((found, table::predictions_csv(subject, result)))
 }

@@ -9,9 +9,6 @@ use finray::mechanics;
 use std::path::Path;
 
 /// Writes surface and sheet; nothing if nothing is recommended or its finger cannot be printed.
-///
-/// # Errors
-/// If a file cannot be written.
 pub(super) fn write(dir: &Path, record: &StudyRecord) -> Result<(), Failure> {
     let Some(geometry) = recommended(record) else { return Ok(()) };
     if let Ok(prism) = Prism::finger(&geometry) {

@@ -1,17 +1,14 @@
 //! Repeats of a trial or an evaluation: do small changes change the outcome?
 
 use super::failure::{not_stopped, wide, within};
-use super::finger::Chosen;
 use super::{Failure, Setup};
-use insertion::evaluation::robustness::repeat::{Bands, Repeats};
-use insertion::evaluation::{Evaluation, OffsetStep};
-use insertion::outcome::Outcome;
+use insertion::evaluation::OffsetStep;
+use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::robustness::repeat::Repeats;
 use insertion::trial::Grasp;
-use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
-/// How often may be repeated.
 const REPEATS: RangeInclusive<u32> = 2..=10_000;
 
 /// How often to repeat, with friction within 10 %, start within 0.02 mm, and half the step by turns.
@@ -38,42 +35,11 @@ impl RepeatRequest {
         within("--repeat", self.count, &REPEATS)
     }
 
-    /// The outcomes at one offset, m, and how often each was met.
-    pub(super) fn outcomes(
+    /// What repeats of a finger on its task say, from this taught start.
+    pub(super) fn of<T>(
         &self,
         setup: &Setup,
-        chosen: &Chosen,
-        (taught, offset): (Option<OffsetStep>, f64),
-        stop: &AtomicBool,
-    ) -> Result<BTreeMap<String, usize>, Failure> {
-        let count = |outcomes: Vec<Outcome>| {
-            let mut counts = BTreeMap::new();
-            for outcome in outcomes {
-                *counts.entry(word(outcome)).or_default() += 1;
-            }
-            counts
-        };
-        self.with((setup, chosen), taught, stop, |repeats| count(repeats.outcomes(offset)))
-    }
-
-    /// The bands at the ends of a window; `None` if there is no window.
-    pub(super) fn bands(
-        &self,
-        setup: &Setup,
-        chosen: &Chosen,
-        measured: &Evaluation,
-        stop: &AtomicBool,
-    ) -> Result<Option<Bands>, Failure> {
-        if measured.window.nominal != Outcome::Inserted {
-            return Ok(None);
-        }
-        let bands = |repeats: &Repeats| repeats.bands(&measured.window);
-        self.with((setup, chosen), measured.taught, stop, bands).map(Some)
-    }
-
-    fn with<T>(
-        &self,
-        (setup, Chosen { specimen, .. }): (&Setup, &Chosen),
+        specimen: &Specimen,
         taught: Option<OffsetStep>,
         stop: &AtomicBool,
         measure: impl Fn(&Repeats) -> T,
@@ -85,13 +51,5 @@ impl RepeatRequest {
         let measured = measure(&repeats);
         not_stopped(stop)?;
         Ok(measured)
-    }
-}
-
-/// `inserted`, `failed: jammed` and so on.
-fn word(outcome: Outcome) -> String {
-    match outcome {
-        Outcome::Failed(class) => format!("failed: {}", class.label()),
-        outcome => outcome.word().to_owned(),
     }
 }

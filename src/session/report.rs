@@ -10,9 +10,6 @@ use insertion::surrogate::Model;
 use std::path::Path;
 
 /// Writes tables, plots and page of the study in a folder again; gives what it measured.
-///
-/// # Errors
-/// If there is none, it is damaged, or a file cannot be written.
 pub fn rewrite(dir: &Path) -> Result<StudyRecord, Failure> {
     let record = StudyRecord::load(dir)?;
     let model = surrogate_of(&record.inputs(dir)?)?;

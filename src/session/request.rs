@@ -36,14 +36,7 @@ impl TaskSource {
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }
 
-    fn parsed(names: &str) -> Result<Vec<Self>, Infallible> {
-        Ok(Self::list(names))
-    }
-
     /// Its file, unchecked.
-    ///
-    /// # Errors
-    /// If there is none.
     pub fn read(&self) -> Result<Source, Failure> {
         match self {
             TaskSource::Named(name) => find("task", TASKS, name),
@@ -57,7 +50,7 @@ impl TaskSource {
 pub struct SetupRequest {
     /// Task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas
     // By its full path the whole list is one value of the option.
-    #[arg(long = "task", value_name = "NAME", value_parser = TaskSource::parsed)]
+    #[arg(long = "task", value_name = "NAME", value_parser = |names: &str| Ok::<_, Infallible>(TaskSource::list(names)))]
     pub tasks: std::vec::Vec<TaskSource>,
     /// Search space: infill, codesign, finger, or the path of a space file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]
@@ -107,9 +100,6 @@ impl Default for SetupRequest {
 
 impl SetupRequest {
     /// Reads and checks all that is named.
-    ///
-    /// # Errors
-    /// If a file cannot be used, or they do not go together.
     pub fn setup(&self) -> Result<Setup, Failure> {
         if self.tasks.is_empty() {
             return Err(Failure::usage("give --task"));
@@ -134,9 +124,6 @@ impl SetupRequest {
 
 impl FingerModelRequest {
     /// What makes fingers where no space is searched.
-    ///
-    /// # Errors
-    /// If the finger file cannot be used.
     pub fn fingers(&self) -> Result<FingerSource, Failure> {
         Ok(Fingers::parse(self.file(None)?)?.made())
     }

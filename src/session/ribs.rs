@@ -1,7 +1,7 @@
-//! A finger as its ribs make it: to be computed, or to be printed.
+//! A finger as its ribs make it, to be computed or to be printed, and how stiff measured ones are.
 
 use super::Failure;
-use super::files::find;
+use super::files::{find, printed_finger, stiffness_data, surrogate};
 use super::finger::setting;
 use super::request::DEFAULT_FINGER;
 use crate::study::StudyRecord;
@@ -10,6 +10,7 @@ use finray::mechanics::{self, FingerStiffness};
 use input::shipped::FINGERS;
 use insertion::finger::file::{FingerFile, is_shape};
 use insertion::space::Design;
+use insertion::surrogate::{Model, Prediction};
 use std::path::{Path, PathBuf};
 
 /// Which finger to compute.
@@ -34,9 +35,6 @@ pub struct RibsRequest {
 
 impl RibsRequest {
     /// The ribs, and the stiffness that they give.
-    ///
-    /// # Errors
-    /// If the file cannot be used, or there is no such finger.
     pub fn run(&self) -> Result<(Geometry, FingerStiffness), Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
@@ -111,4 +109,35 @@ fn best(dir: &Path) -> Result<(Design, Option<FingerFile>), Failure> {
         )));
     };
     Ok((best.clone(), record.finger.clone()))
+}
+
+/// Which measurements the model is fitted to.
+#[derive(Debug, Clone, clap::Args)]
+pub struct StiffnessRequest {
+    /// Your own stiffness measurements in place of the shipped ones
+    #[arg(long, value_name = "FILE.csv")]
+    pub stiffness_data: Option<String>,
+    /// Finger that was measured: finray9, or the path of a finger file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
+    pub finger: String,
+}
+
+impl Default for StiffnessRequest {
+    fn default() -> Self {
+        StiffnessRequest { stiffness_data: None, finger: DEFAULT_FINGER.to_owned() }
+    }
+}
+
+impl StiffnessRequest {
+    /// Fits the model.
+    pub fn model(&self) -> Result<Model, Failure> {
+        let finger = printed_finger(&self.finger)?;
+        surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)
+    }
+
+    /// The stiffness of an infill: density, percent, and direction, degrees.
+    pub fn predict(&self, density: f64, direction: f64) -> Result<Prediction, Failure> {
+        Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
+        self.model()?.predict(density, direction).map_err(Failure::input)
+    }
 }

@@ -4,6 +4,7 @@ use super::Failure;
 use super::files::{Fingers, find, surrogate};
 use super::measured::{self, Measured};
 use super::request::DEFAULT_FINGER;
+use crate::calibration::prior::Priors;
 use crate::study::{BENCH_ROLES, FINGER, Inputs, Provenance, sha256};
 use input::shipped::{FINGERS, Source, UNCERTAINTIES};
 use insertion::evaluation::evaluator::Evaluator;
@@ -136,7 +137,8 @@ impl Setup {
             measured::check(&file, &experiments, template, &self.space)?;
         }
         let [role, priors_role] = BENCH_ROLES.map(str::to_owned);
-        let measured = Measured { priors: measured::priors(&priors)?, experiments, file };
+        let bounds = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
+        let measured = Measured { priors: bounds, experiments, file };
         self.inputs.extend([(role, lines.text), (priors_role, priors.text)]);
         self.measured = Some(measured);
         Ok(self)

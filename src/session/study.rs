@@ -16,17 +16,12 @@ use std::path::{Path, PathBuf};
 
 /// Seeds there are: TOML, in which studies keep theirs, has no larger whole numbers.
 const SEEDS: RangeInclusive<u64> = 0..=i64::MAX as u64;
-/// Budgets there are.
 const BUDGETS: RangeInclusive<u64> = 1..=LARGEST_BUDGET;
 /// Length of a polish that is asked for without a number.
 pub const POLISH: u64 = 20;
-/// Lengths of a polish there are.
 const POLISHES: RangeInclusive<u64> = 0..=LARGEST_BUDGET;
-/// Batches there are.
 const BATCHES: RangeInclusive<u64> = 1..=LARGEST_BATCH;
-/// Batch of a new study unless another is given.
 const DEFAULT_BATCH: u64 = 4;
-/// Errors used unless others are named.
 const DEFAULT_UNCERTAINTY: &str = "typical";
 
 /// Which study to begin or to go on with.
@@ -88,7 +83,7 @@ pub struct StudyRequest {
     )]
     pub out: Option<PathBuf>,
     /// How it is run.
-    #[arg(skip)]
+    #[command(flatten)]
     pub run: RunRequest,
 }
 
@@ -98,7 +93,7 @@ pub struct ResumeRequest {
     /// Folder of the study
     pub dir: PathBuf,
     /// How it is run.
-    #[arg(skip)]
+    #[command(flatten)]
     pub run: RunRequest,
 }
 
@@ -113,9 +108,6 @@ pub enum AnyStudy {
 
 impl AnyStudy {
     /// Opens it; where no batch is given a new study's is `workers`.
-    ///
-    /// # Errors
-    /// As of the request.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         match self {
             AnyStudy::Asked(request) => request.open(workers),
@@ -124,9 +116,6 @@ impl AnyStudy {
     }
 
     /// Its folder, with all checked that is asked for; nothing is written.
-    ///
-    /// # Errors
-    /// If it cannot be.
     pub fn folder(&self) -> Result<PathBuf, Failure> {
         match self {
             AnyStudy::Asked(request) => Ok(request.look()?.2),
@@ -137,9 +126,6 @@ impl AnyStudy {
 
 impl ResumeRequest {
     /// Opens the study to go on with it.
-    ///
-    /// # Errors
-    /// If there is none, or it is damaged, in use or was measured otherwise.
     pub fn open(&self) -> Result<OpenStudy, Failure> {
         self.run.check()?;
         let mut study = Study::resume(&self.dir)?;
@@ -174,9 +160,6 @@ impl StudyRequest {
     }
 
     /// Begins the study or goes on with it; where no batch is given a new study's is `workers`.
-    ///
-    /// # Errors
-    /// If it cannot be, or its folder cannot be used.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         let (setup, mut config, dir) = self.look()?;
         if self.batch.is_none() {
@@ -196,8 +179,25 @@ impl StudyRequest {
         within("--polish", self.polish, &POLISHES)?;
         within("--seed", self.seed, &SEEDS)?;
         within("--batch", self.batch, &BATCHES)?;
-        let setup = self.under_errors(self.setup.setup()?)?;
-        let setup = self.measured(setup)?;
+        let mut setup = self.setup.setup()?;
+        let constrained = self.constraints.iter().map(|constraint| constraint.measure);
+        let mut measures = self.objective.measures().iter().copied().chain(constrained);
+        match (measures.any(Measure::is_drawn), &self.uncertainty) {
+            (false, None) => {}
+            (false, Some(_)) => {
+                return Err(Failure::usage(
+                    "--uncertainty is for success-rate and robust-range; make one of them an \
+                     --objective or a --constraint",
+                ));
+            }
+            (true, name) => {
+                setup = setup.under_named(name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY))?;
+            }
+        }
+        if let Some(name) = &self.measurements {
+            let priors = find("file of priors", PRIORS, DEFAULT_PRIORS)?;
+            setup = setup.with_measurements(measured::file(name)?, priors)?;
+        }
         let config = self.config(&setup)?;
         check(self.optimizer, &config)?;
         if setup.measured.is_some() {
@@ -205,27 +205,6 @@ impl StudyRequest {
         }
         let dir = self.out.clone().unwrap_or_else(|| default_folder(&config));
         Ok((setup, config, dir))
-    }
-
-    /// With the errors that the goals need.
-    fn under_errors(&self, setup: Setup) -> Result<Setup, Failure> {
-        let constrained = self.constraints.iter().map(|constraint| constraint.measure);
-        let mut measures = self.objective.measures().iter().copied().chain(constrained);
-        match (measures.any(Measure::is_drawn), &self.uncertainty) {
-            (false, None) => Ok(setup),
-            (false, Some(_)) => Err(Failure::usage(
-                "--uncertainty is for success-rate and robust-range; make one of them an \
-                 --objective or a --constraint",
-            )),
-            (true, name) => setup.under_named(name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY)),
-        }
-    }
-
-    /// With what was measured on the bench.
-    fn measured(&self, setup: Setup) -> Result<Setup, Failure> {
-        let Some(name) = &self.measurements else { return Ok(setup) };
-        let priors = find("file of priors", PRIORS, DEFAULT_PRIORS)?;
-        setup.with_measurements(measured::file(name)?, priors)
     }
 
     /// How the values of several tasks become one; `None` for one task.

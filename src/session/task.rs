@@ -2,13 +2,11 @@
 
 use super::Failure;
 use super::files::{find, robot};
-use super::request::DEFAULT_ROBOT;
 use crate::calibration::published::three;
 use crate::connector::check::{Problem, problems};
 use crate::connector::nominal;
 use input::shipped::{SPACES, STIFFNESS, Source, TASKS};
 use insertion::finger::Finger;
-use insertion::outcome::Outcome;
 use insertion::space::Space;
 use insertion::stiffness;
 use insertion::task::Task;
@@ -26,27 +24,18 @@ pub struct TaskFile {
 
 impl TaskFile {
     /// Checks the text of a task file.
-    ///
-    /// # Errors
-    /// If it cannot be used; the text names the key.
     pub fn parse(source: Source) -> Result<Self, Failure> {
         let task = Task::parse(&source.text, &source.file).map_err(Failure::input)?;
         Ok(TaskFile { source, task })
     }
 
     /// The fields of a task file, checked.
-    ///
-    /// # Errors
-    /// If it cannot be used.
     pub fn fields(source: Source) -> Result<toml::Table, Failure> {
         let Source { file, text } = TaskFile::parse(source)?.source;
         input::read(&text, &file).map_err(Failure::input)
     }
 
     /// The task file with these fields, checked; `file` is what messages call it.
-    ///
-    /// # Errors
-    /// If they make no task file.
     pub fn of_fields(file: &str, fields: &serde_json::Value) -> Result<Self, Failure> {
         let text =
             toml::to_string(fields).map_err(|error| Failure::usage(format!("{file}: {error}")))?;
@@ -55,17 +44,11 @@ impl TaskFile {
 }
 
 /// The task of that name, or of the file at that path.
-///
-/// # Errors
-/// If there is none, or it cannot be used.
 pub fn read_task(name: &str) -> Result<TaskFile, Failure> {
     TaskFile::parse(find("task", TASKS, name)?)
 }
 
 /// The space of that name, or of the file at that path.
-///
-/// # Errors
-/// If there is none, or it cannot be used.
 pub fn read_space(name: &str) -> Result<Space, Failure> {
     let source = find("space", SPACES, name)?;
     Space::parse(&source.text, &source.file).map_err(Failure::input)
@@ -84,23 +67,8 @@ pub struct TaskCheck {
 }
 
 impl TaskCheck {
-    /// Checks the task of that name, or of the file at that path.
-    ///
-    /// # Errors
-    /// If there is no such file, or robot or engine cannot do the task.
-    pub fn named(name: &str, robot_name: &str, engine: EngineKind) -> Result<Self, Failure> {
-        TaskCheck::of(find("task", TASKS, name)?, robot_name, engine)
-    }
-
-    /// Checks a task file with the usual robot.
-    ///
-    /// # Errors
-    /// If robot or engine cannot do the task.
-    pub fn of_text(source: Source, engine: EngineKind) -> Result<Self, Failure> {
-        TaskCheck::of(source, DEFAULT_ROBOT, engine)
-    }
-
-    fn of(source: Source, robot_name: &str, engine: EngineKind) -> Result<Self, Failure> {
+    /// Checks a task file with the robot of that name.
+    pub fn of(source: Source, robot_name: &str, engine: EngineKind) -> Result<Self, Failure> {
         let task = match Task::parse(&source.text, &source.file) {
             Ok(task) => task,
             Err(error) => {
@@ -110,31 +78,18 @@ impl TaskCheck {
         };
         let problems = problems(&task);
         let nominal = match problems.is_empty() {
-            true => Some(nominal_trial(&task, robot_name, engine)?),
+            true => {
+                let finger = middling()?;
+                let (shaped, robot) = (finger.shaped(&task.finger, 0.0), robot(robot_name)?);
+                let rig = engine.rig(&task, &robot, &shaped, 1.0).map_err(Failure::input)?;
+                let trial = rig.grasp(&shaped).trial(0.0);
+                let explanation = nominal::explain(&task, &trial);
+                Some((finger, trial, explanation))
+            }
             false => None,
         };
         Ok(TaskCheck { source, task: Some(task), problems, nominal })
     }
-
-    /// Whether nothing is wrong and the plug goes in.
-    pub fn inserts(&self) -> bool {
-        let outcome = self.nominal.as_ref().map(|(_, trial, _)| trial.outcome);
-        outcome == Some(Outcome::Inserted)
-    }
-}
-
-/// The nominal start of a task, tried with the middling finger, and explained.
-fn nominal_trial(
-    task: &Task,
-    robot_name: &str,
-    engine: EngineKind,
-) -> Result<(Finger, Trial, String), Failure> {
-    let finger = middling()?;
-    let shaped = finger.shaped(&task.finger, 0.0);
-    let rig = engine.rig(task, &robot(robot_name)?, &shaped, 1.0).map_err(Failure::input)?;
-    let trial = rig.grasp(&shaped).trial(0.0);
-    let explanation = nominal::explain(task, &trial);
-    Ok((finger, trial, explanation))
 }
 
 /// The shipped measured finger of middling compliance stiffness.

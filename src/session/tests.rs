@@ -70,7 +70,12 @@ fn what_is_stopped_ends_as_interrupted() {
     interrupted(evaluate.run(&stop).err());
     let (setup, finger) = (usb(), middle());
     interrupted(TrialRequest { setup, finger, ..Default::default() }.run(&stop).err());
-    let mut calibrate = CalibrateRequest::new(usb(), "published".to_owned());
-    calibrate.effort.simulations = Some(16);
-    interrupted(calibrate.run(&stop, &mut |_| ()).err());
+    let bench = BenchRequest { setup: usb(), measurements: "published".to_owned() };
+    let how = HowCalibrated {
+        priors: "bench".to_owned(),
+        effort: EffortRequest { simulations: Some(16), samples: None },
+        seed: 0,
+        cache: CacheRequest::default(),
+    };
+    interrupted(CalibrateRequest { bench, how }.run(&stop, &mut |_| ()).err());
 }

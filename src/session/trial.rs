@@ -1,4 +1,4 @@
-//! One simulated insertion.
+//! One simulated insertion: as it goes, step by step, and its scene for MuJoCo.
 
 use super::Failure;
 use super::failure::not_stopped;
@@ -7,9 +7,13 @@ use super::finger::{Chosen, FingerRequest};
 use super::repeat::RepeatRequest;
 use super::request::SetupRequest;
 use crate::study::write_file;
+use contact::mjcf::{self, MjcfSettings};
 use input::units::MM;
-use insertion::evaluation::OffsetStep;
-use insertion::trial::{Grasp, Sample, Trial, picture};
+use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::{OffsetStep, tolerance};
+use insertion::outcome::Outcome;
+use insertion::trial::{Driven, Grasp, Sample, State, Trial, cell, picture};
+use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -77,10 +81,6 @@ pub struct TrialDone {
 
 impl TrialRequest {
     /// Simulates the insertion and writes what was asked for.
-    ///
-    /// # Errors
-    /// If a file cannot be used or written, or the finger cannot be simulated; if `stop` is set
-    /// meanwhile.
     pub fn run(&self, stop: &AtomicBool) -> Result<TrialDone, Failure> {
         let offset_mm = given_offset(self.offset_mm).map_err(|problem| {
             Failure::usage(format!("--offset-mm {}: {problem}", self.offset_mm))
@@ -108,11 +108,94 @@ impl TrialRequest {
             write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
         }
         drop(rig);
-        let repeats = self.repeat.as_ref();
-        let repeats = repeats
-            .map(|repeat| repeat.outcomes(&setup, &chosen, (taught, offset), stop))
-            .transpose()?;
+        let outcomes = |repeat: RepeatRequest| {
+            repeat.of(&setup, specimen, taught, stop, |repeats| repeats.outcomes(offset))
+        };
+        let repeats = self.repeat.map(outcomes).transpose()?.map(|outcomes| {
+            let mut counts = BTreeMap::new();
+            for outcome in outcomes {
+                let word = match outcome {
+                    Outcome::Failed(class) => format!("failed: {}", class.label()),
+                    outcome => outcome.word().to_owned(),
+                };
+                *counts.entry(word).or_default() += 1;
+            }
+            counts
+        });
         let written = self.svg.iter().chain(self.film.files()).cloned().collect();
         Ok(TrialDone { chosen, offset_mm, taught, trial, samples, repeats, written })
+    }
+}
+
+/// A grasped part in front of its socket, which a caller commands step by step: no command of the
+/// command line has it.
+pub struct Insertion {
+    driven: Driven,
+    /// The taught start, m.
+    taught: f64,
+}
+
+impl Insertion {
+    /// A part between these fingers.
+    ///
+    /// # Errors
+    /// If task, robot and finger cannot be simulated, or the engine simulates nothing; if `stop` is
+    /// set meanwhile.
+    pub fn new(
+        setup: &SetupRequest,
+        finger: &FingerRequest,
+        stop: &AtomicBool,
+    ) -> Result<Self, Failure> {
+        let setup = setup.setup()?;
+        let specimen = finger.choose(&setup)?.specimen;
+        let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
+        let rig = setup.evaluator.rig(&specimen, None, 1.0).map_err(Failure::input)?;
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let driven = rig.driven(grasp).ok_or_else(|| {
+            Failure::usage(
+                "this engine simulates nothing that could be driven; use --engine direct",
+            )
+        })?;
+        not_stopped(stop)?;
+        Ok(Insertion { driven, taught: taught.map_or(0.0, tolerance::offset) })
+    }
+
+    /// Begins anew, with the start shifted by so much along y, mm.
+    pub fn start(&mut self, offset_mm: f64) -> State {
+        self.driven.start(self.taught + offset_mm * MM)
+    }
+
+    /// Commands a velocity of the TCP, mm/s, for a control step.
+    pub fn step(&mut self, velocity_mm_per_s: [f64; 3]) -> State {
+        self.driven.step(Vector3::from(velocity_mm_per_s) * MM)
+    }
+}
+
+/// Which scene to write.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct SceneRequest {
+    /// Task, robot, finger model; one task.
+    #[command(flatten)]
+    pub setup: SetupRequest,
+    /// The finger.
+    #[command(flatten)]
+    pub finger: FingerRequest,
+}
+
+impl SceneRequest {
+    /// Name of the task, and the scene as MJCF.
+    pub fn mjcf(&self) -> Result<(String, String), Failure> {
+        let setup = self.setup.setup()?;
+        let Specimen { task, finger, .. } = self.finger.choose(&setup)?.specimen;
+        let robot = &setup.evaluator.robot;
+        let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
+        let scene = cell::build(&task, &mounted, &finger).scene;
+        let instead = match scene.patched() {
+            Some(_) => "give finger_plug_torsion_mm in mm",
+            None => "--robot servo and --robot rigid need none of it",
+        };
+        let text = mjcf::write(&scene, &task.name, &MjcfSettings::default())
+            .map_err(|error| Failure::usage(format!("{error}; {instead}")))?;
+        Ok((task.name, text))
     }
 }

@@ -2,13 +2,12 @@
 
 use super::failure::not_stopped;
 use super::{Failure, Setup};
+use crate::answer::words::outcome;
 use crate::study::{StudyRecord, write_own_file};
-use insertion::outcome::Outcome;
 use insertion::trial::{Grasp, picture};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// Picture of the nominal trial in the study's folder.
 const PICTURE: &str = "nominal.svg";
 
 /// Fails, with what the design that comes nearest does at the nominal start, if none inserts there;
@@ -31,10 +30,7 @@ pub(super) fn check(
     let label = format!("{}, nominal start, evaluation {}", specimen.task.name, nearest.index);
     let file = dir.join(PICTURE);
     write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
-    let class = match trial.outcome {
-        Outcome::Failed(class) => format!("{} (class {})", class.label(), class.number()),
-        outcome => outcome.word().to_owned(),
-    };
+    let class = outcome(trial.outcome);
     let phase =
         trial.phases.last().map_or(String::new(), |phase| format!(" in phase {}", phase.name));
     Err(Failure::running(format!(

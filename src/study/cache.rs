@@ -33,10 +33,6 @@ pub struct Cache {
     problem: Mutex<Option<io::Error>>,
 }
 
-/// Names one evaluation.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Key(String);
-
 #[derive(Serialize, Deserialize)]
 struct Entry {
     /// SHA-256 of what determines the evaluation: another entry under this name shows.
@@ -60,18 +56,18 @@ impl Cache {
 
     /// The name of the evaluation that `inputs`, with robot and engine, determine. Their
     /// `Debug` must show all of them; it shows numbers so that they read back as the same bits.
-    pub fn key(&self, inputs: &impl Debug) -> Key {
+    pub fn key(&self, inputs: &impl Debug) -> String {
         let text = format!("{}inputs {inputs:?}\n", self.context);
-        Key(sha256_hex(text.as_bytes()))
+        sha256_hex(text.as_bytes())
     }
 
     /// The evaluation of that name, if a whole one is there.
-    pub fn get(&self, key: &Key) -> Option<Evaluation> {
+    pub fn get(&self, key: &str) -> Option<Evaluation> {
         let text = files::read_own(&self.path(key), LARGEST_OWN).ok()?;
         let (content, _) = unseal(text.strip_suffix('\n')?).ok()?;
         let entry: Entry = serde_json::from_str(&content).ok()?;
         let whole = serde_json::to_string(&entry.measured).ok()?;
-        if entry.key != key.0 || entry.measured_sha256 != sha256_hex(whole.as_bytes()) {
+        if entry.key != key || entry.measured_sha256 != sha256_hex(whole.as_bytes()) {
             return None;
         }
         if fits::implausible(&entry.measured).is_some() {
@@ -83,8 +79,16 @@ impl Cache {
 
     /// Keeps an evaluation. What cannot be kept is measured again next time, so a failure is
     /// only noted ([`problem`](Self::problem)).
-    pub fn put(&self, key: &Key, evaluation: &Evaluation) {
-        if let Err(error) = self.write(key, evaluation)
+    pub fn put(&self, key: &str, evaluation: &Evaluation) {
+        let write = || {
+            let measured_sha256 = sha256_hex(serde_json::to_string(evaluation)?.as_bytes());
+            let (key, measured) = (key.to_owned(), evaluation.clone());
+            let path = self.path(&key);
+            let text = seal(&Entry { key, measured_sha256, measured }, None)?;
+            fs::create_dir_all(path.parent().unwrap_or(&self.dir))?;
+            files::write_own(&path, text.as_bytes())
+        };
+        if let Err(error) = write()
             && let Ok(mut problem) = self.problem.lock()
         {
             problem.get_or_insert(error);
@@ -102,19 +106,9 @@ impl Cache {
         problem.as_ref().map(|error| format!("{}: {error}", self.dir.display()))
     }
 
-    fn path(&self, key: &Key) -> PathBuf {
-        let (folder, name) = key.0.split_at(2);
+    fn path(&self, key: &str) -> PathBuf {
+        let (folder, name) = key.split_at(2);
         self.dir.join(folder).join(format!("{name}.json"))
-    }
-
-    fn write(&self, key: &Key, measured: &Evaluation) -> io::Result<()> {
-        let measured_sha256 = sha256_hex(serde_json::to_string(measured)?.as_bytes());
-        let entry = Entry { key: key.0.clone(), measured_sha256, measured: measured.clone() };
-        let text = seal(&entry, None::<&()>)?;
-        let path = self.path(key);
-        let folder = path.parent().unwrap_or(&self.dir);
-        fs::create_dir_all(folder)?;
-        files::write_own(&path, text.as_bytes())
     }
 }
 
@@ -154,18 +148,11 @@ mod tests {
         assert_eq!(cache.get(&a), Some(measured(3e3)));
         assert_eq!((cache.get(&b), cache.found(), cache.problem()), (None, 1, None));
         let robot = Robot::parse(ROBOTS[1].text, ROBOTS[1].file).unwrap();
+        let (direct, rapier) = (EngineKind::Direct.record(), EngineKind::Rapier.record());
         let others = [
-            Cache::new(dir.path(), &robot, &EngineKind::Direct.record()),
-            Cache::new(
-                dir.path(),
-                &Robot { stop_force: 1.0, ..robot },
-                &EngineKind::Direct.record(),
-            ),
-            Cache::new(
-                dir.path(),
-                &Robot::parse(ROBOTS[0].text, "").unwrap(),
-                &EngineKind::Rapier.record(),
-            ),
+            Cache::new(dir.path(), &robot, &direct),
+            Cache::new(dir.path(), &Robot { stop_force: 1.0, ..robot }, &direct),
+            Cache::new(dir.path(), &Robot::parse(ROBOTS[0].text, "").unwrap(), &rapier),
         ];
         for other in others {
             assert_eq!(other.get(&other.key(&0.1)), None);

@@ -24,7 +24,7 @@ pub struct StudyConfig {
     /// Name of the robot.
     pub robot: String,
     /// Where the springs of a finger come from that were not measured.
-    #[serde(default, skip_serializing_if = "is_paper")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub finger_model: FingerModelKind,
     /// Name of the optimizer.
     pub optimizer: String,
@@ -45,7 +45,7 @@ pub struct StudyConfig {
     /// there is a polish.
     pub budget: u64,
     /// Most evaluations of the polish that follows.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub polish: u64,
     /// Designs the optimizer proposes at a time; of an asynchronous study, that are measured at
     /// a time.
@@ -54,7 +54,7 @@ pub struct StudyConfig {
     #[serde(rename = "async", default, skip_serializing_if = "std::ops::Not::not")]
     pub asynchronous: bool,
     /// What follows the search.
-    #[serde(default, skip_serializing_if = "Conclusion::is_usual")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub conclusion: Conclusion,
     /// What the study began to be measured with.
     pub provenance: Provenance,
@@ -72,12 +72,6 @@ pub struct Conclusion {
     /// How much is computed for the bench, if there are measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bench: Option<BenchEffort>,
-}
-
-impl Conclusion {
-    fn is_usual(&self) -> bool {
-        *self == Conclusion::default()
-    }
 }
 
 impl StudyConfig {
@@ -101,10 +95,7 @@ impl StudyConfig {
         self.tasks().collect::<Vec<_>>().join("+")
     }
 
-    /// Whether it can be run as it is, whoever wrote it.
-    ///
-    /// # Errors
-    /// Which field cannot be so, and what would be right.
+    /// Whether it can be run as it is, whoever wrote it; if not, the field that is wrong.
     pub fn check(&self) -> Result<(), String> {
         for (key, value, [least, most]) in [
             ("budget", self.budget, [1, LARGEST_BUDGET]),
@@ -171,12 +162,8 @@ impl StudyConfig {
     }
 }
 
-fn is_paper(kind: &FingerModelKind) -> bool {
-    *kind == FingerModelKind::Paper
-}
-
-fn is_zero(number: &u64) -> bool {
-    *number == 0
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// `<task>-<optimizer>-seed<seed>`.

@@ -1,27 +1,22 @@
 //! The course of a study: what is to be measured next, and what was. Who measures, and where,
 //! is not known here.
 //!
-//! # What is guaranteed
+//! # Guarantee
 //!
-//! The journal is a function of the configuration without its budget; the
-//! budget only says where it ends (or where a polish begins, and then it cannot be
-//! raised). It does not depend on who measures or on the
-//! number of threads or workers, nor on how often the study was interrupted or its budget raised:
-//! 20 evaluations and then 20 more are the same as 40 at once. This holds because
+//! The journal is a function of the configuration; the budget only says where it ends (or where a
+//! polish begins, and then it cannot be raised). Neither workers and threads nor interruptions change
+//! it: 20 evaluations and then 20 more are the same as 40 at once. This holds because
 //!
-//! - the optimizer is always asked for whole batches and told whole batches; a
-//!   budget that ends within a batch evaluates its first designs and tells nothing;
-//! - a study that goes on starts its optimizer anew and repeats asks and tells
-//!   with the values of the journal, so its state is what it would have been;
-//!   what it proposes on the way must be what the journal holds;
+//! - the optimizer is asked for whole batches and told whole batches; a budget that ends within a
+//!   batch evaluates its first designs and tells nothing;
+//! - a study that goes on starts its optimizer anew and repeats asks and tells with the values of the
+//!   journal; what it proposes on the way must be what the journal holds;
 //! - evaluations that end out of order wait in memory until all earlier ones are written;
 //! - of results that come twice the first counts.
 //!
-//! An asynchronous study has no batches: `batch` designs are proposed at
-//! first, and one more for each result, which is told at once; designs that are being measured
-//! are known to the optimizer as asked and not told. Its journal has the results in the order
-//! in which they arrived, each with the number of its proposal. So it depends on who was fast,
-//! but repeats: asks and tells follow from that order alone.
+//! An asynchronous study has no batches: `batch` designs are proposed at first, and one more for each
+//! result, which is told at once. Its journal has the results in the order in which they arrived, each
+//! with the number of its proposal: it depends on who was fast, but repeats from that order alone.
 
 use super::error::StudyError;
 use super::fits;
@@ -144,9 +139,6 @@ impl Course {
 
     /// Takes in what was measured of a design that was given out, and writes down what is in
     /// turn. False, and nothing is changed, if its result is not awaited: it came before.
-    ///
-    /// # Errors
-    /// If the journal cannot be written.
     pub fn take(
         &mut self,
         study: &mut Study,
@@ -292,7 +284,6 @@ impl Course {
     }
 }
 
-/// Why there is nothing more to propose.
 fn exhausted(optimizer: &dyn Optimizer) -> Ending {
     match optimizer.stop() {
         Some(StopReason::Converged) => Ending::Converged,
@@ -303,11 +294,11 @@ fn exhausted(optimizer: &dyn Optimizer) -> Ending {
 impl Study {
     /// The journal holds this evaluation where another design is proposed now.
     fn other_design(&self, found: &Recorded, proposed: &str) -> StudyError {
-        StudyError::Replay {
-            path: self.journal.path().to_owned(),
-            index: found.index,
-            found: found.design.to_string(),
-            proposed: proposed.to_owned(),
-        }
+        let problem = format!(
+            "evaluation {} is of {}, but this version of the program proposes {proposed}: the journal \
+             was written by another version; continue it with that one, or start a new study",
+            found.index, found.design
+        );
+        StudyError::file(&self.journal.path, problem)
     }
 }

@@ -28,71 +28,13 @@ pub enum StudyError {
         /// Who, as far as it is known.
         owner: String,
     },
-    /// The folder holds no study.
-    #[error("{}: not a study: it has no study.toml", dir.display())]
-    NotAStudy {
-        /// The folder.
-        dir: PathBuf,
-    },
-    /// `study.toml` or an input file kept in the folder cannot be used.
+    /// A file of the folder, or the whole of it, cannot be used as it is.
     #[error("{}: {problem}", path.display())]
     File {
-        /// The file.
+        /// The file or folder.
         path: PathBuf,
         /// What is wrong and what would be right.
         problem: String,
-    },
-    /// The folder holds a study of another configuration.
-    #[error(
-        "{}: holds a study of another configuration; give another --out, or the same \
-         configuration (only the budget may be raised):\n{differences}",
-        dir.display()
-    )]
-    Different {
-        /// The folder.
-        dir: PathBuf,
-        /// One line for each differing field, with both values.
-        differences: String,
-    },
-    /// The study was measured with something else than would go on with it now.
-    #[error(
-        "{}: was measured with other settings than now:\n{differences}\ngive another --out, or \
-         --accept-changed to go on in a new segment (the best design is then taken from that)",
-        dir.display()
-    )]
-    Changed {
-        /// The study's folder.
-        dir: PathBuf,
-        /// One line for each difference, with both values.
-        differences: String,
-    },
-    /// What has changed would decide no evaluation.
-    #[error(
-        "{}: simulates otherwise than before, and all its {evaluations} evaluations are done:\n\
-         {differences}\nraise --budget to measure with that, or give another --out",
-        dir.display()
-    )]
-    Spent {
-        /// The study's folder.
-        dir: PathBuf,
-        /// How many evaluations it has.
-        evaluations: u64,
-        /// One line for each difference, with both values.
-        differences: String,
-    },
-    /// One line of the journal is damaged.
-    #[error(
-        "{}: line {line}: {source}; restore the file from a copy, or delete line {line} and \
-         all below it to measure them again",
-        path.display()
-    )]
-    Line {
-        /// The journal.
-        path: PathBuf,
-        /// The line, counted from 1.
-        line: usize,
-        /// What is wrong with it.
-        source: LineError,
     },
     /// Somebody else has had a hand in the journal while the study ran.
     #[error(
@@ -107,30 +49,6 @@ pub enum StudyError {
         problem: String,
         /// Where everything measured was written to, or why it could not be.
         kept: Result<PathBuf, String>,
-    },
-    /// The journal is not this study's.
-    #[error("{}: not the journal of this study: {problem}", path.display())]
-    Foreign {
-        /// The journal.
-        path: PathBuf,
-        /// How that shows.
-        problem: String,
-    },
-    /// The optimizer, started again, proposes other designs than the journal holds.
-    #[error(
-        "{}: evaluation {index} is of {found}, but this version of the program proposes {proposed}: \
-         the journal was written by another version; continue it with that one, or start a new study",
-        path.display()
-    )]
-    Replay {
-        /// The journal.
-        path: PathBuf,
-        /// The evaluation, counted from 0.
-        index: u64,
-        /// The design in the journal.
-        found: String,
-        /// The design proposed now.
-        proposed: String,
     },
     /// A design of the space cannot be simulated.
     #[error("evaluation {index} of {design} is impossible: {source}; narrow the space")]
@@ -155,6 +73,11 @@ impl StudyError {
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> StudyError {
         let path = path.to_owned();
         move |source| StudyError::Io { action, path, source }
+    }
+
+    /// What is wrong with a file or folder.
+    pub(super) fn file(path: &Path, problem: impl ToString) -> StudyError {
+        StudyError::File { path: path.to_owned(), problem: problem.to_string() }
     }
 }
 

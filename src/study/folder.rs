@@ -13,11 +13,10 @@
 //! .lock            held by the process that writes
 //! ```
 
-use super::bench_file::{self, BENCH_FILE};
 use super::config::{Conclusion, StudyConfig};
 use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
-use super::on_bench::OnBench;
+use super::on_bench::{BENCH_FILE, OnBench};
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
@@ -93,7 +92,13 @@ impl Study {
         if file.try_exists().map_err(StudyError::io("look for", &file))? {
             let found = read_config(dir)?;
             if let Some(differences) = found.differences(config) {
-                return Err(StudyError::Different { dir: dir.to_owned(), differences });
+                return Err(StudyError::file(
+                    dir,
+                    format!(
+                        "holds a study of another configuration; give another --out, or the same \
+                         configuration (only the budget may be raised):\n{differences}"
+                    ),
+                ));
             }
             let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
             let raised = study.config.budget < config.budget;
@@ -106,8 +111,10 @@ impl Study {
         }
         let journal = dir.join(JOURNAL_FILE);
         if journal.exists() {
-            let problem = "there is no study.toml beside it; give another --out".to_owned();
-            return Err(StudyError::Foreign { path: journal, problem });
+            return Err(StudyError::file(
+                &journal,
+                "not the journal of this study: there is no study.toml beside it; give another --out",
+            ));
         }
         write_inputs(dir, 1, inputs)?;
         // Last, so that a folder with a configuration is complete.
@@ -132,7 +139,11 @@ impl Study {
     fn open_locked(dir: &Path, lock: File, store: Box<dyn Store>) -> Result<Study, StudyError> {
         let config = read_config(dir)?;
         let (journal, contents) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
-        sync_folder(dir)?;
+        // Makes the names of new files survive a power failure; not every system can.
+        if cfg!(unix) {
+            let sync = File::open(dir).and_then(|folder| folder.sync_all());
+            sync.map_err(StudyError::io("sync the folder", dir))?;
+        }
         files::remove_abandoned(dir);
         let Contents { evaluations, segments, foreign, .. } = contents;
         let dir = dir.to_owned();
@@ -152,23 +163,34 @@ impl Study {
     ) -> Result<(), StudyError> {
         let Some(differences) = self.provenance().differences(now) else { return Ok(()) };
         if if_changed == IfChanged::Refuse {
-            return Err(StudyError::Changed { dir: self.dir.clone(), differences });
+            return Err(StudyError::file(
+                &self.dir,
+                format!(
+                    "was measured with other settings than now:\n{differences}\ngive another --out, \
+                     or --accept-changed to go on in a new segment (the best design is then taken \
+                     from that)"
+                ),
+            ));
         }
         let (first, evaluations) = (self.evaluations.len() as u64, self.config.evaluations());
         if first >= evaluations && !self.provenance().simulates_like(now) {
-            return Err(StudyError::Spent { dir: self.dir.clone(), evaluations, differences });
+            return Err(StudyError::file(
+                &self.dir,
+                format!(
+                    "simulates otherwise than before, and all its {evaluations} evaluations are \
+                     done:\n{differences}\nraise --budget to measure with that, or give another --out"
+                ),
+            ));
         }
-        write_inputs(&self.dir, self.segments.len() + 1, inputs)?;
+        let number = self.segments.len() + 1;
+        write_inputs(&self.dir, number, inputs)?;
         let segment = Segment { first, provenance: now.clone() };
-        self.journal.begin_segment(segment.clone())?;
+        self.journal.begin_segment(number, &segment)?;
         self.segments.push(segment);
         Ok(())
     }
 
     /// Settles how the study ends, whoever goes on with it.
-    ///
-    /// # Errors
-    /// If that cannot be written.
     pub fn conclude_by(&mut self, conclusion: Conclusion) -> Result<(), StudyError> {
         if self.config.conclusion != conclusion {
             self.config.conclusion = conclusion;
@@ -179,9 +201,6 @@ impl Study {
 
     /// Whether the journal is still what was written; if not, all that was measured is saved
     /// beside it.
-    ///
-    /// # Errors
-    /// [`StudyError::Interfered`].
     pub fn check_journal(&mut self) -> Result<(), StudyError> {
         self.journal.check().map_err(|error| self.rescue(error))
     }
@@ -190,7 +209,7 @@ impl Study {
     pub fn rescue(&self, error: StudyError) -> StudyError {
         match error {
             StudyError::Interfered { path, problem, .. } => {
-                let kept = self.journal.rescue(&self.evaluations);
+                let kept = self.journal.rescue(&self.evaluations, &self.segments);
                 StudyError::Interfered { path, problem, kept: kept.map_err(|e| e.to_string()) }
             }
             other => other,
@@ -213,13 +232,9 @@ impl Study {
     }
 
     /// Keeps what measurements say of its fingers.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub fn keep_on_bench(&self, found: &OnBench) -> Result<(), StudyError> {
         let path = self.dir.join(BENCH_FILE);
-        let text = serde_json::to_string(found)
-            .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
+        let text = serde_json::to_string(found).map_err(|error| StudyError::file(&path, error))?;
         write_own_file(&path, &(text + "\n"))
     }
 
@@ -246,13 +261,13 @@ impl StudyRecord {
         evaluations: Vec<Recorded>,
         foreign: usize,
     ) -> Self {
-        let (walked, firm_values) = Default::default();
         let finger = read_inputs(dir, &segments)
             .ok()
             .and_then(|inputs| FingerFile::parse(inputs.get(FINGER)?, "inputs/finger").ok());
         let on_bench = segments
             .last()
-            .and_then(|segment| bench_file::read(dir, &segment.provenance, &config.space));
+            .and_then(|segment| OnBench::read(dir, &segment.provenance, &config.space));
+        let (walked, firm_values) = Default::default();
         let mut record = StudyRecord {
             config,
             segments,
@@ -294,13 +309,12 @@ pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
     let text = match files::read_own(&path, LARGEST_OWN) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Err(StudyError::NotAStudy { dir: dir.to_owned() });
+            return Err(StudyError::file(dir, "not a study: it has no study.toml"));
         }
         Err(error) => return Err(StudyError::io("read", &path)(error)),
     };
-    let wrong = |problem: String| StudyError::File {
-        path: path.clone(),
-        problem: format!("{}; restore the file from a copy", problem.trim_end()),
+    let wrong = |problem: String| {
+        StudyError::file(&path, format!("{}; restore the file from a copy", problem.trim_end()))
     };
     let config: StudyConfig = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let table = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
@@ -324,10 +338,8 @@ fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
     let found = sha256(&inputs);
     for (role, hash) in expected {
         if found.get(role) != Some(hash) {
-            return Err(StudyError::File {
-                path: input_path(dir, number, role),
-                problem: format!("was changed: its SHA-256 is not the {hash} of the study"),
-            });
+            let problem = format!("was changed: its SHA-256 is not the {hash} of the study");
+            return Err(StudyError::file(&input_path(dir, number, role), problem));
         }
     }
     Ok(inputs)
@@ -358,8 +370,7 @@ pub fn input_path(dir: &Path, segment: usize, role: &str) -> PathBuf {
 
 fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
     let path = dir.join(CONFIG_FILE);
-    let text = toml::to_string(config)
-        .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;
+    let text = toml::to_string(config).map_err(|error| StudyError::file(&path, error))?;
     write_own_file(&path, &text)
 }
 
@@ -387,15 +398,6 @@ fn plain(content: &[u8]) -> Cow<'_, [u8]> {
         Ok(text) if !content.contains(&0) => files::visible(text).into_bytes().into(),
         _ => content.into(),
     }
-}
-
-/// Makes the names of new files survive a power failure; not every system can.
-fn sync_folder(dir: &Path) -> Result<(), StudyError> {
-    if cfg!(unix) {
-        let sync = || File::open(dir)?.sync_all();
-        sync().map_err(StudyError::io("sync the folder", dir))?;
-    }
-    Ok(())
 }
 
 /// Whether a file has one name only: a second one would be overwritten with it.

@@ -8,6 +8,7 @@ use super::provenance::Segment;
 use super::seal::{seal, unseal};
 use insertion::evaluation::objective::Measure;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// Version of the journal's format.
@@ -17,88 +18,58 @@ const CREATE_STUDY: u8 = 0;
 const STUDY_USER_ATTRIBUTE: u8 = 2;
 const MINIMISE: u8 = 1;
 const MAXIMISE: u8 = 2;
+/// Name of the attribute that holds all of ours.
+const OURS: &str = "finger_opt";
 
-#[derive(Serialize)]
-struct CreateStudy<'a> {
-    op_code: u8,
-    worker_id: &'a str,
-    study_name: &'a str,
-    directions: Vec<u8>,
-}
-
+/// A study attribute. Optuna takes one a line, so all of ours is one.
 #[derive(Serialize, Deserialize)]
-struct StudyAttributes {
+struct AttributeLine<T> {
     op_code: u8,
     worker_id: String,
     study_id: u64,
-    user_attr: UserAttribute,
+    user_attr: BTreeMap<String, T>,
 }
 
-/// Optuna takes one attribute a line, so all of ours is one.
-#[derive(Serialize, Deserialize)]
-struct UserAttribute {
-    finger_opt: Identity,
+fn attribute(name: String, value: impl Serialize) -> Result<String, serde_json::Error> {
+    let line = AttributeLine {
+        op_code: STUDY_USER_ATTRIBUTE,
+        worker_id: WORKER.to_owned(),
+        study_id: 0,
+        user_attr: BTreeMap::from([(name, value)]),
+    };
+    seal(&line, None)
 }
 
 /// The configuration without what may change while the journal stays the same: how the study ends, and
 /// its budget. With a polish the budget decides where that begins, without one it may rise.
-#[derive(Serialize, Deserialize)]
-struct Identity {
-    schema_version: u64,
-    #[serde(flatten)]
-    config: serde_json::Map<String, serde_json::Value>,
-}
-
-impl Identity {
-    fn of(config: &StudyConfig) -> Result<Self, serde_json::Error> {
-        let mut fields = match serde_json::to_value(config)? {
-            serde_json::Value::Object(fields) => fields,
-            _ => serde_json::Map::new(),
-        };
+fn identity(config: &StudyConfig) -> Result<Value, serde_json::Error> {
+    let mut fields = serde_json::to_value(config)?;
+    let mut identity = json!({"schema_version": SCHEMA_VERSION});
+    if let (Value::Object(fields), Value::Object(identity)) = (&mut fields, &mut identity) {
         fields.remove("conclusion");
         if config.polish == 0 {
             fields.remove("budget");
         }
-        Ok(Identity { schema_version: SCHEMA_VERSION, config: fields })
+        identity.append(fields);
     }
+    Ok(identity)
 }
 
 /// The two lines a journal of this configuration begins with.
 pub fn encode(config: &StudyConfig) -> Result<String, serde_json::Error> {
     let direction = |measure: &Measure| if measure.sense() > 0.0 { MAXIMISE } else { MINIMISE };
-    let create = CreateStudy {
-        op_code: CREATE_STUDY,
-        worker_id: WORKER,
-        study_name: &config.name(),
-        directions: config.objective.measures().iter().map(direction).collect(),
-    };
-    let attributes = StudyAttributes {
-        op_code: STUDY_USER_ATTRIBUTE,
-        worker_id: WORKER.to_owned(),
-        study_id: 0,
-        user_attr: UserAttribute { finger_opt: Identity::of(config)? },
-    };
-    Ok(seal(&create, NO_TIMES)? + &seal(&attributes, NO_TIMES)?)
+    let create = json!({
+        "op_code": CREATE_STUDY,
+        "worker_id": WORKER,
+        "study_name": config.name(),
+        "directions": config.objective.measures().iter().map(direction).collect::<Vec<_>>(),
+    });
+    Ok(seal(&create, None)? + &attribute(OURS.to_owned(), identity(config)?)?)
 }
 
-/// The line that begins a further segment: a study attribute, as Optuna reads it.
-#[derive(Serialize, Deserialize)]
-struct SegmentLine {
-    op_code: u8,
-    worker_id: String,
-    study_id: u64,
-    user_attr: BTreeMap<String, Segment>,
-}
-
-/// The line of the segment with this number, counted from 1.
+/// The line of the segment with this number, counted from 1: it begins a further segment.
 pub fn encode_segment(number: usize, segment: &Segment) -> Result<String, serde_json::Error> {
-    let line = SegmentLine {
-        op_code: STUDY_USER_ATTRIBUTE,
-        worker_id: WORKER.to_owned(),
-        study_id: 0,
-        user_attr: BTreeMap::from([(format!("finger_opt_segment_{number}"), segment.clone())]),
-    };
-    seal(&line, NO_TIMES)
+    attribute(format!("{OURS}_segment_{number}"), segment)
 }
 
 /// The segment that a line begins, `None` if the line is of another kind.
@@ -107,7 +78,7 @@ pub fn decode_segment(line: &str) -> Result<Option<Segment>, LineError> {
         return Ok(None);
     }
     let (content, _) = unseal(line)?;
-    let line: SegmentLine =
+    let line: AttributeLine<Segment> =
         serde_json::from_str(&content).map_err(|error| LineError::Format(error.to_string()))?;
     match line.user_attr.into_values().next() {
         Some(segment) => Ok(Some(segment)),
@@ -115,19 +86,14 @@ pub fn decode_segment(line: &str) -> Result<Option<Segment>, LineError> {
     }
 }
 
-const NO_TIMES: Option<&()> = None;
-
 /// Whether two lines begin a journal of this configuration, and if not, why.
 pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), String> {
-    for (number, line) in [(1, first), (2, second)] {
-        if unseal(line).is_err() {
-            return Err(format!("line {number} is damaged, or was not written by this program"));
-        }
-    }
-    let (attributes, _) = unseal(second).map_err(|error| error.to_string())?;
-    let version = serde_json::from_str::<serde_json::Value>(&attributes)
+    let damaged = |n: u8| format!("line {n} is damaged, or was not written by this program");
+    unseal(first).map_err(|_| damaged(1))?;
+    let (attributes, _) = unseal(second).map_err(|_| damaged(2))?;
+    let version = serde_json::from_str::<Value>(&attributes)
         .ok()
-        .and_then(|value| value["user_attr"]["finger_opt"]["schema_version"].as_u64());
+        .and_then(|value| value["user_attr"][OURS]["schema_version"].as_u64());
     match version {
         Some(SCHEMA_VERSION) => {}
         Some(other) => {
@@ -137,10 +103,10 @@ pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), Stri
         }
         None => return Err("line 2 has no schema_version".to_owned()),
     }
-    let found: StudyAttributes =
+    let found: AttributeLine<Value> =
         serde_json::from_str(&attributes).map_err(|error| format!("line 2: {error}"))?;
-    let expected = Identity::of(config).map_err(|error| error.to_string())?;
-    match differences(&found.user_attr.finger_opt, &expected, ["the journal", "study.toml"]) {
+    let expected = identity(config).map_err(|error| error.to_string())?;
+    match differences(&found.user_attr[OURS], &expected, ["the journal", "study.toml"]) {
         Some(differences) => Err(format!("it was made with another configuration:\n{differences}")),
         None => Ok(()),
     }

@@ -17,11 +17,9 @@ use std::path::{Path, PathBuf};
 
 /// An open journal.
 pub struct Journal {
-    path: PathBuf,
+    pub(super) path: PathBuf,
     store: Box<dyn Store>,
     config: StudyConfig,
-    /// What its lines were measured with.
-    segments: Vec<Segment>,
     /// Bytes of whole, synced lines.
     len: u64,
     /// A write failed: what follows could not be trusted.
@@ -60,7 +58,6 @@ impl Journal {
             path: path.to_owned(),
             store,
             config: config.clone(),
-            segments: parsed.segments.clone(),
             len: parsed.whole as u64,
             broken: false,
         };
@@ -77,12 +74,10 @@ impl Journal {
         self.write(&line.map_err(|error| self.failed(error.into()))?)
     }
 
-    /// Begins a segment: what is appended from now on belongs to it.
-    pub(super) fn begin_segment(&mut self, segment: Segment) -> Result<(), StudyError> {
-        let line = header::encode_segment(self.segments.len() + 1, &segment);
-        self.write(&line.map_err(|error| self.failed(error.into()))?)?;
-        self.segments.push(segment);
-        Ok(())
+    /// Begins the segment of this number, counted from 1: what is appended from now on belongs to it.
+    pub(super) fn begin_segment(&mut self, n: usize, segment: &Segment) -> Result<(), StudyError> {
+        let line = header::encode_segment(n, segment);
+        self.write(&line.map_err(|error| self.failed(error.into()))?)
     }
 
     /// Whether the journal is still what was written.
@@ -98,9 +93,13 @@ impl Journal {
     }
 
     /// Writes a whole journal of these evaluations beside the lost one.
-    pub(super) fn rescue(&self, evaluations: &[Recorded]) -> io::Result<PathBuf> {
+    pub(super) fn rescue(
+        &self,
+        evaluations: &[Recorded],
+        segments: &[Segment],
+    ) -> io::Result<PathBuf> {
         let mut text = header::encode(&self.config)?;
-        let mut further = (2..).zip(self.segments.iter().skip(1)).peekable();
+        let mut further = (2..).zip(segments.iter().skip(1)).peekable();
         for index in 0..=evaluations.len() {
             let begins = |(_, segment): &(usize, &Segment)| segment.first == index as u64;
             while let Some((number, segment)) = further.next_if(begins) {
@@ -125,11 +124,6 @@ impl Journal {
             }
         }
         Err(io::Error::other("no name is left"))
-    }
-
-    /// Where it is kept.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     fn write(&mut self, lines: &str) -> Result<(), StudyError> {
@@ -163,7 +157,9 @@ pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
 }
 
 fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
-    let foreign = |problem: String| StudyError::Foreign { path: path.to_owned(), problem };
+    let foreign = |problem: String| {
+        StudyError::file(path, format!("not the journal of this study: {problem}"))
+    };
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
     let lines: Vec<&[u8]> = bytes[..whole].split_inclusive(|&byte| byte == b'\n').collect();
     let beginning = Segment { first: 0, provenance: config.provenance.clone() };
@@ -183,10 +179,12 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, St
     let text = |line: &[u8]| String::from_utf8_lossy(line).trim_end_matches('\n').to_owned();
     header::check(&text(first), &text(second), config).map_err(foreign)?;
     for (number, line) in (3..).zip(rest) {
-        contents.add(&text(line), config).map_err(|source| StudyError::Line {
-            path: path.to_owned(),
-            line: number,
-            source,
+        contents.add(&text(line), config).map_err(|problem| {
+            let mend = format!(
+                "restore the file from a copy, or delete line {number} and all below it to measure \
+                 them again"
+            );
+            StudyError::file(path, format!("line {number}: {problem}; {mend}"))
         })?;
     }
     Ok(contents)

@@ -19,6 +19,7 @@ use insertion::evaluation::objective::Score;
 use insertion::space::{Design, Parameter, Space};
 use insertion::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Optuna's code of a whole trial.
@@ -50,7 +51,6 @@ struct TrialLine {
 #[derive(Serialize, Deserialize)]
 struct UserAttributes {
     stiffness: Prediction,
-    /// What was measured on each task.
     tasks: Vec<Evaluation>,
 }
 
@@ -64,29 +64,6 @@ struct SystemAttributes {
 #[derive(Serialize, Deserialize)]
 struct Empty {}
 
-#[derive(Serialize)]
-struct Distribution {
-    name: &'static str,
-    attributes: Bounds,
-}
-
-#[derive(Serialize)]
-struct Bounds {
-    low: f64,
-    high: f64,
-    log: bool,
-    step: f64,
-}
-
-#[derive(Serialize, Deserialize)]
-struct Times {
-    datetime_start: String,
-    datetime_complete: String,
-    wall_s: f64,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    cached: Vec<bool>,
-}
-
 /// The line of one evaluation, with its newline.
 pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::Error> {
     let score = recorded.score.as_ref();
@@ -99,20 +76,14 @@ pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::
         state: if score.is_some() { COMPLETE } else { FAIL },
         values: score.map(|score| score.values.clone()),
         params: recorded.design.0.clone(),
-        distributions: space.parameters.iter().map(distribution).collect::<Result<_, _>>()?,
+        distributions: space.parameters.iter().map(distribution).collect(),
         user_attrs: UserAttributes { stiffness: recorded.stiffness, tasks: recorded.tasks.clone() },
         system_attrs: SystemAttributes {
             constraints: score.map_or_else(Vec::new, |score| score.violations.clone()),
         },
         intermediate_values: Empty {},
     };
-    let times = Times {
-        datetime_start: recorded.timing.datetime_start.clone(),
-        datetime_complete: recorded.timing.datetime_complete.clone(),
-        wall_s: recorded.timing.wall_s,
-        cached: recorded.timing.cached.clone(),
-    };
-    seal(&content, Some(&times))
+    seal(&content, Some(&recorded.timing))
 }
 
 /// The evaluation of a line without its newline; `expected` is the index its place gives it.
@@ -126,7 +97,7 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
     if trial.evaluation != expected {
         return Err(LineError::Order { found: trial.evaluation, expected });
     }
-    let times: Times = serde_json::from_str(&rest).map_err(format)?;
+    let timing: Timing = serde_json::from_str(&rest).map_err(format)?;
     Ok(Recorded {
         index: trial.evaluation,
         proposal: trial.proposal,
@@ -137,12 +108,7 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
         stiffness: trial.user_attrs.stiffness,
         tasks: trial.user_attrs.tasks,
         refused: None,
-        timing: Timing {
-            datetime_start: times.datetime_start,
-            datetime_complete: times.datetime_complete,
-            wall_s: times.wall_s,
-            cached: times.cached,
-        },
+        timing,
     })
 }
 
@@ -159,9 +125,7 @@ pub fn is_foreign(line: &str) -> bool {
 }
 
 /// A parameter as Optuna describes it: a JSON text within the JSON line.
-fn distribution(parameter: &Parameter) -> Result<(String, String), serde_json::Error> {
-    let Parameter { key, low, high, step, .. } = parameter;
-    let attributes = Bounds { low: *low, high: *high, log: false, step: *step };
-    let text = serde_json::to_string(&Distribution { name: "FloatDistribution", attributes })?;
-    Ok((key.clone(), text))
+fn distribution(Parameter { key, low, high, step, .. }: &Parameter) -> (String, String) {
+    let attributes = json!({"low": low, "high": high, "log": false, "step": step});
+    (key.clone(), json!({"name": "FloatDistribution", "attributes": attributes}).to_string())
 }

@@ -1,7 +1,6 @@
 //! Studies: seeded runs of one optimizer on one task and space, in a folder
 //! that survives whatever happens to the process.
 
-mod bench_file;
 mod cache;
 mod config;
 mod course;
@@ -27,7 +26,7 @@ mod walk;
 mod walked;
 mod work;
 
-pub use cache::{Cache, Key};
+pub use cache::Cache;
 pub use config::{Conclusion, LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
 pub use course::{Arrived, Course, Ending, Next, Wanted};
 pub use error::{LineError, StudyError};
@@ -40,15 +39,13 @@ pub use journal::Journal;
 pub use line::{decode, encode};
 pub use on_bench::{BenchEffort, BenchFinger, OnBench, Trust};
 pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
-pub use recommendation::Recommendation;
 pub use record::{
     ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume,
 };
 pub use runner::Runner;
-pub use seal::strip_times;
+pub use seal::{sha256_hex, strip_times};
 pub use simulated::Simulated;
 pub use store::{FileStore, Store};
 pub use table::{evaluations_csv, write_evaluations_csv};
-pub use time::now;
 pub use walk::{Confirmed, Confirmer};
 pub use work::{Work, WorkError};

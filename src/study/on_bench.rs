@@ -1,11 +1,16 @@
 //! What measurements say of a study's fingers on the bench, kept beside the journal in
 //! `bench.json`. It is found after the search, which does not know of it, and can be found again.
 
+use super::fits;
 use super::provenance::Provenance;
+use input::files::{self, LARGEST_OWN};
 use insertion::evaluation::Evaluation;
 use insertion::outcome::FailureClass;
-use insertion::space::Design;
+use insertion::space::{Design, Space};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+pub(super) const BENCH_FILE: &str = "bench.json";
 
 /// The prediction of a calibration for the fingers of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -27,6 +32,19 @@ pub struct OnBench {
     pub best: Vec<BenchFinger>,
     /// The first of them as simulated, with all as the task file says.
     pub simulated: Evaluation,
+}
+
+impl OnBench {
+    /// The file in `dir`; `None` where it is missing, damaged or of another provenance: it can be
+    /// made again.
+    pub(super) fn read(dir: &Path, provenance: &Provenance, space: &Space) -> Option<OnBench> {
+        let text = files::read_own(&dir.join(BENCH_FILE), LARGEST_OWN).ok()?;
+        let found: OnBench = serde_json::from_str(&text).ok()?;
+        let fits = |finger: &BenchFinger| fits::off_the_space(&finger.design, space).is_none();
+        let sound = !found.best.is_empty() && found.best.iter().all(fits);
+        let sound = sound && fits::implausible(&found.simulated).is_none();
+        (found.provenance == *provenance && sound).then_some(found)
+    }
 }
 
 /// How much a prediction computes.

@@ -70,10 +70,7 @@ impl Provenance {
         simulated(self) == simulated(other)
     }
 
-    /// Whether the roles, which become names of files, can be ours.
-    ///
-    /// # Errors
-    /// Which one cannot.
+    /// Whether the roles, which become names of files, can be ours; if not, which one cannot.
     pub fn check(&self) -> Result<(), String> {
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
         match self.input_sha256.keys().find(|role| !role.chars().all(plain)) {

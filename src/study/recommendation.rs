@@ -1,55 +1,34 @@
 //! Which design of a study is recommended, how firm that is, and how much it matters.
 
-use super::record::{ByRibs, Recorded, StudyRecord};
+use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
 use insertion::evaluation::objective::Measure;
-use insertion::evaluation::robustness::firm::Firm;
 use insertion::outcome::Outcome;
 
-/// The design of a study with one objective that is recommended.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Recommendation<'a> {
-    /// The design, with the windows of the walk if it was walked.
-    pub recorded: &'a Recorded,
-    /// What is firm of its windows, by task; nothing if the study did not repeat them.
-    pub firm: Option<&'a [Firm]>,
-    /// What it does with springs computed from its ribs, if that was measured.
-    pub by_ribs: Option<&'a ByRibs>,
-    /// The designs whose search found as much as that of the recommended one, with it, but for those
-    /// whose repeats found less; by evaluation.
-    pub equivalent: Vec<&'a Recorded>,
-}
-
 impl StudyRecord {
-    /// The recommended design: the first by the rule of `study/rule.rs` of those that were walked,
-    /// else of all. Where windows do not decide, the [`best`](Self::best). None of a front is.
-    pub fn recommendation(&self) -> Option<Recommendation<'_>> {
+    /// The recommended design of a study with one objective: the first by the rule of
+    /// `study/rule.rs` of those that were walked, else of all. Where windows do not decide, the
+    /// [`best`](Self::best). None of a front is.
+    pub fn recommendation(&self) -> Option<&Recorded> {
         self.config.objective.single()?;
-        let (recorded, firm) = match self.walked.first() {
-            Some(walked) => (&walked.recorded, Some(&walked.firm[..])),
-            None => (self.best_searched()?, None),
+        let goals = self.config.goals();
+        let rule = Rule { goals: &goals, space: &self.config.space };
+        let searched = || match rule.by_windows() {
+            true => rule.candidates(self.current(), 1).first().copied(),
+            false => None,
         };
-        let by_ribs = self.walked.first().and_then(|walked| walked.by_ribs.as_ref());
-        let equivalent = self.equivalent(recorded.index);
-        Some(Recommendation { recorded, firm, by_ribs, equivalent })
+        let walked = self.walked.first().map(|walked| &walked.recorded);
+        walked.or_else(searched).or_else(|| self.best())
     }
 
     /// The recommended design, or of a front its first.
     pub fn recommended(&self) -> Option<&Recorded> {
-        self.recommendation().map_or_else(|| self.best(), |found| Some(found.recorded))
+        self.recommendation().or_else(|| self.best())
     }
 
-    fn best_searched(&self) -> Option<&Recorded> {
-        let goals = self.config.goals();
-        let rule = Rule { goals: &goals, space: &self.config.space };
-        match rule.by_windows() {
-            true => rule.candidates(self.current(), 1).first().copied(),
-            false => None,
-        }
-        .or_else(|| self.best())
-    }
-
-    fn equivalent(&self, index: u64) -> Vec<&Recorded> {
+    /// The designs whose search found as much as that of the evaluation `index`, with it, but for
+    /// those whose repeats found less; by evaluation.
+    pub fn equivalent(&self, index: u64) -> Vec<&Recorded> {
         let goals = self.config.goals();
         let searched =
             |recorded: &Recorded| Some(goals.gains(recorded.feasible()?).first().copied());
@@ -101,12 +80,5 @@ impl StudyRecord {
         // Of equals the first.
         let nearest = self.current().iter().rev().max_by(|a, b| margin(a).total_cmp(&margin(b)));
         nearest.map(|nearest| (task, nearest))
-    }
-}
-
-impl Recommendation<'_> {
-    /// The firm range, mm, on each task; `None` if it was not measured.
-    pub fn firm_ranges_mm(&self) -> Option<Vec<f64>> {
-        self.firm.map(|firm| firm.iter().map(Firm::range_mm).collect())
     }
 }

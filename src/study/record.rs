@@ -3,7 +3,7 @@
 use super::StudyConfig;
 use super::on_bench::OnBench;
 use super::provenance::Segment;
-use super::time::is_timestamp;
+use super::time::{is_timestamp, now};
 use ask_tell::pareto;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Goals, Measure, Score};
@@ -13,6 +13,7 @@ use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// A study read from its folder: all that a report may know of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +88,7 @@ pub struct Refused {
 }
 
 /// When an evaluation was measured and how long that took.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Timing {
     /// Begin, UTC, `YYYY-MM-DDTHH:MM:SS.ffffff`.
     pub datetime_start: String,
@@ -96,10 +97,19 @@ pub struct Timing {
     /// Wall-clock duration, s.
     pub wall_s: f64,
     /// For each task whether its values came from the cache; empty where that is not known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cached: Vec<bool>,
 }
 
 impl Timing {
+    /// Measures something, and says when.
+    pub fn of<T>(measure: impl FnOnce() -> T) -> (T, Timing) {
+        let (datetime_start, clock) = (now(), Instant::now());
+        let measured = measure();
+        let (datetime_complete, wall_s) = (now(), clock.elapsed().as_secs_f64());
+        (measured, Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() })
+    }
+
     /// What is impossible about it, if anything is.
     pub fn implausible(&self) -> Option<&'static str> {
         let stamps = [&self.datetime_start, &self.datetime_complete];
@@ -169,11 +179,6 @@ impl StudyRecord {
     /// The [`best`] of the [`current`](Self::current) evaluations.
     pub fn best(&self) -> Option<&Recorded> {
         best(&self.config.goals(), self.current())
-    }
-
-    /// The best of those current evaluations of which something holds.
-    pub fn best_where(&self, holds: impl Fn(&Recorded) -> bool) -> Option<&Recorded> {
-        best(&self.config.goals(), self.current().iter().filter(|recorded| holds(recorded)))
     }
 
     /// The [`front`] of the [`current`](Self::current) evaluations.

@@ -43,6 +43,10 @@ impl Rule<'_> {
 
     /// How a design stands with these windows, one for each task, in place of its own.
     pub fn standing(&self, recorded: &Recorded, windows: &[Window]) -> Standing {
+        let in_window = |(task, window): (&Evaluation, &Window)| Evaluation {
+            window: window.clone(),
+            ..task.clone()
+        };
         let tasks: Vec<Evaluation> = recorded.tasks.iter().zip(windows).map(in_window).collect();
         let tasks: Vec<&Evaluation> = tasks.iter().collect();
         let of = |measure: Measure| {
@@ -89,10 +93,6 @@ impl Rule<'_> {
         };
         self.space.parameters.iter().filter_map(of).fold(0.5, f64::min)
     }
-}
-
-fn in_window((task, window): (&Evaluation, &Window)) -> Evaluation {
-    Evaluation { window: window.clone(), ..task.clone() }
 }
 
 impl Standing {

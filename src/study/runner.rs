@@ -5,15 +5,12 @@ use super::course::{Arrived, Course, Ending, Next, Wanted};
 use super::error::StudyError;
 use super::folder::Study;
 use super::record::{Recorded, Timing};
-use super::time;
 use ask_tell::Optimizer;
 use insertion::evaluation::evaluator::Evaluate;
 use rayon::ThreadPool;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
-use std::thread;
-use std::time::Instant;
 
 /// What a run works with.
 pub struct Runner<'a> {
@@ -61,7 +58,11 @@ impl Runner<'_> {
                             for wanted in wanted {
                                 let sender = sender.clone();
                                 // The receiver is there until the scope ends.
-                                scope.spawn(move |_| drop(sender.send(self.caught(&wanted))));
+                                scope.spawn(move |_| {
+                                    // Whoever waits for it must learn of a panic.
+                                    let measure = AssertUnwindSafe(|| self.measure(&wanted));
+                                    drop(sender.send(catch_unwind(measure)));
+                                });
                             }
                             return Ok(None);
                         }
@@ -96,19 +97,13 @@ impl Runner<'_> {
         })
     }
 
-    /// A measurement, or the panic that ended it: whoever waits for it must learn of that.
-    fn caught(&self, wanted: &Wanted) -> thread::Result<Result<Option<Arrived>, StudyError>> {
-        catch_unwind(AssertUnwindSafe(|| self.measure(wanted)))
-    }
-
     /// One measurement, `None` if the run was to stop before it was complete.
     fn measure(&self, wanted: &Wanted) -> Result<Option<Arrived>, StudyError> {
         let Wanted { proposal, design } = wanted;
         if self.stop.load(Ordering::SeqCst) {
             return Ok(None);
         }
-        let (datetime_start, clock) = (time::now(), Instant::now());
-        let measured = self.evaluator.evaluate(design);
+        let (measured, timing) = Timing::of(|| self.evaluator.evaluate(design));
         // Once it is set the evaluator may have skipped trials.
         if self.stop.load(Ordering::SeqCst) {
             return Ok(None);
@@ -118,12 +113,7 @@ impl Runner<'_> {
             design: design.to_string(),
             source,
         })?;
-        let timing = Timing {
-            datetime_start,
-            datetime_complete: time::now(),
-            wall_s: clock.elapsed().as_secs_f64(),
-            cached: std::mem::take(&mut measured.cached),
-        };
+        let timing = Timing { cached: std::mem::take(&mut measured.cached), ..timing };
         Ok(Some(Arrived { proposal: *proposal, measured, timing }))
     }
 }

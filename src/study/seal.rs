@@ -5,6 +5,7 @@
 //! beginning of the SHA-256 of all bytes before it.
 
 use super::error::LineError;
+use super::record::Timing;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -20,7 +21,7 @@ pub fn strip_times(journal: &str) -> String {
 /// `contents` as one JSON line, closed by its check and, after that, `times`.
 pub fn seal(
     contents: &impl Serialize,
-    times: Option<&impl Serialize>,
+    times: Option<&Timing>,
 ) -> Result<String, serde_json::Error> {
     let mut line = serde_json::to_string(contents)?;
     line.pop();

@@ -1,6 +1,6 @@
 //! What a study measures a design with: the evaluator, a cache, and a flag that stops it.
 
-use super::cache::{Cache, Key};
+use super::cache::Cache;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Evaluator, Measured, Specimen};
 use insertion::evaluation::robustness::Plan;
@@ -62,7 +62,7 @@ impl Simulated<'_> {
         }
     }
 
-    fn key(&self, cache: &Cache, specimen: &Specimen) -> Key {
+    fn key(&self, cache: &Cache, specimen: &Specimen) -> String {
         cache.key(&(specimen, self.search, self.plan))
     }
 

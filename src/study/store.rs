@@ -10,9 +10,6 @@ pub trait Store: Send {
     /// All bytes stored.
     fn read(&mut self) -> io::Result<Vec<u8>>;
     /// Whether it is still the same, and `len` bytes long; if not, what has happened to it.
-    ///
-    /// # Errors
-    /// What happened, said of the file.
     fn check(&mut self, _len: u64) -> Result<(), String> {
         Ok(())
     }

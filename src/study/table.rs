@@ -9,7 +9,6 @@ use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;
 
-/// Name of the file.
 const TABLE: &str = "evaluations.csv";
 /// Lists of as many values as there were draws: no columns.
 const DRAWN: &str = "robust_ranges_mm";
@@ -24,14 +23,10 @@ pub fn write_evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<(), Stu
 
 /// The text of `evaluations.csv`; `dir` is named in errors.
 pub fn evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<String, StudyError> {
-    let table = |record| -> Result<String, Box<dyn std::error::Error>> {
-        Ok(String::from_utf8(csv(record)?)?)
-    };
-    table(record)
-        .map_err(|error| StudyError::File { path: dir.join(TABLE), problem: error.to_string() })
+    csv(record).map_err(|error| StudyError::file(&dir.join(TABLE), error))
 }
 
-fn csv(record: &StudyRecord) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+fn csv(record: &StudyRecord) -> Result<String, Box<dyn std::error::Error>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut header: Vec<String> = Vec::new();
     for recorded in &record.evaluations {
@@ -45,7 +40,7 @@ fn csv(record: &StudyRecord) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
         };
         writer.write_record(header.iter().map(cell))?;
     }
-    Ok(writer.into_inner()?)
+    Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
 fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Error> {

@@ -106,25 +106,8 @@ impl Rule<'_> {
     }
 }
 
-/// What was walked, best first, and the firm value of the first objective of every design whose
-/// ends were repeated, by evaluation.
-pub(super) type Confirmed = (Vec<Walked>, BTreeMap<u64, f64>);
-
-/// What is known of the best designs; nothing before all is done.
-pub(super) fn read(
-    dir: &Path,
-    rule: &Rule,
-    provenance: Option<&Provenance>,
-    current: &[Recorded],
-) -> Confirmed {
-    match WalkFile::read(dir, provenance) {
-        Some(file) if file.complete => ranked(rule, current, &file.designs),
-        _ => Confirmed::default(),
-    }
-}
-
 /// The evaluation with the windows of the walk; what was measured under drawn errors stays.
-pub(super) fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
+fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
     let mut recorded = before.clone();
     for (task, walked) in recorded.tasks.iter_mut().zip(found) {
         let (success, robust) = (task.success.take(), task.robust.take());
@@ -134,16 +117,23 @@ pub(super) fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation])
     recorded
 }
 
-fn ranked(rule: &Rule, current: &[Recorded], rows: &[Row]) -> Confirmed {
+/// What was walked, best first, and the firm value of the first objective of every design whose
+/// ends were repeated, by evaluation; nothing before all is done.
+pub(super) fn read(
+    dir: &Path,
+    rule: &Rule,
+    provenance: Option<&Provenance>,
+    current: &[Recorded],
+) -> (Vec<Walked>, BTreeMap<u64, f64>) {
+    let file = WalkFile::read(dir, provenance).filter(|file| file.complete);
     let (mut walked, mut firm_values) = (Vec::new(), BTreeMap::new());
-    for row in rows {
+    for row in file.map_or(Vec::new(), |file| file.designs) {
         let Some(before) = current.iter().find(|r| r.index == row.evaluation) else { continue };
-        let standing = match &row.walked {
+        let standing = match row.walked {
             None => rule.firmly(before, &row.firm),
-            Some(found) => {
-                let recorded = with_windows(rule, before, &found.tasks);
-                let standing = rule.firmly(&recorded, &found.firm);
-                let (firm, by_ribs) = (found.firm.clone(), found.computed.clone());
+            Some(WalkedRow { tasks, firm, computed: by_ribs }) => {
+                let recorded = with_windows(rule, before, &tasks);
+                let standing = rule.firmly(&recorded, &firm);
                 walked.push((standing.clone(), Walked { recorded, firm, by_ribs }));
                 standing
             }

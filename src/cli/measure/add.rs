@@ -97,7 +97,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
-    /// The columns that were given.
     fn cells(&self) -> Vec<(&str, String)> {
         let range = self.not_measurable.then(|| NOT_MEASURABLE.to_owned());
         let range = range.or_else(|| self.range_mm.clone());

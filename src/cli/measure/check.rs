@@ -1,6 +1,5 @@
 //! `optimize measure check`.
 
-use crate::calibration::experiments::Experiment;
 use crate::cli::{Failure, print, print_json};
 use crate::session::{read_measurements, read_task};
 use clap::Args;
@@ -22,12 +21,13 @@ pub struct Arguments {
     json: bool,
 }
 
-/// How much is known of one task.
 #[derive(Debug, Default)]
 struct Known {
     lines: usize,
     ranges: usize,
     bounds: usize,
+    /// Insertion windows measured, over all lines.
+    repeats: u32,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -39,6 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for line in &found {
         let known = tasks.entry(&line.task).or_default();
         known.lines += 1;
+        known.repeats += line.repeats;
         match line.extent() {
             Some((_, false)) => known.ranges += 1,
             Some((_, true)) => known.bounds += 1,
@@ -54,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "lines": known.lines,
                 "ranges": known.ranges,
                 "bounds": known.bounds,
-                "repeats": repeats(&found, task),
+                "repeats": known.repeats,
             })).collect::<Vec<_>>(),
         }));
     }
@@ -68,9 +69,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let lines: String = tasks.iter().map(line).collect();
     let counted = super::lines(&found);
     print(&format!("{lines}{}: {counted}, nothing looks wrong\n", arguments.file))
-}
-
-/// Insertion windows measured, over all lines of a task.
-fn repeats(found: &[Experiment], task: &str) -> u32 {
-    found.iter().filter(|line| line.task == task).map(|line| line.repeats).sum()
 }

@@ -3,10 +3,11 @@
 use super::super::{Failure, print, print_json, trial};
 use crate::connector::check::Problem;
 use crate::connector::picture;
-use crate::session::{DEFAULT_ROBOT, TaskCheck};
+use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskSource};
 use crate::study::write_file;
 use clap::Args;
 use input::units::N_PER_MM;
+use insertion::outcome::Outcome;
 use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -32,7 +33,8 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let checked = TaskCheck::named(&arguments.file, &arguments.robot, arguments.engine)?;
+    let source = TaskSource::Named(arguments.file.clone()).read()?;
+    let checked = TaskCheck::of(source, &arguments.robot, arguments.engine)?;
     let drawn = match (&arguments.svg, &checked.task) {
         (Some(file), Some(task)) => {
             write_file(file, &picture::svg(task))?;
@@ -89,7 +91,8 @@ pub fn text(checked: &TaskCheck) -> String {
 
 fn verdict(checked: &TaskCheck) -> Result<(), Failure> {
     let file = &checked.source.file;
-    if checked.inserts() {
+    let outcome = checked.nominal.as_ref().map(|(_, trial, _)| trial.outcome);
+    if outcome == Some(Outcome::Inserted) {
         return Ok(());
     }
     Err(Failure::usage(match checked.problems.len() {

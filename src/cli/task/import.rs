@@ -7,7 +7,7 @@ use crate::connector::mesh::import::{
 };
 use crate::connector::mesh::{Surface, read};
 use crate::connector::write::{self, Notes};
-use crate::session::{TaskCheck, TaskFile, read_task};
+use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskFile, read_task};
 use crate::study::write_file;
 use clap::{Args, ValueEnum};
 use input::shipped::Source;
@@ -16,7 +16,6 @@ use insertion::trial::engine::EngineKind;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Finest resolution there is.
 const FINEST: u32 = 1000;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;
@@ -72,7 +71,6 @@ enum Unit {
 }
 
 impl Unit {
-    /// In metres.
     fn metres(self) -> f64 {
         match self {
             Unit::Mm => MM,
@@ -106,7 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         text: write::task(&imported.task, &notes(arguments, &imported)),
     })?;
     write_file(out, &written.source.text)?;
-    let checked = TaskCheck::of_text(written.source, arguments.engine)?;
+    let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, arguments.engine)?;
     report(arguments, &imported, inward, &checked)
 }
 

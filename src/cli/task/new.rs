@@ -4,7 +4,7 @@ use super::super::{Failure, print};
 use super::check;
 use crate::connector::draft::{DENSITY, Dimensions, Hole, Size, draft};
 use crate::connector::write::{self, Notes};
-use crate::session::{TaskCheck, TaskFile, read_task};
+use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskFile, read_task};
 use crate::study::write_file;
 use clap::Args;
 use input::shipped::Source;
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::usage(format!("{file} exists; name another file with --out")));
     }
     write_file(&out, &written.source.text)?;
-    let checked = TaskCheck::of_text(written.source, arguments.engine)?;
+    let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, arguments.engine)?;
     print(&format!(
         "written       {file}\n{}next          optimize task check {file} --svg {}.svg\n",
         check::text(&checked),
@@ -97,7 +97,6 @@ fn drafted(arguments: &Arguments, like: Option<&TaskFile>) -> Result<String, Fai
     Ok(write::task(&task, &Notes { head, mass }))
 }
 
-/// As given, or those of the example.
 fn dimensions(arguments: &Arguments) -> Result<(Dimensions, bool), Failure> {
     let tip = arguments.plug.or(arguments.round);
     if let (Some(plug), Some(clearance)) = (tip, arguments.clearance) {

@@ -9,9 +9,6 @@ use insertion::outcome::Outcome;
 use plotters::prelude::{Color, SeriesLabelPosition};
 
 /// Force of the socket on the plug against the depth of its tip, from the search on, as an SVG.
-///
-/// # Errors
-/// If the drawing library refuses.
 pub fn svg(film: &Film) -> Result<String, ReportError> {
     sheet("force against depth", (760, 480), |area| draw(area, film))
 }

@@ -11,7 +11,6 @@ use serde_json::{Value, json};
 
 /// Time between two frames of a page, s, unless there would be too many.
 const INTERVAL: f64 = 4e-3;
-/// Most frames of a page.
 const MOST: f64 = 500.0;
 /// Height of the jaws above the grasp point, mm: for the eye.
 const JAW_MM: f64 = 45.0;
@@ -33,7 +32,6 @@ pub(super) fn bodies(film: &Film) -> Vec<(&'static str, &'static str, Vec<Geom>)
     bodies
 }
 
-/// Everything that the page shows of a film.
 pub(super) fn to_json(film: &Film) -> Value {
     let trial = &film.recording.trial;
     let every = INTERVAL.max(trial.simulated_s / MOST);

@@ -4,7 +4,6 @@ use input::units::MM;
 use insertion::trial::Recording;
 use std::fmt::Write;
 
-/// Columns of the table.
 const HEADER: &str = "time_s,phase,force_n,force_x_n,force_y_n,force_z_n,depth_mm,tilt_deg,slip_mm,\
     tip_x_mm,tip_y_mm,tip_z_mm,finger_minus_y_bend_y_mm,finger_minus_y_bend_z_mm,\
     finger_plus_y_bend_y_mm,finger_plus_y_bend_z_mm,contact_points";

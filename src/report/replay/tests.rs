@@ -1,4 +1,4 @@
-//! Films of made-up recordings: what a page, a table and a glTF file hold.
+//! Films of made-up recordings: the contents of a page and of a table.
 
 use super::*;
 use contact::ContactPoint;

@@ -128,14 +128,14 @@ impl<'py> Keywords<'py> {
         }
     }
 
-    /// What is written as text, each of several by itself.
+    /// Values written as text, each of several by itself.
     pub fn parsed<T: FromStr<Err: ToString>>(&self, name: &str) -> PyResult<Vec<T>> {
         let parse =
             |word: String| word.parse().map_err(|error: T::Err| wrong(name, error.to_string()));
         self.words(name)?.into_iter().map(parse).collect()
     }
 
-    /// What is written as text, the parts by commas.
+    /// Value written as text, the parts by commas.
     pub fn listed<T: FromStr<Err: ToString>>(&self, name: &str) -> PyResult<Option<T>> {
         let words = self.words(name)?;
         let parse =
@@ -200,7 +200,7 @@ impl<'py> Keywords<'py> {
         Ok(count.map(|count| RepeatRequest { count, seed: seed.unwrap_or(0) }))
     }
 
-    /// What is recorded of a trial.
+    /// Recordings asked for of a trial.
     pub fn film(&self) -> PyResult<FilmRequest> {
         Ok(FilmRequest { record: self.take("record")?, plot: self.take("plot")? })
     }
@@ -221,7 +221,7 @@ impl<'py> Keywords<'py> {
     }
 }
 
-/// What is wrong with a keyword's value.
+/// Error for a wrong value of a keyword.
 pub fn wrong(name: &str, problem: impl ToString) -> PyErr {
     InputError::new_err(format!("{name}: {}", problem.to_string()))
 }

@@ -153,7 +153,7 @@ impl Recorded {
         Ok(Recorded { folder, record })
     }
 
-    /// What was asked for, as `study.toml` has it, as JSON.
+    /// Configuration asked for, as `study.toml` has it, as JSON.
     fn config(&self) -> String {
         json!(self.record.config).to_string()
     }
@@ -186,7 +186,7 @@ pub struct Guided {
     json: bool,
 }
 
-/// What is to be measured (none: wait for a result), and how the study ended, if it did.
+/// Work to be measured (none: wait for a result), and how the study ended, if it did.
 type Next<'py> = (Vec<(u64, Bound<'py, PyBytes>)>, Option<&'static str>);
 
 impl Guided {
@@ -249,7 +249,7 @@ impl Guided {
         self.with(py, |study| study.threads())
     }
 
-    /// What the command prints at the end, and why it fails all the same, if so.
+    /// Output of the command at the end, and why it fails all the same, if so.
     fn finish(&self, py: Python<'_>, ending: &str) -> PyResult<(String, Option<String>)> {
         let ending = ENDINGS.iter().find(|(_, word)| *word == ending);
         let ending = ending.map(|(ending, _)| *ending);

@@ -190,7 +190,7 @@ pub fn drawn(evaluation: &Evaluation) -> Vec<Line> {
     success.into_iter().flatten().chain(robust).collect()
 }
 
-/// What the finger tolerates with springs computed from its ribs, task by task.
+/// Tolerance of the finger with springs computed from its ribs, task by task.
 pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
     let tasks = match found {
         ByRibs::Refused(why) => return vec![line("from its ribs", why)],

@@ -1,4 +1,4 @@
-//! What a study answers, found once from its record: terminal, page, JSON and Python say it, and
+//! Answer of a study, found once from its record: terminal, page, JSON and Python say it, and
 //! compute nothing of their own. Lengths in mm, forces in N.
 
 pub mod lines;
@@ -33,7 +33,7 @@ pub struct Answer<'a> {
     /// The designs that were walked, step by step, and repeated at their ends, best first; each with
     /// its firm range, mm, aggregated over the tasks.
     pub walked: Vec<(&'a Recorded, f64)>,
-    /// What several objectives leave to choose from; `None` for a single one.
+    /// Front of several objectives, to choose from; `None` for a single one.
     pub front: Option<Front<'a>>,
     /// The smallest and the largest range of the designs, mm; `None` if none has a range.
     pub spread_mm: Option<[f64; 2]>,

@@ -33,7 +33,7 @@ pub struct Recommended<'a> {
     pub by_ribs: Option<&'a ByRibs>,
     /// The objective as the search had found it, where the walk found another value.
     pub searched: Option<f64>,
-    /// What is as good; `None` of a front.
+    /// Designs that are as good; `None` of a front.
     pub as_good: Option<AsGood<'a>>,
 }
 

@@ -1,4 +1,4 @@
-//! What a bench measures beside what is simulated: trends, a Gaussian process over the
+//! Model of the bench beside the simulation: trends, a Gaussian process over the
 //! stiffness, and noise (Kennedy and O'Hagan 2001, doi:10.1111/1467-9868.00294).
 //!
 //! In units of the task's scale, the mean simulated range:

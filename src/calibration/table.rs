@@ -82,7 +82,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
     if scale > 0.0 { sum(&|x, y| x * y) / scale } else { 0.0 }
 }
 
-/// What a reader should know before trusting a task's predictions, a line each.
+/// Caveats on a task's predictions, a line each.
 pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     let accuracy = Accuracy::of(&result.left_out);
     let mut lines = Vec::new();
@@ -295,7 +295,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
     lines.join("\n") + "\n"
 }
 
-/// What the measurements did to the parameters, within 80 columns.
+/// Effect of the measurements on the parameters, within 80 columns.
 pub fn parameters_text(calibration: &Calibration) -> String {
     let mut lines = vec![
         "parameter (10 % to 90 %)                      before          after    moved".to_owned(),

@@ -1,5 +1,5 @@
-//! What those need of the command line who call the library from elsewhere: `--executor`'s words as
-//! requests, and what is printed.
+//! Parts of the command line for callers of the library from elsewhere: `--executor`'s words as
+//! requests, and the printed text.
 
 use super::study::{Arguments, ResumeArguments, Shown};
 use super::{Failure, recommended, summary};
@@ -17,7 +17,7 @@ struct Words<T: Args> {
     arguments: T,
 }
 
-/// What the words of a study ask for.
+/// Request made by the words of a study.
 pub struct Asked {
     /// Which study.
     pub study: AnyStudy,
@@ -54,7 +54,7 @@ fn read<T: Args>(words: &[OsString]) -> Result<T, Failure> {
     Ok(read.arguments)
 }
 
-/// What the command prints of a study that has ended.
+/// Output of the command for a study that has ended.
 pub fn text(Ended { dir, record, ending, known, .. }: &Ended, json: bool) -> String {
     summary::printed(dir, record, *ending, *known, json)
 }

@@ -1,4 +1,4 @@
-//! What is said of the finger and the task of a trial or an evaluation.
+//! Output on the finger and the task of a trial or an evaluation.
 
 use super::words;
 use crate::answer::lines;
@@ -26,7 +26,7 @@ pub fn json(chosen: &Chosen) -> Value {
     })
 }
 
-/// What was set, and the stiffness, in lines that are ended.
+/// Settings and stiffness, in lines that are ended.
 pub fn text(chosen: &Chosen) -> String {
     let stiffness = &chosen.specimen.stiffness;
     let stiffness = match chosen.given {
@@ -45,7 +45,7 @@ pub fn text(chosen: &Chosen) -> String {
     format!("{design}{stiffness}{finger}")
 }
 
-/// What the finger model made of it, if it is not the paper's.
+/// Results of the finger model, if it is not the paper's.
 fn finger_text(chosen: &Chosen) -> String {
     let Specimen { finger, centre, .. } = &chosen.specimen;
     if chosen.finger_model == FingerModelKind::Paper {

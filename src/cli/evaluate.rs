@@ -27,7 +27,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json { print_json(&json(&found)) } else { print(&words::wrapped(&text(&found))) }
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 pub fn json(found: &Evaluated) -> Value {
     let mut fields = chosen::json(&found.chosen);
     merge(&mut fields, json!(found.evaluation));

@@ -191,7 +191,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     })
 }
 
-/// What a command of version 0.3.0 is called in the program `lab`; `None` of all others.
+/// Name in the program `lab` of a command of version 0.3.0; `None` of all others.
 fn moved(words: &[OsString]) -> Option<&'static str> {
     let word = |at: usize| words.get(at).and_then(|word| word.to_str()).unwrap_or_default();
     Some(match (word(1), word(2)) {

@@ -19,7 +19,7 @@ pub struct Progress {
     shown: bool,
     begun: Instant,
     said: Instant,
-    /// What was done since it began, and what is left as far as that is known.
+    /// Work done since it began, and work left as far as that is known.
     done: f64,
     left: f64,
     /// Evaluations in all, and the best of them, of a study.

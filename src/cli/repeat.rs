@@ -1,4 +1,4 @@
-//! What `--repeat` prints of a window.
+//! Output of `--repeat` for a window.
 
 use insertion::evaluation::robustness::repeat::{Band, Bands};
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! What is printed of a whole study.
+//! Output for a whole study.
 
 use super::terminal::merge;
 use super::{recommended, words};
@@ -9,7 +9,7 @@ use crate::study::{Ending, Recorded, StudyRecord};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// What is printed of a study, `known` evaluations of which were in the cache.
+/// Output for a study, `known` evaluations of which were in the cache.
 pub fn printed(
     dir: &Path,
     record: &StudyRecord,

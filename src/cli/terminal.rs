@@ -1,4 +1,4 @@
-//! What is printed: standard output, standard error, and what a terminal must not see.
+//! Output: standard output, standard error, and what a terminal must not see.
 
 use crate::session::Failure;
 use input::files::visible;
@@ -28,7 +28,7 @@ pub fn merge(fields: &mut Value, more: Value) {
     }
 }
 
-/// What a terminal may see; a carriage return would overwrite the line.
+/// Text that a terminal may see; a carriage return would overwrite the line.
 fn shown(text: &str) -> String {
     visible(text).replace('\r', "\\r")
 }

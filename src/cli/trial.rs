@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&format!("{chosen}{start}{}{repeats}{wrote}", text(&done.trial)))
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 pub fn json(done: &TrialDone) -> Value {
     let mut fields = chosen::json(&done.chosen);
     let trial = &done.trial;

@@ -1,4 +1,4 @@
-//! What measurements say of the fingers on the bench: what a study with measurements leads with.
+//! Predictions of the fingers on the bench: what a study with measurements leads with.
 
 use super::elements::{definitions, table};
 use crate::answer::lines;

@@ -1,4 +1,4 @@
-//! What all plots have in common: size, axes, fonts.
+//! Common parts of all plots: size, axes, fonts.
 
 use super::ReportError;
 use super::theme::{Colour, INK, LINES, MUTED, PAPER};

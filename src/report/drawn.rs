@@ -25,7 +25,7 @@ pub(super) fn drawn<'a>(record: &StudyRecord, all: &'a [Recorded]) -> Vec<&'a Re
     all.iter().zip(taken).filter(wanted).map(|(one, _)| one).collect()
 }
 
-/// What a reader of the pictures has to know; nothing where all are drawn.
+/// Note for a reader of the pictures; nothing where all are drawn.
 pub(super) fn note(record: &StudyRecord) -> Option<String> {
     let (all, some) = (record.evaluations.len(), drawn(record, &record.evaluations).len());
     (some < all).then(|| {

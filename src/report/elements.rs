@@ -1,4 +1,4 @@
-//! What sections of the page are made of.
+//! Building blocks of the page's sections.
 
 use super::theme::inline;
 use maud::{DOCTYPE, Markup, PreEscaped, html};

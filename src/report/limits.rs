@@ -1,4 +1,4 @@
-//! What the numbers of a study do not say.
+//! Limits of the numbers of a study.
 
 use crate::answer::Answer;
 use crate::calibration::order::{Order, OrderSource, rank_correlation};

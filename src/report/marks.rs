@@ -1,4 +1,4 @@
-//! What is drawn in plots: marked points, lines, stairs.
+//! Elements drawn in plots: marked points, lines, stairs.
 
 use super::chart::{Chart, Drawn, message};
 use super::theme::{Colour, MUTED};

@@ -15,7 +15,7 @@ use maud::{Markup, PreEscaped, html};
 /// a phone shrinks it to fit.
 const PLOT: (u32, u32) = (560, 400);
 
-/// What lies beside the page in the folder of a study.
+/// Files beside the page in the folder of a study.
 #[derive(Debug, Clone, Default)]
 pub struct Beside {
     /// Its films: what a button says, and the page that plays it.

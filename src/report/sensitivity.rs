@@ -11,12 +11,12 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use serde_json::{Value, json};
 
-/// What an analysis found.
+/// Result of an analysis.
 #[derive(Debug, Clone)]
 pub struct Found {
     /// Name of the task.
     pub task: String,
-    /// What was looked at.
+    /// Measure analysed.
     pub objective: Measure,
     /// The inputs, as varied.
     pub factors: Vec<Factor>,

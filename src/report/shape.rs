@@ -1,4 +1,4 @@
-//! What the parameters of the finger itself give beyond the infill alone.
+//! Gain from the parameters of the finger itself beyond the infill alone.
 
 use super::elements::table;
 use super::printer::finger_file;

@@ -303,7 +303,7 @@ fn the_limits_are_those_of_what_was_done() {
     }
 }
 
-/// What is as shipped goes by its name, the rest by its copy; nothing that decides is left out.
+/// Shipped inputs go by their names, the rest by their copies; nothing that decides is left out.
 #[test]
 fn the_command_that_repeats_a_study_names_all_that_decides() {
     let mut study = study();

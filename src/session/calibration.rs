@@ -1,4 +1,4 @@
-//! What few measurements say of every finger: simulations, measurements and priors together.
+//! Predictions of every finger from few measurements: simulations, measurements, priors together.
 
 use super::failure::not_stopped;
 use super::files::find;
@@ -65,18 +65,18 @@ pub struct CalibrateRequest {
     pub how: HowCalibrated,
 }
 
-/// What a calibration found.
+/// Result of a calibration.
 pub struct Calibrated {
     /// The tasks' fingers, in order.
     pub subjects: Vec<Subject>,
-    /// What is predicted of them.
+    /// Predictions for them.
     pub found: Calibration,
 }
 
 pub(super) struct Prepared<'a> {
     /// The tasks' fingers, in order.
     pub subjects: Vec<Subject>,
-    /// What each coordinate is.
+    /// Meaning of each coordinate.
     pub layout: Layout,
     /// How to sample.
     pub settings: Settings<'a>,
@@ -141,7 +141,7 @@ pub(super) fn folds(done: usize, of: usize) -> Part {
 pub(super) struct Ground<'a> {
     /// Tasks, robot, fingers, space.
     pub setup: &'a Setup,
-    /// What nobody measured.
+    /// Parameters that nobody measured.
     pub parameters: &'a [Parameter],
     /// Simulations per task.
     pub simulations: usize,

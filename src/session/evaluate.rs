@@ -41,7 +41,7 @@ pub struct EvaluateRequest {
     pub by_ribs: bool,
 }
 
-/// What was measured of a finger.
+/// Measurements of a finger.
 pub struct Evaluated {
     /// The finger on its task.
     pub chosen: Chosen,
@@ -51,7 +51,7 @@ pub struct Evaluated {
     pub bands: Option<Bands>,
     /// The same finger with springs computed from its ribs, if that was asked for.
     pub by_ribs: Option<ByRibs>,
-    /// What the evaluation took, s.
+    /// Wall-clock duration of the evaluation, s.
     pub wall_s: f64,
 }
 

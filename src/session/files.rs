@@ -34,7 +34,7 @@ impl Fingers {
         }
     }
 
-    /// What makes fingers of a design.
+    /// Source of fingers of a design.
     pub fn made(self) -> FingerSource {
         match self.file {
             None => FingerSource::Paper,

@@ -74,7 +74,7 @@ pub struct Chosen {
     pub finger_model: FingerModelKind,
     /// All that names the design: infill and what was set; empty for a stiffness alone.
     pub design: Design,
-    /// What was set beside the infill.
+    /// Settings beside the infill.
     pub set: Design,
     /// Whether the stiffness was given, not predicted.
     pub given: bool,
@@ -142,7 +142,7 @@ impl FingerRequest {
         }
     }
 
-    /// What is set beside the infill; a key of the space must keep to its bounds there.
+    /// Settings beside the infill; a key of the space must keep to its bounds there.
     fn settings(&self, setup: &Setup) -> Result<Design, Failure> {
         let mut set = Design::default();
         for (key, value) in &self.set {

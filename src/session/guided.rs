@@ -23,12 +23,12 @@ pub struct Guided {
     open: OpenStudy,
     optimizer: Box<dyn Optimizer + Send>,
     course: Course,
-    /// What is being measured, by the number of its proposal.
+    /// Work being measured, by the number of its proposal.
     measuring: BTreeMap<u64, Work>,
     standing: Standing,
 }
 
-/// What is to be done next.
+/// Next step.
 pub enum Order {
     /// Let these be measured: number of the proposal, and the bytes for [`perform`].
     Measure(Vec<(u64, Vec<u8>)>),
@@ -53,7 +53,7 @@ impl Guided {
         Ok(Guided { open, optimizer, course, measuring: BTreeMap::new(), standing })
     }
 
-    /// What is to be done next. What the cache knows is taken from there.
+    /// Next step. Designs that the cache knows are taken from there.
     ///
     /// # Errors
     /// If the journal holds other designs than are proposed, or cannot be written.
@@ -153,7 +153,7 @@ impl Guided {
     }
 }
 
-/// What was last set up, by the bytes that name it: one worker measures many designs of one study.
+/// Last setup, by the bytes that name it: one worker measures many designs of one study.
 static LAST: Mutex<Option<(Value, Arc<Setup>)>> = Mutex::new(None);
 
 fn set_up(work: &Work) -> Result<Arc<Setup>, Failure> {

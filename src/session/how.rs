@@ -114,7 +114,7 @@ impl RunRequest {
         self.effort.check()
     }
 
-    /// What to do with a study that was measured otherwise.
+    /// Treatment of a study that was measured otherwise.
     pub(super) fn if_changed(&self) -> IfChanged {
         if self.accept_changed { IfChanged::NewSegment } else { IfChanged::Refuse }
     }

@@ -1,4 +1,4 @@
-//! What was measured on the bench, and the bounds of what nobody measured, as files have it.
+//! Bench measurements, and the bounds of what nobody measured, as files have them.
 
 use super::Failure;
 use super::files::find;

@@ -3,7 +3,7 @@
 //!
 //! A request is checked when it is turned into what it is used as; nothing is printed here. It fails
 //! if a file that it names cannot be used or written, or if there is no such finger, task or study.
-//! What takes long ends, with a failure, once the `stop` that it is given is set.
+//! Long work ends, with a failure, once the `stop` that it is given is set.
 
 mod calibration;
 mod evaluate;
@@ -58,7 +58,7 @@ pub use trial::{Insertion, SceneRequest, TrialDone, TrialRequest};
 use crate::study::Recorded;
 use std::sync::Mutex;
 
-/// What happens meanwhile, for whoever shows it.
+/// Events of a run, for whoever shows them.
 #[derive(Debug)]
 pub enum Event<'a> {
     /// A design was measured and is written down.
@@ -81,7 +81,7 @@ pub struct Part {
     pub done: usize,
     /// Parts of the phase.
     pub of: usize,
-    /// What such a part takes, in evaluations of the search, roughly.
+    /// Cost of such a part, in evaluations of the search, roughly.
     pub cost: f64,
 }
 

@@ -48,7 +48,7 @@ fn cost(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What to print, of which fingers.
+/// Fingers to print, and those they are chosen from.
 pub struct Advised {
     /// The task's fingers.
     pub subject: Subject,

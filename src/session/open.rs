@@ -21,7 +21,7 @@ pub struct OpenStudy {
     pub(super) study: Study,
     pub(super) setup: Setup,
     pub(super) how: RunRequest,
-    /// What is measured beside the window.
+    /// Plan of the measurements beside the window.
     pub(super) plan: Plan,
     pub(super) cache: Option<Cache>,
 }
@@ -30,7 +30,7 @@ pub struct OpenStudy {
 pub struct Ended {
     /// Its folder.
     pub dir: PathBuf,
-    /// What it measured.
+    /// Record of its measurements.
     pub record: StudyRecord,
     /// How it ended.
     pub ending: Ending,

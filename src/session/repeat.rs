@@ -35,7 +35,7 @@ impl RepeatRequest {
         within("--repeat", self.count, &REPEATS)
     }
 
-    /// What repeats of a finger on its task say, from this taught start.
+    /// Results of repeats of a finger on its task, from this taught start.
     pub(super) fn of<T>(
         &self,
         setup: &Setup,

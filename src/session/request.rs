@@ -123,7 +123,7 @@ impl SetupRequest {
 }
 
 impl FingerModelRequest {
-    /// What makes fingers where no space is searched.
+    /// Source of fingers where no space is searched.
     pub fn fingers(&self) -> Result<FingerSource, Failure> {
         Ok(Fingers::parse(self.file(None)?)?.made())
     }

@@ -24,11 +24,11 @@ use std::sync::Arc;
 pub struct Setup {
     /// Measures designs.
     pub evaluator: Evaluator,
-    /// What is searched.
+    /// Search space.
     pub space: Space,
     /// The errors under which designs are measured, if they are.
     pub uncertainty: Option<Uncertainty>,
-    /// What was measured on the bench, if a study asks for its fingers there.
+    /// Measurements on the bench, if a study asks for its fingers there.
     pub measured: Option<Measured>,
     /// The texts all this was read from.
     pub inputs: Inputs,
@@ -149,7 +149,7 @@ impl Setup {
         self.evaluator.templates.iter().map(|template| template.task.name.as_str()).collect()
     }
 
-    /// What a study records of all this.
+    /// Provenance of all this, as a study records it.
     pub fn provenance(&self) -> Provenance {
         Provenance::new(self.evaluator.engine, sha256(&self.inputs))
     }
@@ -162,7 +162,7 @@ impl Setup {
         }
     }
 
-    /// What is measured beside the window, with the draws of this seed; `wanted` says which.
+    /// Plan of measurements beside the window, with the draws of this seed; `wanted` says which.
     pub fn plan(&self, seed: u64, wanted: impl Fn(Measure) -> bool) -> Result<Plan, Failure> {
         let (success, robust) = (wanted(Measure::SuccessRate), wanted(Measure::RobustRange));
         match &self.uncertainty {

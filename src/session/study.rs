@@ -172,7 +172,7 @@ impl StudyRequest {
         OpenStudy::new(study, setup, self.run.clone())
     }
 
-    /// What it measures with, what it is and its folder, checked; nothing is written.
+    /// Setup, configuration and folder of the study, checked; nothing is written.
     fn look(&self) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
         self.run.check()?;
         within("--budget", self.budget, &BUDGETS)?;

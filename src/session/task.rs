@@ -54,13 +54,13 @@ pub fn read_space(name: &str) -> Result<Space, Failure> {
     Space::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// What is wrong with a task file, and whether its nominal start inserts.
+/// Problems of a task file, and whether its nominal start inserts.
 pub struct TaskCheck {
     /// The file.
     pub source: Source,
     /// The task, if the file can be read.
     pub task: Option<Task>,
-    /// What cannot work.
+    /// Problems that keep it from working.
     pub problems: Vec<Problem>,
     /// The finger that tried the nominal start and what came of it, unless a problem forbids it.
     pub nominal: Option<(Finger, Trial, String)>,

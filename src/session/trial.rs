@@ -61,7 +61,7 @@ pub struct TrialRequest {
     pub svg: Option<PathBuf>,
 }
 
-/// What a trial gave.
+/// Result of a trial.
 pub struct TrialDone {
     /// The finger on its task.
     pub chosen: Chosen,

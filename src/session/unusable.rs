@@ -1,4 +1,4 @@
-//! What went wrong where no design of a study inserts at the nominal start.
+//! Diagnosis where no design of a study inserts at the nominal start.
 
 use super::failure::not_stopped;
 use super::{Failure, Setup};

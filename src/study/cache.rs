@@ -27,7 +27,7 @@ use std::{fs, io};
 #[derive(Debug)]
 pub struct Cache {
     dir: PathBuf,
-    /// What all keys begin with.
+    /// Prefix of all keys.
     context: String,
     found: AtomicU64,
     problem: Mutex<Option<io::Error>>,

@@ -28,9 +28,9 @@ pub struct StudyConfig {
     pub finger_model: FingerModelKind,
     /// Name of the optimizer.
     pub optimizer: String,
-    /// What is optimized.
+    /// Objectives.
     pub objective: Objectives,
-    /// What a design must keep to.
+    /// Constraints on a design.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<Constraint>,
     /// How the values of several tasks become one; there are several if it is there.
@@ -53,10 +53,10 @@ pub struct StudyConfig {
     /// Whether each result is told as it comes, and one more design asked for.
     #[serde(rename = "async", default, skip_serializing_if = "std::ops::Not::not")]
     pub asynchronous: bool,
-    /// What follows the search.
+    /// Steps after the search.
     #[serde(default, skip_serializing_if = "is_default")]
     pub conclusion: Conclusion,
-    /// What the study began to be measured with.
+    /// Provenance at the beginning of the study.
     pub provenance: Provenance,
     /// The search space in full.
     pub space: Space,
@@ -127,7 +127,7 @@ impl StudyConfig {
         self.provenance.check()
     }
 
-    /// What is asked of a design.
+    /// Goals for a design.
     pub fn goals(&self) -> Goals {
         Goals {
             objectives: self.objective.clone(),
@@ -151,7 +151,7 @@ impl StudyConfig {
 
     /// The fields in which a study on disk differs from what is asked for now,
     /// one line each; a budget that was raised does not count, unless a polish follows it.
-    /// What it is measured with is compared by [`Provenance::differences`].
+    /// Provenance is compared by [`Provenance::differences`].
     pub fn differences(&self, asked: &StudyConfig) -> Option<String> {
         let may_rise = asked.polish == 0 && asked.budget > self.budget;
         let budget = if may_rise { asked.budget } else { self.budget };

@@ -51,7 +51,7 @@ pub struct Wanted {
     pub design: Design,
 }
 
-/// What is to be done next.
+/// Next step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Next {
     /// Measure these, in any order; they are not given again.
@@ -62,12 +62,12 @@ pub enum Next {
     Ended(Ending),
 }
 
-/// What was measured of a design.
+/// Result of measuring a design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arrived {
     /// The number of its proposal.
     pub proposal: u64,
-    /// What was measured.
+    /// Measurements.
     pub measured: Measured,
     /// When, and how long it took.
     pub timing: Timing,
@@ -110,7 +110,7 @@ impl Course {
         }
     }
 
-    /// What is to be done next.
+    /// Next step.
     ///
     /// # Errors
     /// If the journal holds other designs than the optimizer proposes.

@@ -1,16 +1,16 @@
-//! What can go wrong with a study's folder, said so that it can be mended.
+//! Errors of a study's folder, said so that they can be mended.
 
 use insertion::evaluation::template::Impossible;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What went wrong with a study.
+/// Error of a study.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// The file system refused something.
     #[error("{}: cannot {action}: {source}", path.display())]
     Io {
-        /// What was tried, after "cannot".
+        /// Action tried, after "cannot".
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
@@ -33,7 +33,7 @@ pub enum StudyError {
     File {
         /// The file or folder.
         path: PathBuf,
-        /// What is wrong and what would be right.
+        /// Problem, and what would be right.
         problem: String,
     },
     /// Somebody else has had a hand in the journal while the study ran.
@@ -45,7 +45,7 @@ pub enum StudyError {
     Interfered {
         /// The journal.
         path: PathBuf,
-        /// What has happened to it.
+        /// Interference found.
         problem: String,
         /// Where everything measured was written to, or why it could not be.
         kept: Result<PathBuf, String>,
@@ -57,7 +57,7 @@ pub enum StudyError {
         index: u64,
         /// The design.
         design: String,
-        /// What it sets wrongly.
+        /// Its wrong setting.
         source: Impossible,
     },
 }
@@ -75,7 +75,7 @@ impl StudyError {
         move |source| StudyError::Io { action, path, source }
     }
 
-    /// What is wrong with a file or folder.
+    /// Error for a problem of a file or folder.
     pub(super) fn file(path: &Path, problem: impl ToString) -> StudyError {
         StudyError::File { path: path.to_owned(), problem: problem.to_string() }
     }
@@ -91,7 +91,7 @@ fn rescue(kept: &Result<PathBuf, String>) -> String {
     }
 }
 
-/// What is wrong with one line; the journal adds the file and the line number.
+/// Fault of one line; the journal adds the file and the line number.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum LineError {
     /// No check, or one that does not fit.
@@ -103,9 +103,9 @@ pub enum LineError {
     /// Lines are missing, doubled or in the wrong order.
     #[error("evaluation {found} stands where evaluation {expected} belongs")]
     Order {
-        /// What the line says.
+        /// Index in the line.
         found: u64,
-        /// What its place in the file says.
+        /// Index by its place in the file.
         expected: u64,
     },
 }

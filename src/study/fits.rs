@@ -20,7 +20,7 @@ const LARGEST_VIOLATION: f64 = 1e30;
 /// Most trials of one kind in an evaluation.
 const MOST_TRIALS: u32 = 10_000_000;
 
-/// What is wrong with an evaluation, if it cannot be of this study.
+/// Fault of an evaluation, if it cannot be of this study.
 pub fn fits(recorded: &Recorded, config: &StudyConfig) -> Result<(), LineError> {
     let wrong = |what: String| Err(LineError::Format(what));
     if let Some(problem) = off_the_space(&recorded.design, &config.space) {
@@ -43,7 +43,7 @@ pub fn fits(recorded: &Recorded, config: &StudyConfig) -> Result<(), LineError> 
     Ok(())
 }
 
-/// What the optimizer is told of an evaluation: values and violations, if it has any.
+/// Report to the optimizer on an evaluation: values and violations, if it has any.
 pub fn told(recorded: &Recorded, goals: &Goals) -> Option<[Vec<f64>; 2]> {
     let score = recorded.score.as_ref()?;
     Some([goals.told(&recorded.tasks())?, score.violations.clone()])
@@ -69,7 +69,7 @@ pub fn refuse_doubtful(recorded: &mut Recorded, goals: &Goals) {
     }
 }
 
-/// What is left of an evaluation that was refused.
+/// Placeholder for an evaluation that was refused.
 const NOTHING: Evaluation = Evaluation {
     window: Window {
         nominal: Outcome::Diverged,
@@ -114,7 +114,7 @@ fn known(stiffness: &Prediction) -> bool {
     each.iter().all(|k| sound(k.mean) && sound(k.sd)) && sound(stiffness.hull_distance)
 }
 
-/// What is impossible about an evaluation, if anything is: asked of all that is read or taken in, from
+/// Reason why an evaluation is impossible, if it is: asked of all that is read or taken in, from
 /// journals, the cache and workers.
 pub fn implausible(evaluation: &Evaluation) -> Option<&'static str> {
     let Evaluation { window, failure_counts, diverged, trials, .. } = evaluation;

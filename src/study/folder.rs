@@ -54,11 +54,11 @@ pub fn sha256(inputs: &Inputs) -> BTreeMap<String, String> {
 
 /// A study open for writing; no other process can open it meanwhile.
 pub struct Study {
-    /// What was asked for.
+    /// Configuration, as asked for.
     pub config: StudyConfig,
-    /// What has been measured, by index.
+    /// Measurements so far, by index.
     pub evaluations: Vec<Recorded>,
-    /// What it was measured with.
+    /// Provenance of its evaluations.
     segments: Vec<Segment>,
     /// Records in the journal that another program wrote.
     foreign: usize,
@@ -68,7 +68,7 @@ pub struct Study {
     _lock: File,
 }
 
-/// What to do if the present program and inputs measure otherwise than the study was measured.
+/// Treatment of a study that the present program and inputs would measure otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IfChanged {
     /// Do not go on.
@@ -216,7 +216,7 @@ impl Study {
         }
     }
 
-    /// What its next evaluation is measured with.
+    /// Provenance of its next evaluation.
     pub fn provenance(&self) -> &Provenance {
         self.segments.last().map_or(&self.config.provenance, |segment| &segment.provenance)
     }

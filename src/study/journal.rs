@@ -26,7 +26,7 @@ pub struct Journal {
     broken: bool,
 }
 
-/// What a journal holds.
+/// Contents of a journal.
 pub struct Contents {
     /// The evaluations, by index.
     pub evaluations: Vec<Recorded>,
@@ -150,7 +150,7 @@ impl Journal {
     }
 }
 
-/// What a journal holds; a torn tail is passed over, and nothing is written.
+/// Contents of a journal; a torn tail is passed over, and nothing is written.
 pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
     let bytes = files::bytes_own(path, LARGEST_JOURNAL).map_err(StudyError::io("read", path))?;
     parse(&bytes, path, config)

@@ -47,7 +47,7 @@ struct TrialLine {
     intermediate_values: Empty,
 }
 
-/// What Optuna has no fields for.
+/// Data that Optuna has no fields for.
 #[derive(Serialize, Deserialize)]
 struct UserAttributes {
     stiffness: Prediction,

@@ -1,4 +1,4 @@
-//! What measurements say of a study's fingers on the bench, kept beside the journal in
+//! Prediction of a study's fingers on the bench from measurements, kept beside the journal in
 //! `bench.json`. It is found after the search, which does not know of it, and can be found again.
 
 use super::fits;
@@ -16,7 +16,7 @@ pub(super) const BENCH_FILE: &str = "bench.json";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OnBench {
-    /// What predicted: of another provenance it says nothing.
+    /// Provenance of the prediction: of another it says nothing.
     pub provenance: Provenance,
     /// How much was computed.
     pub effort: BenchEffort,
@@ -26,7 +26,7 @@ pub struct OnBench {
     pub fingers: usize,
     /// How far it is to be trusted.
     pub trust: Trust,
-    /// What a reader should know before trusting it, a line each.
+    /// Caveats, a line each.
     pub warnings: Vec<String>,
     /// The fingers of largest predicted range, best first; at least one.
     pub best: Vec<BenchFinger>,

@@ -1,4 +1,4 @@
-//! What a study's values were measured with.
+//! Provenance of a study's values.
 
 use super::differences::differences;
 use insertion::trial::engine::{EngineKind, EngineRecord};
@@ -10,7 +10,7 @@ pub const SOURCES: &str = env!("FINGER_OPT_STUDY_SHA256");
 /// Those of them that decide the evaluation of a design.
 pub const SIMULATION_SOURCES: &str = env!("FINGER_OPT_SIMULATION_SHA256");
 
-/// What computed the values, and from which inputs: values of different provenance do not
+/// Program that computed the values, and its inputs: values of different provenance do not
 /// belong into one study unless the user says so.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -41,7 +41,7 @@ pub const BENCH_ROLES: [&str; 2] = ["measurements", "priors"];
 pub struct Segment {
     /// Index of its first evaluation.
     pub first: u64,
-    /// What they were measured with.
+    /// Provenance of these evaluations.
     pub provenance: Provenance,
 }
 

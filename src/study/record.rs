@@ -18,21 +18,21 @@ use std::time::Instant;
 /// A study read from its folder: all that a report may know of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyRecord {
-    /// What was asked for.
+    /// Configuration, as asked for.
     pub config: StudyConfig,
-    /// What the evaluations were measured with, in their order; the first begins at 0.
+    /// Provenance of the evaluations, in their order; the first segment begins at 0.
     pub segments: Vec<Segment>,
-    /// What was measured, by index: `evaluations[i].index == i`.
+    /// Measurements, by index: `evaluations[i].index == i`.
     pub evaluations: Vec<Recorded>,
     /// Records in its journal that another program wrote; they are passed over.
     pub foreign: usize,
-    /// What the walk found of the best designs, best first; empty if they were not walked.
+    /// Results of the walk of the best designs, best first; empty if they were not walked.
     pub walked: Vec<Walked>,
     /// The finger file, if its fingers were computed.
     pub finger: Option<FingerFile>,
     /// The firm value of the first objective of the designs whose ends were repeated, by evaluation.
     pub firm_values: BTreeMap<u64, f64>,
-    /// What measurements say of its fingers on the bench, if there are any.
+    /// Prediction of its fingers on the bench from measurements, if there are any.
     pub on_bench: Option<OnBench>,
 }
 
@@ -41,9 +41,9 @@ pub struct StudyRecord {
 pub struct Walked {
     /// The evaluation with the windows that the walk found, and the score of those.
     pub recorded: Recorded,
-    /// What is left of each window when friction, start and step vary a little.
+    /// Rest of each window when friction, start and step vary a little.
     pub firm: Vec<Firm>,
-    /// What the same finger does with springs computed from its ribs, where those were others.
+    /// Results of the same finger with springs computed from its ribs, where those were others.
     pub by_ribs: Option<ByRibs>,
 }
 
@@ -51,7 +51,7 @@ pub struct Walked {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ByRibs {
-    /// What the search found on each task.
+    /// Results of the search on each task.
     Measured(Vec<Evaluation>),
     /// Why it cannot be measured.
     Refused(String),
@@ -70,7 +70,7 @@ pub struct Recorded {
     pub score: Option<Score>,
     /// Stiffness the surrogate predicted for the design, N/m.
     pub stiffness: Prediction,
-    /// What the simulation measured on each task, in their order.
+    /// Simulated measurements on each task, in their order.
     pub tasks: Vec<Evaluation>,
     /// When it was measured; the only part that differs between equal runs.
     pub timing: Timing,
@@ -81,7 +81,7 @@ pub struct Recorded {
 /// A line of a journal whose numbers cannot be those of an evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refused {
-    /// What is impossible about them.
+    /// Reason why they are impossible.
     pub problem: &'static str,
     /// The values and violations that the optimizer was told at the time, if any.
     pub(super) told: Option<[Vec<f64>; 2]>,
@@ -110,7 +110,7 @@ impl Timing {
         (measured, Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() })
     }
 
-    /// What is impossible about it, if anything is.
+    /// Reason why it is impossible, if it is.
     pub fn implausible(&self) -> Option<&'static str> {
         let stamps = [&self.datetime_start, &self.datetime_complete];
         let sound = stamps.into_iter().all(|stamp| is_timestamp(stamp))
@@ -131,19 +131,19 @@ impl Recorded {
         self.score.as_ref().filter(|score| score.feasible()).map(|score| &score.values[..])
     }
 
-    /// What was measured on a task, by its place among the tasks.
+    /// Measurements on a task, by its place among the tasks.
     pub fn on(&self, task: usize) -> Option<&Evaluation> {
         self.tasks.get(task)
     }
 
-    /// What was measured on each task.
+    /// Measurements on each task.
     pub fn tasks(&self) -> Vec<&Evaluation> {
         self.tasks.iter().collect()
     }
 }
 
 impl StudyRecord {
-    /// What reading it passed over, a line each.
+    /// Records that reading it passed over, a line each.
     pub fn remarks(&self) -> Vec<String> {
         let refused = self.evaluations.iter().filter_map(|r| Some((r.index, r.refused.as_ref()?)));
         let refused = refused.map(|(index, refused)| {

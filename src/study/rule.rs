@@ -15,13 +15,13 @@ use insertion::evaluation::{Evaluation, Window};
 use insertion::space::{Design, Space};
 use std::cmp::Ordering;
 
-/// What a study asks for, and where its designs lie.
+/// Goals of a study, and the space of its designs.
 pub(super) struct Rule<'a> {
     pub goals: &'a Goals,
     pub space: &'a Space,
 }
 
-/// What is compared of a design.
+/// Criteria by which a design is compared.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Standing {
     /// Values of the objectives; `None` if it breaks a constraint or has none.

@@ -12,7 +12,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
-/// What a run works with.
+/// Resources of a run.
 pub struct Runner<'a> {
     /// Measures designs. It should end early once `stop` is set.
     pub evaluator: &'a dyn Evaluate,

@@ -1,4 +1,4 @@
-//! What a study measures a design with: the evaluator, a cache, and a flag that stops it.
+//! Measurement of a study's designs: the evaluator, a cache, and a flag that stops it.
 
 use super::cache::Cache;
 use insertion::evaluation::Evaluation;
@@ -13,11 +13,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Measures designs by simulation, or finds them in the cache.
 pub struct Simulated<'a> {
-    /// What turns a design into an evaluation.
+    /// Evaluator of designs.
     pub evaluator: &'a Evaluator,
     /// How the ends of a window are looked for.
     pub search: Search,
-    /// What is measured beside the window.
+    /// Plan of the measurements beside the window.
     pub plan: &'a Plan,
     /// Where evaluations are kept, if they are.
     pub cache: Option<&'a Cache>,
@@ -39,7 +39,7 @@ impl Evaluate for Simulated<'_> {
 }
 
 impl Simulated<'_> {
-    /// What the cache knows of a design; `None` unless that is all. Nothing is simulated.
+    /// Cached measurements of a design; `None` unless they are complete. Nothing is simulated.
     pub fn known(&self, design: &Design) -> Option<Measured> {
         let cache = self.cache?;
         let stiffness = self.evaluator.predict(design).ok()?;

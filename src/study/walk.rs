@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// What the best designs are measured with.
+/// Means of measuring the best designs.
 pub struct Confirmer<'a> {
     /// Walks a design.
     pub walker: &'a dyn Evaluate,
@@ -35,7 +35,7 @@ pub struct Confirmer<'a> {
     pub done: &'a (dyn Fn(Confirmed, &Recorded, [usize; 2]) + Sync),
 }
 
-/// What was done with a design.
+/// Kind of confirmation of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Confirmed {
     /// Its ends were repeated.
@@ -159,7 +159,7 @@ struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    /// What is known of these designs.
+    /// Known results of these designs.
     fn read(study: &'a Study, best: &[&Recorded], stop: &'a AtomicBool) -> Self {
         let (dir, provenance) = (study.dir().to_owned(), study.provenance().clone());
         let file = WalkFile::read(&dir, Some(&provenance));

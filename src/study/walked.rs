@@ -35,7 +35,7 @@ pub(super) const WALKED: usize = 3;
 
 #[derive(Serialize, Deserialize)]
 pub(super) struct WalkFile {
-    /// What walked: of another provenance it says nothing.
+    /// Provenance of the walk: of another it says nothing.
     pub provenance: Provenance,
     /// Whether all was done; if not, it is a beginning to go on from.
     pub complete: bool,
@@ -47,20 +47,20 @@ pub(super) struct WalkFile {
 pub(super) struct Row {
     /// Index of the evaluation.
     pub evaluation: u64,
-    /// What the repeats found on each task at the ends that the search had found.
+    /// Results of the repeats on each task at the ends that the search had found.
     pub firm: Vec<Firm>,
-    /// What the walk found, if it was walked.
+    /// Results of the walk, if it was walked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walked: Option<WalkedRow>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct WalkedRow {
-    /// What the walk found on each task.
+    /// Results of the walk on each task.
     pub tasks: Vec<Evaluation>,
-    /// What the repeats found on each task at the ends of the walk.
+    /// Results of the repeats on each task at the ends of the walk.
     pub firm: Vec<Firm>,
-    /// What the computed finger does.
+    /// Results of the computed finger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub computed: Option<ByRibs>,
 }
@@ -117,7 +117,7 @@ fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorde
     recorded
 }
 
-/// What was walked, best first, and the firm value of the first objective of every design whose
+/// Designs walked, best first, and the firm value of the first objective of every design whose
 /// ends were repeated, by evaluation; nothing before all is done.
 pub(super) fn read(
     dir: &Path,

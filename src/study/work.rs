@@ -37,7 +37,7 @@ pub struct Work {
     pub robust_range: bool,
     /// How many tasks there are.
     pub tasks: u64,
-    /// What it is to be measured with.
+    /// Provenance that it is to be measured with.
     pub provenance: Provenance,
     /// Texts of the input files by role.
     pub inputs: Inputs,

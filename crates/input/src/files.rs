@@ -162,7 +162,7 @@ impl Table {
         }
     }
 
-    /// What it holds.
+    /// Its contents.
     pub fn text(&self) -> &str {
         &self.text
     }

@@ -1,4 +1,4 @@
-//! What the models say, read back as XML.
+//! Contents of the models, read back as XML.
 
 use contact::mjcf::*;
 use contact::scene::*;
@@ -132,7 +132,7 @@ fn lengths_are_metres_and_springs_are_the_finger_s() {
     assert_eq!(numbers(inertial, "mass"), [5e-3]);
 }
 
-/// What a contact gives does not depend on the masses: `R = A (1 - d)/d`,
+/// Contact stiffness does not depend on the masses: `R = A (1 - d)/d`,
 /// stiffness `solref/(d R)`, with MuJoCo's inverse masses `A` of the pair.
 #[test]
 fn contacts_have_the_stiffness_and_friction_of_the_pair() {

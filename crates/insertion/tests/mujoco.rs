@@ -1,4 +1,4 @@
-//! What the checks do not show.
+//! Behaviour that the checks do not show.
 
 #![cfg(feature = "mujoco")]
 

@@ -203,7 +203,7 @@ fn report(
     print(&(text + &check::text(checked)))
 }
 
-/// What does where hulls reach into the clearance. Two voxels across a tenth of it would be more than
+/// Remedy where hulls reach into the clearance. Two voxels across a tenth of it would be more than
 /// there is time for, and hulls bridge what is hollow by more than that (docs/guide/tasks.md).
 fn bridged() -> String {
     format!(

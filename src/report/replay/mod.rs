@@ -24,7 +24,7 @@ pub struct Film<'a> {
     pub task: &'a Task,
     /// Pad and roof of the fingers.
     pub pad: &'a Pad,
-    /// What was recorded.
+    /// Recording of the trial.
     pub recording: &'a Recording,
 }
 

@@ -16,7 +16,7 @@ const EXHAUSTIVE: u64 = 20_000;
 const EXHAUSTIVE_WORK: u64 = 1_000_000;
 /// Starts of the local search.
 const STARTS: usize = 4;
-/// What an acquisition with its derivatives costs, in acquisitions.
+/// Cost of an acquisition with its derivatives, in acquisitions.
 const COST_OF_SLOPE: usize = 3;
 /// Most of them from one start.
 const MOST_SLOPES: usize = 40;

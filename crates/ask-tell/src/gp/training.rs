@@ -22,7 +22,7 @@ const REFIT: usize = 20;
 /// Of a fit to some of the observations.
 const EFFORT: FitEffort = FitEffort { evaluations: 12, restarts: false };
 
-/// What was told, as models.
+/// Models of the observations told.
 #[derive(Debug, Clone)]
 pub(super) enum Model {
     /// One process, or a process for each objective and constraint, of all points.

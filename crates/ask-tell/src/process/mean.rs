@@ -3,7 +3,7 @@
 use super::factor::Factor;
 use nalgebra::DVector;
 
-/// What the values tell of the coefficients of `P` terms, whose prior is flat.
+/// Information of the values on the coefficients of `P` terms, whose prior is flat.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearMean<const P: usize> {
     /// `K^-1 H'`, by term.

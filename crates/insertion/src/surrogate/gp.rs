@@ -14,7 +14,7 @@
 //!   with density and angle and levels off at the walls' stiffness. `n` is
 //!   chosen by likelihood from 1 to 2.
 //!
-//! What the mean leaves is a Matern 5/2 process over (ln density, direction), plus noise, so that
+//! Residual of the mean: a Matern 5/2 process over (ln density, direction), plus noise, so that
 //! rounded readings are not interpolated. All hyperparameters come from a fixed grid by maximum
 //! likelihood: no random restarts, so the fit is the same on every run.
 

@@ -11,6 +11,8 @@ use tempfile::TempDir;
 const CPU_S: u32 = 10;
 /// Processor time of a simulated trial, of which 60 s are simulated at most, in a build for tests.
 const TRIAL_S: u32 = 100;
+/// Processor time of a mesh that is made a task.
+const IMPORT_S: u32 = 30;
 /// Address space of a case, KiB.
 const MEMORY_KIB: u32 = 1 << 20;
 /// Wall time after which a case hangs, whatever the machine is busy with, s.
@@ -38,7 +40,11 @@ pub fn folder() -> &'static Path {
 /// Runs the binary; an error is what no input may lead to.
 pub fn run<S: AsRef<str>>(arguments: &[S], input: &[u8]) -> Result<Ended> {
     let arguments: Vec<&str> = arguments.iter().map(AsRef::as_ref).collect();
-    let cpu_s = if arguments.first() == Some(&"trial") { TRIAL_S } else { CPU_S };
+    let cpu_s = match arguments.first() {
+        Some(&"trial") => TRIAL_S,
+        Some(&"task") => IMPORT_S,
+        _ => CPU_S,
+    };
     let limits = format!(
         "ulimit -v {MEMORY_KIB} -t {cpu_s} -c 0; exec timeout -s KILL {HANGS_S} \"$0\" \"$@\""
     );

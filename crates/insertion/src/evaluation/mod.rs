@@ -54,7 +54,8 @@ impl Window {
         if self.nominal != Outcome::Inserted {
             return 0.0;
         }
-        grid_mm(self.positive_steps - self.negative_steps)
+        // Whoever made it up: a window that is read may be any.
+        grid_mm(self.positive_steps.saturating_sub(self.negative_steps))
     }
 
     /// Most negative inserting offset in mm (0 or below).

@@ -76,8 +76,11 @@ impl TryFrom<WindowRow> for Window {
     }
 }
 
+/// Steps that no window has, and that sums of a few of them can hold.
+const MOST_STEPS: f64 = 1e8;
+
 fn steps(mm: f64) -> OffsetStep {
-    (mm / grid_mm(1)).round() as OffsetStep
+    (mm / grid_mm(1)).round().clamp(-MOST_STEPS, MOST_STEPS) as OffsetStep
 }
 
 pub(super) fn taught_mm<S: Serializer>(

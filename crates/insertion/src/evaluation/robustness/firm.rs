@@ -34,7 +34,9 @@ impl Firm {
 
     /// The firm range, mm; 0 without a firm window.
     pub fn range_mm(&self) -> f64 {
-        self.window.map_or(0.0, |window| grid_mm(window.positive_steps - window.negative_steps))
+        self.window.map_or(0.0, |window| {
+            grid_mm(window.positive_steps.saturating_sub(window.negative_steps))
+        })
     }
 
     /// The firm window, mm.

@@ -5,7 +5,6 @@ use super::config::StudyConfig;
 use super::error::LineError;
 use super::record::{Recorded, Refused, Timing};
 use insertion::evaluation::objective::{Goals, Score};
-
 use insertion::evaluation::{Evaluation, RobustRange, SuccessRate, Window, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::space::{Design, Space};
@@ -173,29 +172,62 @@ pub(super) mod tests {
     pub type Change = fn(&mut Evaluation, f64);
 
     /// Numbers of an evaluation with the least and the largest value they may have.
-    pub const BOUNDS: [(&str, Change, [f64; 2]); 10] = [
+    pub const BOUNDS: [(&str, Change, [f64; 2]); 18] = [
         ("negative_steps", |e, x| e.window.negative_steps = x as i32, [-1000.0, 0.0]),
         ("positive_steps", |e, x| e.window.positive_steps = x as i32, [0.0, 1000.0]),
         ("taught", |e, x| e.taught = Some(x as i32), [-1000.0, 1000.0]),
         ("trials", |e, x| e.trials = x as u32, [1.0, 1e7]),
         ("failures", |e, x| e.failure_counts = [0, 0, x as u32, 0], [0.0, 20.0]),
+        ("diverged", |e, x| e.diverged = x as u32, [0.0, 20.0]),
         ("peak_force_n", |e, x| e.peak_force_n = x, [0.0, LARGEST]),
         ("slip_mm", |e, x| e.slip_mm = x, [0.0, LARGEST]),
         ("simulated_s", |e, x| e.simulated_s = x, [0.0, LARGEST]),
         ("end_shares", |e, x| e.end_shares[1] = x, [-1.0, 1.0]),
-        ("confidence", |e, x| e.success = Some(rate(x)), [0.0, 1.0]),
+        ("confidence", |e, x| rate(e).confidence = x, [0.0, 1.0]),
+        ("success inserted", |e, x| rate(e).inserted = x as u32, [0.0, 1e7]),
+        ("success failures", |e, x| rate(e).failure_counts[3] = x as u32, [0.0, 1e7]),
+        ("success diverged", |e, x| rate(e).diverged = x as u32, [0.0, 1e7]),
+        ("robust ranges", |e, x| robust(e).ranges_mm[0] = x, [-200.0, 200.0]),
+        ("robust value", |e, x| robust(e).value_mm = Some(x), [-200.0, 200.0]),
+        ("robust diverged", |e, x| robust(e).diverged = x as u32, [0.0, 9.0]),
+        ("robust trials", |e, x| robust(e).trials = x as u32, [0.0, 1e7]),
     ];
 
-    fn rate(confidence: f64) -> SuccessRate {
-        SuccessRate { confidence, inserted: 3, failure_counts: [0; 4], diverged: 0 }
+    /// Those of them that are whole numbers without a sign.
+    const COUNTS: [&str; 8] = [
+        "trials",
+        "failures",
+        "diverged",
+        "success inserted",
+        "success failures",
+        "success diverged",
+        "robust diverged",
+        "robust trials",
+    ];
+
+    fn rate(evaluation: &mut Evaluation) -> &mut SuccessRate {
+        let none =
+            SuccessRate { confidence: 0.95, inserted: 0, failure_counts: [0; 4], diverged: 0 };
+        evaluation.success.insert(none)
+    }
+
+    fn robust(evaluation: &mut Evaluation) -> &mut RobustRange {
+        // Nine trials, unless it is their number that is asked for.
+        let value_mm = Some(1.0);
+        evaluation.robust.insert(RobustRange {
+            ranges_mm: vec![1.0],
+            diverged: 0,
+            value_mm,
+            trials: 9,
+        })
     }
 
     #[test]
     fn a_number_is_plausible_up_to_its_bounds_and_not_beyond() {
         for (name, change, [least, most]) in BOUNDS {
             let plausible = |value: f64| {
-                let (trials, failure_counts) = (20, [0; 4]);
-                let mut evaluation = Evaluation { trials, failure_counts, ..sound() };
+                let counts = Evaluation { trials: 20, failure_counts: [0; 4], ..sound() };
+                let mut evaluation = Evaluation { diverged: 0, ..counts };
                 change(&mut evaluation, value);
                 implausible(&evaluation).is_none()
             };
@@ -203,8 +235,8 @@ pub(super) mod tests {
             let beyond = |bound: f64| if share { 1e-9 } else { bound.abs() * 1e-3 + 1.0 };
             assert!(plausible(least) && plausible(most), "{name}");
             assert!(!plausible(most + beyond(most)), "{name} above {most}");
-            // Counts are not negative.
-            if !["trials", "failures"].contains(&name) {
+            // Counts are not negative: below their bound there is nothing to be refused.
+            if !COUNTS.contains(&name) {
                 assert!(!plausible(least - beyond(least)), "{name} below {least}");
             }
         }

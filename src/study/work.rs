@@ -214,7 +214,10 @@ mod tests {
 
     /// Whether a result with these numbers is taken; if it is, its line is read again.
     fn taken(evaluation: Evaluation, wall_s: f64) -> bool {
-        let (work, stiffness) = (work(), Prediction::exact(3e3, 2e4));
+        let (success_rate, robust_range) =
+            (evaluation.success.is_some(), evaluation.robust.is_some());
+        let work = Work { success_rate, robust_range, ..work() };
+        let stiffness = Prediction::exact(3e3, 2e4);
         let measured = Measured { stiffness, tasks: vec![evaluation], cached: Vec::new() };
         let bytes = work.done(measured, &timing(wall_s), "a worker").unwrap();
         let Ok(Arrived { measured, timing, .. }) = work.check(&bytes, &stiffness) else {
@@ -255,8 +258,12 @@ mod tests {
         ) {
             let (_, change, bounds) = BOUNDS[at];
             let mut evaluation = sound();
-            change(&mut evaluation, bounds[near] + away);
-            taken(evaluation, wall_s);
+            let value = bounds[near] + away;
+            change(&mut evaluation, value);
+            // What is no number is not written as one.
+            let sound = fits::implausible(&evaluation).is_none() && wall_s >= 0.0;
+            let taken = taken(evaluation, wall_s);
+            prop_assert!(taken == sound || value.is_nan(), "{value}, {wall_s} s");
         }
     }
 }

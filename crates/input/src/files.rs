@@ -177,11 +177,18 @@ impl Table {
         let written = match kept == self.text.len() {
             true => self.rewrite(kept, new),
             false => {
-                // A copy, for the case that the process dies in between.
+                // A copy, for the case that the process dies in between; nobody's file is written over.
                 let mut name = self.path.file_name().unwrap_or_default().to_owned();
                 name.push(".before");
                 let copy = self.path.with_file_name(name);
-                write_own(&copy, self.text.as_bytes())?;
+                let taken = |error: io::Error| {
+                    let problem = format!("{}: {error}; remove it first", copy.display());
+                    io::Error::new(error.kind(), problem)
+                };
+                let mut file =
+                    File::options().write(true).create_new(true).open(&copy).map_err(taken)?;
+                file.write_all(self.text.as_bytes())?;
+                file.sync_all()?;
                 let written = self.rewrite(0, new);
                 if written.is_ok() {
                     fs::remove_file(copy)?;
@@ -354,6 +361,11 @@ mod tests {
         lines.dedup();
         assert_eq!(lines.len(), 200);
         let mut table = Table::open(&path, LARGEST_INPUT).unwrap();
+        let other = dir.path().join("table.csv.before");
+        fs::write(&other, "somebody's").unwrap();
+        assert!(table.replace("another beginning\n").is_err(), "a neighbour is not written over");
+        assert_eq!(fs::read_to_string(&other).unwrap(), "somebody's");
+        fs::remove_file(other).unwrap();
         table.replace("another beginning\n").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "another beginning\n");
         drop(Table::open(&dir.path().join("new.csv"), LARGEST_INPUT).unwrap());

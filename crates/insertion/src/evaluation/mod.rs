@@ -132,7 +132,8 @@ pub struct SuccessRate {
 impl SuccessRate {
     /// Trials that ended one way or the other.
     pub fn counted(&self) -> u32 {
-        self.inserted + self.failure_counts.iter().sum::<u32>()
+        let failed = self.failure_counts.iter();
+        failed.fold(self.inserted, |sum, &count| sum.saturating_add(count))
     }
 
     /// Share of the counted trials that inserted, 0 to 1; `None` if none counts.

@@ -8,6 +8,7 @@ use ask_tell::stream::stream;
 use input::units::MM;
 use rand::RngExt;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Share by which both coefficients of friction vary, each by itself.
 pub const FRICTION_SHARE: f64 = 0.1;
@@ -22,6 +23,7 @@ const INSIDE_STRIDE: OffsetStep = 5;
 /// One finger grasped again and again under slightly different conditions.
 pub struct Repeats<'a> {
     runs: Vec<(Box<dyn Grasped + 'a>, f64)>,
+    stop: &'a AtomicBool,
 }
 
 impl<'a> Repeats<'a> {
@@ -39,12 +41,19 @@ impl<'a> Repeats<'a> {
             let rig = rigs[index as usize % rigs.len()];
             (rig.hold(Grasp { conditions, ..grasp }), around(START))
         };
-        Repeats { runs: (0..count).into_par_iter().map(run).collect() }
+        Repeats { runs: (0..count).into_par_iter().map(run).collect(), stop: grasp.stop }
     }
 
     /// Outcome of each run with the start shifted by `offset` metres beside its own change.
     pub fn outcomes(&self, offset: f64) -> Vec<Outcome> {
-        self.runs.par_iter().map(|(grasped, shift)| grasped.trial(offset + shift).outcome).collect()
+        let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
+            // Even a trial that ends at once begins with a copy of its world.
+            match self.stop.load(Ordering::Relaxed) {
+                true => Outcome::Diverged,
+                false => grasped.trial(offset + shift).outcome,
+            }
+        };
+        self.runs.par_iter().map(trial).collect()
     }
 
     pub(super) fn count(&self) -> usize {

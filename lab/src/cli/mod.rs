@@ -3,7 +3,9 @@
 mod benchmark;
 mod check;
 mod cross_check;
+mod landscape;
 mod optimizers;
+mod settle;
 mod validate;
 
 use clap::{Parser, Subcommand};
@@ -39,6 +41,10 @@ enum Command {
     Benchmark(benchmark::Arguments),
     #[command(after_help = "Example: lab optimizers --functions branin --optimizers gp")]
     Optimizers(optimizers::Arguments),
+    #[command(after_help = "Example: lab settle --landscape results/reference/landscapes/usb.csv")]
+    Settle(settle::Arguments),
+    #[command(after_help = "Example: lab landscape --task usb --out usb.csv")]
+    Landscape(landscape::Arguments),
 }
 
 /// Runs `lab` with these arguments, the program's name first.
@@ -58,6 +64,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Validate(arguments) => validate::run(arguments),
         Command::Benchmark(arguments) => benchmark::run(arguments),
         Command::Optimizers(arguments) => optimizers::run(arguments),
+        Command::Landscape(arguments) => landscape::run(arguments),
+        Command::Settle(arguments) => settle::run(arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -48,9 +48,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn problem(file: &Path) -> Result<GridProblem, Failure> {
+    let (name, landscape) = landscape(file)?;
+    Ok(GridProblem::of_landscape(&name, landscape))
+}
+
+/// A recorded landscape, and its name.
+pub(super) fn landscape(file: &Path) -> Result<(String, Landscape), Failure> {
     let path = file.display().to_string();
     let source = shipped::resolve("landscape", &[], &path).map_err(Failure::input)?;
     let landscape = Landscape::parse(&source.text, &source.file).map_err(Failure::input)?;
-    let name = file.file_stem().unwrap_or_default().to_string_lossy();
-    Ok(GridProblem::of_landscape(&name, landscape))
+    let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok((name, landscape))
 }

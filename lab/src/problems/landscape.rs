@@ -1,4 +1,4 @@
-//! Recorded landscapes: the tolerable range of every design of a space.
+//! Recorded landscapes: the tolerable range of every design of a space, and what is firm of some.
 
 use ask_tell::{Grid, GridPoint};
 use input::InputError;
@@ -6,6 +6,8 @@ use std::collections::BTreeMap;
 
 /// Column of the values; the columns before it are the axes.
 const VALUE: &str = "range_mm";
+/// Columns of what confirms a design, where the landscape has them.
+const FIRM: [&str; 2] = ["repeated_mm", "firm_mm"];
 
 /// Tolerable range of every design of a space, mm; `None` where the evaluation diverged.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,7 +15,12 @@ pub struct Landscape {
     pub grid: Grid,
     /// By level of each axis.
     values: BTreeMap<Vec<u32>, Option<f64>>,
+    /// Firm ranges of some, within the searched window and within the walked one, mm.
+    firm: BTreeMap<Vec<u32>, [f64; 2]>,
 }
+
+/// A line: the axes, the value, the firm ranges.
+type Row = (Vec<f64>, Option<f64>, Option<[f64; 2]>);
 
 impl Landscape {
     /// Landscape of a CSV: a header, the axes, then `range_mm` (empty for no value), then anything.
@@ -25,8 +32,9 @@ impl Landscape {
         let axes = axes
             .ok_or_else(|| format!("the header must name the axes and then {VALUE}: '{header}'"));
         let axes = axes.map_err(fail)?;
+        let firm = FIRM.map(|firm| header.split(',').position(|name| name == firm));
         let row = |line: &str| {
-            row(line, axes).ok_or_else(|| {
+            row(line, axes, firm).ok_or_else(|| {
                 format!("'{line}' does not begin with {axes} finite numbers and {VALUE}")
             })
         };
@@ -34,10 +42,10 @@ impl Landscape {
         rows.and_then(|rows| Self::of(&rows, axes)).map_err(fail)
     }
 
-    fn of(rows: &[(Vec<f64>, Option<f64>)], axes: usize) -> Result<Self, String> {
+    fn of(rows: &[Row], axes: usize) -> Result<Self, String> {
         let levels: Vec<Vec<f64>> = (0..axes)
             .map(|axis| {
-                let mut levels: Vec<f64> = rows.iter().map(|(at, _)| at[axis]).collect();
+                let mut levels: Vec<f64> = rows.iter().map(|(at, ..)| at[axis]).collect();
                 levels.sort_by(f64::total_cmp);
                 levels.dedup();
                 levels
@@ -47,11 +55,14 @@ impl Landscape {
         if rows.is_empty() || grid.size() != rows.len() as u64 {
             return Err(format!("{} rows for a grid of {} designs", rows.len(), grid.size()));
         }
-        let mut values = BTreeMap::new();
-        for (at, value) in rows {
+        let (mut values, mut firm) = (BTreeMap::new(), BTreeMap::new());
+        for (at, value, confirmed) in rows {
             // Every number is among the levels: they were made of the rows.
             let level = |(at, levels): (&f64, &Vec<f64>)| levels.partition_point(|l| l < at) as u32;
-            let point = at.iter().zip(&levels).map(level).collect();
+            let point: Vec<u32> = at.iter().zip(&levels).map(level).collect();
+            if let Some(confirmed) = confirmed {
+                firm.insert(point.clone(), *confirmed);
+            }
             if values.insert(point, *value).is_some() {
                 return Err(format!("two rows of the design {at:?}"));
             }
@@ -59,11 +70,35 @@ impl Landscape {
         if values.values().all(Option::is_none) {
             return Err("no design has a value".to_owned());
         }
-        Ok(Landscape { grid, values })
+        Ok(Landscape { grid, values, firm })
     }
 
     pub fn value(&self, point: &GridPoint) -> Option<f64> {
         self.values.get(&point.0).copied().flatten()
+    }
+
+    /// Firm ranges of a design within its searched and its walked window, mm. Of a design that was
+    /// not confirmed its range less the drops of the nearest one that was.
+    pub fn firm(&self, point: &GridPoint) -> Option<[f64; 2]> {
+        let value = self.value(point)?;
+        if let Some(firm) = self.firm.get(&point.0) {
+            return Some(*firm);
+        }
+        let far = |other: &Vec<u32>| -> u64 {
+            other.iter().zip(&point.0).map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2)).sum()
+        };
+        let nearest = self.firm.iter().min_by_key(|(other, _)| far(other));
+        let drops = nearest.and_then(|(other, firm)| {
+            let own = self.values.get(other).copied().flatten()?;
+            Some(firm.map(|firm| own - firm))
+        });
+        Some(drops.unwrap_or([0.0; 2]).map(|drop| (value - drop).max(0.0)))
+    }
+
+    /// The largest firm range within a walked window; of a landscape without any the largest value.
+    pub fn best_firm(&self) -> f64 {
+        let firm = self.firm.values().map(|[_, firm]| *firm).reduce(f64::max);
+        firm.unwrap_or_else(|| self.best())
     }
 
     pub fn best(&self) -> f64 {
@@ -71,7 +106,7 @@ impl Landscape {
     }
 }
 
-fn row(line: &str, axes: usize) -> Option<(Vec<f64>, Option<f64>)> {
+fn row(line: &str, axes: usize, firm: [Option<usize>; 2]) -> Option<Row> {
     let number = |cell: &str| cell.parse::<f64>().ok().filter(|number| number.is_finite());
     let mut cells = line.split(',');
     let at = cells.by_ref().take(axes).map(number).collect::<Option<Vec<f64>>>()?;
@@ -79,7 +114,10 @@ fn row(line: &str, axes: usize) -> Option<(Vec<f64>, Option<f64>)> {
         "" => None,
         cell => Some(number(cell)?),
     };
-    (at.len() == axes).then_some((at, value))
+    let cell = |place: Option<usize>| line.split(',').nth(place?).and_then(number);
+    let [repeated, walked] = firm.map(cell);
+    let firm = repeated.zip(walked).map(|(repeated, walked)| [repeated, walked]);
+    (at.len() == axes).then_some((at, value, firm))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Values in the units of a model.
 
-use super::warp::warp;
+use super::warp::{Warp, warp};
 
 /// Values in the model's units: mean 0, variance 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +11,24 @@ pub(super) struct Standardised {
     pub noise_floor: f64,
     /// Zero of the values given, in the model's units.
     pub zero: f64,
+    /// The way to the model's units.
+    pub scale: Scale,
+}
+
+/// The way from a value as given to the model's units.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Scale {
+    mean: f64,
+    /// 0 of values that do not differ.
+    deviation: f64,
+    warp: Option<Warp>,
+}
+
+impl Scale {
+    fn of(&self, value: f64) -> f64 {
+        let standard = (value - self.mean) / self.deviation;
+        self.warp.map_or(standard, |warp| warp.of(standard))
+    }
 }
 
 /// Standardises `values`; `noise_floor` is a standard deviation in objective units.
@@ -33,12 +51,14 @@ pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<St
             values: vec![0.0; filled.len()],
             noise_floor: 1e-6,
             zero: -mean,
+            scale: Scale { mean: mean * unit, ..Scale::default() },
         });
     }
     let floor = noise_floor / unit / deviation;
     let values = filled.iter().map(|v| (v - mean) / deviation).collect();
     let noise_floor = (floor * floor).clamp(1e-8, 1.0);
-    Some(Standardised { values, noise_floor, zero: -mean / deviation })
+    let scale = Scale { mean: mean * unit, deviation: deviation * unit, warp: None };
+    Some(Standardised { values, noise_floor, zero: -mean / deviation, scale })
 }
 
 impl Standardised {
@@ -46,9 +66,16 @@ impl Standardised {
     /// the noise floor at the scale's average slope; unchanged if there is none. The zero has
     /// no meaning then.
     pub fn warped(self) -> Self {
-        let Some((values, slope)) = warp(&self.values) else { return self };
-        let noise_floor = (self.noise_floor * slope * slope).clamp(1e-8, 1.0);
-        Standardised { values, noise_floor, zero: f64::NAN }
+        let Some((values, warp)) = warp(&self.values) else { return self };
+        let noise_floor = (self.noise_floor * warp.slope * warp.slope).clamp(1e-8, 1.0);
+        let scale = Scale { warp: Some(warp), ..self.scale };
+        Standardised { values, noise_floor, zero: f64::NAN, scale }
+    }
+
+    /// A value as given in the model's units: plus or minus infinity away from values that do not
+    /// differ.
+    pub fn of(&self, value: f64) -> f64 {
+        self.scale.of(value)
     }
 }
 

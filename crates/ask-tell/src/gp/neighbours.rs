@@ -96,13 +96,14 @@ impl Neighbours {
 
 #[cfg(test)]
 mod tests {
+    use super::super::data::Scale;
     use super::*;
 
     fn known() -> Neighbours {
         let x: Vec<Vec<f64>> =
             (0..60).map(|i| vec![f64::from(i) / 59.0, f64::from(i * 23 % 60) / 59.0]).collect();
-        let values = x.iter().map(|p| (5.0 * p[0]).sin() + p[1]).collect();
-        let data = Standardised { values, noise_floor: 1e-6, zero: 0.0 };
+        let values: Vec<f64> = x.iter().map(|p| (5.0 * p[0]).sin() + p[1]).collect();
+        let data = Standardised { values, noise_floor: 1e-6, zero: 0.0, scale: Scale::default() };
         let theta =
             Hyperparameters { log_length: vec![-1.0, 0.0], log_signal: 0.0, log_noise: -12.0 };
         Neighbours::new(x, vec![data], vec![theta], Vec::new())

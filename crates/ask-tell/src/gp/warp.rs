@@ -11,10 +11,26 @@ use libm::{exp, log, log1p, pow};
 /// Values by which the exponent is chosen, at most.
 const CHOOSING: usize = 250;
 
-/// Warps standardised values with the best of the exponents -1, -0.9 .. 3 (1 changes nothing).
-/// The new values have mean 0 and variance 1 again; with them comes the geometric mean of the slope
-/// of the whole transformation. `None` if no exponent gives finite values that differ.
-pub(super) fn warp(values: &[f64]) -> Option<(Vec<f64>, f64)> {
+/// A transformation: the power, then mean 0 and variance 1 again.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Warp {
+    lambda: f64,
+    mean: f64,
+    deviation: f64,
+    /// Geometric mean of the slope over the values that it was made of.
+    pub slope: f64,
+}
+
+impl Warp {
+    /// A standardised value, warped.
+    pub fn of(&self, value: f64) -> f64 {
+        (yeo_johnson(value, self.lambda) - self.mean) / self.deviation
+    }
+}
+
+/// The transformation of standardised values by the best of the exponents -1, -0.9 .. 3 (1 changes
+/// nothing), and the values under it. `None` if no exponent gives finite values that differ.
+pub(super) fn warp(values: &[f64]) -> Option<(Vec<f64>, Warp)> {
     let sample: Vec<f64> = spread(values.len(), CHOOSING).map(|i| values[i]).collect();
     let mut best: Option<(f64, f64)> = None;
     for step in 0..=40 {
@@ -24,12 +40,12 @@ pub(super) fn warp(values: &[f64]) -> Option<(Vec<f64>, f64)> {
             best = Some((likelihood, lambda));
         }
     }
-    let (likelihood, values, slope) = warped(values, best?.1);
-    likelihood.is_finite().then_some((values, slope))
+    let (likelihood, values, warp) = warped(values, best?.1);
+    likelihood.is_finite().then_some((values, warp))
 }
 
-/// Log likelihood of one exponent, the values under it, and the mean slope.
-fn warped(values: &[f64], lambda: f64) -> (f64, Vec<f64>, f64) {
+/// Log likelihood of one exponent, the values under it, and the transformation.
+fn warped(values: &[f64], lambda: f64) -> (f64, Vec<f64>, Warp) {
     let n = values.len() as f64;
     // log of the transformation's slope is (lambda - 1) times this, summed over the values.
     let log_slope: f64 = values.iter().map(|y| y.signum() * log1p(y.abs())).sum();
@@ -40,7 +56,7 @@ fn warped(values: &[f64], lambda: f64) -> (f64, Vec<f64>, f64) {
     let deviation = variance.sqrt();
     let values = bent.iter().map(|t| (t - mean) / deviation).collect();
     let slope = exp((lambda - 1.0) * log_slope / n) / deviation;
-    (likelihood, values, slope)
+    (likelihood, values, Warp { lambda, mean, deviation, slope })
 }
 
 fn yeo_johnson(y: f64, lambda: f64) -> f64 {
@@ -74,10 +90,11 @@ mod tests {
         let mean = raw.iter().sum::<f64>() / 30.0;
         let deviation = (raw.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 30.0).sqrt();
         let standard: Vec<f64> = raw.iter().map(|v| (v - mean) / deviation).collect();
-        let (values, slope) = warp(&standard).unwrap();
+        let (values, warp) = warp(&standard).unwrap();
+        assert!(standard.iter().zip(&values).all(|(&y, t)| (warp.of(y) - t).abs() < 1e-12));
         let skew = |v: &[f64]| v.iter().map(|t| t.powi(3)).sum::<f64>() / 30.0;
         assert!(skew(&standard) > 1.0 && skew(&values).abs() < 0.5);
-        assert!(slope > 0.0 && slope.is_finite());
+        assert!(warp.slope > 0.0 && warp.slope.is_finite());
     }
 
     #[test]

@@ -5,6 +5,7 @@ mod check;
 mod cross_check;
 mod optimizers;
 mod validate;
+mod windows;
 
 use clap::{Parser, Subcommand};
 use finger_opt::cli::terminal::{print, print_json, say};
@@ -37,6 +38,8 @@ enum Command {
     Validate(validate::Arguments),
     #[command(after_help = "Example: lab benchmark --repeats 8")]
     Benchmark(benchmark::Arguments),
+    #[command(after_help = "Example: lab windows --random 40 --out windows.csv")]
+    Windows(windows::Arguments),
     #[command(after_help = "Example: lab optimizers --functions branin --optimizers gp")]
     Optimizers(optimizers::Arguments),
 }
@@ -57,6 +60,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::CrossCheck(arguments) => cross_check::run(arguments),
         Command::Validate(arguments) => validate::run(arguments),
         Command::Benchmark(arguments) => benchmark::run(arguments),
+        Command::Windows(arguments) => windows::run(arguments),
         Command::Optimizers(arguments) => optimizers::run(arguments),
     };
     match done {

@@ -207,7 +207,7 @@ mod tests {
             "{said}"
         );
         let other = Row { finger: "usb,4,20,7".to_owned(), ..truth.clone() };
-        assert!(compare(&[truth.clone()], &[other]).contains("firm 0 of 0"));
+        assert!(compare(std::slice::from_ref(&truth), &[other]).contains("firm 0 of 0"));
         let fails = Row { nominal: "failed".to_owned(), ..truth.clone() };
         assert!(compare(&[truth], &[fails]).contains("firm 1 of 1, unfirm 1 of 1"));
     }

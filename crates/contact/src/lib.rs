@@ -128,6 +128,9 @@ pub trait World: Send + Sync {
     /// Length of one step, s.
     fn step_s(&self) -> f64;
 
+    /// Sets the length of the steps to come, s; an engine that cannot keeps its own.
+    fn set_step(&mut self, _step_s: f64) {}
+
     /// Frame of a body in the world.
     fn pose(&self, body: BodyId) -> Pose;
 

@@ -7,6 +7,7 @@ mod landscape;
 mod optimizers;
 mod settle;
 mod validate;
+mod windows;
 
 use clap::{Parser, Subcommand};
 use finger_opt::cli::terminal::{print, print_json, say};
@@ -39,6 +40,8 @@ enum Command {
     Validate(validate::Arguments),
     #[command(after_help = "Example: lab benchmark --repeats 8")]
     Benchmark(benchmark::Arguments),
+    #[command(after_help = "Example: lab windows --random 40 --out windows.csv")]
+    Windows(windows::Arguments),
     #[command(after_help = "Example: lab optimizers --functions branin --optimizers gp")]
     Optimizers(optimizers::Arguments),
     #[command(after_help = "Example: lab settle --landscape results/reference/landscapes/usb.csv")]
@@ -63,6 +66,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::CrossCheck(arguments) => cross_check::run(arguments),
         Command::Validate(arguments) => validate::run(arguments),
         Command::Benchmark(arguments) => benchmark::run(arguments),
+        Command::Windows(arguments) => windows::run(arguments),
         Command::Optimizers(arguments) => optimizers::run(arguments),
         Command::Landscape(arguments) => landscape::run(arguments),
         Command::Settle(arguments) => settle::run(arguments),

@@ -3,6 +3,7 @@
 pub mod engines;
 pub mod pairs;
 pub mod published;
+pub mod windows;
 
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,13 @@
-//! Collision detection: the points at which bodies of the listed pairs touch or are about to. Steps
-//! share only parry's guess of a separating direction, so a contact's normal is always up to date.
+//! Collision detection: the points at which bodies of the listed pairs touch or are about to. While
+//! two shapes hardly move against one another their points stay, and only the gaps are renewed.
+
+#[cfg(test)]
+mod tests;
 
 use super::body::MovingBody;
 use crate::scene::{Friction, Geom, GeomPair, Pose, Scene};
 use crate::shapes;
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use parry::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry::shape::SharedShape;
 use rapier3d_f64::parry;
@@ -18,6 +21,9 @@ const POINTS: usize = 4;
 const COVER: f64 = 20e-6;
 /// Tolerance for a neighbour, m: more than contacts sink, less than any gap.
 const SEAM: f64 = 2e-6;
+/// Way that two shapes may move against one another before their points are found anew, m: a
+/// hundredth of the offset grid, a twentieth of the gap at which contacts are foreseen.
+const STILL: f64 = 10e-6;
 
 /// Point of contact between two bodies.
 #[derive(Debug, Clone, Copy)]
@@ -49,6 +55,11 @@ struct Solid {
     /// Enclosing box in the world's axes, m.
     low: Vector3<f64>,
     high: Vector3<f64>,
+    /// Axes and centre of the enclosing box in the world.
+    axes: Matrix3<f64>,
+    centre: Vector3<f64>,
+    /// Farthest point of the shape from the origin of parry's frame, m.
+    reach: f64,
     /// Other shapes of the same body that may cover a part of this one.
     neighbours: Vec<usize>,
 }
@@ -58,6 +69,12 @@ struct Solid {
 pub(super) struct Candidate {
     pair: GeomPair,
     manifold: ContactManifold<(), ()>,
+    /// Pose of the second shape in the frame of the first when the points were found.
+    found_at: Option<Pose>,
+    /// Normal, in the frame of the first shape.
+    axis: Vector3<f64>,
+    /// Points on the surfaces of both, in the frame of each, m.
+    points: Vec<[Point3<f64>; 2]>,
 }
 
 /// Shapes of a scene and the pairs of them that may touch.
@@ -82,7 +99,13 @@ impl Detector {
                 |&j: &usize| j != i && solids[j].body == own.body && !own.apart(&solids[j], COVER);
             solids[i].neighbours = all.filter(near).collect();
         }
-        let candidate = |pair: GeomPair| Candidate { pair, manifold: ContactManifold::new() };
+        let candidate = |pair: GeomPair| Candidate {
+            pair,
+            manifold: ContactManifold::new(),
+            found_at: None,
+            axis: Vector3::zeros(),
+            points: Vec::new(),
+        };
         let candidates = scene.geom_pairs().into_iter().map(candidate).collect();
         Detector { solids, candidates, prediction }
     }
@@ -96,14 +119,19 @@ impl Detector {
         for (geoms, candidate) in self.candidates.iter_mut().enumerate() {
             let (first, second) =
                 (&self.solids[candidate.pair.first], &self.solids[candidate.pair.second]);
-            if first.apart(second, self.prediction) {
+            if first.apart(second, self.prediction) || first.separated(second, self.prediction) {
                 continue;
             }
             let pose = bodies[first.body].pose * first.pose;
             let other = bodies[second.body].pose * second.pose;
-            candidate.compute(&pose, &other, (first, second), self.prediction);
-            candidate.drop_covered(&self.solids);
-            candidate.report(geoms, &pose, self.prediction, found);
+            let relative = pose.inv_mul(&other);
+            if !candidate.still(&relative, second.reach) {
+                candidate.compute(&relative, (first, second), self.prediction);
+                candidate.drop_covered(&self.solids);
+                candidate.choose(self.prediction);
+                candidate.found_at = Some(relative);
+            }
+            candidate.report(geoms, &pose, &relative, found);
         }
     }
 }
@@ -120,6 +148,9 @@ impl Solid {
             half,
             low: Vector3::zeros(),
             high: Vector3::zeros(),
+            axes: Matrix3::identity(),
+            centre: Vector3::zeros(),
+            reach: centre.norm() + half.norm(),
             neighbours: Vec::new(),
         };
         solid.enclose(&Pose::identity());
@@ -128,9 +159,20 @@ impl Solid {
 
     fn enclose(&mut self, body: &Pose) {
         let frame = body * self.frame;
-        let reach = frame.rotation.to_rotation_matrix().into_inner().abs() * self.half;
-        self.low = frame.translation.vector - reach;
-        self.high = frame.translation.vector + reach;
+        self.axes = frame.rotation.to_rotation_matrix().into_inner();
+        self.centre = frame.translation.vector;
+        let reach = self.axes.abs() * self.half;
+        self.low = self.centre - reach;
+        self.high = self.centre + reach;
+    }
+
+    /// Whether a face of one of the enclosing boxes separates them.
+    fn separated(&self, other: &Solid, margin: f64) -> bool {
+        let apart = self.centre - other.centre;
+        let turn = self.axes.tr_mul(&other.axes);
+        let own = self.axes.tr_mul(&apart).abs() - self.half - turn.abs() * other.half;
+        let its = other.axes.tr_mul(&apart).abs() - other.half - turn.abs().tr_mul(&self.half);
+        own.max() > margin || its.max() > margin
     }
 
     fn apart(&self, other: &Solid, margin: f64) -> bool {
@@ -154,10 +196,10 @@ impl Solid {
 
 impl Candidate {
     /// Computes the manifold from scratch.
-    fn compute(&mut self, first: &Pose, second: &Pose, solids: (&Solid, &Solid), prediction: f64) {
+    fn compute(&mut self, relative: &Pose, solids: (&Solid, &Solid), prediction: f64) {
         // With points left in it parry would only move them along.
         self.manifold.points.clear();
-        let relative = shapes::pose(&first.inv_mul(second), MILLIMETRES);
+        let relative = shapes::pose(relative, MILLIMETRES);
         // No error is reached: every shape that a scene can hold is convex.
         let _ = DefaultQueryDispatcher.contact_manifold_convex_convex(
             &relative,
@@ -185,31 +227,36 @@ impl Candidate {
         });
     }
 
-    /// Appends the manifold's extreme points.
-    fn report(&mut self, geoms: usize, first: &Pose, prediction: f64, found: &mut Vec<Touch>) {
+    /// Whether no point of the second shape, which reaches so far, m, has moved against the first
+    /// since the points were found.
+    fn still(&self, relative: &Pose, reach: f64) -> bool {
+        self.found_at.as_ref().is_some_and(|before| {
+            let moved = (relative.translation.vector - before.translation.vector).norm();
+            // Half the angle, if it is small; of a quaternion that changed its sign about 2.
+            let turned = relative.rotation.coords - before.rotation.coords;
+            moved + 2.0 * turned.norm() * reach < STILL
+        })
+    }
+
+    /// Keeps the manifold's extreme points.
+    fn choose(&mut self, prediction: f64) {
         let limit = prediction * MILLIMETRES;
         self.manifold.points.retain(|point| point.dist <= limit);
         let axis = Vector3::from(self.manifold.local_n1);
-        let normal = first.rotation * axis;
-        let middle = |i: usize| {
-            let point = &self.manifold.points[i];
-            (Vector3::from(point.local_p1) + axis * (0.5 * point.dist)) / MILLIMETRES
-        };
+        self.axis = axis;
+        self.points.clear();
+        let points = &self.manifold.points;
+        let place = |i: usize| Vector3::from(points[i].local_p1);
+        let middle = |i: usize| place(i) + axis * (0.5 * points[i].dist);
         let add = |i: usize| {
-            found.push(Touch {
-                pair: self.pair.bodies,
-                geoms,
-                point: first * Point3::from(middle(i)),
-                normal,
-                gap: self.manifold.points[i].dist / MILLIMETRES,
-                friction: self.pair.friction,
-            });
+            let second = Vector3::from(points[i].local_p2);
+            self.points.push([place(i), second].map(|place| Point3::from(place / MILLIMETRES)));
         };
-        let count = self.manifold.points.len();
+        let count = points.len();
         if count <= POINTS {
             return (0..count).for_each(add);
         }
-        let deepest = best(count, |i| -self.manifold.points[i].dist);
+        let deepest = best(count, |i| -points[i].dist);
         let far = best(count, |i| (middle(i) - middle(deepest)).norm_squared());
         let line = middle(far) - middle(deepest);
         let side = |i: usize| line.cross(&(middle(i) - middle(deepest))).dot(&axis);
@@ -217,6 +264,22 @@ impl Candidate {
         chosen.sort_unstable();
         chosen.dedup();
         chosen.into_iter().for_each(add);
+    }
+
+    /// Appends the points with the gaps that they have now.
+    fn report(&self, geoms: usize, first: &Pose, relative: &Pose, found: &mut Vec<Touch>) {
+        let normal = first.rotation * self.axis;
+        for [own, other] in &self.points {
+            let gap = (relative * other - own).dot(&self.axis);
+            found.push(Touch {
+                pair: self.pair.bodies,
+                geoms,
+                point: first * (own + self.axis * (0.5 * gap)),
+                normal,
+                gap,
+                friction: self.pair.friction,
+            });
+        }
     }
 }
 

@@ -12,8 +12,10 @@ use super::cone::{Cone, Pull, State};
 use super::dense::{self, Six};
 use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
 
-/// Out-of-balance force at which iterations end, N (N per 10 mm for moments).
+/// Least out-of-balance force at which iterations end, N (N per 10 mm for moments).
 const FORCE_TOLERANCE: f64 = 1e-4;
+/// ... and as a share of the largest normal force.
+const FORCE_SHARE: f64 = 1e-3;
 /// Arm by which moments are compared with forces, m.
 const ARM: f64 = 0.01;
 /// Most Newton iterations in a step.
@@ -147,7 +149,9 @@ impl Solver {
         for _ in 0..ROUNDS {
             while iterations < ITERATIONS {
                 // A NaN goes on, and is found when the matrix is factored.
-                if self.slope(contacts) < step * FORCE_TOLERANCE {
+                let slope = self.slope(contacts);
+                let pressed = contacts.iter().map(|c| c.impulse.dot(&c.normal)).fold(0.0, f64::max);
+                if slope < (step * FORCE_TOLERANCE).max(FORCE_SHARE * pressed) {
                     break;
                 }
                 iterations += 1;

@@ -233,6 +233,10 @@ impl World for DirectWorld {
         self.settings.step_s
     }
 
+    fn set_step(&mut self, step_s: f64) {
+        self.settings.step_s = step_s;
+    }
+
     fn pose(&self, body: BodyId) -> Pose {
         self.bodies[body.0].pose
     }

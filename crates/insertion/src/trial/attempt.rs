@@ -23,6 +23,8 @@ pub mod driven;
 
 /// Rest after a move that has none of its own, s.
 const REST: f64 = 0.03;
+/// Length of a step in the grasp and in rests, in steps of the engine.
+const COARSE: f64 = 2.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Stop {
@@ -133,13 +135,7 @@ impl<'a> Attempt<'a> {
     /// Grasp, lift, tilt, carry to the start, and the approach through the air.
     pub fn prepare(&mut self) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
-        for i in 1..=self.steps(GRASP_S) {
-            let time = i as f64 * self.world.step_s();
-            for (side, hand) in self.cell.hands.iter().enumerate() {
-                self.world.set_spring(hand.slide, 1, cell::closing(side, task.grip.force, time));
-            }
-            self.step()?;
-        }
+        self.coarsely(Self::close)?;
         self.grasp = self.grasp_points();
         if task.grip.hold == Hold::Always {
             self.hold();
@@ -152,6 +148,19 @@ impl<'a> Attempt<'a> {
         self.end_phase("carry");
         for phase in task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach) {
             self.phase(phase)?;
+        }
+        Ok(())
+    }
+
+    /// Closes the jaws.
+    fn close(&mut self) -> Result<(), Stop> {
+        let task = Arc::clone(&self.task);
+        for i in 1..=self.steps(GRASP_S) {
+            let time = i as f64 * self.world.step_s();
+            for (side, hand) in self.cell.hands.iter().enumerate() {
+                self.world.set_spring(hand.slide, 1, cell::closing(side, task.grip.force, time));
+            }
+            self.step()?;
         }
         Ok(())
     }
@@ -202,12 +211,21 @@ impl<'a> Attempt<'a> {
     }
 
     fn follow(&mut self, motion: Move, rest: f64) -> Result<(), Stop> {
-        let steps = self.steps(motion.duration + rest);
-        for i in 1..=steps {
+        for i in 1..=self.steps(motion.duration) {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
         }
-        Ok(())
+        self.target = motion.at(f64::INFINITY);
+        self.coarsely(|attempt| (0..attempt.steps(rest)).try_for_each(|_| attempt.step()))
+    }
+
+    /// Takes longer steps meanwhile, while nothing is commanded to move.
+    fn coarsely<T>(&mut self, steps: impl FnOnce(&mut Self) -> T) -> T {
+        let fine = self.world.step_s();
+        self.world.set_step(fine * COARSE);
+        let result = steps(self);
+        self.world.set_step(fine);
+        result
     }
 
     /// Commands a move and waits until the TCP is there, as near as asked.

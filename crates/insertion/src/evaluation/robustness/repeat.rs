@@ -67,6 +67,22 @@ impl<'a> Repeats<'a> {
         self.runs.get(run).map(trial) == Some(Outcome::Inserted)
     }
 
+    /// Whether every repeat walks to an end within so many grid steps of this one; `sign` is its
+    /// direction, -1 or 1. Only the end's neighbourhood is tried.
+    pub fn end_within(&self, allowed: OffsetStep, sign: OffsetStep, end: OffsetStep) -> bool {
+        let (inner, outer) = ((end - allowed).max(0), end + allowed + 1);
+        let ends = |run: usize| {
+            self.inserts(run, sign * inner)
+                && (inner + 1..=outer).rev().any(|step| !self.inserts(run, sign * step))
+        };
+        (0..self.count()).all(ends)
+    }
+
+    /// Whether no repeat inserts from the nominal start.
+    pub fn fail_at_nominal(&self) -> bool {
+        self.inserted(0) == 0
+    }
+
     fn inserted(&self, step: OffsetStep) -> usize {
         let outcomes = self.outcomes(tolerance::offset(step));
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()

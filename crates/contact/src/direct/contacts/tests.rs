@@ -1,0 +1,62 @@
+//! What the detector spares, against what it would find anew.
+
+use super::*;
+use crate::scene::{Body, BodyId, Motion, Shape};
+use nalgebra::{Translation3, UnitQuaternion};
+
+/// Two cubes of 10 mm, the second at a pose.
+fn cubes(pose: Pose) -> (Detector, Vec<MovingBody>) {
+    let mut scene = Scene::default();
+    for pose in [Pose::identity(), pose] {
+        let shape = Shape::Box { half: Vector3::repeat(5e-3) };
+        let geom = Geom { name: String::new(), shape, pose: Pose::identity(), friction: None };
+        scene.body(Body { name: String::new(), motion: Motion::Fixed, pose, geoms: vec![geom] });
+    }
+    scene.contact(BodyId(0), BodyId(1), Friction::hard(0.3));
+    let bodies = scene.bodies.iter().map(|body| MovingBody::new(body, 0)).collect();
+    (Detector::new(&scene, 0.2e-3), bodies)
+}
+
+fn found((detector, bodies): &mut (Detector, Vec<MovingBody>)) -> Vec<Touch> {
+    let mut found = Vec::new();
+    detector.detect(bodies, &mut found);
+    found.sort_by(|a, b| a.gap.total_cmp(&b.gap));
+    found
+}
+
+fn at(x: f64, y: f64, z: f64, turn: Vector3<f64>) -> Pose {
+    Pose::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_scaled_axis(turn))
+}
+
+#[test]
+fn points_that_are_carried_on_have_the_gaps_of_points_found_anew() {
+    let turned = |x: f64| Vector3::new(x, 0.5e-4, 0.3);
+    let start = at(0.0, 0.0, 10.05e-3, turned(1e-4));
+    for (pose, along, across) in [
+        (at(3e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-8, STILL),
+        (at(30e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-12, 1e-12),
+    ] {
+        let mut carried = cubes(start);
+        assert_eq!(found(&mut carried).len(), 4);
+        carried.1[1].put(pose);
+        let (carried, anew) = (found(&mut carried), found(&mut cubes(pose)));
+        assert_eq!(carried.len(), 4);
+        for (a, b) in carried.iter().zip(&anew) {
+            assert!((a.gap - b.gap).abs() < along, "{} {}", a.gap, b.gap);
+            assert!((a.point - b.point).norm() < across, "{} {}", a.point, b.point);
+        }
+    }
+}
+
+#[test]
+fn boxes_apart_along_the_face_of_one_are_told_at_once() {
+    let turn = Vector3::z() * std::f64::consts::FRAC_PI_4;
+    // Along the diagonal the first reaches 7.07 mm, the second 5 mm.
+    for (side, apart) in [(8.5e-3, false), (8.7e-3, true)] {
+        let mut cubes = cubes(at(side, side, 0.0, turn));
+        found(&mut cubes);
+        let [first, second] = &cubes.0.solids[..] else { panic!("two") };
+        assert!(!first.apart(second, 0.0));
+        assert_eq!([first.separated(second, 0.1e-3), second.separated(first, 0.1e-3)], [apart; 2]);
+    }
+}

@@ -15,6 +15,7 @@ use super::record::Timing;
 use super::seal::{seal, sha256_hex, unseal};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Measured;
+use insertion::evaluation::robustness::race::Race;
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -35,6 +36,9 @@ pub struct Work {
     pub success_rate: bool,
     /// Whether the robust range under drawn errors is measured.
     pub robust_range: bool,
+    /// Race for the success rate, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub race: Option<Race>,
     /// How many tasks there are.
     pub tasks: u64,
     /// Provenance that it is to be measured with.
@@ -172,13 +176,22 @@ impl Work {
             let asked = [self.success_rate, self.robust_range];
             let doubtful = done.tasks.iter().find_map(|found| {
                 match asked == [found.success.is_some(), found.robust.is_some()] {
-                    true => fits::implausible(found),
+                    true => fits::implausible(found).or_else(|| self.race_problem(found)),
                     false => Some("it does not have what was asked for"),
                 }
             });
             return Ok(doubtful.or_else(|| timing.implausible()).map(str::to_owned));
         };
         Ok(Some(problem))
+    }
+
+    fn race_problem(&self, found: &Evaluation) -> Option<&'static str> {
+        let success = found.success.as_ref()?;
+        let can_be = match &self.race {
+            Some(race) => race.can_end_in(success),
+            None => success.raced().is_none(),
+        };
+        (!can_be).then_some("its race cannot have ended so")
     }
 }
 
@@ -201,6 +214,7 @@ mod tests {
             seed: 0,
             success_rate: false,
             robust_range: false,
+            race: None,
             tasks: 1,
             provenance: Provenance::new(EngineKind::Direct, BTreeMap::new()),
             inputs: Inputs::new(),
@@ -261,7 +275,8 @@ mod tests {
             let value = bounds[near] + away;
             change(&mut evaluation, value);
             // What is no number is not written as one.
-            let sound = fits::implausible(&evaluation).is_none() && wall_s >= 0.0;
+            let raced = evaluation.success.as_ref().is_some_and(|success| success.raced().is_some());
+            let sound = fits::implausible(&evaluation).is_none() && wall_s >= 0.0 && !raced;
             let taken = taken(evaluation, wall_s);
             prop_assert!(taken == sound || value.is_nan(), "{value}, {wall_s} s");
         }

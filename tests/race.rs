@@ -4,6 +4,7 @@ mod common;
 
 use ask_tell::{Grid, OptimizerKind, build};
 use common::{Studies, read};
+use finger_opt::session::{OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform};
 use finger_opt::study::{Runner, Store, Study, StudyRecord, strip_times};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Measured};
@@ -14,6 +15,8 @@ use insertion::finger::Finger;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
+use insertion::trial::NEVER;
+use insertion::trial::engine::EngineKind;
 use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
 use std::fs;
@@ -130,11 +133,18 @@ fn rates(record: &StudyRecord) -> Vec<Option<f64>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// The designs do not depend on what is told here, so both studies evaluate the same.
+    /// The designs do not depend on what is told here, so both studies evaluate the same. On one
+    /// thread results arrive in the order of their proposals, also those that are told as they come.
     #[test]
-    fn the_best_of_a_race_is_the_best_of_full_counts(table in table(), batch in 1..9u32, at in 0.0..1.0f64) {
-        let (racing, full) = (Racing::new("race = true", batch), Racing::new("", batch));
-        let (raced, counted) = (racing.run(&table, 2), full.run(&table, 1));
+    fn the_best_of_a_race_is_the_best_of_full_counts(
+        table in table(),
+        batch in 1..9u32,
+        at in 0.0..1.0f64,
+        (keys, threads) in prop::sample::select(vec![("", [2, 4]), ("async = true\n", [1, 1])]),
+    ) {
+        let racing = Racing::new(&format!("{keys}race = true"), batch);
+        let (raced, counted) =
+            (racing.run(&table, threads[0]), Racing::new(keys, batch).run(&table, 1));
         prop_assert!(counted.evaluations.iter().all(|recorded| !recorded.raced()));
         let best = |record: &StudyRecord| record.recommended().map(|best| (best.index, best.value()));
         prop_assert_eq!(best(&raced), best(&counted));
@@ -153,7 +163,7 @@ proptest! {
         let expected = racing.journal();
         let kept = (at * racing.store.0.lock().unwrap().len() as f64) as usize;
         racing.store.0.lock().unwrap().truncate(kept);
-        racing.run(&table, 4);
+        racing.run(&table, threads[1]);
         prop_assert_eq!(racing.journal(), expected);
     }
 
@@ -188,12 +198,35 @@ proptest! {
     }
 }
 
-/// A cell in which fingers differ: every third start or so is outside of the closed form's window.
+/// Errors by another name than the shipped ones, kept with the study.
 fn errors(studies: &Studies) -> String {
     let path = studies.dir("errors.toml");
     let text = include_str!("../uncertainties/typical.toml");
     fs::write(&path, text.replace("\"typical\"", "\"mine\"")).unwrap();
     path.to_str().unwrap().to_owned()
+}
+
+/// The journal of a study that is measured by workers.
+fn by_workers(studies: &Studies, errors: &str) -> String {
+    let setup = SetupRequest {
+        tasks: TaskSource::list("usb"),
+        engine: EngineKind::Fake,
+        ..SetupRequest::default()
+    };
+    let request = StudyRequest {
+        objective: "success-rate".parse().unwrap(),
+        uncertainty: Some(errors.to_owned()),
+        out: Some(studies.dir("workers")),
+        ..StudyRequest::new(setup, 24)
+    };
+    let Ok(mut guided) = request.open(None).and_then(OpenStudy::guided) else { panic!("no study") };
+    while let Ok(Order::Measure(works)) = guided.order() {
+        for (proposal, work) in works.into_iter().rev() {
+            let result = perform(&work, "a worker", &NEVER).unwrap_or_else(|e| panic!("{e}"));
+            assert!(matches!(guided.take(proposal, &result), Ok(true)));
+        }
+    }
+    studies.journal("workers")
 }
 
 fn raced(studies: &Studies, name: &str) -> usize {
@@ -210,6 +243,7 @@ fn a_race_leaves_one_journal_whoever_measures_and_whatever_the_cache_holds() {
     studies.study("s", 24, &asked).succeeds();
     let expected = studies.journal("s");
     assert!((3..21).contains(&raced(&studies, "s")), "{} raced", raced(&studies, "s"));
+    assert_eq!(by_workers(&studies, &errors), expected);
     // Full counts of the same draws are in the cache, too.
     let limited = ["--constraint", "success-rate>=0.1", "--cache", &cache];
     studies.study("full", 12, &[&asked[..], &limited].concat()).succeeds();

@@ -201,6 +201,7 @@ mod tests {
     use crate::study::fits::tests::{BOUNDS, sound};
     use crate::study::record::Recorded;
     use crate::study::{decode, encode};
+    use insertion::evaluation::SuccessRate;
     use insertion::evaluation::objective::{Goals, Measure};
     use insertion::space::Space;
     use insertion::trial::engine::EngineKind;
@@ -228,9 +229,13 @@ mod tests {
 
     /// Whether a result with these numbers is taken; if it is, its line is read again.
     fn taken(evaluation: Evaluation, wall_s: f64) -> bool {
+        taken_from(work(), evaluation, wall_s)
+    }
+
+    fn taken_from(work: Work, evaluation: Evaluation, wall_s: f64) -> bool {
         let (success_rate, robust_range) =
             (evaluation.success.is_some(), evaluation.robust.is_some());
-        let work = Work { success_rate, robust_range, ..work() };
+        let work = Work { success_rate, robust_range, ..work };
         let stiffness = Prediction::exact(3e3, 2e4);
         let measured = Measured { stiffness, tasks: vec![evaluation], cached: Vec::new() };
         let bytes = work.done(measured, &timing(wall_s), "a worker").unwrap();
@@ -259,6 +264,26 @@ mod tests {
         }
         let lie = Evaluation { trials: 20_000_000, ..sound() };
         assert!(!taken(lie, 1.0));
+    }
+
+    #[test]
+    fn a_race_that_did_not_end_so_is_refused() {
+        let race = Race { bar_share: 0.75, draws: 8, first: vec![6, 2] };
+        let work = Work { race: Some(race), ..work() };
+        let again = Work::decode(&work.encode().unwrap()).unwrap();
+        assert_eq!(again, work);
+        let ended = |inserted, failed_draws: &[u32], spared| {
+            let failure_counts = [failed_draws.len() as u32, 0, 0, 0];
+            let counts = SuccessRate { inserted, failure_counts, spared, ..SuccessRate::default() };
+            let success = Some(SuccessRate { failed_draws: failed_draws.to_vec(), ..counts });
+            taken_from(work.clone(), Evaluation { success, ..sound() }, 1.0)
+        };
+        assert!(ended(0, &[0, 2, 6], 5) && ended(1, &[0, 1, 6], 4) && ended(6, &[2, 6], 0));
+        assert!(!ended(1, &[2, 6], 5), "it had not lost yet");
+        assert!(!ended(1, &[0, 2, 6], 4), "it had lost before");
+        assert!(!ended(0, &[1, 2, 6], 5), "it did not meet draw 1");
+        assert!(!ended(4, &[2, 6], 0), "two draws are missing");
+        assert!(!ended(5, &[0, 2, 6], 0), "it had lost long before");
     }
 
     proptest! {

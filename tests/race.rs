@@ -3,7 +3,7 @@
 mod common;
 
 use ask_tell::{Grid, OptimizerKind, build};
-use common::{Studies, read};
+use common::{Studies, read, sealed};
 use finger_opt::session::{OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform};
 use finger_opt::study::{Runner, Store, Study, StudyRecord, strip_times};
 use insertion::evaluation::Evaluation;
@@ -304,6 +304,16 @@ fn a_study_from_before_there_were_races_goes_on_without() {
     studies.resume("s").succeeds();
     studies.study("s", 24, &asked).succeeds();
     assert_eq!((raced(&studies, "s"), studies.journal("s").lines().count()), (0, 26));
+    // Nor did they say which draws failed.
+    let journal = read(&dir.join("journal.jsonl"));
+    let without = |line: &str| match line.split_once(",\"success_failed_draws\":[") {
+        Some((before, rest)) => format!("{before}{}\n", rest.split_once(']').unwrap().1),
+        None => format!("{line}\n"),
+    };
+    let old = sealed(&journal.lines().map(without).collect::<String>());
+    assert!(old.len() < journal.len());
+    fs::write(dir.join("journal.jsonl"), old).unwrap();
+    assert_eq!(studies.resume("s").succeeds(), studies.study("s", 24, &asked).succeeds());
     let wrong = read(&dir.join("study.toml")).replacen("\"success-rate\"", "\"robust-range\"", 1);
     let wrong = wrong.replacen("seed = 0", "race = true\nseed = 0", 1);
     fs::write(dir.join("study.toml"), wrong).unwrap();

@@ -46,14 +46,12 @@ fn finite() -> impl Strategy<Value = f64> {
 }
 
 fn success() -> impl Strategy<Value = SuccessRate> {
-    (0..1000u32, [0..1000u32, 0..1000, 0..1000, 0..1000], any::<u32>(), 0.01..0.99f64).prop_map(
-        |(inserted, failure_counts, diverged, confidence)| SuccessRate {
-            inserted,
-            failure_counts,
-            diverged,
-            confidence,
-        },
-    )
+    let counts = (0..1000u32, [0..1000u32, 0..1000, 0..1000, 0..1000], any::<u32>(), any::<u32>());
+    let draws = prop::collection::vec(any::<u32>(), 0..20);
+    (counts, 0.01..0.99f64, draws).prop_map(|(counts, confidence, failed_draws)| {
+        let (inserted, failure_counts, diverged, spared) = counts;
+        SuccessRate { inserted, failure_counts, diverged, confidence, failed_draws, spared }
+    })
 }
 
 fn robust() -> impl Strategy<Value = RobustRange> {

@@ -72,11 +72,26 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         let (designs, spread) = (answer.designs, interval(spread));
         line("spread", format!("ranges of the {designs} designs: {spread}"))
     }));
+    lines.extend(raced(answer));
     lines.extend(answer.orders.iter().map(robot));
     if answer.orders.is_empty() {
         lines.push(line("robot", "no bench experiment is known: print and measure the best few"));
     }
     lines
+}
+
+/// How many designs were out of the race early, and what is known of them.
+fn raced(answer: &Answer) -> Option<Line> {
+    let raced = || answer.record.current().iter().filter(|recorded| recorded.raced());
+    let rates = raced().flat_map(|recorded| &recorded.tasks).flat_map(|task| &task.success);
+    let tried: Vec<f64> = rates.filter_map(|rate| rate.raced()).map(f64::from).collect();
+    let mean = tried.iter().sum::<f64>() / tried.len() as f64;
+    (!tried.is_empty()).then(|| {
+        let [designs, of] = [raced().count(), answer.designs];
+        let early =
+            format!("{designs} of {of} designs ended early, after {mean:.0} draws in the mean");
+        line("raced", format!("{early}: they could not reach the best"))
+    })
 }
 
 /// How many designs are as good, and which of them to take for other reasons.

@@ -58,16 +58,20 @@ pub fn end(end: Option<Outcome>) -> String {
 
 /// Share of insertions of a design under drawn errors, and its failures.
 pub fn success(success: &SuccessRate) -> [String; 2] {
-    let rate = success.rate().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
+    let rate = success.at_most().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
     let [low, high] = success.interval();
     let [c1, c2, c3, c4] = success.failure_counts;
-    [
-        format!(
+    let measured = match success.raced() {
+        Some(draws) => format!("at most {rate}, raced after {draws} draws"),
+        None => format!(
             "{rate}, {} % interval {low:.3} to {high:.3}: {} of {} trials",
             100.0 * success.confidence,
             success.inserted,
             success.counted()
         ),
+    };
+    [
+        measured,
         format!("{c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged", success.diverged),
     ]
 }

@@ -44,7 +44,7 @@ pub(super) fn best_so_far(record: &StudyRecord) -> Vec<(f64, f64)> {
     let mut best: Option<f64> = None;
     let mut steps = Vec::new();
     for recorded in &record.evaluations {
-        let value = recorded.feasible().and_then(|values| values.first().copied());
+        let value = recorded.known_value().filter(|_| recorded.feasible().is_some());
         let better = |a: f64, b: f64| if measure.sense() * b > measure.sense() * a { b } else { a };
         best = [best, value].into_iter().flatten().reduce(better);
         steps.extend(best.map(|value| (recorded.index as f64, value)));
@@ -80,8 +80,12 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     }
     let at = |r: &Recorded| Some((r.index as f64, r.value()?));
     if objectives.single().is_some() {
+        let (raced, full): (Vec<&Recorded>, Vec<&Recorded>) =
+            drawn(record, &record.evaluations).into_iter().partition(|r| r.raced());
+        let bounds = raced.into_iter().filter_map(at);
+        points(&mut chart, bounds, PointMark::ring(BLUE, 3, 1), "at most (raced)")?;
         let (inside, outside): (Vec<&Recorded>, Vec<&Recorded>) =
-            drawn(record, &record.evaluations).into_iter().partition(|r| r.feasible().is_some());
+            full.into_iter().partition(|r| r.feasible().is_some());
         let (inside, outside) =
             (inside.into_iter().filter_map(at), outside.into_iter().filter_map(at));
         points(&mut chart, inside, PointMark::dot(BLUE, 3), "each evaluation")?;

@@ -13,7 +13,7 @@
   const number = (v, digits = 1) => (v === null || v === undefined ? "none" : v.toFixed(digits));
   const signed = (v) => (v > 0 ? "+" : "") + number(v);
   const value = (e) => `${data.measure.name} ${number(e.value, data.measure.unit ? 1 : 3)} ${e.value === null ? "" : data.measure.unit}`.trim();
-  const words = (e) => [`evaluation ${e.index}`, ...data.parameters.map((p, k) => `${p.label} ${e.x[k]}${p.unit}`), value(e), e.window ? `window ${signed(e.window[0])} to ${signed(e.window[1])} mm: ${e.ends[0]} below, ${e.ends[1]} above` : `nominal start: ${e.ends[0]}`, e.force === null ? "" : `peak force ${number(e.force)} N`, e.feasible ? "" : "breaks a constraint"].filter(Boolean);
+  const words = (e) => [`evaluation ${e.index}`, ...data.parameters.map((p, k) => `${p.label} ${e.x[k]}${p.unit}`), e.raced ? `${data.measure.name} ${e.raced}` : value(e), e.window ? `window ${signed(e.window[0])} to ${signed(e.window[1])} mm: ${e.ends[0]} below, ${e.ends[1]} above` : `nominal start: ${e.ends[0]}`, e.force === null ? "" : `peak force ${number(e.force)} N`, e.feasible ? "" : "breaks a constraint"].filter(Boolean);
   const hover = (element, text) => {
     const show = (event) => {
       tip.textContent = typeof text === "function" ? text() : text;

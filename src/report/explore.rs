@@ -3,7 +3,7 @@
 
 use super::drawn::drawn;
 use super::surface;
-use crate::answer::words::{end, ends_mm};
+use crate::answer::words::{end, ends_mm, success};
 use crate::study::{Recorded, StudyRecord};
 use insertion::evaluation::objective::Measure;
 use insertion::outcome::Outcome;
@@ -77,7 +77,9 @@ fn to_json(record: &StudyRecord, model: Option<&surface::Model>) -> Value {
         json!({
             "index": recorded.index,
             "x": x,
-            "value": recorded.value(),
+            "value": recorded.known_value(),
+            "raced": recorded.tasks.iter().filter(|_| recorded.raced()).filter_map(|task| task.success.as_ref())
+                .map(|rate| success(rate)[0].clone()).reduce(|all, one| format!("{all}; {one}")),
             "feasible": recorded.feasible().is_some(),
             "window": inserts.map(ends_mm),
             "ends": window.map(|w| [end(w.end_negative), end(w.end_positive)]),

@@ -33,7 +33,7 @@ impl Model {
             .iter()
             .filter_map(|recorded| {
                 let x = parameters.iter().map(|p| Some(unit(p, recorded.design.get(&p.key)?)));
-                Some((x.collect::<Option<Vec<f64>>>()?, recorded.value()?))
+                Some((x.collect::<Option<Vec<f64>>>()?, recorded.known_value()?))
             })
             .collect();
         let every = known.len().div_ceil(MOST).max(1);

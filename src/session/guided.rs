@@ -78,13 +78,15 @@ impl Guided {
 
     /// Takes a design's evaluation from the cache; false if it is not there.
     fn recall(&mut self, wanted: &Wanted) -> Result<bool, Failure> {
-        let (known, timing) = Timing::of(|| self.simulated(&NEVER).known(&wanted.design));
+        let (known, timing) =
+            Timing::of(|| self.simulated(&NEVER).known(&wanted.design, wanted.race.as_ref()));
         let Some(measured) = known else { return Ok(false) };
         let timing = Timing { cached: measured.cached.clone(), ..timing };
         self.accept(Arrived { proposal: wanted.proposal, measured, timing })
     }
 
-    fn give(&mut self, Wanted { proposal, design }: Wanted) -> Result<(u64, Vec<u8>), Failure> {
+    fn give(&mut self, wanted: Wanted) -> Result<(u64, Vec<u8>), Failure> {
+        let Wanted { proposal, design, race } = wanted;
         let OpenStudy { study, setup, .. } = &self.open;
         let goals = study.config.goals();
         let work = Work {
@@ -93,6 +95,7 @@ impl Guided {
             seed: study.config.seed,
             success_rate: goals.need(Measure::SuccessRate),
             robust_range: goals.need(Measure::RobustRange),
+            race,
             tasks: study.config.tasks.len() as u64,
             provenance: study.provenance().clone(),
             inputs: setup.inputs.clone(),
@@ -117,7 +120,7 @@ impl Guided {
         let impossible = |error| NotTaken::Failed(Failure::input(error));
         let stiffness = self.open.setup.evaluator.predict(&work.design).map_err(impossible)?;
         let arrived = work.check(result, &stiffness).map_err(NotTaken::Refused)?;
-        self.simulated(&NEVER).keep(&work.design, &arrived.measured);
+        self.simulated(&NEVER).keep(&work.design, work.race.as_ref(), &arrived.measured);
         let taken = self.accept(arrived).map_err(NotTaken::Failed)?;
         self.measuring.remove(&proposal);
         Ok(taken)
@@ -192,7 +195,10 @@ pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>,
         })?;
         let (evaluator, search) = (&setup.evaluator, Search::default());
         let simulated = Simulated { evaluator, search, plan: &plan, cache: None, stop };
-        let (measured, timing) = Timing::of(|| simulated.evaluate(&work.design));
+        let (measured, timing) = Timing::of(|| match &work.race {
+            Some(race) => simulated.race(&work.design, race),
+            None => simulated.evaluate(&work.design),
+        });
         let measured = measured.map_err(|source| {
             let (index, design) = (work.proposal, work.design.to_string());
             StudyError::Impossible { index, design, source }

@@ -21,7 +21,7 @@ impl Standing {
 
     /// With one more design.
     pub fn add(&mut self, recorded: &Recorded) {
-        if let Some(values) = recorded.feasible() {
+        if let Some(values) = recorded.feasible().filter(|_| !recorded.raced()) {
             self.front.add(self.goals.gains(values));
         }
     }

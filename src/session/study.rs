@@ -231,7 +231,7 @@ impl StudyRequest {
         let evaluator = &setup.evaluator;
         let names = evaluator.templates.iter().map(|template| template.task.name.clone());
         let tasks: Vec<String> = names.collect();
-        Ok(StudyConfig {
+        let mut config = StudyConfig {
             aggregate: self.aggregate(tasks.len())?,
             tasks,
             robot: evaluator.robot.name.clone(),
@@ -240,6 +240,7 @@ impl StudyRequest {
             objective: self.objective.clone(),
             constraints: self.constraints.clone(),
             uncertainty: setup.uncertainty.as_ref().map(|errors| errors.name.clone()),
+            race: false,
             seed: self.seed,
             budget: self.budget,
             polish: self.polish,
@@ -248,7 +249,9 @@ impl StudyRequest {
             conclusion: self.run.conclusion(setup, None)?,
             provenance: setup.provenance(),
             space: setup.space.clone(),
-        })
+        };
+        config.race = config.can_race();
+        Ok(config)
     }
 }
 

@@ -39,6 +39,9 @@ pub struct StudyConfig {
     /// Name of the distribution of errors, if the goals need one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<String>,
+    /// Whether designs race for the success rate; studies from before there were races do not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub race: bool,
     /// Seed of every random stream of the study.
     pub seed: u64,
     /// Evaluations that the optimizer has; the one field that may be raised later, unless
@@ -124,6 +127,13 @@ impl StudyConfig {
         if self.uncertainty.is_some() != self.goals().need_draws() {
             return Err("uncertainty: goes with success-rate and robust-range".to_owned());
         }
+        if self.race && !self.can_race() {
+            return Err(
+                "race: goes with the one objective success-rate, of several tasks the worst, \
+                        and without a constraint on it; leave it out"
+                    .to_owned(),
+            );
+        }
         self.provenance.check()
     }
 
@@ -150,14 +160,16 @@ impl StudyConfig {
     }
 
     /// The fields in which a study on disk differs from what is asked for now,
-    /// one line each; a budget that was raised does not count, unless a polish follows it.
+    /// one line each; a budget that was raised does not count, unless a polish follows it, and whether
+    /// there is a race stays as it was.
     /// Provenance is compared by [`Provenance::differences`].
     pub fn differences(&self, asked: &StudyConfig) -> Option<String> {
         let may_rise = asked.polish == 0 && asked.budget > self.budget;
         let budget = if may_rise { asked.budget } else { self.budget };
         let provenance = asked.provenance.clone();
         let conclusion = asked.conclusion;
-        let raised = StudyConfig { budget, provenance, conclusion, ..self.clone() };
+        let race = asked.race;
+        let raised = StudyConfig { budget, race, provenance, conclusion, ..self.clone() };
         differences(&raised, asked, ["the study", "now"])
     }
 }

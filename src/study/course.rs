@@ -26,6 +26,7 @@ use ask_tell::GridPoint;
 use ask_tell::{Observation, Optimizer, StopReason};
 use insertion::evaluation::evaluator::Measured;
 use insertion::evaluation::objective::Goals;
+use insertion::evaluation::robustness::race::Race;
 use insertion::space::Design;
 use std::collections::BTreeMap;
 
@@ -49,6 +50,8 @@ pub struct Wanted {
     pub proposal: u64,
     /// The design.
     pub design: Design,
+    /// Race that it is measured in, if it is.
+    pub race: Option<Race>,
 }
 
 /// Next step.
@@ -79,8 +82,8 @@ pub struct Course {
     batch: usize,
     budget: usize,
     asynchronous: bool,
-    /// Proposed and not told yet, by the number of the proposal.
-    open: BTreeMap<u64, GridPoint>,
+    /// Proposed and not told yet, by the number of the proposal; with how many were told before it.
+    open: BTreeMap<u64, (GridPoint, usize)>,
     /// How many were proposed.
     proposed: u64,
     /// How many evaluations the optimizer was told.
@@ -200,8 +203,10 @@ impl Course {
         if end <= self.budget && !self.open.is_empty() {
             let points = std::mem::take(&mut self.open).into_values();
             let found = study.evaluations.iter().skip(self.told);
-            let told: Vec<Observation> =
-                points.zip(found).map(|(point, found)| self.observation(point, found)).collect();
+            let told: Vec<Observation> = points
+                .zip(found)
+                .map(|((point, _), found)| self.observation(point, found))
+                .collect();
             optimizer.tell(&told);
             self.told = end;
         }
@@ -240,7 +245,7 @@ impl Course {
         }
         while let Some(found) = study.evaluations.get(self.told) {
             let number = found.proposal;
-            let point = number.and_then(|number| self.open.remove(&number));
+            let point = number.and_then(|number| self.open.remove(&number)).map(|(point, _)| point);
             let Some(point) = point.filter(|p| study.config.space.design(p) == found.design) else {
                 return Err(study.other_design(found, "another in its place"));
             };
@@ -259,7 +264,7 @@ impl Course {
 
     fn propose(&mut self, optimizer: &mut dyn Optimizer, count: usize) {
         for point in optimizer.ask(count) {
-            self.open.insert(self.proposed, point);
+            self.open.insert(self.proposed, (point, self.told));
             self.proposed += 1;
         }
     }
@@ -267,8 +272,11 @@ impl Course {
     /// The designs that were proposed within the budget and are not told yet.
     fn wanted(&self, study: &Study) -> Vec<Wanted> {
         let within = self.open.iter().filter(|(number, _)| **number < self.budget as u64);
-        let design = |point| study.config.space.design(point);
-        within.map(|(&proposal, point)| Wanted { proposal, design: design(point) }).collect()
+        let wanted = |(&proposal, (point, told)): (&u64, &(GridPoint, usize))| {
+            let design = study.config.space.design(point);
+            Wanted { proposal, design, race: study.race(*told) }
+        };
+        within.map(wanted).collect()
     }
 
     fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {

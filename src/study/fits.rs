@@ -145,8 +145,16 @@ pub fn implausible(evaluation: &Evaluation) -> Option<&'static str> {
 }
 
 fn possible_rate(success: &SuccessRate) -> bool {
-    let counts = success.failure_counts.into_iter().chain([success.inserted, success.diverged]);
-    counts.map(u64::from).sum::<u64>() <= u64::from(MOST_TRIALS)
+    let SuccessRate { inserted, diverged, spared, failed_draws, .. } = success;
+    let counts = success.failure_counts.into_iter().chain([*inserted, *diverged, *spared]);
+    let draws = counts.map(u64::from).sum::<u64>();
+    // Up to version 0.4.0 it is not known which failed.
+    let all_failed =
+        failed_draws.len() as u64 + u64::from(*inserted) == u64::from(success.counted());
+    draws <= u64::from(MOST_TRIALS)
+        && (failed_draws.is_empty() || all_failed)
+        && failed_draws.windows(2).all(|pair| pair[0] < pair[1])
+        && failed_draws.last().is_none_or(|&last| u64::from(last) < draws)
         && (0.0..=1.0).contains(&success.confidence)
 }
 
@@ -172,7 +180,7 @@ pub(super) mod tests {
     pub type Change = fn(&mut Evaluation, f64);
 
     /// Numbers of an evaluation with the least and the largest value they may have.
-    pub const BOUNDS: [(&str, Change, [f64; 2]); 18] = [
+    pub const BOUNDS: [(&str, Change, [f64; 2]); 19] = [
         ("negative_steps", |e, x| e.window.negative_steps = x as i32, [-1000.0, 0.0]),
         ("positive_steps", |e, x| e.window.positive_steps = x as i32, [0.0, 1000.0]),
         ("taught", |e, x| e.taught = Some(x as i32), [-1000.0, 1000.0]),
@@ -187,6 +195,7 @@ pub(super) mod tests {
         ("success inserted", |e, x| rate(e).inserted = x as u32, [0.0, 1e7]),
         ("success failures", |e, x| rate(e).failure_counts[3] = x as u32, [0.0, 1e7]),
         ("success diverged", |e, x| rate(e).diverged = x as u32, [0.0, 1e7]),
+        ("success spared", |e, x| rate(e).spared = x as u32, [0.0, 1e7]),
         ("robust ranges", |e, x| robust(e).ranges_mm[0] = x, [-200.0, 200.0]),
         ("robust value", |e, x| robust(e).value_mm = Some(x), [-200.0, 200.0]),
         ("robust diverged", |e, x| robust(e).diverged = x as u32, [0.0, 9.0]),
@@ -194,20 +203,20 @@ pub(super) mod tests {
     ];
 
     /// Those of them that are whole numbers without a sign.
-    const COUNTS: [&str; 8] = [
+    const COUNTS: [&str; 9] = [
         "trials",
         "failures",
         "diverged",
         "success inserted",
         "success failures",
         "success diverged",
+        "success spared",
         "robust diverged",
         "robust trials",
     ];
 
     fn rate(evaluation: &mut Evaluation) -> &mut SuccessRate {
-        let none =
-            SuccessRate { confidence: 0.95, inserted: 0, failure_counts: [0; 4], diverged: 0 };
+        let none = SuccessRate { confidence: 0.95, ..SuccessRate::default() };
         evaluation.success.insert(none)
     }
 

@@ -221,6 +221,10 @@ impl Study {
         self.segments.last().map_or(&self.config.provenance, |segment| &segment.provenance)
     }
 
+    pub(super) fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
     /// The copies of the input files that its next evaluation is measured with.
     pub fn inputs(&self) -> Result<Inputs, StudyError> {
         read_inputs(&self.dir, &self.segments)

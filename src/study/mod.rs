@@ -13,6 +13,7 @@ mod journal;
 mod line;
 mod on_bench;
 mod provenance;
+mod race;
 mod recommendation;
 mod record;
 mod rule;

@@ -39,6 +39,7 @@ impl StudyRecord {
         let as_good = |other: &&Recorded| {
             searched(other).zip(own).is_some_and(|(other, own)| other >= own)
                 && !refuted(other.index)
+                && !other.raced()
         };
         self.current().iter().filter(as_good).collect()
     }

@@ -173,9 +173,7 @@ impl StudyRecord {
 
     /// Index of the first of the [`current`](Self::current) evaluations.
     pub fn first_current(&self) -> u64 {
-        let Some(last) = self.segments.last() else { return 0 };
-        let alike = |segment: &&Segment| segment.provenance.simulates_like(&last.provenance);
-        self.segments.iter().rev().take_while(alike).last().map_or(0, |segment| segment.first)
+        first_current(&self.segments)
     }
 
     /// The finger to print: the best on the bench as far as that is known, else the recommended one.
@@ -195,6 +193,13 @@ impl StudyRecord {
     pub fn front(&self) -> Vec<&Recorded> {
         front(&self.config.goals(), self.current())
     }
+}
+
+/// Index of the first evaluation that is of the model of the last segment.
+pub(super) fn first_current(segments: &[Segment]) -> u64 {
+    let Some(last) = segments.last() else { return 0 };
+    let alike = |segment: &&Segment| segment.provenance.simulates_like(&last.provenance);
+    segments.iter().rev().take_while(alike).last().map_or(0, |segment| segment.first)
 }
 
 /// The evaluation that violates the constraints least, all added up, the earliest of equals:
@@ -242,15 +247,15 @@ pub fn volume(goals: &Goals, evaluations: &[Recorded]) -> Volume {
     Volume { hypervolume: last, reference, so_far }
 }
 
-/// Of the evaluations that keep all constraints the one with the best first objective (of
-/// equals the better in the next, and then the earliest).
+/// Of the evaluations that keep all constraints, none of them raced, the one with the best first
+/// objective (of equals the better in the next, and then the earliest).
 pub fn best<'a>(
     goals: &Goals,
     evaluations: impl IntoIterator<Item = &'a Recorded>,
 ) -> Option<&'a Recorded> {
     let mut best: Option<(&Recorded, &[f64])> = None;
     for recorded in evaluations {
-        if let Some(values) = recorded.feasible()
+        if let Some(values) = recorded.feasible().filter(|_| !recorded.raced())
             && best.is_none_or(|(_, found)| goals.order(values, found).is_gt())
         {
             best = Some((recorded, values));

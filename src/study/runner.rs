@@ -99,11 +99,14 @@ impl Runner<'_> {
 
     /// One measurement, `None` if the run was to stop before it was complete.
     fn measure(&self, wanted: &Wanted) -> Result<Option<Arrived>, StudyError> {
-        let Wanted { proposal, design } = wanted;
+        let Wanted { proposal, design, race } = wanted;
         if self.stop.load(Ordering::SeqCst) {
             return Ok(None);
         }
-        let (measured, timing) = Timing::of(|| self.evaluator.evaluate(design));
+        let (measured, timing) = Timing::of(|| match race {
+            Some(race) => self.evaluator.race(design, race),
+            None => self.evaluator.evaluate(design),
+        });
         // Once it is set the evaluator may have skipped trials.
         if self.stop.load(Ordering::SeqCst) {
             return Ok(None);

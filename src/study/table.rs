@@ -11,7 +11,7 @@ use std::path::Path;
 
 const TABLE: &str = "evaluations.csv";
 /// Lists of as many values as there were draws: no columns.
-const DRAWN: &str = "robust_ranges_mm";
+const DRAWN: [&str; 2] = ["robust_ranges_mm", "success_failed_draws"];
 
 /// Column and cell, in the order of the columns.
 type Row = Vec<(String, String)>;
@@ -55,7 +55,9 @@ fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Err
         value.map_or(String::new(), |value| value.to_string())
     };
     for (i, key) in config.objective.keys().into_iter().enumerate() {
-        row.push((key, score(|score| &score.values, i)));
+        // A raced rate has no value; its upper bound stands with the task.
+        let value = (!recorded.raced()).then(|| score(|score| &score.values, i));
+        row.push((key, value.unwrap_or_default()));
     }
     for (i, constraint) in config.constraints.iter().enumerate() {
         // A share of the limit, so without a unit.
@@ -72,7 +74,7 @@ fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Err
 /// The fields of a flat value; those of a list by their place, counted from 1.
 fn cells(prefix: &str, value: &impl Serialize, row: &mut Row) -> Result<(), serde_json::Error> {
     let Value::Object(fields) = serde_json::to_value(value)? else { return Ok(()) };
-    for (key, value) in fields.into_iter().filter(|(key, _)| key != DRAWN) {
+    for (key, value) in fields.into_iter().filter(|(key, _)| !DRAWN.contains(&&**key)) {
         match value {
             Value::Array(values) => {
                 for (i, value) in (1..).zip(values) {

@@ -15,6 +15,7 @@ use super::record::Timing;
 use super::seal::{seal, sha256_hex, unseal};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Measured;
+use insertion::evaluation::robustness::race::Race;
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -35,6 +36,9 @@ pub struct Work {
     pub success_rate: bool,
     /// Whether the robust range under drawn errors is measured.
     pub robust_range: bool,
+    /// Race for the success rate, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub race: Option<Race>,
     /// How many tasks there are.
     pub tasks: u64,
     /// Provenance that it is to be measured with.
@@ -172,13 +176,22 @@ impl Work {
             let asked = [self.success_rate, self.robust_range];
             let doubtful = done.tasks.iter().find_map(|found| {
                 match asked == [found.success.is_some(), found.robust.is_some()] {
-                    true => fits::implausible(found),
+                    true => fits::implausible(found).or_else(|| self.race_problem(found)),
                     false => Some("it does not have what was asked for"),
                 }
             });
             return Ok(doubtful.or_else(|| timing.implausible()).map(str::to_owned));
         };
         Ok(Some(problem))
+    }
+
+    fn race_problem(&self, found: &Evaluation) -> Option<&'static str> {
+        let success = found.success.as_ref()?;
+        let can_be = match &self.race {
+            Some(race) => race.can_end_in(success),
+            None => success.raced().is_none(),
+        };
+        (!can_be).then_some("its race cannot have ended so")
     }
 }
 
@@ -188,6 +201,7 @@ mod tests {
     use crate::study::fits::tests::{BOUNDS, sound};
     use crate::study::record::Recorded;
     use crate::study::{decode, encode};
+    use insertion::evaluation::SuccessRate;
     use insertion::evaluation::objective::{Goals, Measure};
     use insertion::space::Space;
     use insertion::trial::engine::EngineKind;
@@ -201,6 +215,7 @@ mod tests {
             seed: 0,
             success_rate: false,
             robust_range: false,
+            race: None,
             tasks: 1,
             provenance: Provenance::new(EngineKind::Direct, BTreeMap::new()),
             inputs: Inputs::new(),
@@ -214,9 +229,13 @@ mod tests {
 
     /// Whether a result with these numbers is taken; if it is, its line is read again.
     fn taken(evaluation: Evaluation, wall_s: f64) -> bool {
+        taken_from(work(), evaluation, wall_s)
+    }
+
+    fn taken_from(work: Work, evaluation: Evaluation, wall_s: f64) -> bool {
         let (success_rate, robust_range) =
             (evaluation.success.is_some(), evaluation.robust.is_some());
-        let work = Work { success_rate, robust_range, ..work() };
+        let work = Work { success_rate, robust_range, ..work };
         let stiffness = Prediction::exact(3e3, 2e4);
         let measured = Measured { stiffness, tasks: vec![evaluation], cached: Vec::new() };
         let bytes = work.done(measured, &timing(wall_s), "a worker").unwrap();
@@ -247,6 +266,26 @@ mod tests {
         assert!(!taken(lie, 1.0));
     }
 
+    #[test]
+    fn a_race_that_did_not_end_so_is_refused() {
+        let race = Race { bar_share: 0.75, draws: 8, first: vec![6, 2] };
+        let work = Work { race: Some(race), ..work() };
+        let again = Work::decode(&work.encode().unwrap()).unwrap();
+        assert_eq!(again, work);
+        let ended = |inserted, failed_draws: &[u32], spared| {
+            let failure_counts = [failed_draws.len() as u32, 0, 0, 0];
+            let counts = SuccessRate { inserted, failure_counts, spared, ..SuccessRate::default() };
+            let success = Some(SuccessRate { failed_draws: failed_draws.to_vec(), ..counts });
+            taken_from(work.clone(), Evaluation { success, ..sound() }, 1.0)
+        };
+        assert!(ended(0, &[0, 2, 6], 5) && ended(1, &[0, 1, 6], 4) && ended(6, &[2, 6], 0));
+        assert!(!ended(1, &[2, 6], 5), "it had not lost yet");
+        assert!(!ended(1, &[0, 2, 6], 4), "it had lost before");
+        assert!(!ended(0, &[1, 2, 6], 5), "it did not meet draw 1");
+        assert!(!ended(4, &[2, 6], 0), "two draws are missing");
+        assert!(!ended(5, &[0, 2, 6], 0), "it had lost long before");
+    }
+
     proptest! {
         /// All numbers of the schema, at their bounds, around them and far beyond.
         #[test]
@@ -261,7 +300,8 @@ mod tests {
             let value = bounds[near] + away;
             change(&mut evaluation, value);
             // What is no number is not written as one.
-            let sound = fits::implausible(&evaluation).is_none() && wall_s >= 0.0;
+            let raced = evaluation.success.as_ref().is_some_and(|success| success.raced().is_some());
+            let sound = fits::implausible(&evaluation).is_none() && wall_s >= 0.0 && !raced;
             let taken = taken(evaluation, wall_s);
             prop_assert!(taken == sound || value.is_nan(), "{value}, {wall_s} s");
         }

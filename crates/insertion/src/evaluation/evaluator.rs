@@ -2,6 +2,7 @@
 
 use super::leaving;
 use super::robustness::firm::{self, Firm};
+use super::robustness::race::Race;
 use super::robustness::repeat::Repeats;
 use super::robustness::{self, Plan};
 use super::taught::{Moved, teach};
@@ -92,6 +93,11 @@ pub struct Measured {
 pub trait Evaluate: Sync {
     /// Measures one design; equal designs measure equal.
     fn evaluate(&self, design: &Design) -> Result<Measured, Impossible>;
+
+    /// The same in a race. What takes part in none measures in full.
+    fn race(&self, design: &Design, _race: &Race) -> Result<Measured, Impossible> {
+        self.evaluate(design)
+    }
 }
 
 impl Evaluator {

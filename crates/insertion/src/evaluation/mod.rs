@@ -113,7 +113,7 @@ pub struct Evaluation {
 }
 
 /// Outcomes of trials under sampled errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SuccessRate {
     /// Probability with which [`interval`](Self::interval) holds the true rate, 0 to 1.
     #[serde(rename = "success_confidence")]
@@ -127,6 +127,16 @@ pub struct SuccessRate {
     /// Trials that diverged; they do not count.
     #[serde(rename = "success_diverged")]
     pub diverged: u32,
+    /// Draws that failed, by number from 0, ascending; empty if that was not kept.
+    #[serde(rename = "success_failed_draws", default, skip_serializing_if = "Vec::is_empty")]
+    pub failed_draws: Vec<u32>,
+    /// Draws left out because the [`Race`](robustness::race::Race) was lost without them.
+    #[serde(rename = "success_spared_draws", default, skip_serializing_if = "is_zero")]
+    pub spared: u32,
+}
+
+fn is_zero(count: &u32) -> bool {
+    *count == 0
 }
 
 impl SuccessRate {
@@ -136,13 +146,43 @@ impl SuccessRate {
         failed.fold(self.inserted, |sum, &count| sum.saturating_add(count))
     }
 
-    /// Share of the counted trials that inserted, 0 to 1; `None` if none counts.
-    pub fn rate(&self) -> Option<f64> {
-        let counted = self.counted();
-        (counted > 0).then(|| f64::from(self.inserted) / f64::from(counted))
+    /// One of the draws left ended so.
+    fn count(&mut self, draw: u32, outcome: Outcome) {
+        self.spared = self.spared.saturating_sub(1);
+        match outcome {
+            Outcome::Inserted => self.inserted += 1,
+            Outcome::Diverged => self.diverged += 1,
+            Outcome::Failed(class) => {
+                self.failure_counts[class as usize] += 1;
+                self.failed_draws.push(draw);
+            }
+        }
     }
 
-    /// Wilson's score interval of the true rate (1927, J. Am. Stat. Assoc. 22:209).
+    /// Draws that were tried.
+    pub fn tried(&self) -> u32 {
+        self.counted().saturating_add(self.diverged)
+    }
+
+    /// The draws that were tried, if not all were.
+    pub fn raced(&self) -> Option<u32> {
+        (self.spared > 0).then(|| self.tried())
+    }
+
+    /// Share of the counted trials that inserted, 0 to 1; `None` if none counts or some were left out.
+    pub fn rate(&self) -> Option<f64> {
+        self.at_most().filter(|_| self.spared == 0)
+    }
+
+    /// The rate if all that was left out inserted; `None` if nothing counts.
+    pub fn at_most(&self) -> Option<f64> {
+        let [inserted, counted] =
+            [self.inserted, self.counted()].map(|n| f64::from(n) + f64::from(self.spared));
+        (counted > 0.0).then(|| inserted / counted)
+    }
+
+    /// Wilson's score interval of the true rate (1927, J. Am. Stat. Assoc. 22:209); of a raced one,
+    /// whose draws were not taken at random, all of 0 to 1.
     pub fn interval(&self) -> [f64; 2] {
         let Some(rate) = self.rate() else { return [0.0, 1.0] };
         let n = f64::from(self.counted());
@@ -208,7 +248,13 @@ pub(crate) mod tests {
 
     pub fn success(inserted: u32, failed: u32) -> SuccessRate {
         let failure_counts = [0, 0, failed, 0];
-        SuccessRate { inserted, failure_counts, diverged: 3, confidence: 0.95 }
+        SuccessRate {
+            inserted,
+            failure_counts,
+            diverged: 3,
+            confidence: 0.95,
+            ..Default::default()
+        }
     }
 
     /// The formula worked apart, to seven digits.
@@ -225,6 +271,9 @@ pub(crate) mod tests {
         assert_eq!(success(0, 0).interval(), [0.0, 1.0]);
         assert_eq!(success(0, 0).rate(), None);
         assert_eq!(success(3, 1).rate(), Some(0.75));
+        let raced = SuccessRate { spared: 4, ..success(3, 1) };
+        assert_eq!((raced.rate(), raced.at_most(), raced.raced()), (None, Some(0.875), Some(7)));
+        assert_eq!(raced.interval(), [0.0, 1.0]);
     }
 
     #[test]

@@ -105,8 +105,11 @@ pub(super) fn finite<S: Serializer>(shares: &[f64; 2], to: S) -> Result<S::Ok, S
 #[derive(Serialize)]
 struct SuccessRow<'a> {
     success_rate: Option<f64>,
-    success_low: f64,
-    success_high: f64,
+    success_low: Option<f64>,
+    success_high: Option<f64>,
+    /// Upper bound of a raced rate, which has neither value nor interval, and the draws it had.
+    success_at_most: Option<f64>,
+    raced_draws: Option<u32>,
     #[serde(flatten)]
     counts: &'a SuccessRate,
 }
@@ -116,8 +119,12 @@ pub(super) fn with_rate<S: Serializer>(
     to: S,
 ) -> Result<S::Ok, S::Error> {
     let row = success.as_ref().map(|counts| {
-        let [success_low, success_high] = counts.interval();
-        SuccessRow { success_rate: counts.rate(), success_low, success_high, counts }
+        let raced_draws = counts.raced();
+        let [success_low, success_high] =
+            counts.interval().map(|end| Some(end).filter(|_| raced_draws.is_none()));
+        let success_at_most = counts.at_most().filter(|_| raced_draws.is_some());
+        let success_rate = counts.rate();
+        SuccessRow { success_rate, success_low, success_high, success_at_most, raced_draws, counts }
     });
     row.serialize(to)
 }
@@ -152,6 +159,7 @@ mod tests {
     use super::*;
     use crate::evaluation::Evaluation;
     use crate::evaluation::tests::{ranges, success};
+    use serde_json::Value;
 
     fn evaluation() -> Evaluation {
         let window = Window {
@@ -190,6 +198,12 @@ mod tests {
         assert_eq!(again(&full), full);
         full.taught = Some(-13);
         assert_eq!(again(&full), full);
+        let raced = SuccessRate { spared: 95, failed_draws: vec![2, 7], ..success(3, 2) };
+        full.success = Some(raced);
+        assert_eq!(again(&full), full);
+        let value = serde_json::to_value(&full).unwrap();
+        assert_eq!((&value["success_rate"], &value["success_high"]), (&Value::Null, &Value::Null));
+        assert_eq!((&value["success_at_most"], &value["raced_draws"]), (&0.98.into(), &8.into()));
         let mut limit = evaluation();
         (limit.window.end_negative, limit.window.end_positive) = (None, None);
         assert_eq!(again(&limit), limit);

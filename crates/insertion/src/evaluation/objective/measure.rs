@@ -70,10 +70,10 @@ impl Measure {
 
     /// Its value in its unit, `None` if the measure was not taken or the nominal start diverges. A
     /// nominal start that fails leaves a range of 0, and neither force nor slip. A window that a
-    /// divergence ends counts as far as it was seen to insert.
+    /// divergence ends counts as far as it was seen to insert. A raced success rate is its upper bound.
     pub fn value(self, evaluation: &Evaluation) -> Option<f64> {
         let value = match self {
-            Measure::SuccessRate => evaluation.success.as_ref()?.rate(),
+            Measure::SuccessRate => evaluation.success.as_ref()?.at_most(),
             Measure::RobustRange => evaluation.robust.as_ref()?.value_mm,
             _ => self.of_window(evaluation),
         };

@@ -1,6 +1,7 @@
 //! Trials and windows under drawn errors: what a finger keeps of its window.
 
 pub mod firm;
+pub mod race;
 pub mod repeat;
 
 use crate::evaluation::tolerance::{self, Search};
@@ -11,6 +12,7 @@ use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
 use crate::outcome::Outcome;
 use crate::surrogate::Prediction;
 use crate::trial::{Grasp, Rig};
+use race::Race;
 use rayon::prelude::*;
 
 /// Measures of a design beside its window, with the draws that all designs of a study share.
@@ -18,11 +20,13 @@ use rayon::prelude::*;
 pub struct Plan {
     success: Option<(Vec<Draw>, SuccessSettings)>,
     robust: Option<(Vec<Draw>, RobustSettings)>,
+    /// Race for the success rate, if there is one.
+    race: Option<Race>,
 }
 
 impl Plan {
     /// Nothing beside the window.
-    pub const WINDOW: Plan = Plan { success: None, robust: None };
+    pub const WINDOW: Plan = Plan { success: None, robust: None, race: None };
 
     /// Success rates, robust ranges or both; `seed` names the streams that errors are drawn from.
     pub fn new(uncertainty: &Uncertainty, seed: u64, success: bool, robust: bool) -> Self {
@@ -31,7 +35,13 @@ impl Plan {
         Plan {
             success: success.then(|| (draws(rate.trials), rate)),
             robust: robust.then(|| (draws(range.samples), range)),
+            race: None,
         }
+    }
+
+    /// The same in this race.
+    pub fn against(&self, race: Option<&Race>) -> Plan {
+        Plan { race: race.cloned(), ..self.clone() }
     }
 }
 
@@ -48,7 +58,7 @@ pub fn evaluate(
         draws.iter().map(|draw| (draw.grasp(grasp, predicted), draw.offset)).collect()
     };
     if let Some((draws, settings)) = &plan.success {
-        evaluation.success = Some(success_rate(rig, &drawn(draws), settings));
+        evaluation.success = Some(success_rate(rig, &drawn(draws), settings, plan.race.as_ref()));
     }
     if let Some((draws, settings)) = &plan.robust {
         evaluation.robust = Some(robust_range(rig, &drawn(draws), settings));
@@ -56,23 +66,16 @@ pub fn evaluate(
     evaluation
 }
 
-fn success_rate(rig: &dyn Rig, drawn: &[(Grasp, f64)], settings: &SuccessSettings) -> SuccessRate {
-    let trial = |&(grasp, offset): &(Grasp, f64)| rig.hold(grasp).trial(offset).outcome;
-    let outcomes: Vec<Outcome> = drawn.par_iter().map(trial).collect();
-    let mut success = SuccessRate {
-        inserted: 0,
-        failure_counts: [0; 4],
-        diverged: 0,
-        confidence: settings.confidence,
-    };
-    for outcome in outcomes {
-        match outcome {
-            Outcome::Inserted => success.inserted += 1,
-            Outcome::Failed(class) => success.failure_counts[class as usize] += 1,
-            Outcome::Diverged => success.diverged += 1,
-        }
-    }
-    success
+fn success_rate(
+    rig: &dyn Rig,
+    drawn: &[(Grasp, f64)],
+    settings: &SuccessSettings,
+    race: Option<&Race>,
+) -> SuccessRate {
+    race::run(drawn.len() as u32, settings.confidence, race, |draw| {
+        let (grasp, offset) = drawn[draw as usize];
+        rig.hold(grasp).trial(offset).outcome
+    })
 }
 
 /// Measures the window of each grasp. The offset is left out: the window spans the offsets.
@@ -134,7 +137,7 @@ mod tests {
     #[test]
     fn every_trial_ends_as_its_own_window_says() {
         let (typical, drawn) = drawn(20.0, 300);
-        let found = success_rate(&FakeRig::default(), &drawn, &typical.success);
+        let found = success_rate(&FakeRig::default(), &drawn, &typical.success, None);
         let (mut below, mut above) = (0, 0);
         for (grasp, offset) in &drawn {
             let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
@@ -146,6 +149,7 @@ mod tests {
         assert!(below > 5 && above > 20, "{below} and {above}");
         assert_eq!(found.failure_counts, [0, above, below, 0]);
         assert_eq!((found.inserted, found.counted()), (300 - below - above, 300));
+        assert_eq!((found.failed_draws.len() as u32, found.spared), (below + above, 0));
     }
 
     #[test]

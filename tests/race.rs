@@ -1,0 +1,321 @@
+//! Races for the success rate: exact, and the same whoever runs them and however often.
+
+mod common;
+
+use ask_tell::{Grid, OptimizerKind, build};
+use common::{Studies, read, sealed};
+use finger_opt::session::{OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform};
+use finger_opt::study::{Runner, Store, Study, StudyRecord, strip_times};
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::evaluator::{Evaluate, Measured};
+use insertion::evaluation::robustness::race::{self, Race};
+use insertion::evaluation::template::Impossible;
+use insertion::evaluation::tolerance::{Search, evaluate};
+use insertion::finger::Finger;
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::space::Design;
+use insertion::surrogate::Prediction;
+use insertion::trial::NEVER;
+use insertion::trial::engine::EngineKind;
+use insertion::trial::fake::FakeRig;
+use proptest::prelude::*;
+use std::fs;
+use std::io;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+
+const FIXTURE: &str = include_str!("fixtures/study/study.toml");
+
+/// Outcomes of every draw, by the two infill numbers of a design: rows of another length than the
+/// space, so that neighbours differ.
+#[derive(Debug, Clone)]
+struct Table {
+    outcomes: Vec<Vec<Outcome>>,
+}
+
+impl Table {
+    fn of(&self, design: &Design) -> &[Outcome] {
+        let number = |key| design.get(key).unwrap_or(0.0) as usize;
+        let at = 7 * number("infill_density_percent") + number("infill_direction_deg");
+        &self.outcomes[at % self.outcomes.len()]
+    }
+
+    fn measured(&self, design: &Design, race: Option<&Race>) -> Measured {
+        let outcomes = self.of(design);
+        let drawn = |draw: u32| outcomes[draw as usize];
+        let success = Some(race::run(outcomes.len() as u32, 0.95, race, drawn));
+        let window = evaluate(&FakeRig::default(), &Finger::new(3e3, 2e4), Search::Strides);
+        let stiffness = Prediction::exact(3e3, 2e4);
+        Measured { stiffness, tasks: vec![Evaluation { success, ..window }], cached: Vec::new() }
+    }
+}
+
+impl Evaluate for Table {
+    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible> {
+        Ok(self.measured(design, None))
+    }
+
+    fn race(&self, design: &Design, race: &Race) -> Result<Measured, Impossible> {
+        let found = self.measured(design, Some(race));
+        assert!(race.can_end_in(found.tasks[0].success.as_ref().unwrap()), "{race:?} {found:?}");
+        Ok(found)
+    }
+}
+
+fn outcome() -> impl Strategy<Value = Outcome> {
+    let failed = prop::sample::select(FailureClass::ALL.to_vec()).prop_map(Outcome::Failed);
+    prop_oneof![6 => Just(Outcome::Inserted), 3 => failed, 1 => Just(Outcome::Diverged)]
+}
+
+fn table() -> impl Strategy<Value = Table> {
+    (1..30usize).prop_flat_map(|draws| {
+        let rows = prop::collection::vec(prop::collection::vec(outcome(), draws), 5..60);
+        rows.prop_map(|outcomes| Table { outcomes })
+    })
+}
+
+#[derive(Clone, Default)]
+struct Memory(Arc<Mutex<Vec<u8>>>);
+
+impl Store for Memory {
+    fn read(&mut self) -> io::Result<Vec<u8>> {
+        Ok(self.0.lock().unwrap().clone())
+    }
+
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.0.lock().unwrap().extend_from_slice(bytes);
+        Ok(())
+    }
+
+    fn truncate(&mut self, len: u64) -> io::Result<()> {
+        self.0.lock().unwrap().truncate(len as usize);
+        Ok(())
+    }
+}
+
+/// A study of 24 evaluations in a folder of its own.
+struct Racing {
+    dir: tempfile::TempDir,
+    store: Memory,
+}
+
+impl Racing {
+    fn new(keys: &str, batch: u32) -> Self {
+        let dir = tempfile::tempdir().unwrap();
+        let config = FIXTURE.replace("\"range\"", "\"success-rate\"");
+        let config =
+            config.replace("budget = 10\nbatch = 4", &format!("budget = 24\nbatch = {batch}"));
+        let keys = format!("uncertainty = \"typical\"\n{keys}\n[provenance]");
+        fs::write(dir.path().join("study.toml"), config.replacen("[provenance]", &keys, 1))
+            .unwrap();
+        Racing { dir, store: Memory::default() }
+    }
+
+    fn run(&self, table: &Table, threads: usize) -> StudyRecord {
+        let mut study = Study::resume_with(self.dir.path(), Box::new(self.store.clone())).unwrap();
+        let grid = Grid::new(study.config.space.levels());
+        let mut optimizer = build(OptimizerKind::Random, grid, 3);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let runner = Runner { evaluator: table, pool: &pool, stop: &AtomicBool::new(false) };
+        runner.run(&mut study, &mut *optimizer, &mut |_| ()).unwrap();
+        study.record()
+    }
+
+    fn journal(&self) -> String {
+        strip_times(std::str::from_utf8(&self.store.0.lock().unwrap()).unwrap())
+    }
+}
+
+fn rates(record: &StudyRecord) -> Vec<Option<f64>> {
+    record.evaluations.iter().map(|recorded| recorded.value()).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// The designs do not depend on what is told here, so both studies evaluate the same. On one
+    /// thread results arrive in the order of their proposals, also those that are told as they come.
+    #[test]
+    fn the_best_of_a_race_is_the_best_of_full_counts(
+        table in table(),
+        batch in 1..9u32,
+        at in 0.0..1.0f64,
+        (keys, threads) in prop::sample::select(vec![("", [2, 4]), ("async = true\n", [1, 1])]),
+    ) {
+        let racing = Racing::new(&format!("{keys}race = true"), batch);
+        let (raced, counted) =
+            (racing.run(&table, threads[0]), Racing::new(keys, batch).run(&table, 1));
+        prop_assert!(counted.evaluations.iter().all(|recorded| !recorded.raced()));
+        let best = |record: &StudyRecord| record.recommended().map(|best| (best.index, best.value()));
+        prop_assert_eq!(best(&raced), best(&counted));
+        let equals = |record: &StudyRecord| -> Vec<u64> {
+            let index = record.recommended().map_or(0, |best| best.index);
+            record.equivalent(index).iter().map(|recorded| recorded.index).collect()
+        };
+        prop_assert_eq!(equals(&raced), equals(&counted));
+        let best = counted.best().and_then(|best| best.value());
+        for ((one, bound), rate) in raced.evaluations.iter().zip(rates(&raced)).zip(rates(&counted)) {
+            // All of a raced design that was left may have diverged; some of it failed.
+            let sound = if one.raced() { rate <= bound && bound < best } else { rate == bound };
+            prop_assert!(sound, "{rate:?}, at most {bound:?}, {best:?}");
+        }
+        // Killed anywhere, gone on with by any number of threads.
+        let expected = racing.journal();
+        let kept = (at * racing.store.0.lock().unwrap().len() as f64) as usize;
+        racing.store.0.lock().unwrap().truncate(kept);
+        racing.run(&table, threads[1]);
+        prop_assert_eq!(racing.journal(), expected);
+    }
+
+    /// Where a worker counts one draw more or less, or takes one for another, it is not believed.
+    #[test]
+    fn a_race_cannot_end_otherwise_than_it_does(
+        outcomes in prop::collection::vec(outcome(), 2..30),
+        first in prop::collection::vec(0..30u32, 0..20),
+        bar_share in 0.0..1.0f64,
+    ) {
+        let race = Race { bar_share, draws: outcomes.len() as u32, first };
+        let truth = race::run(race.draws, 0.95, Some(&race), |draw| outcomes[draw as usize]);
+        prop_assert!(race.can_end_in(&truth));
+        let mut more = truth.clone();
+        more.inserted += 1;
+        prop_assert!(!race.can_end_in(&more), "a draw too many");
+        more.spared = more.spared.wrapping_sub(1);
+        // Which draw diverged is not told, so it could have been the last.
+        let open = truth.spared == 0 || truth.diverged > 0;
+        prop_assert!(open || !race.can_end_in(&more), "one after it was lost");
+        if truth.inserted > 0 {
+            let mut fewer = truth.clone();
+            (fewer.inserted, fewer.spared) = (fewer.inserted - 1, fewer.spared + 1);
+            let by_the_last = race.is_lost_by(&fewer);
+            prop_assert!(by_the_last || !race.can_end_in(&fewer), "given up before it was lost");
+        }
+        if let Some(last) = race.order(race.draws).last().filter(|_| truth.raced().is_some()) {
+            let mut other = truth.clone();
+            other.failed_draws[0] = *last;
+            prop_assert!(!race.can_end_in(&other), "a draw that it did not have");
+        }
+    }
+}
+
+/// Errors by another name than the shipped ones, kept with the study.
+fn errors(studies: &Studies) -> String {
+    let path = studies.dir("errors.toml");
+    let text = include_str!("../uncertainties/typical.toml");
+    fs::write(&path, text.replace("\"typical\"", "\"mine\"")).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// The journal of a study that is measured by workers.
+fn by_workers(studies: &Studies, errors: &str) -> String {
+    let setup = SetupRequest {
+        tasks: TaskSource::list("usb"),
+        engine: EngineKind::Fake,
+        ..SetupRequest::default()
+    };
+    let request = StudyRequest {
+        objective: "success-rate".parse().unwrap(),
+        uncertainty: Some(errors.to_owned()),
+        out: Some(studies.dir("workers")),
+        ..StudyRequest::new(setup, 24)
+    };
+    let Ok(mut guided) = request.open(None).and_then(OpenStudy::guided) else { panic!("no study") };
+    while let Ok(Order::Measure(works)) = guided.order() {
+        for (proposal, work) in works.into_iter().rev() {
+            let result = perform(&work, "a worker", &NEVER).unwrap_or_else(|e| panic!("{e}"));
+            assert!(matches!(guided.take(proposal, &result), Ok(true)));
+        }
+    }
+    studies.journal("workers")
+}
+
+fn raced(studies: &Studies, name: &str) -> usize {
+    let journal = studies.journal(name);
+    journal.lines().filter(|line| line.contains("\"success_spared_draws\"")).count()
+}
+
+#[test]
+fn a_race_leaves_one_journal_whoever_measures_and_whatever_the_cache_holds() {
+    let studies = Studies::new();
+    let errors = errors(&studies);
+    let cache = studies.dir("cache").to_str().unwrap().to_owned();
+    let asked = ["--objective", "success-rate", "--uncertainty", &errors];
+    studies.study("s", 24, &asked).succeeds();
+    let expected = studies.journal("s");
+    assert!((3..21).contains(&raced(&studies, "s")), "{} raced", raced(&studies, "s"));
+    assert_eq!(by_workers(&studies, &errors), expected);
+    // Full counts of the same draws are in the cache, too.
+    let limited = ["--constraint", "success-rate>=0.1", "--cache", &cache];
+    studies.study("full", 12, &[&asked[..], &limited].concat()).succeeds();
+    assert_eq!(raced(&studies, "full"), 0, "a limit needs full counts");
+    for (name, threads) in [("1", "1"), ("2", "2"), ("again", "4")] {
+        let more = ["--threads", threads, "--cache", &cache];
+        studies.study(name, 24, &[&asked[..], &more].concat()).succeeds();
+        assert_eq!(studies.journal(name), expected, "{name}");
+    }
+    let path = studies.dir("s").join("journal.jsonl");
+    let whole = read(&path);
+    for kept in [whole.len() / 2, whole.len() * 4 / 5] {
+        fs::write(&path, &whole.as_bytes()[..kept]).unwrap();
+        studies.resume("s").succeeds();
+        assert_eq!(studies.journal("s"), expected, "{kept} bytes kept");
+    }
+}
+
+#[test]
+fn a_bound_is_said_and_shown_as_one() {
+    let studies = Studies::new();
+    let ran = studies.study(
+        "s",
+        24,
+        &["--objective", "success-rate", "--uncertainty", &errors(&studies)],
+    );
+    let said = format!("{} of 24 designs ended early", raced(&studies, "s"));
+    assert!(ran.succeeds().contains(&said), "{}", ran.stdout);
+    let page = read(&studies.dir("s").join("report.html"));
+    assert!(
+        page.contains(&said) && page.contains("at most 0.") && page.contains("at most (raced)")
+    );
+    let mut table = csv::Reader::from_path(studies.dir("s").join("evaluations.csv")).unwrap();
+    let header = table.headers().unwrap().clone();
+    let mut bounds = 0;
+    for row in table.records() {
+        let row = row.unwrap();
+        let cell = |key| &row[header.iter().position(|name| name == key).unwrap()];
+        assert_eq!(cell("success_rate"), cell("objective_share"));
+        assert_ne!(cell("success_rate").is_empty(), cell("raced_draws").is_empty());
+        assert_eq!(cell("raced_draws").is_empty(), cell("success_at_most").is_empty());
+        bounds += usize::from(!cell("raced_draws").is_empty());
+    }
+    assert_eq!(bounds, raced(&studies, "s"));
+}
+
+#[test]
+fn a_study_from_before_there_were_races_goes_on_without() {
+    let studies = Studies::new();
+    let asked = ["--objective", "success-rate", "--uncertainty", &errors(&studies)];
+    studies.study("s", 8, &asked).succeeds();
+    let dir = studies.dir("s");
+    let config = read(&dir.join("study.toml"));
+    fs::write(dir.join("study.toml"), config.replacen("race = true\n", "", 1)).unwrap();
+    studies.resume("s").fails(2, &["race"]);
+    fs::remove_file(dir.join("journal.jsonl")).unwrap();
+    // Resumed, or asked for by the same command.
+    studies.resume("s").succeeds();
+    studies.study("s", 24, &asked).succeeds();
+    assert_eq!((raced(&studies, "s"), studies.journal("s").lines().count()), (0, 26));
+    // Nor did they say which draws failed.
+    let journal = read(&dir.join("journal.jsonl"));
+    let without = |line: &str| match line.split_once(",\"success_failed_draws\":[") {
+        Some((before, rest)) => format!("{before}{}\n", rest.split_once(']').unwrap().1),
+        None => format!("{line}\n"),
+    };
+    let old = sealed(&journal.lines().map(without).collect::<String>());
+    assert!(old.len() < journal.len());
+    fs::write(dir.join("journal.jsonl"), old).unwrap();
+    assert_eq!(studies.resume("s").succeeds(), studies.study("s", 24, &asked).succeeds());
+    let wrong = read(&dir.join("study.toml")).replacen("\"success-rate\"", "\"robust-range\"", 1);
+    let wrong = wrong.replacen("seed = 0", "race = true\nseed = 0", 1);
+    fs::write(dir.join("study.toml"), wrong).unwrap();
+    studies.resume("s").fails(2, &["study.toml", "race: goes with"]);
+}

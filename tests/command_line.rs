@@ -99,8 +99,7 @@ fn progress_goes_to_standard_error_unless_quiet() {
 fn bad_usage_is_answered_with_2_and_what_would_be_right() {
     for (line, parts) in [
         ("--budget 5", &["--task"][..]),
-        ("--task usb", &["--budget"]),
-        ("", &["--task", "--budget"]),
+        ("", &["--task"]),
         ("--task usb --budget 0", &["--budget", "1.."]),
         ("--task usb --budget 5 --batch 0", &["--batch"]),
         ("--task usb --budget 5 --threads 0", &["--threads"]),

@@ -254,7 +254,8 @@ fn run(dir: &Path, store: Failing) -> Result<Ending, StudyError> {
     let mut optimizer = Walk { grid, at: 0, stride: 1 };
     let stop = AtomicBool::new(false);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    let runner = Runner { evaluator: &ClosedForm, pool: &pool, stop: &stop };
+    let runner =
+        Runner { evaluator: &ClosedForm, pool: &pool, stop: &stop, judge: &|_, _| Ok(false) };
     runner.run(&mut study, &mut optimizer, &mut |_| ())
 }
 
@@ -321,7 +322,12 @@ fn a_design_that_cannot_be_stops_the_study_and_is_named() {
     let mut study = Study::resume(&dir).unwrap();
     let grid = Grid::new(study.config.space.levels());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let runner = Runner { evaluator: &NotAll, pool: &pool, stop: &AtomicBool::new(false) };
+    let runner = Runner {
+        evaluator: &NotAll,
+        pool: &pool,
+        stop: &AtomicBool::new(false),
+        judge: &|_, _| Ok(false),
+    };
     let mut walk = Walk { grid, at: 0, stride: 1 };
     let error = runner.run(&mut study, &mut walk, &mut |_| ()).unwrap_err();
     assert!(error.is_bad_input());

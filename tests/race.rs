@@ -116,7 +116,12 @@ impl Racing {
         let grid = Grid::new(study.config.space.levels());
         let mut optimizer = build(OptimizerKind::Random, grid, 3);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let runner = Runner { evaluator: table, pool: &pool, stop: &AtomicBool::new(false) };
+        let runner = Runner {
+            evaluator: table,
+            pool: &pool,
+            stop: &AtomicBool::new(false),
+            judge: &|_, _| Ok(false),
+        };
         runner.run(&mut study, &mut *optimizer, &mut |_| ()).unwrap();
         study.record()
     }
@@ -217,10 +222,10 @@ fn by_workers(studies: &Studies, errors: &str) -> String {
         objective: "success-rate".parse().unwrap(),
         uncertainty: Some(errors.to_owned()),
         out: Some(studies.dir("workers")),
-        ..StudyRequest::new(setup, 24)
+        ..StudyRequest::new(setup, Some(24))
     };
     let Ok(mut guided) = request.open(None).and_then(OpenStudy::guided) else { panic!("no study") };
-    while let Ok(Order::Measure(works)) = guided.order() {
+    while let Ok(Order::Measure(works)) = guided.order(&AtomicBool::new(false)) {
         for (proposal, work) in works.into_iter().rev() {
             let result = perform(&work, "a worker", &NEVER).unwrap_or_else(|e| panic!("{e}"));
             assert!(matches!(guided.take(proposal, &result), Ok(true)));

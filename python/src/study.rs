@@ -1,7 +1,7 @@
 //! Studies: read from their folders, and run by whoever measures.
 
 use crate::errors::{InputError, Refused, RunError, raise};
-use crate::keywords::{Keywords, TaskWord, wrong};
+use crate::keywords::{Keywords, TaskWord};
 use crate::measure::{interruptible, released, watched};
 use finger_opt::cli::call;
 use finger_opt::report;
@@ -69,7 +69,7 @@ pub fn study<'py>(
     settings: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Asked> {
     let words = Keywords::new(py, settings)?;
-    let budget = words.take("budget")?.ok_or_else(|| wrong("budget", "has to be given"))?;
+    let budget = words.take("budget")?;
     let usual = StudyRequest::new(words.setup(tasks)?, budget);
     let request = StudyRequest {
         polish: words.number_or("polish", POLISH)?.unwrap_or(usual.polish),
@@ -205,16 +205,19 @@ impl Guided {
     }
 }
 
-const ENDINGS: [(Ending, &str); 3] = [
+const ENDINGS: [(Ending, &str); 4] = [
     (Ending::BudgetSpent, "budget_spent"),
     (Ending::SpaceExhausted, "space_exhausted"),
     (Ending::Converged, "converged"),
+    (Ending::Settled, "settled"),
 ];
 
 #[pymethods]
 impl Guided {
     fn next<'py>(&self, py: Python<'py>) -> PyResult<Next<'py>> {
-        let order = interruptible(py, |_| self.study().as_mut().map(session::Guided::order))?;
+        let order = interruptible(py, |stop: &AtomicBool| {
+            self.study().as_mut().map(|study| study.order(stop))
+        })?;
         let order = order.ok_or_else(|| RunError::new_err("the study is closed"))?;
         Ok(match order.map_err(raise)? {
             Order::Wait => (Vec::new(), None),

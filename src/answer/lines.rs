@@ -65,7 +65,8 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
             format!("; the search had given this one {}", measure.show(before))
         });
         let count = answer.walked.len();
-        lines.push(line("walked", format!("step by step: {count} designs{fell}")));
+        let plural = if count == 1 { "" } else { "s" };
+        lines.push(line("walked", format!("step by step: {count} design{plural}{fell}")));
     }
     lines.extend(found.as_good.iter().flat_map(|as_good| equivalent(as_good, answer.designs)));
     lines.extend(answer.spread_mm.map(|spread| {

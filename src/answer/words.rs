@@ -1,12 +1,17 @@
 //! Words and numbers of answers, for terminal and page alike; every number with its unit.
 
-use crate::study::Recorded;
+use crate::study::{INDIFFERENCE_MM, Recorded};
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
 use insertion::evaluation::{RobustRange, SuccessRate, Window};
 use insertion::outcome::Outcome;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Estimate;
+
+/// That a search settled, and what that means.
+pub fn settled(evaluations: usize) -> String {
+    format!("after {evaluations} evaluations: no finger is expected to gain {INDIFFERENCE_MM} mm")
+}
 
 /// A range or another length of the 0.1 mm grid: `3.5 mm`.
 pub fn mm(length_mm: f64) -> String {

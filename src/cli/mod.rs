@@ -219,9 +219,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => match cli.study.0 {
             Some(arguments) => study::to_its_end(arguments.request.open(None)?, &arguments.shown),
-            None => Err(Failure::usage(
-                "give --task NAME and --budget N, or a subcommand; see `optimize --help`",
-            )),
+            None => Err(Failure::usage("give --task NAME, or a subcommand; see `optimize --help`")),
         },
         Some(Command::Resume(arguments)) => {
             study::to_its_end(arguments.request.open()?, &arguments.shown)

@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 
 /// Time between two lines where there is no terminal.
 const EVERY: Duration = Duration::from_secs(3);
-/// Designs that are repeated, and walked, once a search has ended.
-const CONFIRMED: [f64; 2] = [9.0, 3.0];
+/// Designs that are repeated, and walked, in most studies.
+const CONFIRMED: [f64; 2] = [5.0, 1.5];
 
 /// Shows how far a study or a calibration is. Work is counted in evaluations of the search.
 pub struct Progress {
@@ -22,22 +22,24 @@ pub struct Progress {
     /// Work done since it began, and work left as far as that is known.
     done: f64,
     left: f64,
-    /// Evaluations in all, and the best of them, of a study.
-    search: Option<(u64, Standing)>,
+    /// Evaluations in all, unless the search settles, and the best of them, of a study.
+    search: Option<(Option<u64>, Standing)>,
 }
 
 impl Progress {
     /// Of a study; nothing is shown if `quiet`.
     pub fn new(study: &Study, quiet: bool) -> Self {
-        let (done, budget) = (study.evaluations.len() as u64, study.config.evaluations());
-        let conclusion = study.config.conclusion;
+        let config = &study.config;
+        let (done, budget) = (study.evaluations.len() as u64, config.expected_evaluations());
+        let conclusion = config.conclusion;
         let confirmed = CONFIRMED.iter().zip(COSTS).map(|(count, cost)| count * cost).sum::<f64>();
         let confirmed = if conclusion.no_confirm { 0.0 } else { confirmed };
         let bench = conclusion.bench.map_or(0.0, |effort| f64::from(effort.simulations) * COSTS[2]);
         let left = budget.saturating_sub(done) as f64 + confirmed + bench;
-        let shown = !quiet && done < budget;
+        let shown = !quiet && done < config.evaluations();
         let mut progress = Progress::of(left, shown);
-        progress.search = Some((budget, Standing::new(study)));
+        let total = if config.settles { None } else { Some(budget) };
+        progress.search = Some((total, Standing::new(study)));
         progress
     }
 
@@ -72,8 +74,9 @@ impl Progress {
         let Some((budget, standing)) = &mut self.search else { return };
         standing.add(recorded);
         let (done, budget) = (recorded.index + 1, *budget);
-        let what = format!("{done}/{budget} evaluations, {}", standing.best());
-        self.step(1.0, &what, done == budget);
+        let of = budget.map_or(String::new(), |budget| format!("/{budget}"));
+        let what = format!("{done}{of} evaluations, {}", standing.best());
+        self.step(1.0, &what, Some(done) == budget);
     }
 
     /// A part of this cost is done; the last of a phase is always shown.

@@ -3,7 +3,7 @@
 use super::terminal::merge;
 use super::{recommended, words};
 use crate::answer::lines;
-use crate::answer::words::{evaluated, volume_unit};
+use crate::answer::words::{evaluated, settled, volume_unit};
 use crate::answer::{Answer, Front};
 use crate::study::{Ending, Recorded, StudyRecord};
 use serde_json::{Value, json};
@@ -33,10 +33,13 @@ fn text(dir: &Path, answer: &Answer, ending: Ending, known: u64) -> String {
     let end = match ending {
         Ending::SpaceExhausted => ": every design of the space",
         Ending::Converged => ": the polish has converged",
-        Ending::BudgetSpent | Ending::Interrupted => "",
+        Ending::BudgetSpent | Ending::Interrupted | Ending::Settled => "",
     };
     let (task, method) = (config.task_name(), config.method());
     let mut text = format!("{task} with {method}: {done} evaluations{end}\n");
+    if record.settled {
+        text += &format!("settled       {}\n", settled(done));
+    }
     let first = record.first_current();
     if first > 0 {
         text += &format!(
@@ -110,6 +113,7 @@ fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
         Ending::SpaceExhausted => "space_exhausted",
         Ending::Converged => "converged",
         Ending::Interrupted => "interrupted",
+        Ending::Settled => "settled",
     };
     let best = record.best().filter(|_| answer.front.is_none());
     let mut fields = json!({
@@ -123,6 +127,7 @@ fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
         "budget": config.budget,
         "polish": config.polish,
         "evaluations": record.evaluations.len(),
+        "settled": record.settled,
         "cached": known,
         "ending": ending,
         "best": best.map(|best| recorded_json(record, best)),

@@ -42,7 +42,9 @@ pub(super) fn words(record: &StudyRecord) -> Vec<String> {
     }
     words.extend(config.aggregate.as_ref().map(aggregate));
     words.push(format!("--seed {}", config.seed));
-    words.push(format!("--budget {}", config.budget));
+    if !config.settles {
+        words.push(format!("--budget {}", config.budget));
+    }
     if config.polish > 0 {
         words.push(format!("--polish {}", config.polish));
     }

@@ -7,6 +7,7 @@ use super::{
     published, shape, windows,
 };
 use crate::answer::Answer;
+use crate::answer::words::settled;
 use crate::study::StudyRecord;
 use insertion::surrogate::Model;
 use maud::{Markup, PreEscaped, html};
@@ -35,8 +36,10 @@ pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<Stri
                 h1 { (title) }
                 p.muted {
                     "Robustness of a compliant finger in a connector insertion, by \
-                    contact simulation: " (record.evaluations.len()) " of "
-                    (config.evaluations()) " evaluations."
+                    contact simulation: " (config.counted(record.evaluations.len())) "."
+                    @if record.settled {
+                        " Settled " (settled(record.evaluations.len())) "."
+                    }
                     @if let Some(note) = drawn::note(record) { " " (note) }
                 }
             }
@@ -57,7 +60,7 @@ pub fn card(record: &StudyRecord) -> String {
     let card = html! {
         div.finger-opt {
             h3 { (title) }
-            p { (record.evaluations.len()) " of " (config.evaluations()) " evaluations" }
+            p { (config.counted(record.evaluations.len())) }
             @if let Some(bench) = bench::section(record) {
                 (bench)
                 h4 { "By simulation alone" }

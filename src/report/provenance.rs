@@ -51,7 +51,7 @@ pub(super) fn provenance(record: &StudyRecord) -> Markup {
     add("optimizer", config.method());
     add("objective", config.objective.to_string());
     add("seed", config.seed.to_string());
-    add("evaluations", format!("{} of {}", record.evaluations.len(), config.evaluations()));
+    add("evaluations", config.counted(record.evaluations.len()));
     add("designs proposed at a time", config.batch.to_string());
     config.constraints.iter().for_each(|constraint| add("constraint", constraint.to_string()));
     if let Some(aggregate) = &config.aggregate {

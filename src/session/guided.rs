@@ -2,11 +2,11 @@
 //! what is to be measured, checks what comes back, and writes the journal.
 
 use super::failure::not_stopped;
-use super::open::{Ended, OpenStudy, hint, resume_hint};
+use super::open::{Ended, OpenStudy, confirmer, hint, resume_hint};
 use super::standing::Standing;
-use super::{Failure, Setup, optimizer};
+use super::{Failure, Setup, Watch, optimizer};
 use crate::study::{
-    Arrived, Course, Ending, Next, Simulated, StudyError, Timing, Wanted, Work, WorkError,
+    Arrived, Course, Ending, Kept, Next, Simulated, StudyError, Timing, Wanted, Work, WorkError,
 };
 use ask_tell::Optimizer;
 use insertion::evaluation::evaluator::Evaluate;
@@ -26,6 +26,8 @@ pub struct Guided {
     /// Work being measured, by the number of its proposal.
     measuring: BTreeMap<u64, Work>,
     standing: Standing,
+    /// Confirmations.
+    kept: Kept,
 }
 
 /// Next step.
@@ -50,18 +52,23 @@ impl Guided {
     pub(super) fn new(open: OpenStudy) -> Result<Self, Failure> {
         let optimizer = optimizer::optimizer(&open.setup, &open.study.config)?;
         let (course, standing) = (Course::new(&open.study), Standing::new(&open.study));
-        Ok(Guided { open, optimizer, course, measuring: BTreeMap::new(), standing })
+        let kept = Kept::read(&open.study);
+        Ok(Guided { open, optimizer, course, measuring: BTreeMap::new(), standing, kept })
     }
 
     /// Next step. Designs that the cache knows are taken from there.
     ///
     /// # Errors
     /// If the journal holds other designs than are proposed, or cannot be written.
-    pub fn order(&mut self) -> Result<Order, Failure> {
+    pub fn order(&mut self, stop: &AtomicBool) -> Result<Order, Failure> {
         loop {
             let wanted = match self.course.next(&self.open.study, &mut *self.optimizer)? {
                 Next::Wait => return Ok(Order::Wait),
                 Next::Ended(ending) => return Ok(Order::Finish(ending)),
+                Next::Judge(told) => {
+                    self.judge(told, stop)?;
+                    continue;
+                }
                 Next::Measure(wanted) => wanted,
             };
             let mut unknown = Vec::new();
@@ -74,6 +81,22 @@ impl Guided {
                 return Ok(Order::Measure(unknown));
             }
         }
+    }
+
+    /// Judges on the threads of this process whether a gain is expected.
+    fn judge(&mut self, told: usize, stop: &AtomicBool) -> Result<(), Failure> {
+        let OpenStudy { study, setup, how, cache, .. } = &self.open;
+        let pool = how.pool()?;
+        let no_confirm = study.config.conclusion.no_confirm;
+        let quiet: &mut Watch<'_> = &mut |_| ();
+        let watch = Mutex::new(quiet);
+        let known = (setup, cache.as_ref());
+        let calm = confirmer(known, no_confirm, (&pool, stop), &watch, |it| {
+            it.judge(study, &self.kept, told)
+        })?;
+        not_stopped(stop)?;
+        self.course.judged(calm);
+        Ok(())
     }
 
     /// Takes a design's evaluation from the cache; false if it is not there.
@@ -147,7 +170,7 @@ impl Guided {
     /// Confirms what is recommended on the threads of this process, and writes tables and report.
     pub fn finish(&mut self, ending: Ending, stop: &AtomicBool) -> Result<Ended, Failure> {
         let pool = self.open.how.pool()?;
-        self.open.conclude(ending, &pool, stop, &mut |_| ())
+        self.open.conclude(ending, &self.kept, (&pool, stop), &mut |_| ())
     }
 
     /// How many threads measure if nobody else does; 0 for one per processor.

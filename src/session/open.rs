@@ -5,7 +5,7 @@ use super::how::RunRequest;
 use super::{COSTS, Event, Failure, Part, Setup, Watch, tell};
 use super::{film, on_bench, optimizer, printable, report, unusable};
 use crate::study::{
-    Cache, Confirmed, Confirmer, Ending, Recorded, Runner, Simulated, Study, StudyConfig,
+    Cache, Confirmed, Confirmer, Ending, Kept, Recorded, Runner, Simulated, Study, StudyConfig,
     StudyError, StudyRecord,
 };
 use insertion::evaluation::robustness::Plan;
@@ -80,29 +80,46 @@ impl OpenStudy {
             cache: self.cache.as_ref(),
             stop,
         };
-        let runner = Runner { evaluator: &evaluator, pool: &pool, stop };
-        let mut measured = |recorded: &_| watch(Event::Measured(recorded));
+        let kept = Kept::read(&self.study);
+        let no_confirm = self.study.config.conclusion.no_confirm;
+        let shared = Mutex::new(&mut *watch);
+        let judge = |study: &Study, told: usize| {
+            let known = (&self.setup, self.cache.as_ref());
+            confirmer(known, no_confirm, (&pool, stop), &shared, |it| it.judge(study, &kept, told))
+        };
+        let runner = Runner { evaluator: &evaluator, pool: &pool, stop, judge: &judge };
+        let mut measured = |recorded: &_| {
+            if let Ok(mut watch) = shared.lock() {
+                watch(Event::Measured(recorded));
+            }
+        };
         let ended = runner.run(&mut self.study, &mut *optimizer, &mut measured);
         let problem = self.cache.as_ref().and_then(Cache::problem);
         watch(Event::Searched { not_kept: problem.map(|problem| problem.to_string()) });
         let ending = ended.map_err(|error| hint(error, &self.study))?;
-        self.conclude(ending, &pool, stop, watch)
+        self.conclude(ending, &kept, (&pool, stop), watch)
     }
 
     /// Confirms what is recommended and writes the report of a study that has ended so.
     pub(super) fn conclude(
         &mut self,
         ending: Ending,
-        pool: &ThreadPool,
-        stop: &AtomicBool,
+        kept: &Kept,
+        (pool, stop): (&ThreadPool, &AtomicBool),
         watch: &mut Watch<'_>,
     ) -> Result<Ended, Failure> {
         let known = self.cache.as_ref().map_or(0, Cache::found);
         let OpenStudy { study, setup, how, cache, .. } = self;
         let conclusion = study.config.conclusion;
         let interrupted = || ending == Ending::Interrupted || stop.load(Ordering::SeqCst);
-        if ending != Ending::Interrupted && !conclusion.no_confirm {
-            confirm((study, setup), cache.as_ref(), (pool, stop), watch)?;
+        let settled = ending == Ending::Settled;
+        if ending != Ending::Interrupted && (settled || !conclusion.no_confirm) {
+            let shared = Mutex::new(&mut *watch);
+            let known = (&*setup, cache.as_ref());
+            confirmer(known, conclusion.no_confirm, (pool, stop), &shared, |it| {
+                it.confirm(study, kept, settled)
+            })
+            .map_err(|error| hint(error, study))?;
         }
         study.check_journal()?;
         if !interrupted() {
@@ -124,28 +141,27 @@ impl OpenStudy {
     }
 }
 
-/// Walks the best designs and repeats them at their ends.
-fn confirm(
-    (study, setup): (&mut Study, &Setup),
-    cache: Option<&Cache>,
+/// Lets a confirmer of this setup do something.
+pub(super) fn confirmer<T>(
+    (setup, cache): (&Setup, Option<&Cache>),
+    no_confirm: bool,
     (pool, stop): (&ThreadPool, &AtomicBool),
-    watch: &mut Watch<'_>,
-) -> Result<(), Failure> {
-    let watch = Mutex::new(watch);
+    watch: &Mutex<&mut Watch<'_>>,
+    what: impl FnOnce(&Confirmer) -> T,
+) -> T {
     let done = |phase, recorded: &Recorded, [done, of]: [usize; 2]| {
         let (word, cost) = match phase {
             Confirmed::Repeated => ("confirming", COSTS[0]),
             Confirmed::Walked => ("walking", COSTS[1]),
         };
         let what = format!("{word} {}", short(recorded));
-        tell(&watch, Part { what, done, of, cost });
+        tell(watch, Part { what, done, of, cost });
     };
     let (evaluator, search, plan) = (&setup.evaluator, Search::Walk, &Plan::WINDOW);
     let walker = Simulated { evaluator, search, plan, cache, stop };
     let by_ribs = setup.by_ribs();
-    let by_ribs = by_ribs.as_ref();
-    let confirmer = Confirmer { walker: &walker, by_ribs, evaluator, pool, stop, done: &done };
-    confirmer.confirm(study).map_err(|error| hint(error, study))
+    let (walker, by_ribs) = (&walker, by_ribs.as_ref());
+    what(&Confirmer { walker, by_ribs, evaluator, pool, stop, no_confirm, done: &done })
 }
 
 /// A design in few letters: `10 %, 26°`, of many parameters the number of its evaluation.
@@ -194,7 +210,6 @@ pub(super) fn hint(error: StudyError, study: &Study) -> Failure {
 
 /// How far a study is, and how to go on.
 pub(super) fn resume_hint(study: &Study) -> String {
-    let (done, budget, dir) =
-        (study.evaluations.len(), study.config.evaluations(), study.dir().display());
-    format!("{done} of {budget} evaluations are safe; continue with: optimize resume {dir}")
+    let (done, dir) = (study.config.counted(study.evaluations.len()), study.dir().display());
+    format!("{done} are safe; continue with: optimize resume {dir}")
 }

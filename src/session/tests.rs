@@ -24,12 +24,12 @@ fn refused<T>(done: Result<T, Failure>) -> String {
 #[test]
 fn what_no_command_line_has_checked_is_refused_by_its_option() {
     let study = |change: &dyn Fn(&mut StudyRequest)| {
-        let mut request = StudyRequest::new(usb(), 4);
+        let mut request = StudyRequest::new(usb(), Some(4));
         change(&mut request);
         refused(AnyStudy::Asked(Box::new(request)).folder())
     };
     for (said, option) in [
-        (study(&|study| study.budget = 0), "--budget 0: must lie between 1 and"),
+        (study(&|study| study.budget = Some(0)), "--budget 0: must lie between 1 and"),
         (study(&|study| study.seed = u64::MAX), "--seed"),
         (study(&|study| study.batch = Some(0)), "--batch"),
         (study(&|study| study.run.threads = Some(0)), "--threads"),

@@ -4,7 +4,7 @@ use super::differences::differences;
 use super::on_bench::BenchEffort;
 use super::provenance::Provenance;
 use ask_tell::OptimizerKind;
-use insertion::evaluation::objective::{Aggregate, Constraint, Goals, Objectives};
+use insertion::evaluation::objective::{Aggregate, Constraint, Goals, Measure, Objectives};
 use insertion::finger::model::FingerModelKind;
 use insertion::space::Space;
 use serde::{Deserialize, Serialize};
@@ -47,6 +47,12 @@ pub struct StudyConfig {
     /// Evaluations that the optimizer has; the one field that may be raised later, unless
     /// there is a polish.
     pub budget: u64,
+    /// Whether the search ends before, once no design is expected to gain.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub settles: bool,
+    /// How designs are chosen to be confirmed.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub confirmation: Confirmation,
     /// Most evaluations of the polish that follows.
     #[serde(default, skip_serializing_if = "is_default")]
     pub polish: u64,
@@ -63,6 +69,17 @@ pub struct StudyConfig {
     pub provenance: Provenance,
     /// The search space in full.
     pub space: Space,
+}
+
+/// How designs are chosen to be confirmed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Confirmation {
+    /// The first nine are repeated, the first three of these walked: up to version 0.3.0.
+    #[default]
+    NineAndThree,
+    /// Whichever is expected to be the best, until none is expected to gain.
+    Expected,
 }
 
 /// How a study ends. It changes no evaluation, so it may be settled anew.
@@ -114,6 +131,9 @@ impl StudyConfig {
         if self.objective.single().is_none() && !kind.takes_several_objectives() {
             return Err(format!("optimizer: {kind} knows one objective only"));
         }
+        if self.settles && !self.can_settle() {
+            return Err("settles: goes with gp over range or centred-range alone".to_owned());
+        }
         if self.objective.single().is_none() && self.polish > 0 {
             return Err("polish: knows one objective only".to_owned());
         }
@@ -135,6 +155,37 @@ impl StudyConfig {
             );
         }
         self.provenance.check()
+    }
+
+    /// Whether a search for this can tell when it is settled: the process knows one objective, in mm,
+    /// without constraints.
+    pub fn can_settle(&self) -> bool {
+        let widths =
+            matches!(self.objective.single(), Some(Measure::Range | Measure::CentredRange));
+        let process = self.optimizer.parse() == Ok(OptimizerKind::Gp);
+        widths && process && self.constraints.is_empty() && self.polish == 0
+    }
+
+    /// Of a search that settles: evaluations before which it does not, and in a row after which no gain
+    /// has to be expected. Chosen on recorded landscapes (`docs/notes/optimizers.md`).
+    pub fn settling(&self) -> Option<[usize; 2]> {
+        let free = self.space.levels().into_iter().filter(|&levels| levels > 1).count();
+        self.settles.then_some([20 + 4 * free, 12 * free.max(1)])
+    }
+
+    /// Evaluations to be expected: of a search that settles as many as it needs at the least, which
+    /// most do not exceed by much.
+    pub fn expected_evaluations(&self) -> u64 {
+        let least = self.settling().map(|[least, quiet]| (least + quiet) as u64);
+        least.unwrap_or(u64::MAX).min(self.evaluations())
+    }
+
+    /// `24 of 200 evaluations`, or, of a search that settles, `24 evaluations`.
+    pub fn counted(&self, done: usize) -> String {
+        match self.settles {
+            true => format!("{done} evaluations"),
+            false => format!("{done} of {} evaluations", self.evaluations()),
+        }
     }
 
     /// Goals for a design.
@@ -160,16 +211,18 @@ impl StudyConfig {
     }
 
     /// The fields in which a study on disk differs from what is asked for now,
-    /// one line each; a budget that was raised does not count, unless a polish follows it, and whether
-    /// there is a race stays as it was.
+    /// one line each. A budget that was raised does not count, unless a polish follows it, nor one that
+    /// is given to a study that settles; whether there is a race, and the confirmation, stay as they
+    /// were.
     /// Provenance is compared by [`Provenance::differences`].
     pub fn differences(&self, asked: &StudyConfig) -> Option<String> {
-        let may_rise = asked.polish == 0 && asked.budget > self.budget;
+        let may_rise = asked.polish == 0 && (asked.budget > self.budget || self.settles);
         let budget = if may_rise { asked.budget } else { self.budget };
         let provenance = asked.provenance.clone();
         let conclusion = asked.conclusion;
-        let race = asked.race;
-        let raised = StudyConfig { budget, race, provenance, conclusion, ..self.clone() };
+        let &StudyConfig { race, settles, confirmation, .. } = asked;
+        let kept = StudyConfig { race, settles, confirmation, ..self.clone() };
+        let raised = StudyConfig { budget, provenance, conclusion, ..kept };
         differences(&raised, asked, ["the study", "now"])
     }
 }

@@ -39,6 +39,8 @@ pub enum Ending {
     SpaceExhausted,
     /// The polish has found what it can find.
     Converged,
+    /// No design is expected to gain what matters.
+    Settled,
     /// It was told to stop.
     Interrupted,
 }
@@ -61,6 +63,8 @@ pub enum Next {
     Measure(Vec<Wanted>),
     /// Wait for a result of what is being measured.
     Wait,
+    /// Say, by [`judged`](Course::judged), whether a gain is expected after so many evaluations.
+    Judge(usize),
     /// Nothing.
     Ended(Ending),
 }
@@ -92,7 +96,29 @@ pub struct Course {
     measuring: BTreeMap<u64, Design>,
     /// Measured, and to be written after earlier ones, by the same number.
     waiting: BTreeMap<u64, Recorded>,
+    settling: Option<Settling>,
     ended: Option<Ending>,
+}
+
+/// When a search ends that has no budget but a limit.
+#[derive(Debug, Clone, Copy)]
+struct Settling {
+    /// Evaluations before which nothing is judged.
+    least: usize,
+    /// Evaluations in a row after which no gain has to be expected.
+    quiet: usize,
+    /// Those so far.
+    calm: usize,
+    /// Evaluations at the last judgement.
+    judged: usize,
+    settled: bool,
+}
+
+impl Settling {
+    fn of(study: &Study) -> Option<Self> {
+        let [least, quiet] = study.config.settling()?;
+        Some(Settling { least, quiet, calm: 0, judged: 0, settled: study.settled() })
+    }
 }
 
 impl Course {
@@ -109,6 +135,7 @@ impl Course {
             told: 0,
             measuring: BTreeMap::new(),
             waiting: BTreeMap::new(),
+            settling: Settling::of(study),
             ended: None,
         }
     }
@@ -123,6 +150,21 @@ impl Course {
         optimizer: &mut dyn Optimizer,
     ) -> Result<Next, StudyError> {
         while self.ended.is_none() {
+            if !self.asynchronous && self.measuring.is_empty() {
+                self.tell_batch(study, optimizer);
+            }
+            match self.settling {
+                // What is being measured is waited for: it is written, too.
+                Some(Settling { settled: true, .. }) if self.measuring.is_empty() => {
+                    self.ended = Some(Ending::Settled);
+                    continue;
+                }
+                Some(Settling { settled: true, .. }) => return Ok(Next::Wait),
+                Some(Settling { least, judged, .. }) if self.told >= least.max(judged + 1) => {
+                    return Ok(Next::Judge(self.told));
+                }
+                _ => {}
+            }
             let wanted = match self.asynchronous {
                 true => self.next_arrivals(study, optimizer)?,
                 false if self.measuring.is_empty() => self.next_batch(study, optimizer)?,
@@ -138,6 +180,17 @@ impl Course {
             }
         }
         Ok(Next::Ended(self.ended.unwrap_or(Ending::BudgetSpent)))
+    }
+
+    /// Whether no gain was expected at the last [`Judge`](Next::Judge).
+    pub fn judged(&mut self, calm: bool) {
+        let (told, batch) = (self.told, self.batch);
+        if let Some(settling) = &mut self.settling {
+            let more = (told - settling.judged).min(batch);
+            settling.calm = if calm { settling.calm + more } else { 0 };
+            settling.judged = told;
+            settling.settled = settling.calm >= settling.quiet;
+        }
     }
 
     /// Takes in what was measured of a design that was given out, and writes down what is in
@@ -191,13 +244,8 @@ impl Course {
         self.waiting.remove_entry(&proposal)
     }
 
-    /// Tells the batch that was measured and asks for the next; gives what the journal does not
-    /// hold of it.
-    fn next_batch(
-        &mut self,
-        study: &Study,
-        optimizer: &mut dyn Optimizer,
-    ) -> Result<Vec<Wanted>, StudyError> {
+    /// Tells the batch that was measured.
+    fn tell_batch(&mut self, study: &Study, optimizer: &mut dyn Optimizer) {
         let end = self.told + self.open.len();
         // A budget that ends within a batch tells nothing of it.
         if end <= self.budget && !self.open.is_empty() {
@@ -210,7 +258,15 @@ impl Course {
             optimizer.tell(&told);
             self.told = end;
         }
-        if end >= self.budget {
+    }
+
+    /// Asks for the next batch; gives what the journal does not hold of it.
+    fn next_batch(
+        &mut self,
+        study: &Study,
+        optimizer: &mut dyn Optimizer,
+    ) -> Result<Vec<Wanted>, StudyError> {
+        if self.told + self.open.len() >= self.budget {
             self.ended = Some(Ending::BudgetSpent);
             return Ok(Vec::new());
         }

@@ -101,8 +101,12 @@ impl Study {
                 ));
             }
             let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
-            let raised = study.config.budget < config.budget;
-            study.config.budget = config.budget.max(study.config.budget);
+            let before = (study.config.budget, study.config.settles);
+            // Of one that settles the budget is but a limit.
+            let least = if before.1 { study.evaluations.len() as u64 } else { before.0 };
+            study.config.budget = config.budget.max(least);
+            study.config.settles = config.settles;
+            let raised = before != (study.config.budget, study.config.settles);
             study.measure_with(&config.provenance, inputs, if_changed)?;
             if raised {
                 write_config(dir, &study.config)?;
@@ -235,6 +239,11 @@ impl Study {
         &self.dir
     }
 
+    /// Whether its search has settled with these evaluations.
+    pub fn settled(&self) -> bool {
+        walked::settled(&self.dir, Some(self.provenance()), self.evaluations.len())
+    }
+
     /// Keeps what measurements say of its fingers.
     pub fn keep_on_bench(&self, found: &OnBench) -> Result<(), StudyError> {
         let path = self.dir.join(BENCH_FILE);
@@ -281,12 +290,15 @@ impl StudyRecord {
             finger,
             firm_values,
             on_bench,
+            settled: false,
         };
         let provenance = record.segments.last().map(|segment| &segment.provenance);
         let goals = record.config.goals();
         let rule = Rule { goals: &goals, space: &record.config.space };
         (record.walked, record.firm_values) =
             walked::read(dir, &rule, provenance, record.current());
+        record.settled =
+            record.config.settles && walked::settled(dir, provenance, record.evaluations.len());
         record
     }
 

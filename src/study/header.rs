@@ -46,6 +46,8 @@ fn identity(config: &StudyConfig) -> Result<Value, serde_json::Error> {
     let mut fields = serde_json::to_value(config)?;
     let mut identity = json!({"schema_version": SCHEMA_VERSION});
     if let (Value::Object(fields), Value::Object(identity)) = (&mut fields, &mut identity) {
+        // In place, so that the others keep their order.
+        fields.shift_remove("settles");
         fields.remove("conclusion");
         if config.polish == 0 {
             fields.remove("budget");

@@ -28,7 +28,9 @@ mod walked;
 mod work;
 
 pub use cache::Cache;
-pub use config::{Conclusion, LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name};
+pub use config::{
+    Conclusion, Confirmation, LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name,
+};
 pub use course::{Arrived, Course, Ending, Next, Wanted};
 pub use error::{LineError, StudyError};
 pub use folder::{
@@ -43,10 +45,10 @@ pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
 pub use record::{
     ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume,
 };
-pub use runner::Runner;
+pub use runner::{Judge, Runner};
 pub use seal::{sha256_hex, strip_times};
 pub use simulated::Simulated;
 pub use store::{FileStore, Store};
 pub use table::{evaluations_csv, write_evaluations_csv};
-pub use walk::{Confirmed, Confirmer};
+pub use walk::{Confirmed, Confirmer, INDIFFERENCE_MM, Kept};
 pub use work::{Work, WorkError};

@@ -2,6 +2,9 @@
 
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
+use super::walk::GAIN;
+use ask_tell::Grid;
+use ask_tell::gp::{Confirmed, Outlook};
 use insertion::evaluation::objective::Measure;
 use insertion::outcome::Outcome;
 
@@ -27,21 +30,39 @@ impl StudyRecord {
     }
 
     /// The designs whose search found as much as that of the evaluation `index`, with it, but for
-    /// those whose repeats found less; by evaluation.
+    /// those of which the repeats found less, or would be expected to; by evaluation.
     pub fn equivalent(&self, index: u64) -> Vec<&Recorded> {
         let goals = self.config.goals();
-        let searched =
-            |recorded: &Recorded| Some(goals.gains(recorded.feasible()?).first().copied());
-        let own = self.current().iter().find(|recorded| recorded.index == index).and_then(searched);
-        let firm = |index| self.firm_values.get(&index);
-        let refuted =
-            |other: u64| firm(other).zip(firm(index)).is_some_and(|(other, own)| other < own);
-        let as_good = |other: &&Recorded| {
-            searched(other).zip(own).is_some_and(|(other, own)| other >= own)
-                && !refuted(other.index)
-                && !other.raced()
+        let searched = |recorded: &Recorded| goals.gains(recorded.feasible()?).first().copied();
+        let current = self.current();
+        let Some(own) = current.iter().position(|recorded| recorded.index == index) else {
+            return Vec::new();
         };
-        self.current().iter().filter(as_good).collect()
+        let (expected, least) = (self.expected(), searched(&current[own]));
+        let as_good = |&at: &usize| {
+            let found = searched(&current[at]).zip(least).is_some_and(|(found, own)| found >= own);
+            found && expected[at] >= expected[own] && !current[at].raced()
+        };
+        (0..current.len()).filter(as_good).map(|at| &current[at]).collect()
+    }
+
+    /// The firm value that each of the [`current`](Self::current) designs has or may be expected to
+    /// have, rounded to the grid of ranges; 0 where none was repeated.
+    fn expected(&self) -> Vec<f64> {
+        let current = self.current();
+        let known = |at: usize| self.firm_values.get(&current[at].index).copied();
+        let confirmed = |at| Some(Confirmed { at, value: known(at)?, last: true });
+        let confirmed: Vec<Confirmed> = (0..current.len()).filter_map(confirmed).collect();
+        if confirmed.is_empty() {
+            return vec![0.0; current.len()];
+        }
+        let (goals, space) = (self.config.goals(), &self.config.space);
+        let rule = Rule { goals: &goals, space };
+        let observed = rule.observed(current);
+        let grid = Grid::new(space.levels());
+        let outlook = Outlook::new(&grid, &observed, &confirmed, GAIN);
+        let expected = |at| known(at).or_else(|| outlook.median(at)).unwrap_or(0.0);
+        (0..current.len()).map(|at| (10.0 * expected(at)).round() / 10.0).collect()
     }
 
     /// The smallest and the largest range of the evaluations, mm, aggregated over the tasks: how much

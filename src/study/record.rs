@@ -44,6 +44,8 @@ pub struct StudyRecord {
     pub firm_values: BTreeMap<u64, f64>,
     /// Prediction of its fingers on the bench from measurements, if there are any.
     pub on_bench: Option<OnBench>,
+    /// Whether the search has settled with these evaluations: no design was expected to gain.
+    pub settled: bool,
 }
 
 /// A design that was measured again.

@@ -10,6 +10,7 @@
 //! 6. Then the earlier one.
 
 use super::record::Recorded;
+use ask_tell::Observation;
 use insertion::evaluation::objective::{Goals, Measure};
 use insertion::evaluation::{Evaluation, Window};
 use insertion::space::{Design, Space};
@@ -68,6 +69,15 @@ impl Rule<'_> {
     pub fn as_recorded(&self, recorded: &Recorded) -> Standing {
         let windows: Vec<Window> = recorded.tasks.iter().map(|task| task.window.clone()).collect();
         self.standing(recorded, &windows)
+    }
+
+    /// What the search found, by the first objective; designs that cannot be recommended have no value.
+    pub fn observed(&self, found: &[Recorded]) -> Vec<Observation> {
+        let of = |recorded: &Recorded| {
+            let value = self.as_recorded(recorded).value();
+            Observation::new(self.space.point(&recorded.design), value)
+        };
+        found.iter().map(of).collect()
     }
 
     /// Less if `a` is recommended before `b`.

@@ -21,7 +21,12 @@ pub struct Runner<'a> {
     /// Set (by Ctrl-C) when the run is to stop soon; also set by the runner
     /// itself after an error.
     pub stop: &'a AtomicBool,
+    /// Whether no gain is expected after so many evaluations, of a study that settles.
+    pub judge: &'a Judge<'a>,
 }
+
+/// Judges a study after so many of its evaluations.
+pub type Judge<'a> = dyn Fn(&Study, usize) -> Result<bool, StudyError> + Sync + 'a;
 
 impl Runner<'_> {
     /// Runs the study until its budget is spent; `optimizer` is new, and
@@ -63,6 +68,14 @@ impl Runner<'_> {
                                     let measure = AssertUnwindSafe(|| self.measure(&wanted));
                                     drop(sender.send(catch_unwind(measure)));
                                 });
+                            }
+                            return Ok(None);
+                        }
+                        Next::Judge(told) => {
+                            let calm = (self.judge)(study, told)?;
+                            // Interrupted, it says nothing.
+                            if !self.stop.load(Ordering::SeqCst) {
+                                course.judged(calm);
                             }
                             return Ok(None);
                         }
@@ -149,7 +162,8 @@ mod tests {
         let stop = AtomicBool::new(false);
         let grid = Grid::new(study.config.space.levels());
         let mut optimizer = build(OptimizerKind::Random, grid, 0);
-        let runner = Runner { evaluator: &Panics, pool: &pool, stop: &stop };
+        let runner =
+            Runner { evaluator: &Panics, pool: &pool, stop: &stop, judge: &|_, _| Ok(false) };
         let run = AssertUnwindSafe(|| runner.run(&mut study, &mut *optimizer, &mut |_| ()));
         assert!(catch_unwind(run).is_err());
         drop(study);

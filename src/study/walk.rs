@@ -1,11 +1,14 @@
 //! Measures the best designs of a study again; why and how is in `walked.rs`.
 
+use super::config::Confirmation;
 use super::error::StudyError;
 use super::folder::{Study, write_own_file};
 use super::provenance::Provenance;
 use super::record::{ByRibs, Recorded};
-use super::rule::Rule;
-use super::walked::{REPEATED, Row, WALK_FILE, WALKED, WalkFile, WalkedRow};
+use super::rule::{Rule, Standing};
+use super::walked::{REPEATED, Row, WALK_FILE, WALKED, WalkFile, WalkedRow, with_windows};
+use ask_tell::Grid;
+use ask_tell::gp::{Advice, DEFAULT_NOISE_FLOOR, Gain, Outlook};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Evaluator};
 use insertion::evaluation::robustness::Plan;
@@ -31,6 +34,8 @@ pub struct Confirmer<'a> {
     pub pool: &'a ThreadPool,
     /// Set when the study is to stop: trials then end at once.
     pub stop: &'a AtomicBool,
+    /// Whether nothing is confirmed.
+    pub no_confirm: bool,
     /// Told of each design that is repeated or walked, how many are, and of how many.
     pub done: &'a (dyn Fn(Confirmed, &Recorded, [usize; 2]) + Sync),
 }
@@ -44,41 +49,134 @@ pub enum Confirmed {
     Walked,
 }
 
+/// Least difference of two ranges that matters, mm: how well a bench repeats.
+pub const INDIFFERENCE_MM: f64 = 0.3;
+/// What counts as a gain over the best confirmed design.
+pub(super) const GAIN: Gain = Gain {
+    least: INDIFFERENCE_MM,
+    probability: 0.02,
+    noise_floor: DEFAULT_NOISE_FLOOR,
+    floor: 0.0,
+};
+/// Designs confirmed at a time, whatever the number of threads.
+const AT_ONCE: usize = 2;
+
 impl Confirmer<'_> {
-    /// Measures the best designs of a study again, what is known of them left out, and keeps what
-    /// that finds, each design as it is done.
+    /// Confirms what a study has to confirm that has ended, and keeps it, each design as it is done;
+    /// and whether it has `settled`.
     ///
     /// # Errors
     /// If a design cannot be simulated, or the file not be written.
-    pub fn confirm(&self, study: &Study) -> Result<(), StudyError> {
-        let (record, goals) = (study.record(), study.config.goals());
+    pub fn confirm(&self, study: &Study, kept: &Kept, settled: bool) -> Result<(), StudyError> {
+        let goals = study.config.goals();
         let rule = Rule { goals: &goals, space: &study.config.space };
-        let best = match rule.by_windows() {
-            true => rule.candidates(record.current(), REPEATED),
-            false => Vec::new(),
-        };
-        if best.is_empty() {
+        if !rule.by_windows() {
             return Ok(());
         }
-        let (kept, seed) = (Kept::read(study, &best, self.stop), study.config.seed);
-        self.each(Confirmed::Repeated, &best, |recorded| match kept.row(recorded) {
-            Some(_) => Ok(()),
-            None => kept.put(Row {
-                evaluation: recorded.index,
-                firm: self.firm(recorded, &[], seed)?,
-                walked: None,
-            }),
-        })?;
-        let standing =
-            |recorded| Some((recorded, rule.firmly(recorded, &kept.row(recorded)?.firm)));
+        match study.config.confirmation {
+            Confirmation::Expected => {
+                self.by_expectation(study, kept, study.evaluations.len(), false)?;
+            }
+            Confirmation::NineAndThree => self.nine_and_three(study, kept, &rule)?,
+        }
+        if self.stop.load(Ordering::SeqCst) {
+            return Ok(());
+        }
+        kept.finish(settled.then_some(study.evaluations.len() as u64))
+    }
+
+    /// Whether no gain is expected of a study that settles after its first `told` evaluations, what
+    /// has to be confirmed to say so confirmed.
+    ///
+    /// # Errors
+    /// As [`confirm`](Self::confirm).
+    pub fn judge(&self, study: &Study, kept: &Kept, told: usize) -> Result<bool, StudyError> {
+        Ok(self.by_expectation(study, kept, told, true)? == Advice::Settled)
+    }
+
+    fn by_expectation(
+        &self,
+        study: &Study,
+        kept: &Kept,
+        told: usize,
+        searching: bool,
+    ) -> Result<Advice, StudyError> {
+        let (record, goals, seed) = (study.record(), study.config.goals(), study.config.seed);
+        let rule = Rule { goals: &goals, space: &study.config.space };
+        let current = record.current();
+        let current =
+            &current[..told.saturating_sub(record.first_current() as usize).min(current.len())];
+        let standings: Vec<Standing> =
+            current.iter().map(|found| rule.as_recorded(found)).collect();
+        let space = &study.config.space;
+        let grid = Grid::new(space.levels());
+        let observed = rule.observed(current);
+        let mut order: Vec<usize> = (0..current.len()).collect();
+        order.sort_by(|&a, &b| rule.order(&standings[a], &standings[b]));
+        let mut rank = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(place, &at)| rank[at] = place);
+        loop {
+            let known = |(at, found): (usize, &Recorded)| {
+                let row = kept.row(found)?;
+                Some(ask_tell::gp::Confirmed {
+                    at,
+                    value: standing(&rule, found, &row).value().unwrap_or(0.0),
+                    last: row.walked.is_some(),
+                })
+            };
+            let confirmed: Vec<_> = current.iter().enumerate().filter_map(known).collect();
+            let outlook = Outlook::new(&grid, &observed, &confirmed, GAIN);
+            let advice = match searching {
+                true => outlook.advise(&rank, AT_ONCE),
+                false => outlook.confirm_only(&rank, AT_ONCE),
+            };
+            let Advice::Confirm(places) = &advice else { return Ok(advice) };
+            // Without confirmations what the search found stands for them.
+            if self.no_confirm {
+                return Ok(Advice::Settled);
+            }
+            let chosen: Vec<&Recorded> = places.iter().map(|&at| &current[at]).collect();
+            let walking = chosen.iter().any(|found| kept.row(found).is_some());
+            let phase = if walking { Confirmed::Walked } else { Confirmed::Repeated };
+            kept.want(&chosen);
+            self.each(phase, &chosen, |found| self.further(found, kept, seed))?;
+            if self.stop.load(Ordering::SeqCst) {
+                return Ok(Advice::Search);
+            }
+        }
+    }
+
+    /// Repeats a design, or walks one that was repeated; what is known is not measured again.
+    fn further(&self, found: &Recorded, kept: &Kept, seed: u64) -> Result<(), StudyError> {
+        let known = kept.known.iter().find(|row| row.evaluation == found.index).cloned();
+        match (kept.row(found), known) {
+            (None, Some(known)) => kept.recall(Row { walked: None, ..known }),
+            (None, None) => {
+                let firm = self.firm(found, &[], seed)?;
+                return self.keep(kept, Row { evaluation: found.index, firm, walked: None });
+            }
+            (Some(_), Some(known)) if known.walked.is_some() => kept.recall(known),
+            (Some(row), _) => return self.keep(kept, self.walk(found, row, seed)?),
+        }
+        Ok(())
+    }
+
+    /// Keeps a result, unless trials may have been skipped for it.
+    fn keep(&self, kept: &Kept, row: Row) -> Result<(), StudyError> {
+        if self.stop.load(Ordering::SeqCst) { Ok(()) } else { kept.put(row) }
+    }
+
+    /// The rule of version 0.3.0.
+    fn nine_and_three(&self, study: &Study, kept: &Kept, rule: &Rule) -> Result<(), StudyError> {
+        let (record, seed) = (study.record(), study.config.seed);
+        let best = rule.candidates(record.current(), REPEATED);
+        kept.want(&best);
+        self.each(Confirmed::Repeated, &best, |found| self.further(found, kept, seed))?;
+        let standing = |found| Some((found, rule.firmly(found, &kept.row(found)?.firm)));
         let mut firm: Vec<_> = best.iter().copied().filter_map(standing).collect();
         firm.sort_by(|(_, a), (_, b)| rule.order(a, b));
         let first: Vec<&Recorded> = firm.into_iter().take(WALKED).map(|(best, _)| best).collect();
-        self.each(Confirmed::Walked, &first, |recorded| match kept.row(recorded) {
-            Some(row) if row.walked.is_none() => kept.put(self.walk(recorded, row, seed)?),
-            _ => Ok(()),
-        })?;
-        kept.finish()
+        self.each(Confirmed::Walked, &first, |found| self.further(found, kept, seed))
     }
 
     /// Does something with each design, several at a time.
@@ -149,24 +247,41 @@ fn impossible(recorded: &Recorded, source: Impossible) -> StudyError {
     StudyError::Impossible { index: recorded.index, design: recorded.design.to_string(), source }
 }
 
-/// The file as it grows. Nothing is kept once `stop` is set: trials may have been skipped.
-struct Kept<'a> {
+/// How a design stands with what confirmed it.
+fn standing(rule: &Rule, found: &Recorded, row: &Row) -> Standing {
+    match &row.walked {
+        None => rule.firmly(found, &row.firm),
+        Some(walked) => rule.firmly(&with_windows(rule, found, &walked.tasks), &walked.firm),
+    }
+}
+
+/// The file as it grows.
+pub struct Kept {
     dir: PathBuf,
     provenance: Provenance,
-    stop: &'a AtomicBool,
-    /// A place for each of the best designs, in their order.
+    /// What the file held: measured again it would be the same.
+    known: Vec<Row>,
+    /// A place for each design that was chosen, in that order.
     rows: Mutex<Vec<(u64, Option<Row>)>>,
 }
 
-impl<'a> Kept<'a> {
-    /// Known results of these designs.
-    fn read(study: &'a Study, best: &[&Recorded], stop: &'a AtomicBool) -> Self {
+impl Kept {
+    /// What is known of a study, nothing of it chosen yet.
+    pub fn read(study: &Study) -> Self {
         let (dir, provenance) = (study.dir().to_owned(), study.provenance().clone());
         let file = WalkFile::read(&dir, Some(&provenance));
         let known = file.map_or(Vec::new(), |file| file.designs);
-        let row = |index| known.iter().find(|row| row.evaluation == index).cloned();
-        let rows = best.iter().map(|recorded| (recorded.index, row(recorded.index))).collect();
-        Kept { dir, provenance, stop, rows: Mutex::new(rows) }
+        Kept { dir, provenance, known, rows: Mutex::default() }
+    }
+
+    /// Gives these designs a place, those that have none.
+    fn want(&self, chosen: &[&Recorded]) {
+        let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
+        for found in chosen {
+            if !rows.iter().any(|(index, _)| *index == found.index) {
+                rows.push((found.index, None));
+            }
+        }
     }
 
     fn row(&self, recorded: &Recorded) -> Option<Row> {
@@ -174,24 +289,37 @@ impl<'a> Kept<'a> {
         rows.iter().find(|(index, _)| *index == recorded.index)?.1.clone()
     }
 
-    fn put(&self, row: Row) -> Result<(), StudyError> {
-        let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
+    fn set(rows: &mut [(u64, Option<Row>)], row: Row) {
         if let Some(place) = rows.iter_mut().find(|(index, _)| *index == row.evaluation) {
             place.1 = Some(row);
         }
-        self.write(&rows, false)
     }
 
-    fn finish(&self) -> Result<(), StudyError> {
-        self.write(&self.rows.lock().unwrap_or_else(PoisonError::into_inner), true)
+    fn recall(&self, row: Row) {
+        Self::set(&mut self.rows.lock().unwrap_or_else(PoisonError::into_inner), row);
     }
 
-    fn write(&self, rows: &[(u64, Option<Row>)], complete: bool) -> Result<(), StudyError> {
-        if self.stop.load(Ordering::SeqCst) {
-            return Ok(());
-        }
+    fn put(&self, row: Row) -> Result<(), StudyError> {
+        let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
+        Self::set(&mut rows, row);
+        self.write(&rows, None)
+    }
+
+    fn finish(&self, settled_after: Option<u64>) -> Result<(), StudyError> {
+        let rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
+        self.write(&rows, Some(settled_after))
+    }
+
+    /// Writes the file; of what is `finished` also with how many evaluations it settled, if it did.
+    fn write(
+        &self,
+        rows: &[(u64, Option<Row>)],
+        finished: Option<Option<u64>>,
+    ) -> Result<(), StudyError> {
         let designs = rows.iter().filter_map(|(_, row)| row.clone()).collect();
-        let file = WalkFile { provenance: self.provenance.clone(), complete, designs };
+        let (provenance, complete) = (self.provenance.clone(), finished.is_some());
+        let settled_after = finished.flatten();
+        let file = WalkFile { provenance, complete, settled_after, designs };
         let path = self.dir.join(WALK_FILE);
         let text = serde_json::to_string(&file)
             .map_err(|error| StudyError::File { path: path.clone(), problem: error.to_string() })?;

@@ -1,16 +1,18 @@
-//! The best designs of a study, measured again: step by step, and six times at their ends.
+//! The best designs of a study, confirmed: walked step by step, and repeated six times at their ends.
 //!
 //! A study looks for the ends of its windows in strides, which do not see a gap between two
 //! of them; an optimizer then finds just the designs whose gaps are passed over. And an end may
 //! hang on a corner that catches or not. So before one is recommended
 //!
-//! 1. the ends of the first nine designs, by the [`Rule`] on what the search found, are
-//!    repeated with friction, start and step varied ([`firm`](insertion::evaluation::robustness::firm));
-//! 2. the first three of these, by the rule on their firm windows, are walked; where that gives
-//!    another window, its ends are repeated, too.
+//! 1. the ends of a design are repeated with friction, start and step varied
+//!    ([`firm`](insertion::evaluation::robustness::firm)): always of the one whose firm window is
+//!    expected to be the widest, while that is likely to gain ([`ask_tell::gp::Outlook`]);
+//! 2. the first by the rule on the firm windows is walked; where that gives another window, its ends
+//!    are repeated, too, and the first step may be due again.
 //!
-//! The first of the three, by the rule on the firm windows that are left, is recommended. Each of
-//! them is also measured once with the springs that its ribs give it, if the study has the paper's:
+//! Of those walked the first, by the rule on the firm windows that are left, is recommended. (Studies of
+//! version 0.3.0 repeat the first nine and walk the first three of these.) Each that is walked is also
+//! measured once with the springs that its ribs give it, if the study has the paper's:
 //! that decides nothing, it is said beside.
 //! What
 //! this finds is kept beside the journal, in `walk.json`, and is no part of the budget.
@@ -39,7 +41,10 @@ pub(super) struct WalkFile {
     pub provenance: Provenance,
     /// Whether all was done; if not, it is a beginning to go on from.
     pub complete: bool,
-    /// The designs, in the order of the rule on what the search found.
+    /// Evaluations with which the search settled, if it has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settled_after: Option<u64>,
+    /// The designs, in the order in which they were chosen.
     pub designs: Vec<Row>,
 }
 
@@ -107,7 +112,7 @@ impl Rule<'_> {
 }
 
 /// The evaluation with the windows of the walk; what was measured under drawn errors stays.
-fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
+pub(super) fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
     let mut recorded = before.clone();
     for (task, walked) in recorded.tasks.iter_mut().zip(found) {
         let (success, robust) = (task.success.take(), task.robust.take());
@@ -115,6 +120,12 @@ fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorde
     }
     recorded.score = rule.goals.score(&recorded.tasks());
     recorded
+}
+
+/// Whether the search settled with as many evaluations.
+pub(super) fn settled(dir: &Path, provenance: Option<&Provenance>, evaluations: usize) -> bool {
+    let file = WalkFile::read(dir, provenance);
+    file.and_then(|file| file.settled_after) == Some(evaluations as u64)
 }
 
 /// Designs walked, best first, and the firm value of the first objective of every design whose

@@ -212,12 +212,12 @@ fn lathe(flats: usize, rings: usize) -> String {
 fn lied_to(mutations: &[Mutation], out: &Path) -> How {
     let tasks = TaskSource::list("usb");
     let setup = SetupRequest { tasks, engine: EngineKind::Fake, ..SetupRequest::default() };
-    let request = StudyRequest { out: Some(out.to_owned()), ..StudyRequest::new(setup, 3) };
+    let request = StudyRequest { out: Some(out.to_owned()), ..StudyRequest::new(setup, Some(3)) };
     let failed = |failure: Failure| anyhow::anyhow!("{failure}");
     let mut guided = request.open(None).and_then(OpenStudy::guided).map_err(failed)?;
     let mut how = "accepted";
     loop {
-        let works = match guided.order().map_err(failed)? {
+        let works = match guided.order(&NEVER).map_err(failed)? {
             Order::Measure(works) => works,
             Order::Wait => bail!("it waits for a result that nobody was asked for"),
             Order::Finish(ending) => {

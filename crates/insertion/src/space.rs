@@ -314,6 +314,12 @@ impl Space {
         self.parameters.iter().map(Parameter::levels).collect()
     }
 
+    /// The grid point nearest to a design.
+    pub fn point(&self, design: &Design) -> GridPoint {
+        let level = |p: &Parameter| p.nearest(design.get(&p.key).unwrap_or(p.low));
+        GridPoint(self.parameters.iter().map(level).collect())
+    }
+
     /// The design at a grid point (one level per parameter, each below its count).
     pub fn design(&self, point: &GridPoint) -> Design {
         let values = self.parameters.iter().zip(&point.0);

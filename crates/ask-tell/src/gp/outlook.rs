@@ -217,6 +217,12 @@ impl<'a> Outlook<'a> {
         }
     }
 
+    /// The value that a measured point will have once confirmed, in the median; `None` without a value.
+    pub fn median(&self, at: usize) -> Option<f64> {
+        let told = self.told.get(at)?;
+        Some(told.value()? - self.drop_at(&self.grid.free_unit(&told.point)).0.max(0.0))
+    }
+
     /// The value that a measured point is expected to have once confirmed, and the probability that
     /// it is above `bar`; `None` without a value.
     fn measured(&self, at: usize, bar: f64) -> Option<(f64, f64)> {

@@ -1,0 +1,124 @@
+//! Studies without a budget: they end when no design is expected to gain, wherever they were
+//! interrupted, and their confirmations are kept with them.
+
+mod common;
+
+use ask_tell::stream::stream;
+use common::{Ran, Studies, command, read, run, start};
+use rand::RngExt;
+use serde_json::Value;
+use std::process::{Child, Command};
+use std::time::Duration;
+
+/// Kills of a study; set the environment variable `KILLS` for more.
+const KILLS: u32 = 6;
+
+/// A quiet study on the fake engine without a budget, not yet started.
+fn settling(folder: &Studies, name: &str, more: &[&str]) -> Command {
+    let mut command = command(&["--engine", "fake", "--quiet", "--json", "--task", "usb"]);
+    command.arg("--out").arg(folder.dir(name)).args(more);
+    command
+}
+
+/// What a study answers, without where it is.
+fn answer(ran: &Ran) -> Value {
+    let mut json = ran.json();
+    json.as_object_mut().expect("an object").remove("study");
+    json
+}
+
+/// Confirmations, without the provenance.
+fn confirmed(folder: &Studies, name: &str) -> Value {
+    let mut file: Value =
+        serde_json::from_str(&read(&folder.dir(name).join("walk.json"))).expect("JSON");
+    file.as_object_mut().expect("an object").remove("provenance");
+    file
+}
+
+#[test]
+fn a_study_without_a_budget_settles_and_stays_settled() {
+    let folder = Studies::new();
+    let found = answer(&run(&mut settling(&folder, "s", &[])));
+    let evaluations = found["evaluations"].as_u64().expect("a number");
+    assert_eq!((&found["settled"], &found["ending"]), (&Value::Bool(true), &"settled".into()));
+    assert!((28..500).contains(&evaluations), "{found}");
+    assert_eq!(confirmed(&folder, "s")["settled_after"], evaluations);
+    let journal = folder.journal("s");
+    assert_eq!(answer(&run(&mut settling(&folder, "s", &[]))), found);
+    assert_eq!(folder.journal("s"), journal);
+    let said = run(command(&["resume", "--quiet"]).arg(folder.dir("s"))).succeeds().to_owned();
+    let expected = format!(
+        "settled       after {evaluations} evaluations: no finger is expected to gain 0.3 mm"
+    );
+    assert!(said.contains(&expected), "{said}");
+    assert_eq!(folder.journal("s"), journal);
+    // No better finger is there: every design of the space, none of them as firm by 0.3 mm more.
+    let all = folder.study("all", 861, &["--optimizer", "grid", "--json"]).json();
+    let firm = |json: &Value| json["recommended"]["firm_range_mm"].as_f64().expect("a firm range");
+    assert!(firm(&all) - firm(&found) <= 0.3 + 1e-9, "{} and {}", firm(&all), firm(&found));
+}
+
+#[test]
+fn a_budget_goes_on_from_where_a_study_settled() {
+    let folder = Studies::new();
+    let settled = answer(&run(&mut settling(&folder, "s", &[])));
+    let whole = answer(&folder.study("whole", 90, &["--json"]));
+    assert_eq!(whole["settled"], false);
+    let more = answer(&folder.study("s", 90, &["--json"]));
+    assert_eq!(folder.journal("s"), folder.journal("whole"));
+    assert_eq!((&more, confirmed(&folder, "s")), (&whole, confirmed(&folder, "whole")));
+    assert!(settled["evaluations"].as_u64() < more["evaluations"].as_u64());
+    // And back: judged anew, it ends with what it has.
+    let back = answer(&run(&mut settling(&folder, "s", &[])));
+    assert_eq!(back["evaluations"], 90, "{back}");
+    // Less than was measured takes nothing away.
+    let fewer = answer(&folder.study("t", 20, &["--json"]));
+    assert_eq!(fewer["evaluations"], 20);
+}
+
+#[test]
+fn neither_threads_nor_kills_change_a_study_that_settles() {
+    let folder = Studies::new();
+    // Fingers that drop when they are confirmed keep it confirming.
+    let more = ["--threads", "1"];
+    let whole = answer(&run(&mut settling(&folder, "whole", &more)));
+    let threads = answer(&run(&mut settling(&folder, "threads", &["--threads", "4"])));
+    assert_eq!((&threads, confirmed(&folder, "threads")), (&whole, confirmed(&folder, "whole")));
+    assert_eq!(folder.journal("threads"), folder.journal("whole"));
+    let kills = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(KILLS);
+    let mut random = stream(0, 0, "kills of settling studies");
+    for round in 0..kills {
+        let name = format!("killed-{round}");
+        // Some in the search, most while something is confirmed.
+        let mut child: Child = start(&mut settling(&folder, &name, &more));
+        folder.wait_for_lines(&name, if round % 4 == 0 { 10 } else { 29 });
+        std::thread::sleep(Duration::from_millis(random.random_range(0..60)));
+        child.kill().expect("it can be killed");
+        child.wait().expect("it ends");
+        let resumed = run(&mut settling(&folder, &name, &more));
+        assert_eq!(answer(&resumed), whole);
+        assert_eq!(confirmed(&folder, &name), confirmed(&folder, "whole"));
+        assert_eq!(folder.journal(&name), folder.journal("whole"));
+    }
+}
+
+#[test]
+fn what_cannot_settle_has_a_budget() {
+    let folder = Studies::new();
+    for more in [
+        &["--optimizer", "random"][..],
+        &["--objective", "peak-force"],
+        &["--constraint", "peak-force<=900"],
+        &["--polish", "4"],
+    ] {
+        let found = answer(&run(&mut settling(&folder, more[1], more)));
+        assert_eq!((&found["settled"], &found["budget"]), (&Value::Bool(false), &200.into()));
+    }
+    let unconfirmed = answer(&run(&mut settling(&folder, "unconfirmed", &["--no-confirm"])));
+    assert_eq!(unconfirmed["settled"], true);
+    assert!(unconfirmed.get("walked").is_none());
+    let asynchronous = answer(&run(&mut settling(&folder, "async", &["--async"])));
+    assert_eq!(asynchronous["settled"], true);
+    let again = answer(&run(&mut settling(&folder, "async", &["--async"])));
+    assert_eq!(again["evaluations"], asynchronous["evaluations"]);
+}

@@ -2,9 +2,9 @@
 # Makes every figure under results/reference from the present sources, and notes which sources
 # those were (scripts/stale.sh). The one entry; parts can be named:
 #
-#     scripts/reference.sh                          all parts but the last two
+#     scripts/reference.sh                          all parts but the last four
 #     scripts/reference.sh validation               one part
-#     scripts/reference.sh landscapes peers         what it leaves out unless named
+#     scripts/reference.sh landscapes firm settled peers   what it leaves out unless named
 #
 # Landscapes are recorded functions that optimizers are measured on, not figures of the
 # present model: renewing them means renewing all of results/reference/optimizers.md. Peers
@@ -228,6 +228,32 @@ EOF
     record windows "$folder"/*.csv
 }
 
+# Every design of the four tasks as it is found today, and what is firm of the widest and of random ones:
+# an hour and a half of processor time.
+firm() {
+    local folder="$reference/landscapes/firm" task
+    mkdir -p "$folder"
+    for task in usb ket8 ket12 rj45; do
+        "$lab" landscape --task "$task" --out "$folder/$task.csv"
+    done
+    record windows "$folder"/*.csv
+}
+
+# Studies without a budget, ten seeds on each task, beside the best firm range of all designs.
+settled() {
+    local file="$reference/landscapes/firm/studies.csv" task seed
+    echo "task,seed,evaluations,confirmed,walked,trials,firm_range_mm,best_firm_range_mm" > "$file"
+    for task in usb ket8 ket12 rj45; do
+        for seed in 0 1 2 3 4 5 6 7 8 9; do
+            "$optimize" --task "$task" --seed "$seed" --cache "$work/cache" --out "$work/settled-$task-$seed" \
+                --quiet --json > "$work/settled.json"
+            python3 scripts/settled.py "$work/settled-$task-$seed" "$work/settled.json" \
+                "$reference/landscapes/firm/$task.csv" >> "$file"
+        done
+    done
+    record studies "$file"
+}
+
 peers() {
     local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv"
     local landscapes=() task
@@ -243,8 +269,8 @@ peers() {
 }
 
 for part in ${*:-$parts}; do
-    case " $parts landscapes peers " in
+    case " $parts landscapes firm settled peers " in
         *" $part "*) echo "== $part" >&2; "$part" ;;
-        *) echo "no part is called $part; there are: $parts landscapes peers" >&2; exit 2 ;;
+        *) echo "no part is called $part; there are: $parts landscapes firm settled peers" >&2; exit 2 ;;
     esac
 done

@@ -1,0 +1,25 @@
+"""A line of the table of settled studies: a study's folder, its JSON, the landscape of its task."""
+
+import csv
+import json
+import sys
+
+folder, answer, landscape = sys.argv[1:]
+with open(answer) as file:
+    found = json.load(file)
+with open(f"{folder}/walk.json") as file:
+    designs = json.load(file)["designs"]
+with open(f"{folder}/evaluations.csv") as file:
+    trials = sum(int(row["trials"]) for row in csv.DictReader(file))
+walked = [design["walked"] for design in designs if "walked" in design]
+trials += sum(firm["trials"] for design in designs for firm in design["firm"])
+# What was repeated anew after a walk counts; the same windows kept their repeats.
+for design in designs:
+    if "walked" in design:
+        again = [firm for firm in design["walked"]["firm"] if firm not in design["firm"]]
+        trials += sum(task["trials"] for task in design["walked"]["tasks"]) + sum(f["trials"] for f in again)
+with open(landscape) as file:
+    best = max(float(row["firm_mm"]) for row in csv.DictReader(file) if row["firm_mm"])
+firm = found["recommended"]["firm_range_mm"]
+cells = [found["task"], found["seed"], found["evaluations"], len(designs), len(walked), trials, firm, best]
+print(",".join(str(cell) for cell in cells))

@@ -101,6 +101,11 @@ class Study:
         found = json.loads(self._read().best()) if self._begun() else None
         return None if found is None else Record(found)
 
+    @property
+    def settled(self) -> bool:
+        """Whether the search has ended because no design is expected to gain 0.3 mm."""
+        return self._begun() and self._read().settled()
+
     def to_dataframe(self) -> pandas.DataFrame:
         """A row for each evaluation; the columns of ``evaluations.csv``, with their units."""
         try:

@@ -163,6 +163,10 @@ impl Recorded {
         self.record.evaluations.len()
     }
 
+    fn settled(&self) -> bool {
+        self.record.settled
+    }
+
     fn best(&self) -> String {
         call::best(&self.record).to_string()
     }

@@ -44,6 +44,20 @@ def expected(create, command, tmp_path, fake):
     return journal(tmp_path / "expected")
 
 
+def test_without_a_budget_it_settles_whoever_measures(create):
+    here = create("here", budget=None)
+    assert not here.settled
+    here.run(progress=False)
+    assert here.settled and 28 <= len(here) < 500
+    with ThreadPoolExecutor(3) as threads:
+        there = create("there", budget=None).run(threads, progress=False)
+    assert there.settled and journal(there.path) == journal(here.path) and there.best == here.best
+    # It is settled, so nothing more is measured; with a budget it goes on.
+    assert len(there.run(progress=False)) == len(here)
+    more = create("there", budget=len(here) + 4).run(progress=False)
+    assert not more.settled and len(more) == len(here) + 4
+
+
 class Shuffled(Executor):
     """Does its work in another order, some of it twice, and loses some."""
 

@@ -156,10 +156,12 @@ impl Guided {
         taken.map_err(|error| hint(study.rescue(error), study))
     }
 
-    /// Evaluations written, evaluations in all, and the best so far in words.
+    /// Evaluations written, as many as are expected in all, and the best so far in words.
     pub fn progress(&self) -> (usize, u64, String) {
         let study = &self.open.study;
-        (study.evaluations.len(), study.config.evaluations(), self.standing.best())
+        let done = study.evaluations.len();
+        let expected = study.config.expected_evaluations().max(done as u64);
+        (done, expected, self.standing.best())
     }
 
     /// How to go on with the study.

@@ -284,9 +284,9 @@ impl<'a> Attempt<'a> {
         if self.stage == Stage::Search {
             self.watch.entered = self.edge.inside(&self.pose(self.cell.plug));
         }
-        if self.trace.as_ref().is_some_and(|trace| trace.due(self.time, dt)) {
+        if self.trace.is_some() {
             let sample = self.sample(&contact.net);
-            self.trace.iter_mut().for_each(|trace| trace.take(sample));
+            self.trace.iter_mut().for_each(|trace| trace.see(sample));
         }
         if self.robot.stops(&self.watch.force) { Err(Stop::ForceLimit) } else { Ok(()) }
     }

@@ -131,26 +131,56 @@ pub struct Sample {
     pub slip_mm: f64,
 }
 
+impl Sample {
+    /// Between two samples, a `share` of the way; the phase is that of the later.
+    fn between(before: &Sample, after: &Sample, share: f64) -> Sample {
+        let number = |a: f64, b: f64| a + share * (b - a);
+        let vector = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| number(a[i], b[i]));
+        Sample {
+            time_s: number(before.time_s, after.time_s),
+            phase: after.phase,
+            tcp_mm: vector(before.tcp_mm, after.tcp_mm),
+            tip_mm: vector(before.tip_mm, after.tip_mm),
+            tilt_deg: number(before.tilt_deg, after.tilt_deg),
+            force_n: vector(before.force_n, after.force_n),
+            slip_mm: number(before.slip_mm, after.slip_mm),
+        }
+    }
+}
+
+/// Least time between two samples, s: no engine steps faster.
+const LEAST_INTERVAL: f64 = 5e-5;
+/// By how much the end of a step may miss the time of a sample and still be that sample, s.
+const SAME_TIME: f64 = 1e-9;
+
+/// Samples at even times, between the ends of steps where those are longer or begin elsewhere.
 #[derive(Debug, Clone)]
 pub(super) struct Trace {
     every_s: f64,
-    next_s: f64,
+    last: Option<Sample>,
     pub samples: Vec<Sample>,
 }
 
 impl Trace {
-    /// A sample each `every_s` seconds of simulated time, or at each step if that is longer.
+    /// A sample each `every_s` seconds of simulated time, from the end of the first step on.
     pub fn new(every_s: f64) -> Self {
-        Trace { every_s, next_s: 0.0, samples: Vec::new() }
+        Trace { every_s: every_s.max(LEAST_INTERVAL), last: None, samples: Vec::new() }
     }
 
-    /// Whether a sample is due after a step of `step_s` that ended at this time.
-    pub fn due(&self, time_s: f64, step_s: f64) -> bool {
-        time_s > self.next_s - 0.5 * step_s
-    }
-
-    pub fn take(&mut self, sample: Sample) {
-        self.samples.push(sample);
-        self.next_s = sample.time_s + self.every_s;
+    /// Takes in the end of a step.
+    pub fn see(&mut self, now: Sample) {
+        let Some(last) = self.last.replace(now) else {
+            self.samples.push(now);
+            return;
+        };
+        while let Some(before) = self.samples.last() {
+            let next_s = before.time_s + self.every_s;
+            if next_s > now.time_s + SAME_TIME {
+                return;
+            }
+            let share = (next_s - last.time_s) / (now.time_s - last.time_s);
+            let same = (now.time_s - next_s).abs() < SAME_TIME;
+            self.samples.push(if same { now } else { Sample::between(&last, &now, share) });
+        }
     }
 }

@@ -250,8 +250,7 @@ mod tests {
         assert_eq!(trial, grasped.trial(0.0));
         let last = samples.last().unwrap();
         let apart = |pair: &[Sample]| pair[1].time_s - pair[0].time_s;
-        // Rests, of longer steps, may begin between two samples.
-        assert!(samples.windows(2).all(|pair| (apart(pair) - 1e-3).abs() < 0.5e-3 + 1e-9));
+        assert!(samples.windows(2).all(|pair| (apart(pair) - 1e-3).abs() < 1e-8));
         assert!((last.tip_mm[2] + trial.depth_mm).abs() < 1e-2, "{last:?}");
         assert!((trial.simulated_s - last.time_s) < 2e-3);
     }

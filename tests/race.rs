@@ -155,7 +155,7 @@ proptest! {
         prop_assert_eq!(best(&raced), best(&counted));
         let equals = |record: &StudyRecord| -> Vec<u64> {
             let index = record.recommended().map_or(0, |best| best.index);
-            record.equivalent(index).iter().map(|recorded| recorded.index).collect()
+            record.as_good(index).iter().map(|(recorded, _)| recorded.index).collect()
         };
         prop_assert_eq!(equals(&raced), equals(&counted));
         let best = counted.best().and_then(|best| best.value());

@@ -56,7 +56,7 @@ pub struct Asked(call::Asked);
 
 impl Asked {
     fn of(study: AnyStudy) -> Self {
-        Asked(call::Asked { study, executor: None, quiet: false, json: false })
+        Asked(call::Asked { study, executor: None, shown: call::Shown::default() })
     }
 }
 
@@ -122,7 +122,7 @@ impl Asked {
     /// Whether no progress is shown.
     #[getter]
     fn quiet(&self) -> bool {
-        self.0.quiet
+        self.0.shown.quiet
     }
 
     /// Its folder, with all checked that is asked for.
@@ -133,7 +133,7 @@ impl Asked {
     /// Begins it or goes on with it.
     fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<Guided> {
         let opened = released(py, || self.0.study.open(workers)?.guided())?.map_err(raise)?;
-        Ok(Guided { open: Mutex::new(Some(opened)), json: self.0.json })
+        Ok(Guided { open: Mutex::new(Some(opened)), shown: self.0.shown })
     }
 }
 
@@ -187,7 +187,7 @@ impl Recorded {
 pub struct Guided {
     open: Mutex<Option<session::Guided>>,
     /// Whether its result is printed as JSON.
-    json: bool,
+    shown: call::Shown,
 }
 
 /// Work to be measured (none: wait for a result), and how the study ended, if it did.
@@ -267,7 +267,7 @@ impl Guided {
         let ended = done.ok_or_else(|| RunError::new_err("the study is closed"))?;
         let ended = ended.map_err(raise)?;
         let unusable = ended.unusable.as_ref().map(ToString::to_string);
-        Ok((call::text(&ended, self.json), unusable))
+        Ok((call::text(&ended, self.shown), unusable))
     }
 
     /// Lets other processes open the study.

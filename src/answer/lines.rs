@@ -1,7 +1,7 @@
 //! An answer line by line, each a name and what it says: terminal and page show the same.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
-use super::{Answer, AsGood, OnTask, Recommended};
+use super::{Answer, AsGood, OnTask, Recommended, Spread, command};
 use crate::calibration::order::Order;
 use crate::study::{ByRibs, OnBench, Recorded};
 use input::units::N_PER_MM;
@@ -10,12 +10,97 @@ use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::surrogate::Prediction;
+use std::iter;
+use std::path::Path;
 
 /// A name, empty where the line above goes on, and what is said.
 pub type Line = (String, String);
 
 fn line(name: &str, text: impl Into<String>) -> Line {
     (name.to_owned(), text.into())
+}
+
+/// The answer in few lines, after the sentence that stands first and what may be expected.
+pub fn brief(answer: &Answer, dir: &Path) -> Vec<Line> {
+    let record = answer.record;
+    let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
+    let simulated = one.filter(|_| answer.front.is_none());
+    let mut lines: Vec<Line> = Vec::new();
+    if let Some(found) = simulated {
+        lines.extend(found.start.and_then(|start| start.advice()).map(|text| line("start", text)));
+        for task in &found.tasks {
+            let [below, above] =
+                [task.measured.window.end_negative, task.measured.window.end_positive]
+                    .map(words::end);
+            let ends = format!("{below} below, {above} above{}", found.on(task));
+            lines.push(line("ends", ends));
+        }
+        lines.extend(found.as_good.as_ref().map(|as_good| within(answer, as_good)));
+        lines.extend(found.as_good.as_ref().and_then(safe));
+        lines.extend(answer.spread_mm.map(|spread| line("infill", moves(answer, spread))));
+        lines.extend(extrapolated(found));
+    }
+    lines.extend(
+        record
+            .on_bench
+            .iter()
+            .flat_map(|bench| bench.warnings.iter().map(|words| line("warning", words))),
+    );
+    lines.push(line("searched", searched(answer)));
+    let (command, why) = command::next(answer, dir);
+    lines.push(line("next", command));
+    lines.push(line("", why));
+    lines
+}
+
+/// How the finger was searched for.
+fn searched(answer: &Answer) -> String {
+    let record = answer.record;
+    let (task, method) = (record.config.task_name(), record.config.method());
+    match record.settled {
+        true => format!("{task} with {method}: settled {}", words::settled(record)),
+        false => format!("{task} with {method}: {} evaluations", record.evaluations.len()),
+    }
+}
+
+/// Size and spread of the set of designs that are as good.
+pub fn within(answer: &Answer, as_good: &AsGood) -> Line {
+    let (count, of) = (as_good.designs.len(), answer.designs);
+    let within = match answer.record.config.objective.first().unit() {
+        "mm" => format!(" within {} mm", answer.record.config.indifference_mm),
+        _ => String::new(),
+    };
+    if count < 2 {
+        return line("as good", format!("no other of {of} designs{within}"));
+    }
+    let spread: Vec<String> = as_good.spread.iter().take(NAMED).map(Spread::words).collect();
+    line("as good", format!("{count} of {of} designs{within}: {}", spread.join(", ")))
+}
+
+/// Parameters whose spread is told.
+const NAMED: usize = 4;
+
+/// The safe choice, if it is another than the recommended one.
+fn safe(as_good: &AsGood) -> Option<Line> {
+    let safe = as_good.safe.as_ref()?;
+    let why = match (safe.measured_mm, safe.force_n) {
+        (Some(measured_mm), _) => format!("a robot measured {}", mm(measured_mm)),
+        (None, Some(force_n)) => format!("least force, {force_n:.0} N"),
+        (None, None) => return None,
+    };
+    let loss = if safe.loss > 0.0 { format!(", {} less", mm(safe.loss)) } else { String::new() };
+    Some(line("safe choice", format!("{}: {why}{loss}", words::design(&safe.design.design))))
+}
+
+/// How much the parameters of the space move the range.
+fn moves(answer: &Answer, spread: [f64; 2]) -> String {
+    format!("moves the searched range from {} over {} designs", interval(spread), answer.designs)
+}
+
+fn extrapolated(found: &Recommended) -> Option<Line> {
+    let distance = found.design.stiffness.hull_distance;
+    let text = format!("stiffness extrapolated by {distance:.2} of the measured span: measure it");
+    (!found.design.stiffness.inside_hull()).then(|| line("warning", text))
 }
 
 /// The recommended finger, what it tolerates and how firm that is, what is as good, and whether
@@ -68,7 +153,7 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         let plural = if count == 1 { "" } else { "s" };
         lines.push(line("walked", format!("step by step: {count} design{plural}{fell}")));
     }
-    lines.extend(found.as_good.iter().flat_map(|as_good| equivalent(as_good, answer.designs)));
+    lines.extend(found.as_good.iter().flat_map(|as_good| equivalent(answer, as_good)));
     lines.extend(answer.spread_mm.map(|spread| {
         let (designs, spread) = (answer.designs, interval(spread));
         line("spread", format!("ranges of the {designs} designs: {spread}"))
@@ -96,18 +181,13 @@ fn raced(answer: &Answer) -> Option<Line> {
 }
 
 /// How many designs are as good, and which of them to take for other reasons.
-fn equivalent(as_good: &AsGood, of: usize) -> Vec<Line> {
-    let count = as_good.designs;
-    if count < 2 {
-        return vec![line("as good", format!("no other of {of} designs"))];
-    }
-    let text = format!("{count} of {of} designs are equivalent: choose by other needs");
-    let mut lines = vec![line("as good", text)];
-    for (reason, Recorded { design, index, .. }, value, unit) in &as_good.alternatives {
+fn equivalent(answer: &Answer, as_good: &AsGood) -> Vec<Line> {
+    let named = as_good.alternatives.iter().map(|(reason, found, value, unit)| {
+        let Recorded { design, index, .. } = found;
         let text = format!("{}: {value:.1} {unit} (evaluation {index})", design.labelled());
-        lines.push((format!("  {reason}"), text));
-    }
-    lines
+        (format!("  {reason}"), text)
+    });
+    iter::once(within(answer, as_good)).chain(named).collect()
 }
 
 /// How the robot orders the designs, as far as that is known.
@@ -117,7 +197,7 @@ fn robot((task, order): &(&str, Order)) -> Line {
     let beyond_chance = order.spearman * (order.fingers as f64 - 1.0).sqrt() > 1.645;
     let chance = match beyond_chance {
         true => "",
-        false => "; no more than chance gives: measure the best few",
+        false => "; no better than chance: measure the best few",
     };
     line(
         "robot",

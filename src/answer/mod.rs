@@ -1,8 +1,13 @@
 //! Answer of a study, found once from its record: terminal, page, JSON and Python say it, and
 //! compute nothing of their own. Lengths in mm, forces in N.
 
+mod alike;
+pub mod command;
 pub mod lines;
 mod recommended;
+mod start;
+mod trust;
+mod verdict;
 pub mod words;
 
 use crate::calibration::order::{Order, order_on_bench};
@@ -10,13 +15,21 @@ use crate::study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::Firm;
 
-pub use recommended::{AsGood, OnTask, Recommended};
+pub use alike::{AsGood, Safe, Spread};
+pub use recommended::{OnTask, Recommended};
+pub use start::Start;
+pub use trust::{Measured, Trust};
+pub use verdict::{Verdict, expectation};
 
 /// The answer of a study.
 #[derive(Debug, Clone)]
 pub struct Answer<'a> {
     /// The study.
     pub record: &'a StudyRecord,
+    /// What to do.
+    pub verdict: Verdict<'a>,
+    /// How far to trust it.
+    pub trust: Trust,
     /// Designs that count: the evaluations of the present model.
     pub designs: usize,
     /// Number of them that keep all constraints and have a value.
@@ -63,11 +76,15 @@ impl<'a> Answer<'a> {
             (&walked.recorded, record.aggregated(Measure::Range, &firm))
         };
         let order = |(at, task)| Some((task, order_on_bench(record, at)?));
-        Answer {
+        let measured = measured(record);
+        let recommended = Recommended::of(record, &measured);
+        let mut answer = Answer {
             record,
+            verdict: Verdict::NoneFeasible,
+            trust: Trust::of(record, None),
             designs: current.len(),
             feasible: current.iter().filter(|recorded| recorded.feasible().is_some()).count(),
-            recommended: Recommended::of(record),
+            recommended,
             nothing_inserts,
             nearest: nearest(current).map(|design| {
                 let words = config.constraints.iter().map(|c| c.words(&design.tasks()));
@@ -77,6 +94,33 @@ impl<'a> Answer<'a> {
             front: config.objective.single().is_none().then(front),
             spread_mm: record.spread_mm(),
             orders: config.tasks().enumerate().filter_map(order).collect(),
+        };
+        answer.verdict = Verdict::of(&answer, &measured);
+        answer.trust = Trust::of(record, answer.named());
+        answer
+    }
+
+    /// The evaluation of the finger that the verdict names, or would without measurements; `None` if
+    /// there is none to print.
+    pub fn named(&self) -> Option<&'a Recorded> {
+        let found = self.recommended.as_ref()?;
+        match (&self.verdict, &found.as_good) {
+            (Verdict::NothingInserts { .. } | Verdict::NoneFeasible, _) => None,
+            (Verdict::Any { .. }, Some(AsGood { safe: Some(safe), .. })) => Some(safe.design),
+            _ => Some(found.design),
         }
+    }
+}
+
+/// The fingers that were measured on a robot: those given to the study, else the published ones.
+fn measured(record: &StudyRecord) -> Vec<Measured> {
+    let given = record.on_bench.as_ref().map(|found| {
+        let ranges = found.ranges.iter();
+        ranges.map(|(design, range_mm)| Measured { design: design.clone(), range_mm: *range_mm })
+    });
+    match (given, &record.config.tasks[..]) {
+        (Some(given), _) => given.collect(),
+        (None, [task]) => trust::published(task).into_iter().map(|(found, _)| found).collect(),
+        (None, _) => Vec::new(),
     }
 }

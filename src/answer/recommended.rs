@@ -1,8 +1,10 @@
 //! The recommended design: what it tolerates, how firm that is, and what is as good.
 
+use super::alike::AsGood;
+use super::start::Start;
+use super::trust::Measured;
 use super::words;
 use crate::study::{ByRibs, Recorded, StudyRecord};
-use input::units::N_PER_MM;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::Firm;
@@ -33,6 +35,8 @@ pub struct Recommended<'a> {
     pub by_ribs: Option<&'a ByRibs>,
     /// The objective as the search had found it, where the walk found another value.
     pub searched: Option<f64>,
+    /// Where the start lies in the window, the firm one if there is one; `None` of several tasks.
+    pub start: Option<Start>,
     /// Designs that are as good; `None` of a front.
     pub as_good: Option<AsGood<'a>>,
 }
@@ -48,18 +52,8 @@ pub struct OnTask<'a> {
     pub firm: Option<&'a Firm>,
 }
 
-/// The designs that are as good as the recommended one.
-#[derive(Debug, Clone)]
-pub struct AsGood<'a> {
-    /// Their number, with the recommended one.
-    pub designs: usize,
-    /// Which to take for other reasons: the reason, the design, what is least or most of it and the
-    /// unit of that; none if there is no other.
-    pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
-}
-
 impl<'a> Recommended<'a> {
-    pub(super) fn of(record: &'a StudyRecord) -> Option<Self> {
+    pub(super) fn of(record: &'a StudyRecord, measured: &[Measured]) -> Option<Self> {
         let (config, found) = (&record.config, record.recommendation());
         let design = found.or_else(|| record.best())?;
         let walked = record.walked.first().filter(|_| found.is_some());
@@ -74,20 +68,24 @@ impl<'a> Recommended<'a> {
             firm: firm.and_then(|firm| firm.get(at)),
         };
         let tasks = design.tasks();
+        let window_mm = common(tasks.iter().map(|task| words::ends_mm(&task.window)));
+        let firm_window_mm = windows.map(|windows| common(windows.into_iter()));
+        let start = Start::of(firm_window_mm.unwrap_or(window_mm));
         let limits = config.constraints.iter();
         Some(Recommended {
             design,
             objective: config.objective.single().zip(design.value()),
             constraints: limits.map(|limit| (limit.measure, limit.words(&tasks))).collect(),
             range_mm: record.measure(design, Measure::Range),
-            window_mm: common(tasks.iter().map(|task| words::ends_mm(&task.window))),
+            window_mm,
             firm_range_mm: firm_ranges.map(|mm| record.aggregated(Measure::Range, &mm)),
-            firm_window_mm: windows.map(|windows| common(windows.into_iter())),
+            firm_window_mm,
             peak_force_n: record.measure(design, Measure::PeakForce),
             tasks: config.tasks().zip(&design.tasks).enumerate().map(on).collect(),
             by_ribs: walked.and_then(|walked| walked.by_ribs.as_ref()),
             searched: searched(record, design),
-            as_good: found.map(|found| as_good(record, &record.equivalent(found.index))),
+            start: start.filter(|_| record.config.tasks.len() == 1),
+            as_good: found.map(|found| AsGood::of(record, found.index, measured)),
         })
     }
 
@@ -106,25 +104,4 @@ fn searched(record: &StudyRecord, design: &Recorded) -> Option<f64> {
     let same = |recorded: &&Recorded| recorded.index == design.index;
     let before = record.current().iter().find(same)?.value()?;
     (Some(before) != design.value()).then_some(before)
-}
-
-fn as_good<'a>(record: &StudyRecord, equivalent: &[&'a Recorded]) -> AsGood<'a> {
-    let designs = equivalent.len();
-    let force = |r: &Recorded| record.measure(r, Measure::PeakForce).unwrap_or(f64::INFINITY);
-    let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
-    // Without a second there is nothing to choose.
-    let among = if designs < 2 { &[] } else { equivalent };
-    let forces = among.iter().map(|&design| (design, force(design)));
-    let stiffnesses = || among.iter().map(|&design| (design, stiffness(design)));
-    let value = |a: &(&Recorded, f64), b: &(&Recorded, f64)| a.1.total_cmp(&b.1);
-    let named = [
-        ("least force", forces.min_by(value), "N"),
-        ("softest", stiffnesses().min_by(value), "N/mm"),
-        ("stiffest", stiffnesses().max_by(value), "N/mm"),
-    ];
-    let known = named.into_iter().filter_map(|(reason, found, unit)| {
-        let (design, value) = found.filter(|(_, value)| value.is_finite())?;
-        Some((reason, design, value, unit))
-    });
-    AsGood { designs, alternatives: known.collect() }
 }

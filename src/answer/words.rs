@@ -1,6 +1,6 @@
 //! Words and numbers of answers, for terminal and page alike; every number with its unit.
 
-use crate::study::{INDIFFERENCE_MM, Recorded};
+use crate::study::{Recorded, StudyRecord};
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
 use insertion::evaluation::{RobustRange, SuccessRate, Window};
@@ -9,8 +9,9 @@ use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Estimate;
 
 /// That a search settled, and what that means.
-pub fn settled(evaluations: usize) -> String {
-    format!("after {evaluations} evaluations: no finger is expected to gain {INDIFFERENCE_MM} mm")
+pub fn settled(record: &StudyRecord) -> String {
+    let (evaluations, gain_mm) = (record.evaluations.len(), record.config.indifference_mm);
+    format!("after {evaluations} evaluations: no finger is expected to gain {gain_mm} mm")
 }
 
 /// A range or another length of the 0.1 mm grid: `3.5 mm`.
@@ -106,6 +107,18 @@ pub fn design(design: &Design) -> String {
     parts.retain(|infill| !infill.is_empty());
     parts.extend(others.map(|(key, value)| format!("{key} {value}")));
     parts.join(", ")
+}
+
+/// A finger in words, as one would ask for it: `10 % infill at 26°`.
+pub fn finger(design: &Design) -> String {
+    let values = [DENSITY_KEY, DIRECTION_KEY].map(|key| design.get(key));
+    match values {
+        [Some(density), Some(direction)] => {
+            let all = self::design(design);
+            all.replacen(&infill(design), &format!("{density} % infill at {direction}°"), 1)
+        }
+        _ => self::design(design),
+    }
 }
 
 /// The infill of a design in words; empty if it has none.

@@ -3,6 +3,7 @@
 use crate::calibration::published::{Origin, Published, designs, of_task};
 use crate::calibration::statistics::spearman;
 use crate::study::StudyRecord;
+use input::shipped::TASKS;
 use insertion::evaluation::objective::Measure;
 use insertion::finger::model::FingerModelKind;
 use insertion::space::Design;
@@ -78,6 +79,16 @@ fn validated(task: &str) -> Vec<(f64, f64)> {
     let rows = csv::Reader::from_reader(VALIDATION.as_bytes()).into_deserialize();
     let own = rows.flatten().filter(|row: &Validated| row.task == task);
     own.filter_map(|row| row.range_mm.zip(row.bench_range_mm)).collect()
+}
+
+/// Least and largest mean of `|simulated - measured| / measured` of the tasks, percent.
+pub fn errors_percent() -> [f64; 2] {
+    let errors = TASKS.iter().filter_map(|task| {
+        let pairs = validated(task.name);
+        let missed = pairs.iter().map(|(ours, bench)| (ours - bench).abs() / bench);
+        (!pairs.is_empty()).then(|| 100.0 * missed.sum::<f64>() / pairs.len() as f64)
+    });
+    errors.fold([f64::INFINITY, 0.0], |[least, most], error| [least.min(error), most.max(error)])
 }
 
 /// Spearman's rank correlation between published simulation and bench, and its number of designs.

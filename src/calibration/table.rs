@@ -4,7 +4,7 @@ use super::calibrate::{Accuracy, Calibration, Coordinate, LeftOut, Prediction, T
 use super::predict::{INTERVAL, Predicted};
 use super::subject::Subject;
 use crate::calibration::statistics::mean;
-use crate::study::{BenchEffort, BenchFinger, OnBench, Provenance, Trust};
+use crate::study::{BenchEffort, BenchFinger, LeaveOneOut, OnBench, Provenance};
 use insertion::evaluation::Evaluation;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde_json::{Map, Value, json};
@@ -348,9 +348,11 @@ pub fn on_bench(
     OnBench {
         provenance,
         effort,
+        file: None,
         measured: subject.measured().len(),
+        ranges: Vec::new(),
         fingers: result.predictions.len(),
-        trust: Trust {
+        trust: LeaveOneOut {
             fingers: accuracy.fingers,
             mean_deviation_percent: accuracy.mean_deviation_percent,
             spearman: accuracy.spearman,

@@ -1,7 +1,7 @@
 //! Parts of the command line for callers of the library from elsewhere: `--executor`'s words as
 //! requests, and the printed text.
 
-use super::study::{Arguments, ResumeArguments, Shown};
+use super::study::{Arguments, ResumeArguments};
 use super::{Failure, recommended, summary};
 use crate::answer::Answer;
 use crate::session::{AnyStudy, Ended};
@@ -9,6 +9,8 @@ use crate::study::StudyRecord;
 use clap::{Args, Parser};
 use serde_json::Value;
 use std::ffi::OsString;
+
+pub use super::study::Shown;
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]
@@ -23,15 +25,13 @@ pub struct Asked {
     pub study: AnyStudy,
     /// Where it is measured.
     pub executor: Option<String>,
-    /// Whether no progress is shown.
-    pub quiet: bool,
-    /// Whether its result is printed as JSON.
-    pub json: bool,
+    /// What is shown of it.
+    pub shown: Shown,
 }
 
 /// Reads the words of `optimize` or `optimize resume`; the text of a failure is clap's.
 pub fn asked(words: &[OsString]) -> Result<Asked, Failure> {
-    let (study, executor, Shown { quiet, json }) = match words {
+    let (study, executor, shown) = match words {
         [first, rest @ ..] if first == "resume" => {
             let ResumeArguments { request, shown } = read(rest)?;
             let executor = request.run.executor.clone();
@@ -43,7 +43,7 @@ pub fn asked(words: &[OsString]) -> Result<Asked, Failure> {
             (AnyStudy::Asked(Box::new(request)), executor, shown)
         }
     };
-    Ok(Asked { study, executor, quiet, json })
+    Ok(Asked { study, executor, shown })
 }
 
 fn read<T: Args>(words: &[OsString]) -> Result<T, Failure> {
@@ -55,8 +55,8 @@ fn read<T: Args>(words: &[OsString]) -> Result<T, Failure> {
 }
 
 /// Output of the command for a study that has ended.
-pub fn text(Ended { dir, record, ending, known, .. }: &Ended, json: bool) -> String {
-    summary::printed(dir, record, *ending, *known, json)
+pub fn text(Ended { dir, record, ending, known, .. }: &Ended, shown: Shown) -> String {
+    summary::printed(dir, record, *ending, *known, shown)
 }
 
 /// The `recommended` design of `--json`; of several objectives the first of the front. Null

@@ -218,11 +218,11 @@ fn survive_size_limit() {
 fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => match cli.study.0 {
-            Some(arguments) => study::to_its_end(arguments.request.open(None)?, &arguments.shown),
+            Some(arguments) => study::to_its_end(arguments.request.open(None)?, arguments.shown),
             None => Err(Failure::usage("give --task NAME, or a subcommand; see `optimize --help`")),
         },
         Some(Command::Resume(arguments)) => {
-            study::to_its_end(arguments.request.open()?, &arguments.shown)
+            study::to_its_end(arguments.request.open()?, arguments.shown)
         }
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),

@@ -1,9 +1,10 @@
 //! The recommendation of a study as JSON.
 
-use crate::answer::{Answer, Recommended};
+use crate::answer::{Answer, AsGood, Measured, Recommended, Trust, command, expectation};
 use crate::study::{ByRibs, OnBench, StudyRecord};
 use insertion::evaluation::objective::Measure;
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// `recommended`, `equivalent_designs` and `spread_mm`.
 pub fn json(answer: &Answer) -> Value {
@@ -18,12 +19,78 @@ pub fn json(answer: &Answer) -> Value {
             "bench": bench_json(bench),
         }),
     };
-    let equivalent = one.and_then(|found| found.as_good.as_ref()).map(|as_good| as_good.designs);
+    let as_good = one.and_then(|found| found.as_good.as_ref());
+    let equivalent = as_good.map(|as_good| as_good.designs.len());
     // One decimal, without the noise of the subtraction.
     let spread = answer.spread_mm.map(|[low, high]| ((high - low) * 1e6).round() / 1e6);
     fields["equivalent_designs"] = json!(equivalent);
     fields["spread_mm"] = json!(spread);
     fields
+}
+
+/// The answer: what to do, what to expect, how far to trust it.
+pub fn answer(answer: &Answer, dir: &Path) -> Value {
+    let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
+    let as_good = one.and_then(|found| found.as_good.as_ref());
+    let (command, why) = command::next(answer, dir);
+    json!({
+        "verdict": answer.verdict.key(),
+        "headline": answer.verdict.headline(),
+        "expectation": expectation(answer),
+        "finger": answer.verdict.finger(),
+        "trust": trust(&answer.trust),
+        "start": one.and_then(|found| found.start).map(|start| json!({
+            "negative_mm": start.window_mm[0],
+            "positive_mm": start.window_mm[1],
+            "one_sided": start.one_sided(),
+            "to_middle_mm": start.to_middle_mm,
+            "advice": start.advice(),
+        })),
+        "as_good": as_good.map(|as_good| set(answer, as_good)),
+        "next": { "command": command, "why": why },
+    })
+}
+
+fn trust(trust: &Trust) -> Value {
+    let mut fields = json!({
+        "level": trust.key(),
+        "label": trust.label(),
+        "reason": trust.reason(),
+    });
+    match trust {
+        Trust::Calibrated { fingers, error_percent } => {
+            fields["measured"] = json!(fingers);
+            fields["loo_mean_deviation_percent"] = json!(error_percent);
+        }
+        Trust::Published { nearest, .. } => {
+            let one = |task: &str, finger: &Measured| json!({ "task": task, "values": finger.design, "range_mm": finger.range_mm });
+            let all =
+                nearest.iter().flat_map(|(task, fingers)| fingers.iter().map(move |f| (task, f)));
+            fields["nearest_measured"] = all.map(|(task, finger)| one(task, finger)).collect();
+        }
+        Trust::Simulated { error_percent } => {
+            fields["error_percent_on_shipped_tasks"] = json!(error_percent);
+        }
+    }
+    fields
+}
+
+fn set(answer: &Answer, as_good: &AsGood) -> Value {
+    let spread = as_good.spread.iter().map(|spread| (spread.key.to_owned(), json!(spread.values)));
+    json!({
+        "within_mm": answer.record.config.indifference_mm,
+        "designs": as_good.designs.len(),
+        "of": answer.designs,
+        "evaluations": as_good.designs.iter().map(|(found, _)| found.index).collect::<Vec<_>>(),
+        "spread": spread.collect::<serde_json::Map<_, _>>(),
+        "safe": as_good.safe.as_ref().map(|safe| json!({
+            "values": safe.design.design,
+            "evaluation": safe.design.index,
+            "measured_range_mm": safe.measured_mm,
+            "peak_force_n": safe.force_n,
+            "loss": safe.loss,
+        })),
+    })
 }
 
 fn recommended(record: &StudyRecord, found: &Recommended) -> Value {

@@ -28,25 +28,28 @@ pub struct ResumeArguments {
 }
 
 /// What is shown of a study.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Copy, Default, Args)]
 pub struct Shown {
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
+    /// Print all numbers behind the answer, too
+    #[arg(long, conflicts_with = "json")]
+    pub verbose: bool,
     /// Show no progress
     #[arg(long)]
     pub quiet: bool,
 }
 
 /// Runs an open study until its budget is spent, shows how far it is, and prints its result.
-pub fn to_its_end(open: OpenStudy, shown: &Shown) -> Result<(), Failure> {
+pub fn to_its_end(open: OpenStudy, shown: Shown) -> Result<(), Failure> {
     let stop = stop_on_interrupt(open.study().dir())?;
     let mut progress = Progress::new(open.study(), shown.quiet);
     let Ended { dir, record, ending, known, unusable } =
         open.run(&stop, &mut |event| progress.see(event))?;
     drop(progress);
     record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));
-    print(&summary::printed(&dir, &record, ending, known, shown.json))?;
+    print(&summary::printed(&dir, &record, ending, known, shown))?;
     unusable.map_or(Ok(()), Err)
 }
 

@@ -1,10 +1,11 @@
 //! Output for a whole study.
 
+use super::study::Shown;
 use super::terminal::merge;
 use super::{recommended, words};
 use crate::answer::lines;
-use crate::answer::words::{evaluated, settled, volume_unit};
-use crate::answer::{Answer, Front};
+use crate::answer::words::{evaluated, volume_unit};
+use crate::answer::{Answer, Front, expectation};
 use crate::study::{Ending, Recorded, StudyRecord};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -15,18 +16,27 @@ pub fn printed(
     record: &StudyRecord,
     ending: Ending,
     known: u64,
-    as_json: bool,
+    shown: Shown,
 ) -> String {
     let answer = Answer::of(record);
-    if as_json {
+    if shown.json {
         let mut fields = to_json(&answer, ending, known);
+        fields["answer"] = recommended::answer(&answer, dir);
         fields["study"] = json!(dir);
         return format!("{fields}\n");
     }
-    text(dir, &answer, ending, known)
+    let mut text = format!("{}\n{}\n", answer.verdict.headline(), expectation(&answer));
+    text += &words::lines(lines::brief(&answer, dir));
+    if shown.verbose {
+        text += &verbose(&answer, ending, known);
+    }
+    let page = dir.join(crate::session::PAGE);
+    let place = format!("study         {} (see {})\n", dir.display(), page.display());
+    words::wrapped(&text) + &place
 }
 
-fn text(dir: &Path, answer: &Answer, ending: Ending, known: u64) -> String {
+/// All numbers behind the answer.
+fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
     let record = answer.record;
     let config = &record.config;
     let done = record.evaluations.len();
@@ -36,10 +46,7 @@ fn text(dir: &Path, answer: &Answer, ending: Ending, known: u64) -> String {
         Ending::BudgetSpent | Ending::Interrupted | Ending::Settled => "",
     };
     let (task, method) = (config.task_name(), config.method());
-    let mut text = format!("{task} with {method}: {done} evaluations{end}\n");
-    if record.settled {
-        text += &format!("settled       {}\n", settled(done));
-    }
+    let mut text = format!("\n{task} with {method}: {done} evaluations{end}\n");
     let first = record.first_current();
     if first > 0 {
         text += &format!(
@@ -60,9 +67,7 @@ fn text(dir: &Path, answer: &Answer, ending: Ending, known: u64) -> String {
     if known > 0 {
         text += &format!("cache         {known} evaluations were known from other studies\n");
     }
-    let page = dir.join(crate::session::PAGE);
-    let place = format!("study         {} (see {})\n", dir.display(), page.display());
-    words::wrapped(&text) + &place
+    text
 }
 
 fn unusable((task, nearest): &(&str, &Recorded)) -> String {

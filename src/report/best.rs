@@ -1,7 +1,7 @@
 //! The best design in words: what it tolerates at a glance, and all lines of the terminal.
 
-use super::again;
 use super::elements::definitions;
+use crate::answer::command;
 use crate::answer::lines::{self, Line};
 use crate::answer::words::{design, end, ends_mm, mm, outcome, span};
 use crate::answer::{Answer, OnTask, Recommended};
@@ -57,7 +57,7 @@ pub(super) fn section(answer: &Answer) -> Markup {
         p { "Print and measure more than one: " code { "optimize next" } " says which." }
         p {
             "The same study again, in its folder: "
-            code { @for word in again::words(answer.record) { span { (word) } " " } }
+            code { @for word in command::again(answer.record) { span { (word) } " " } }
         }
     }
 }

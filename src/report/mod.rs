@@ -1,7 +1,6 @@
 //! Plots and pages of a study and of the stiffness model: pure functions of
 //! what was measured. Nothing here simulates, and nothing reads or writes files.
 
-mod again;
 mod bench;
 mod best;
 mod chart;

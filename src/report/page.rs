@@ -38,7 +38,7 @@ pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<Stri
                     "Robustness of a compliant finger in a connector insertion, by \
                     contact simulation: " (config.counted(record.evaluations.len())) "."
                     @if record.settled {
-                        " Settled " (settled(record.evaluations.len())) "."
+                        " Settled " (settled(record)) "."
                     }
                     @if let Some(note) = drawn::note(record) { " " (note) }
                 }

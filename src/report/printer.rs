@@ -1,5 +1,6 @@
 //! The recommended finger for the printer: links to the two files that the study wrote beside the page.
 
+use crate::answer::Answer;
 use crate::study::StudyRecord;
 use finray::export::title;
 use finray::geometry::Geometry;
@@ -35,7 +36,7 @@ pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
 
 /// The recommended finger; `None` if there is none or it cannot be printed.
 pub fn recommended(record: &StudyRecord) -> Option<Geometry> {
-    let design = record.to_print()?;
+    let design = Answer::of(record).verdict.finger()?;
     let finger = finger_file(record)?.with(design).ok()?;
     Geometry::new(&finger, &design.printed(None)).ok()
 }

@@ -321,7 +321,7 @@ fn the_command_that_repeats_a_study_names_all_that_decides() {
     study.config.tasks.push("mine".to_owned());
     study.config.aggregate = Some(Aggregate::weighted(vec![2.0, 1.0], 2).unwrap());
     study.config.finger_model = insertion::finger::model::FingerModelKind::Computed;
-    let command = again::words(&study).join(" ");
+    let command = crate::answer::command::again(&study).join(" ");
     assert_eq!(
         command,
         "optimize --task usb,inputs/task_2.toml --space infill --robot rigid --stiffness-data \

@@ -3,6 +3,7 @@
 
 use super::failure::not_stopped;
 use super::{Failure, Setup};
+use crate::answer::Answer;
 use crate::report::replay::{self, ENDS, Film, pair_file};
 use crate::study::{StudyRecord, write_file, write_own_file};
 use insertion::evaluation::evaluator::Specimen;
@@ -107,7 +108,8 @@ pub(super) fn boundary(
     pool: &ThreadPool,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
-    let found = record.recommendation();
+    // Of a front there is no one finger to show.
+    let found = record.config.objective.single().and_then(|_| Answer::of(record).named());
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
         for (end, outward) in ENDS {
             let file = dir.join(pair_file(at, end));

@@ -4,6 +4,7 @@ use super::Failure;
 use super::files::{find, printed_finger, stiffness_data, surrogate};
 use super::finger::setting;
 use super::request::DEFAULT_FINGER;
+use crate::answer::Answer;
 use crate::study::StudyRecord;
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
@@ -102,13 +103,13 @@ fn finger_file(name: &str) -> Result<FingerFile, Failure> {
 /// The design that a study recommends, and the finger file of its fingers.
 fn best(dir: &Path) -> Result<(Design, Option<FingerFile>), Failure> {
     let record = StudyRecord::load(dir)?;
-    let Some(best) = record.to_print() else {
+    let Some(best) = Answer::of(&record).verdict.finger().cloned() else {
         return Err(Failure::usage(format!(
             "{}: the study recommends no design; give --density and --direction",
             dir.display()
         )));
     };
-    Ok((best.clone(), record.finger.clone()))
+    Ok((best, record.finger))
 }
 
 /// Which measurements the model is fitted to.

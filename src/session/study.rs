@@ -8,7 +8,8 @@ use super::open::OpenStudy;
 use super::request::SetupRequest;
 use super::{Failure, Setup, measured, on_bench};
 use crate::study::{
-    Confirmation, LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, read_config, study_name,
+    Confirmation, INDIFFERENCE_MM, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET, Study,
+    StudyConfig, read_config, study_name,
 };
 use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
@@ -45,6 +46,9 @@ pub struct StudyRequest {
     #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
           allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(POLISHES))]
     pub polish: u64,
+    /// Difference of ranges that a bench cannot tell, mm: designs that lose less are as good
+    #[arg(long, value_name = "MM", default_value_t = INDIFFERENCE_MM, allow_negative_numbers = true)]
+    pub indifference_mm: f64,
     /// Optimizer: gp, cma-es, random, sobol or grid
     #[arg(long, value_name = "NAME", default_value = "gp")]
     pub optimizer: OptimizerKind,
@@ -151,6 +155,7 @@ impl StudyRequest {
             setup,
             budget,
             polish: 0,
+            indifference_mm: INDIFFERENCE_MM,
             optimizer: OptimizerKind::Gp,
             objective: Objectives::of(Measure::Range),
             constraints: Vec::new(),
@@ -183,6 +188,7 @@ impl StudyRequest {
     fn look(&self) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
         self.run.check()?;
         within("--budget", self.budget, &BUDGETS)?;
+        within("--indifference-mm", self.indifference_mm, &INDIFFERENCES_MM)?;
         within("--polish", self.polish, &POLISHES)?;
         within("--seed", self.seed, &SEEDS)?;
         within("--batch", self.batch, &BATCHES)?;
@@ -252,6 +258,7 @@ impl StudyRequest {
             uncertainty: setup.uncertainty.as_ref().map(|errors| errors.name.clone()),
             race: false,
             seed: self.seed,
+            indifference_mm: self.indifference_mm,
             budget: self.budget.unwrap_or(DEFAULT_BUDGET),
             settles: false,
             confirmation: Confirmation::Expected,

@@ -8,6 +8,7 @@ use insertion::evaluation::objective::{Aggregate, Constraint, Goals, Measure, Ob
 use insertion::finger::model::FingerModelKind;
 use insertion::space::Space;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// Most evaluations of a study, and of a polish.
 pub const LARGEST_BUDGET: u64 = 1_000_000;
@@ -44,6 +45,9 @@ pub struct StudyConfig {
     pub race: bool,
     /// Seed of every random stream of the study.
     pub seed: u64,
+    /// Difference of ranges that no bench tells apart, mm: what gains less is as good.
+    #[serde(default = "indifference", skip_serializing_if = "is_indifference")]
+    pub indifference_mm: f64,
     /// Evaluations that the optimizer has; the one field that may be raised later, unless
     /// there is a polish.
     pub budget: u64,
@@ -125,6 +129,11 @@ impl StudyConfig {
             if !(least..=most).contains(&value) {
                 return Err(format!("{key}: is {value}; it must lie in {least} .. {most}"));
             }
+        }
+        if !INDIFFERENCES_MM.contains(&self.indifference_mm) {
+            let [least, most] = [INDIFFERENCES_MM.start(), INDIFFERENCES_MM.end()];
+            let given = self.indifference_mm;
+            return Err(format!("indifference_mm: is {given}; it must lie in {least} .. {most}"));
         }
         let kind: OptimizerKind =
             self.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
@@ -225,6 +234,19 @@ impl StudyConfig {
         let raised = StudyConfig { budget, provenance, conclusion, ..kept };
         differences(&raised, asked, ["the study", "now"])
     }
+}
+
+/// The repeatability of a bench: measured windows of the publication differ by 0.1 to 0.5 mm.
+pub const INDIFFERENCE_MM: f64 = 0.3;
+/// Differences that may be indifferent, mm: of the grid of windows at the least.
+pub const INDIFFERENCES_MM: RangeInclusive<f64> = 0.1..=10.0;
+
+fn indifference() -> f64 {
+    INDIFFERENCE_MM
+}
+
+fn is_indifference(mm: &f64) -> bool {
+    *mm == INDIFFERENCE_MM
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {

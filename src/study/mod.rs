@@ -29,7 +29,8 @@ mod work;
 
 pub use cache::Cache;
 pub use config::{
-    Conclusion, Confirmation, LARGEST_BATCH, LARGEST_BUDGET, StudyConfig, study_name,
+    Conclusion, Confirmation, INDIFFERENCE_MM, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET,
+    StudyConfig, study_name,
 };
 pub use course::{Arrived, Course, Ending, Next, Wanted};
 pub use error::{LineError, StudyError};
@@ -40,7 +41,7 @@ pub use folder::{
 pub use header::SCHEMA_VERSION;
 pub use journal::Journal;
 pub use line::{decode, encode};
-pub use on_bench::{BenchEffort, BenchFinger, OnBench, Trust};
+pub use on_bench::{BenchEffort, BenchFinger, LeaveOneOut, OnBench};
 pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
 pub use record::{
     ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume,
@@ -50,5 +51,5 @@ pub use seal::{sha256_hex, strip_times};
 pub use simulated::Simulated;
 pub use store::{FileStore, Store};
 pub use table::{evaluations_csv, write_evaluations_csv};
-pub use walk::{Confirmed, Confirmer, INDIFFERENCE_MM, Kept};
+pub use walk::{Confirmed, Confirmer, Kept};
 pub use work::{Work, WorkError};

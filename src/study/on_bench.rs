@@ -20,12 +20,18 @@ pub struct OnBench {
     pub provenance: Provenance,
     /// How much was computed.
     pub effort: BenchEffort,
+    /// The measurement file, as it was given; `None` in folders up to version 0.4.0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
     /// Fingers that were measured.
     pub measured: usize,
+    /// Those of them whose range was measured whole, and that range, mm.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ranges: Vec<(Design, f64)>,
     /// Fingers of the space that were predicted.
     pub fingers: usize,
     /// How far it is to be trusted.
-    pub trust: Trust,
+    pub trust: LeaveOneOut,
     /// Caveats, a line each.
     pub warnings: Vec<String>,
     /// The fingers of largest predicted range, best first; at least one.
@@ -60,7 +66,7 @@ pub struct BenchEffort {
 /// The measured fingers, each predicted without it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Trust {
+pub struct LeaveOneOut {
     /// How many there are.
     pub fingers: usize,
     /// Mean of `|predicted - measured| / measured`, percent.

@@ -2,7 +2,7 @@
 
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
-use super::walk::GAIN;
+use super::walk::gain;
 use ask_tell::Grid;
 use ask_tell::gp::{Confirmed, Outlook};
 use insertion::evaluation::objective::Measure;
@@ -29,40 +29,48 @@ impl StudyRecord {
         self.recommendation().or_else(|| self.best())
     }
 
-    /// The designs whose search found as much as that of the evaluation `index`, with it, but for
-    /// those of which the repeats found less, or would be expected to; by evaluation.
-    pub fn equivalent(&self, index: u64) -> Vec<&Recorded> {
-        let goals = self.config.goals();
-        let searched = |recorded: &Recorded| goals.gains(recorded.feasible()?).first().copied();
-        let current = self.current();
-        let Some(own) = current.iter().position(|recorded| recorded.index == index) else {
-            return Vec::new();
+    /// The designs as good as the evaluation `index`, with it, by evaluation, and how much of the
+    /// first objective each loses against it: of a range at most the indifference, of what is not in
+    /// mm nothing.
+    pub fn as_good(&self, index: u64) -> Vec<(&Recorded, f64)> {
+        let (current, worth) = (self.current(), self.worth());
+        let own = current.iter().position(|recorded| recorded.index == index);
+        let Some(own) = own.and_then(|at| worth[at]) else { return Vec::new() };
+        let tolerance = if self.config.objective.first().unit() == "mm" {
+            self.config.indifference_mm
+        } else {
+            0.0
         };
-        let (expected, least) = (self.expected(), searched(&current[own]));
-        let as_good = |&at: &usize| {
-            let found = searched(&current[at]).zip(least).is_some_and(|(found, own)| found >= own);
-            found && expected[at] >= expected[own] && !current[at].raced()
-        };
-        (0..current.len()).filter(as_good).map(|at| &current[at]).collect()
+        let loss = |(recorded, worth): (_, Option<f64>)| Some((recorded, own - worth?));
+        // Tenths of a millimetre are no whole numbers.
+        let as_good = |(_, loss): &(&Recorded, f64)| *loss <= tolerance + 1e-9;
+        current.iter().zip(worth).filter_map(loss).filter(as_good).collect()
     }
 
-    /// The firm value that each of the [`current`](Self::current) designs has or may be expected to
-    /// have, rounded to the grid of ranges; 0 where none was repeated.
-    fn expected(&self) -> Vec<f64> {
-        let current = self.current();
+    /// Gain in the first objective of each of the [`current`](Self::current) designs: the firm value
+    /// that it has or, in the median, will have, rounded to the grid of ranges; the searched one where
+    /// none was repeated. `None` of designs that cannot be recommended.
+    fn worth(&self) -> Vec<Option<f64>> {
+        let (current, goals) = (self.current(), self.config.goals());
+        let searched = |found: &Recorded| {
+            let values = found.feasible().filter(|_| !found.raced())?;
+            goals.gains(values).first().copied()
+        };
         let known = |at: usize| self.firm_values.get(&current[at].index).copied();
         let confirmed = |at| Some(Confirmed { at, value: known(at)?, last: true });
         let confirmed: Vec<Confirmed> = (0..current.len()).filter_map(confirmed).collect();
         if confirmed.is_empty() {
-            return vec![0.0; current.len()];
+            return current.iter().map(searched).collect();
         }
-        let (goals, space) = (self.config.goals(), &self.config.space);
-        let rule = Rule { goals: &goals, space };
-        let observed = rule.observed(current);
+        let space = &self.config.space;
+        let observed = Rule { goals: &goals, space }.observed(current);
         let grid = Grid::new(space.levels());
-        let outlook = Outlook::new(&grid, &observed, &confirmed, GAIN);
-        let expected = |at| known(at).or_else(|| outlook.median(at)).unwrap_or(0.0);
-        (0..current.len()).map(|at| (10.0 * expected(at)).round() / 10.0).collect()
+        let outlook = Outlook::new(&grid, &observed, &confirmed, gain(&self.config));
+        let expected = |at: usize| {
+            searched(&current[at])?;
+            known(at).or_else(|| outlook.median(at)).map(|mm| (10.0 * mm).round() / 10.0)
+        };
+        (0..current.len()).map(expected).collect()
     }
 
     /// The smallest and the largest range of the evaluations, mm, aggregated over the tasks: how much

@@ -178,14 +178,6 @@ impl StudyRecord {
         first_current(&self.segments)
     }
 
-    /// The finger to print: the best on the bench as far as that is known, else the recommended one.
-    pub fn to_print(&self) -> Option<&Design> {
-        let on_bench = self.on_bench.as_ref().and_then(|found| found.best.first());
-        on_bench
-            .map(|best| &best.design)
-            .or_else(|| self.recommended().map(|recorded| &recorded.design))
-    }
-
     /// The [`best`] of the [`current`](Self::current) evaluations.
     pub fn best(&self) -> Option<&Recorded> {
         best(&self.config.goals(), self.current())

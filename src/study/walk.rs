@@ -1,6 +1,6 @@
 //! Measures the best designs of a study again; why and how is in `walked.rs`.
 
-use super::config::Confirmation;
+use super::config::{Confirmation, StudyConfig};
 use super::error::StudyError;
 use super::folder::{Study, write_own_file};
 use super::provenance::Provenance;
@@ -49,15 +49,12 @@ pub enum Confirmed {
     Walked,
 }
 
-/// Least difference of two ranges that matters, mm: how well a bench repeats.
-pub const INDIFFERENCE_MM: f64 = 0.3;
 /// What counts as a gain over the best confirmed design.
-pub(super) const GAIN: Gain = Gain {
-    least: INDIFFERENCE_MM,
-    probability: 0.02,
-    noise_floor: DEFAULT_NOISE_FLOOR,
-    floor: 0.0,
-};
+pub(super) fn gain(config: &StudyConfig) -> Gain {
+    let (least, noise_floor) = (config.indifference_mm, DEFAULT_NOISE_FLOOR);
+    Gain { least, probability: 0.02, noise_floor, floor: 0.0 }
+}
+
 /// Designs confirmed at a time, whatever the number of threads.
 const AT_ONCE: usize = 2;
 
@@ -125,7 +122,7 @@ impl Confirmer<'_> {
                 })
             };
             let confirmed: Vec<_> = current.iter().enumerate().filter_map(known).collect();
-            let outlook = Outlook::new(&grid, &observed, &confirmed, GAIN);
+            let outlook = Outlook::new(&grid, &observed, &confirmed, gain(&study.config));
             let advice = match searching {
                 true => outlook.advise(&rank, AT_ONCE),
                 false => outlook.confirm_only(&rank, AT_ONCE),

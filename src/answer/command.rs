@@ -1,0 +1,133 @@
+//! Commands that an answer ends with: the study again, and what to do next.
+
+use super::trust::Trust;
+use super::{Answer, Verdict};
+use crate::study::{FINGER, INDIFFERENCE_MM, Provenance, StudyRecord, input_path, sha256_hex};
+use input::shipped::{
+    FINGERS, MEASUREMENTS, ROBOTS, SPACES, STIFFNESS, Shipped, TASKS, UNCERTAINTIES,
+};
+use insertion::evaluation::objective::Aggregate;
+use insertion::trial::engine::EngineKind;
+use std::path::Path;
+
+/// Inputs of a study by name: what is as shipped by its name, others by their copies in `dir`.
+struct Named<'a> {
+    record: &'a StudyRecord,
+    dir: &'a Path,
+}
+
+impl Named<'_> {
+    fn provenance(&self) -> &Provenance {
+        let StudyRecord { config, segments, .. } = self.record;
+        segments.last().map_or(&config.provenance, |last| &last.provenance)
+    }
+
+    fn input(&self, role: &str, shipped: &[Shipped]) -> String {
+        let segment = self.record.segments.len().max(1);
+        match name(self.provenance(), role, shipped) {
+            Some(name) => name.to_owned(),
+            None => input_path(self.dir, segment, role).display().to_string(),
+        }
+    }
+
+    fn tasks(&self) -> String {
+        let tasks = 1..=self.record.config.tasks.len();
+        let tasks = tasks.map(|number| self.input(&format!("task_{number}"), TASKS));
+        tasks.collect::<Vec<_>>().join(",")
+    }
+}
+
+/// Fingers that are printed at a time.
+const PRINTS: usize = 3;
+
+/// What to do next, as a command that runs as it stands, and why; `dir` is the study's folder.
+pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
+    let named = Named { record: answer.record, dir };
+    let tasks = named.tasks();
+    let (bench, several) = (&answer.record.on_bench, answer.record.config.several_tasks());
+    match (&answer.verdict, &answer.trust) {
+        (Verdict::NothingInserts { .. }, _) => {
+            let first = tasks.split(',').next().unwrap_or(&tasks);
+            (format!("optimize task check {first}"), "says what stops it")
+        }
+        (Verdict::NoneFeasible, _) => {
+            (format!("optimize report {}", dir.display()), "shows how far each design is off")
+        }
+        (_, Trust::Calibrated { .. }) | (_, Trust::Published { .. }) if !several => {
+            let file = match bench.as_ref().map(|found| &found.file) {
+                None => MEASUREMENTS[0].name.to_owned(),
+                // Folders up to version 0.4.0 have a copy only.
+                Some(None) => named.input("measurements", MEASUREMENTS),
+                Some(Some(file)) => file.clone(),
+            };
+            let asked = format!("--task {tasks} --measurements {file} --count {PRINTS}");
+            (format!("optimize next {asked}"), "which fingers to print and measure first")
+        }
+        _ => ("optimize measure add bench.csv".to_owned(), "asks for what your robot measured"),
+    }
+}
+
+/// The command that runs a study again, option by option, to be given in its folder.
+pub fn again(record: &StudyRecord) -> Vec<String> {
+    let config = &record.config;
+    let named = Named { record, dir: Path::new("") };
+    let provenance = named.provenance();
+    let tasks = named.tasks();
+    let named = |role: &str, shipped| named.input(role, shipped);
+    let mut words = vec![
+        "optimize".to_owned(),
+        format!("--task {tasks}"),
+        format!("--space {}", named("space", SPACES)),
+        format!("--robot {}", named("robot", ROBOTS)),
+    ];
+    if name(provenance, "stiffness", STIFFNESS).is_none() {
+        words.push(format!("--stiffness-data {}", named("stiffness", &[])));
+    }
+    words.push(format!("--finger-model {}", config.finger_model.name()));
+    if provenance.input_sha256.contains_key(FINGER) {
+        words.push(format!("--finger {}", named(FINGER, FINGERS)));
+    }
+    let engine = &provenance.engine.name;
+    if engine != EngineKind::Direct.name() {
+        words.push(format!("--engine {engine}"));
+    }
+    words.push(format!("--optimizer {}", config.optimizer));
+    words.push(format!("--objective {}", config.objective));
+    words.extend(config.constraints.iter().map(|limit| format!("--constraint '{limit}'")));
+    if config.uncertainty.is_some() {
+        words.push(format!("--uncertainty {}", named("uncertainty", UNCERTAINTIES)));
+    }
+    words.extend(config.aggregate.as_ref().map(aggregate));
+    if config.indifference_mm != INDIFFERENCE_MM {
+        words.push(format!("--indifference-mm {}", config.indifference_mm));
+    }
+    words.push(format!("--seed {}", config.seed));
+    if !config.settles {
+        words.push(format!("--budget {}", config.budget));
+    }
+    if config.polish > 0 {
+        words.push(format!("--polish {}", config.polish));
+    }
+    words.push(format!("--batch {}", config.batch));
+    if config.asynchronous {
+        words.push("--async".to_owned());
+    }
+    words
+}
+
+/// The name of the shipped file that an input is.
+fn name(provenance: &Provenance, role: &str, shipped: &[Shipped]) -> Option<&'static str> {
+    let hash = provenance.input_sha256.get(role)?;
+    let own = |one: &&Shipped| sha256_hex(one.text.as_bytes()) == *hash;
+    shipped.iter().find(own).map(|one| one.name)
+}
+
+fn aggregate(aggregate: &Aggregate) -> String {
+    match aggregate {
+        Aggregate::Weighted(weights) => {
+            let weights: Vec<String> = weights.iter().map(f64::to_string).collect();
+            format!("--aggregate weighted --weights {}", weights.join(","))
+        }
+        other => format!("--aggregate {other}"),
+    }
+}

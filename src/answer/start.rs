@@ -1,0 +1,55 @@
+//! Where the start lies in its window.
+
+use super::words::mm;
+
+/// Share of the range that the smaller side should have.
+const LEAST_SHARE: f64 = 0.25;
+
+/// The taught start in the window of a finger.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// Both ends of the window, mm from the start.
+    pub window_mm: [f64; 2],
+    /// How far the start has to move along y to lie in the middle, mm.
+    pub to_middle_mm: f64,
+}
+
+impl Start {
+    /// `None` if there is no such window.
+    pub fn of(window_mm: [f64; 2]) -> Option<Self> {
+        let [low, high] = window_mm;
+        (low <= 0.0 && high >= 0.0 && high > low)
+            .then(|| Start { window_mm, to_middle_mm: (low + high) / 2.0 })
+    }
+
+    /// Whether one side is so small that the start should be taught elsewhere.
+    pub fn one_sided(&self) -> bool {
+        let [low, high] = self.window_mm;
+        high.min(-low) < LEAST_SHARE * (high - low)
+    }
+
+    /// How to mend that; `None` if it is fine.
+    pub fn advice(&self) -> Option<String> {
+        let [low, high] = self.window_mm;
+        let side = if self.to_middle_mm < 0.0 { "-y" } else { "+y" };
+        let (by, half) = (mm(self.to_middle_mm.abs()), mm((high - low) / 2.0));
+        self.one_sided()
+            .then(|| format!("teach the start {by} further to {side}: {half} to either side"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_start_at_the_edge_of_its_window_is_moved_to_the_middle() {
+        let edge = Start::of([-3.2, 0.0]).unwrap();
+        let advice = "teach the start 1.6 mm further to -y: 1.6 mm to either side";
+        assert_eq!(edge.advice().as_deref(), Some(advice));
+        // Exactly a quarter is enough.
+        assert_eq!(Start::of([-3.0, 1.0]).unwrap().advice(), None);
+        assert!(Start::of([-0.9, 3.1]).unwrap().one_sided());
+        assert_eq!(Start::of([0.0, 0.0]), None, "no window");
+    }
+}

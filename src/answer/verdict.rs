@@ -1,0 +1,176 @@
+//! What to do with an answer: the sentence that stands first, and what may be expected.
+
+use super::trust::Measured;
+use super::words::{finger, interval, mm, span};
+use super::{Answer, AsGood, Recommended};
+use crate::study::Recorded;
+use insertion::evaluation::objective::Measure;
+use insertion::outcome::Outcome;
+use insertion::space::Design;
+
+/// Share of the designs from which on it is said that the finger hardly matters.
+const MANY: f64 = 0.25;
+
+/// What to do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Verdict<'a> {
+    /// Print this finger.
+    Print(&'a Design),
+    /// Print any of a set.
+    Any {
+        /// Which to take without other needs.
+        safe: &'a Design,
+        /// Size of the set.
+        of: usize,
+    },
+    /// This finger has been printed and measured before.
+    MeasuredBefore {
+        /// The finger.
+        design: &'a Design,
+        /// Its measured range, mm.
+        range_mm: f64,
+    },
+    /// Choose from a front.
+    Choose {
+        /// The best in the first objective.
+        first: &'a Design,
+        /// Size of the front.
+        of: usize,
+    },
+    /// Nothing inserts on a task.
+    NothingInserts {
+        /// The task.
+        task: &'a str,
+        /// The design that comes nearest to inserting.
+        nearest: &'a Recorded,
+        /// How it fails at the nominal start.
+        fails: Option<Outcome>,
+    },
+    /// No design keeps all constraints, or none has a value.
+    NoneFeasible,
+}
+
+impl<'a> Verdict<'a> {
+    pub(super) fn of(answer: &Answer<'a>, measured: &[Measured]) -> Self {
+        if let Some((task, nearest)) = answer.nothing_inserts {
+            let at = answer.record.config.tasks().position(|name| name == task);
+            let fails = at.and_then(|at| nearest.on(at)).map(|found| found.window.nominal);
+            return Verdict::NothingInserts { task, nearest, fails };
+        }
+        if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
+            let design = &best.design;
+            let before = measured.iter().find(|measured| measured.design == *design);
+            return before.map_or(Verdict::Print(design), |measured| Verdict::MeasuredBefore {
+                design,
+                range_mm: measured.range_mm,
+            });
+        }
+        let Some(found) = &answer.recommended else { return Verdict::NoneFeasible };
+        let first = &found.design.design;
+        if let Some(front) = &answer.front {
+            return Verdict::Choose { first, of: front.designs.len() };
+        }
+        let Some(as_good) = &found.as_good else { return Verdict::Print(first) };
+        let of = as_good.designs.len();
+        match &as_good.safe {
+            Some(safe) if of as f64 >= MANY * answer.designs as f64 => {
+                Verdict::Any { safe: &safe.design.design, of }
+            }
+            _ => Verdict::Print(first),
+        }
+    }
+
+    /// Its name in JSON.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Verdict::Print(_) => "print",
+            Verdict::Any { .. } => "any",
+            Verdict::MeasuredBefore { .. } => "measured_before",
+            Verdict::Choose { .. } => "choose",
+            Verdict::NothingInserts { .. } => "nothing_inserts",
+            Verdict::NoneFeasible => "none_feasible",
+        }
+    }
+
+    /// The finger that it names, if it names one to print.
+    pub fn finger(&self) -> Option<&'a Design> {
+        match *self {
+            Verdict::Print(design)
+            | Verdict::Any { safe: design, .. }
+            | Verdict::MeasuredBefore { design, .. }
+            | Verdict::Choose { first: design, .. } => Some(design),
+            Verdict::NothingInserts { .. } | Verdict::NoneFeasible => None,
+        }
+    }
+
+    /// The sentence that stands first.
+    pub fn headline(&self) -> String {
+        match self {
+            Verdict::Print(design) => format!("Print the finger with {}", finger(design)),
+            Verdict::Any { safe, of } => {
+                format!("Any of {of} fingers will do; without other needs print {}", finger(safe))
+            }
+            Verdict::MeasuredBefore { design, range_mm } => {
+                format!("Use the finger with {}: you measured {}", finger(design), mm(*range_mm))
+            }
+            Verdict::Choose { first, of: 1 } => {
+                format!("Print the finger with {}: best in all objectives", finger(first))
+            }
+            Verdict::Choose { of, .. } => {
+                format!("Choose from {of} fingers: none is the best in all objectives")
+            }
+            Verdict::NothingInserts { task, .. } => format!("No finger inserts on {task}"),
+            Verdict::NoneFeasible => "No design keeps all constraints".to_owned(),
+        }
+    }
+}
+
+/// What may be expected of the finger, and how far that is to be trusted, in a sentence without its
+/// full stop.
+pub fn expectation(answer: &Answer) -> String {
+    if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
+        let [range, low, high] = [best.range_mm, best.low_mm, best.high_mm];
+        let trust = answer.trust.reason();
+        return format!("expect {} ({low:.1} to {high:.1} at 80 %); {trust}", mm(range));
+    }
+    match &answer.recommended {
+        _ if matches!(answer.verdict, Verdict::NothingInserts { .. }) => {
+            "change the task before any finger is compared".to_owned()
+        }
+        None => "nothing to expect".to_owned(),
+        Some(found) => {
+            let any = matches!(answer.verdict, Verdict::Any { .. });
+            let each = found.as_good.as_ref().filter(|_| any).and_then(|set| each(found, set));
+            format!("{}; {}", each.unwrap_or_else(|| simulated(found)), answer.trust.reason())
+        }
+    }
+}
+
+/// `simulated 4.9 to 5.2 mm each`; `None` if the objective is no length.
+fn each(found: &Recommended, set: &AsGood) -> Option<String> {
+    let (measure, searched) = found.objective.filter(|(measure, _)| measure.unit() == "mm")?;
+    let most = found.firm_range_mm.filter(|_| measure == Measure::Range).unwrap_or(searched);
+    let loss = set.designs.iter().map(|(_, loss)| *loss).fold(0.0, f64::max);
+    Some(format!("simulated {} each", interval([most - loss, most])))
+}
+
+/// `simulated 10.1 mm (-4.4 to +5.7)`; of an objective that is no length its value too.
+fn simulated(found: &Recommended) -> String {
+    let objective = found.objective.filter(|(measure, _)| measure.unit() != "mm");
+    let objective = objective.map_or(String::new(), |(measure, value)| {
+        format!("{} {}, ", measure.name(), measure.show(value))
+    });
+    match (found.firm_range_mm.zip(found.firm_window_mm), found.range_mm) {
+        (Some((range_mm, window_mm)), _) => {
+            format!("simulated {objective}{} ({})", mm(range_mm), span(window_mm))
+        }
+        (None, Some(range_mm)) => {
+            format!(
+                "simulated {objective}{} ({}), not confirmed",
+                mm(range_mm),
+                span(found.window_mm)
+            )
+        }
+        (None, None) => format!("simulated {objective}no range"),
+    }
+}

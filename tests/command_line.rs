@@ -74,8 +74,8 @@ fn a_study_prints_its_best_design_and_leaves_a_table() {
     assert!(result["best"]["range_mm"].as_f64() > Some(3.0), "{result}");
     let table = common::read(&studies.dir("s").join("evaluations.csv"));
     assert_eq!(table.lines().count(), 1 + 8);
-    let text = studies.study("s", 8, &[]);
-    for part in ["best design", "range", "window", "stiffness", "study"] {
+    let text = studies.study("s", 8, &["--verbose"]);
+    for part in ["print", "next", "best design", "range", "window", "stiffness", "study"] {
         assert!(text.succeeds().contains(part), "{part} is not in {}", text.stdout);
     }
     for file in ["evaluations.csv", "convergence.svg", "report.html"] {
@@ -243,7 +243,7 @@ fn a_number_of_task_or_finger_can_be_set() {
 fn a_co_design_study_names_its_parameters_everywhere() {
     let studies = Studies::new();
     let more = ["--space", "codesign", "--optimizer", "sobol"];
-    let text = studies.study("s", 8, &more);
+    let text = studies.study("s", 8, &[&more[..], &["--verbose"]].concat());
     let keys = "infill_density_percent infill_direction_deg task.strategy.tilt_deg \
                 task.strategy.phase.touch.preload_mm task.strategy.phase.side.move_mm.y \
                 task.grip.force_n finger.rcc_mm task.strategy.phase.assembly.speed_mm_per_s";

@@ -273,7 +273,7 @@ fn a_bound_is_said_and_shown_as_one() {
     let ran = studies.study(
         "s",
         24,
-        &["--objective", "success-rate", "--uncertainty", &errors(&studies)],
+        &["--objective", "success-rate", "--uncertainty", &errors(&studies), "--verbose"],
     );
     let said = format!("{} of 24 designs ended early", raced(&studies, "s"));
     assert!(ran.succeeds().contains(&said), "{}", ran.stdout);

@@ -34,6 +34,8 @@ fn answer(ran: &Ran) -> Value {
     let fields = json.as_object_mut().expect("an object");
     fields.remove("study");
     fields.remove("cached");
+    // It may name the study's folder.
+    fields["answer"].as_object_mut().expect("an object").remove("next");
     json
 }
 

@@ -44,7 +44,7 @@ const PRINTS: usize = 3;
 pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     let named = Named { record: answer.record, dir };
     let tasks = named.tasks();
-    let (bench, several) = (&answer.record.on_bench, answer.record.config.several_tasks());
+    let several = answer.record.config.several_tasks();
     match (&answer.verdict, &answer.trust) {
         (Verdict::NothingInserts { .. }, _) => {
             let first = tasks.split(',').next().unwrap_or(&tasks);
@@ -54,12 +54,13 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
             (format!("optimize report {}", dir.display()), "shows how far each design is off")
         }
         (_, Trust::Calibrated { .. }) | (_, Trust::Published { .. }) if !several => {
-            let file = match bench.as_ref().map(|found| &found.file) {
-                None => MEASUREMENTS[0].name.to_owned(),
-                // Folders up to version 0.4.0 have a copy only.
-                Some(None) => named.input("measurements", MEASUREMENTS),
-                Some(Some(file)) => file.clone(),
+            let given = answer.record.config.conclusion.measurements.clone();
+            let shipped = match answer.record.on_bench {
+                None => Some(MEASUREMENTS[0].name),
+                Some(_) => name(named.provenance(), "measurements", MEASUREMENTS),
             };
+            let file = shipped.map(str::to_owned).or(given);
+            let file = file.unwrap_or_else(|| named.input("measurements", MEASUREMENTS));
             let asked = format!("--task {tasks} --measurements {file} --count {PRINTS}");
             (format!("optimize next {asked}"), "which fingers to print and measure first")
         }

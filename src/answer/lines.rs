@@ -1,9 +1,9 @@
 //! An answer line by line, each a name and what it says: terminal and page show the same.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
-use super::{Answer, AsGood, OnTask, Recommended, Spread, command};
+use super::{Answer, AsGood, Front, OnTask, Recommended, Spread};
 use crate::calibration::order::Order;
-use crate::study::{ByRibs, OnBench, Recorded};
+use crate::study::{ByRibs, OnBench, Recorded, StudyRecord};
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
@@ -11,7 +11,6 @@ use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::surrogate::Prediction;
 use std::iter;
-use std::path::Path;
 
 /// A name, empty where the line above goes on, and what is said.
 pub type Line = (String, String);
@@ -21,7 +20,7 @@ fn line(name: &str, text: impl Into<String>) -> Line {
 }
 
 /// The answer in few lines, after the sentence that stands first and what may be expected.
-pub fn brief(answer: &Answer, dir: &Path) -> Vec<Line> {
+pub fn brief(answer: &Answer) -> Vec<Line> {
     let record = answer.record;
     let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
     let simulated = one.filter(|_| answer.front.is_none());
@@ -29,12 +28,13 @@ pub fn brief(answer: &Answer, dir: &Path) -> Vec<Line> {
     if let Some(found) = simulated {
         lines.extend(found.start.and_then(|start| start.advice()).map(|text| line("start", text)));
         for task in &found.tasks {
-            let [below, above] =
-                [task.measured.window.end_negative, task.measured.window.end_positive]
-                    .map(words::end);
-            let ends = format!("{below} below, {above} above{}", found.on(task));
-            lines.push(line("ends", ends));
+            let window = &task.measured.window;
+            let [below, above] = [window.end_negative, window.end_positive].map(words::end);
+            lines.push(line("ends", format!("{below} below, {above} above{}", found.on(task))));
+            lines.extend(drawn(task.measured));
         }
+        let limits = found.constraints.iter();
+        lines.extend(limits.map(|(measure, said)| line("constraint", format!("{measure} {said}"))));
         lines.extend(found.as_good.as_ref().map(|as_good| within(answer, as_good)));
         lines.extend(found.as_good.as_ref().and_then(safe));
         lines.extend(answer.spread_mm.map(|spread| line("infill", moves(answer, spread))));
@@ -46,12 +46,33 @@ pub fn brief(answer: &Answer, dir: &Path) -> Vec<Line> {
             .iter()
             .flat_map(|bench| bench.warnings.iter().map(|words| line("warning", words))),
     );
+    lines.extend(answer.front.iter().flat_map(|front| members(record, front)));
     lines.push(line("searched", searched(answer)));
-    let (command, why) = command::next(answer, dir);
-    lines.push(line("next", command));
-    lines.push(line("", why));
+    let first = record.first_current();
+    if first > 0 {
+        let number = record.segments.len();
+        let text = format!(
+            "{number}, from evaluation {first}: the settings changed, and only these count"
+        );
+        lines.push(line("segment", text));
+    }
     lines
 }
+
+/// The first designs of a front.
+fn members(record: &StudyRecord, front: &Front) -> Vec<Line> {
+    let objectives = &record.config.objective;
+    let member = |found: &&Recorded| {
+        let values = objectives.show(found.feasible().unwrap_or_default());
+        line("front", format!("{values}: {}", words::finger(&found.design)))
+    };
+    let left = front.designs.len().saturating_sub(MEMBERS);
+    let more = (left > 0).then(|| line("", format!("and {left} more, in the report")));
+    front.designs.iter().take(MEMBERS).map(member).chain(more).collect()
+}
+
+/// Designs of a front that are told.
+const MEMBERS: usize = 4;
 
 /// How the finger was searched for.
 fn searched(answer: &Answer) -> String {

@@ -1,7 +1,7 @@
 //! What to do with an answer: the sentence that stands first, and what may be expected.
 
 use super::trust::Measured;
-use super::words::{finger, interval, mm, span};
+use super::words::{evaluated, finger, interval, mm, outcome, span};
 use super::{Answer, AsGood, Recommended};
 use crate::study::Recorded;
 use insertion::evaluation::objective::Measure;
@@ -120,7 +120,7 @@ impl<'a> Verdict<'a> {
                 format!("Choose from {of} fingers: none is the best in all objectives")
             }
             Verdict::NothingInserts { task, .. } => format!("No finger inserts on {task}"),
-            Verdict::NoneFeasible => "No design keeps all constraints".to_owned(),
+            Verdict::NoneFeasible => "No design can be recommended".to_owned(),
         }
     }
 }
@@ -133,17 +133,27 @@ pub fn expectation(answer: &Answer) -> String {
         let trust = answer.trust.reason();
         return format!("expect {} ({low:.1} to {high:.1} at 80 %); {trust}", mm(range));
     }
+    if let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict {
+        let fails =
+            fails.map_or("fails".to_owned(), |fails| format!("ends with {}", outcome(fails)));
+        return format!("the nearest, {}, {fails} at the nominal start", finger(&nearest.design));
+    }
     match &answer.recommended {
-        _ if matches!(answer.verdict, Verdict::NothingInserts { .. }) => {
-            "change the task before any finger is compared".to_owned()
-        }
-        None => "nothing to expect".to_owned(),
+        None => none(answer),
         Some(found) => {
             let any = matches!(answer.verdict, Verdict::Any { .. });
             let each = found.as_good.as_ref().filter(|_| any).and_then(|set| each(found, set));
             format!("{}; {}", each.unwrap_or_else(|| simulated(found)), answer.trust.reason())
         }
     }
+}
+
+/// Why no design can be recommended.
+fn none(answer: &Answer) -> String {
+    let Some((design, constraints)) = &answer.nearest else {
+        return "no evaluation gave a value".to_owned();
+    };
+    format!("none keeps all constraints; nearest {}: {}", evaluated(design), constraints.join("; "))
 }
 
 /// `simulated 4.9 to 5.2 mm each`; `None` if the objective is no length.

@@ -5,7 +5,7 @@ use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
 use insertion::evaluation::{RobustRange, SuccessRate, Window};
 use insertion::outcome::Outcome;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, label};
 use insertion::surrogate::Estimate;
 
 /// That a search settled, and what that means.
@@ -105,7 +105,10 @@ pub fn design(design: &Design) -> String {
     let others = design.0.iter().filter(|(key, _)| !of_infill.contains(&key.as_str()));
     let mut parts = vec![infill(design)];
     parts.retain(|infill| !infill.is_empty());
-    parts.extend(others.map(|(key, value)| format!("{key} {value}")));
+    parts.extend(others.map(|(key, value)| {
+        let (name, unit) = label(key);
+        format!("{name} {value}{unit}")
+    }));
     parts.join(", ")
 }
 

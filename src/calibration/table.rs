@@ -348,7 +348,6 @@ pub fn on_bench(
     OnBench {
         provenance,
         effort,
-        file: None,
         measured: subject.measured().len(),
         ranges: Vec::new(),
         fingers: result.predictions.len(),

@@ -31,7 +31,7 @@ impl Progress {
     pub fn new(study: &Study, quiet: bool) -> Self {
         let config = &study.config;
         let (done, budget) = (study.evaluations.len() as u64, config.expected_evaluations());
-        let conclusion = config.conclusion;
+        let conclusion = &config.conclusion;
         let confirmed = CONFIRMED.iter().zip(COSTS).map(|(count, cost)| count * cost).sum::<f64>();
         let confirmed = if conclusion.no_confirm { 0.0 } else { confirmed };
         let bench = conclusion.bench.map_or(0.0, |effort| f64::from(effort.simulations) * COSTS[2]);

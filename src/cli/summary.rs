@@ -5,7 +5,7 @@ use super::terminal::merge;
 use super::{recommended, words};
 use crate::answer::lines;
 use crate::answer::words::{evaluated, volume_unit};
-use crate::answer::{Answer, Front, expectation};
+use crate::answer::{Answer, Front, command, expectation};
 use crate::study::{Ending, Recorded, StudyRecord};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -26,13 +26,15 @@ pub fn printed(
         return format!("{fields}\n");
     }
     let mut text = format!("{}\n{}\n", answer.verdict.headline(), expectation(&answer));
-    text += &words::lines(lines::brief(&answer, dir));
+    text += &words::lines(lines::brief(&answer));
     if shown.verbose {
         text += &verbose(&answer, ending, known);
     }
+    // To be copied: not wrapped.
+    let (command, why) = command::next(&answer, dir);
     let page = dir.join(crate::session::PAGE);
     let place = format!("study         {} (see {})\n", dir.display(), page.display());
-    words::wrapped(&text) + &place
+    format!("{}next          {command}\n              # {why}\n{place}", words::wrapped(&text))
 }
 
 /// All numbers behind the answer.
@@ -110,6 +112,9 @@ fn front_text(record: &StudyRecord, Front { designs, volume }: &Front) -> String
     )
 }
 
+/// Raised when a key changes its meaning or goes.
+const SCHEMA_VERSION: u32 = 1;
+
 fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
     let record = answer.record;
     let config = &record.config;
@@ -122,6 +127,7 @@ fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
     };
     let best = record.best().filter(|_| answer.front.is_none());
     let mut fields = json!({
+        "schema_version": SCHEMA_VERSION,
         "task": config.task_name(),
         "space": config.space.name,
         "robot": config.robot,
@@ -203,11 +209,18 @@ mod tests {
     fn the_summary_is_that_of_the_reference() {
         for task in ["ket8", "rj45", "usb"] {
             let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference").join(task);
-            let expected = std::fs::read_to_string(dir.join("summary.txt")).unwrap();
             let record = StudyRecord::load(&dir).unwrap();
-            let lines = printed(&dir, &record, Ending::BudgetSpent, 0, false);
+            let lines = printed(&dir, &record, Ending::BudgetSpent, 0, Shown::default());
             let (lines, _) = lines.split_once("study   ").unwrap();
-            assert_eq!(lines, expected, "{task}");
+            let file = dir.join("summary.txt");
+            if std::env::var_os("RENEW").is_some() {
+                std::fs::write(&file, lines).unwrap();
+            }
+            let expected = std::fs::read_to_string(&file).unwrap();
+            assert_eq!(
+                lines, expected,
+                "{task}: after a change of its words, RENEW=1 writes it anew"
+            );
         }
     }
 }

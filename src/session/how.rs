@@ -126,7 +126,8 @@ impl RunRequest {
         known: Option<BenchEffort>,
     ) -> Result<Conclusion, Failure> {
         let bench = setup.measured.as_ref().map(|_| self.effort.or(known)).transpose()?;
-        Ok(Conclusion { no_confirm: self.no_confirm, bench })
+        let measurements = setup.measured.as_ref().map(|measured| measured.file.clone());
+        Ok(Conclusion { no_confirm: self.no_confirm, bench, measurements })
     }
 
     /// How many threads measure; 0 for one per processor.

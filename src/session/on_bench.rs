@@ -74,7 +74,6 @@ pub(super) fn predict(
         let ranges = measured.experiments.iter().filter(|line| line.task == task.task.name);
         let ranges = ranges.filter_map(|line| Some((line.design.clone(), line.range_mm()?)));
         let found = OnBench {
-            file: Some(measured.file.clone()),
             ranges: ranges.collect(),
             ..on_bench(subject, result, simulated, provenance, effort)
         };

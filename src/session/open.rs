@@ -110,13 +110,13 @@ impl OpenStudy {
     ) -> Result<Ended, Failure> {
         let known = self.cache.as_ref().map_or(0, Cache::found);
         let OpenStudy { study, setup, how, cache, .. } = self;
-        let conclusion = study.config.conclusion;
+        let no_confirm = study.config.conclusion.no_confirm;
         let interrupted = || ending == Ending::Interrupted || stop.load(Ordering::SeqCst);
         let settled = ending == Ending::Settled;
-        if ending != Ending::Interrupted && (settled || !conclusion.no_confirm) {
+        if ending != Ending::Interrupted && (settled || !no_confirm) {
             let shared = Mutex::new(&mut *watch);
             let known = (&*setup, cache.as_ref());
-            confirmer(known, conclusion.no_confirm, (pool, stop), &shared, |it| {
+            confirmer(known, no_confirm, (pool, stop), &shared, |it| {
                 it.confirm(study, kept, settled)
             })
             .map_err(|error| hint(error, study))?;

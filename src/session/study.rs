@@ -142,7 +142,11 @@ impl ResumeRequest {
         let mut study = Study::resume(&self.dir)?;
         let no_confirm = study.config.conclusion.no_confirm || self.run.no_confirm;
         let inputs = study.inputs()?;
-        let setup = Setup::from_inputs(&inputs, &study.provenance().engine.name)?;
+        let mut setup = Setup::from_inputs(&inputs, &study.provenance().engine.name)?;
+        let given = study.config.conclusion.measurements.clone();
+        if let Some((measured, file)) = setup.measured.as_mut().zip(given) {
+            measured.file = file;
+        }
         study.measure_with(&setup.provenance(), &inputs, self.run.if_changed())?;
         OpenStudy::new(study, setup, RunRequest { no_confirm, ..self.run.clone() })
     }

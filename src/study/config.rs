@@ -87,7 +87,7 @@ pub enum Confirmation {
 }
 
 /// How a study ends. It changes no evaluation, so it may be settled anew.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Conclusion {
     /// Whether what is recommended stays unconfirmed.
@@ -96,6 +96,9 @@ pub struct Conclusion {
     /// How much is computed for the bench, if there are measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bench: Option<BenchEffort>,
+    /// The measurement file, as it was given; unknown in folders up to version 0.4.0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measurements: Option<String>,
 }
 
 impl StudyConfig {
@@ -228,7 +231,7 @@ impl StudyConfig {
         let may_rise = asked.polish == 0 && (asked.budget > self.budget || self.settles);
         let budget = if may_rise { asked.budget } else { self.budget };
         let provenance = asked.provenance.clone();
-        let conclusion = asked.conclusion;
+        let conclusion = asked.conclusion.clone();
         let &StudyConfig { race, settles, confirmation, .. } = asked;
         let kept = StudyConfig { race, settles, confirmation, ..self.clone() };
         let raised = StudyConfig { budget, provenance, conclusion, ..kept };

@@ -20,9 +20,6 @@ pub struct OnBench {
     pub provenance: Provenance,
     /// How much was computed.
     pub effort: BenchEffort,
-    /// The measurement file, as it was given; `None` in folders up to version 0.4.0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub file: Option<String>,
     /// Fingers that were measured.
     pub measured: usize,
     /// Those of them whose range was measured whole, and that range, mm.

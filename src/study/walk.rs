@@ -67,7 +67,8 @@ impl Confirmer<'_> {
     pub fn confirm(&self, study: &Study, kept: &Kept, settled: bool) -> Result<(), StudyError> {
         let goals = study.config.goals();
         let rule = Rule { goals: &goals, space: &study.config.space };
-        if !rule.by_windows() {
+        // What confirmed a settled study was chosen as it went, and is not chosen again.
+        if !rule.by_windows() || (settled && study.settled()) {
             return Ok(());
         }
         match study.config.confirmation {

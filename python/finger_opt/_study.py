@@ -102,8 +102,15 @@ class Study:
         return None if found is None else Record(found)
 
     @property
+    def answer(self) -> Record | None:
+        """What to do, as ``answer`` of ``--json``: ``headline``, ``expectation``, ``finger`` (its
+        values), ``trust``, ``start``, ``as_good``, ``next``; ``None`` before it has begun."""
+        return Record(json.loads(self._read().answer())) if self._begun() else None
+
+    @property
     def settled(self) -> bool:
-        """Whether the search has ended because no design is expected to gain 0.3 mm."""
+        """Whether the search has ended because no design is expected to gain
+        ``indifference_mm`` (0.3)."""
         return self._begun() and self._read().settled()
 
     def to_dataframe(self) -> pandas.DataFrame:

@@ -73,6 +73,7 @@ pub fn study<'py>(
     let usual = StudyRequest::new(words.setup(tasks)?, budget);
     let request = StudyRequest {
         polish: words.number_or("polish", POLISH)?.unwrap_or(usual.polish),
+        indifference_mm: words.take("indifference_mm")?.unwrap_or(usual.indifference_mm),
         optimizer: words.listed("optimizer")?.unwrap_or(usual.optimizer),
         objective: words.listed("objective")?.unwrap_or(usual.objective),
         constraints: words.parsed("constraint")?,
@@ -169,6 +170,10 @@ impl Recorded {
 
     fn best(&self) -> String {
         call::best(&self.record).to_string()
+    }
+
+    fn answer(&self) -> String {
+        call::answer(&self.record, &self.folder).to_string()
     }
 
     /// The text of `evaluations.csv`.

@@ -52,6 +52,9 @@ def test_without_a_budget_it_settles_whoever_measures(create):
     with ThreadPoolExecutor(3) as threads:
         there = create("there", budget=None).run(threads, progress=False)
     assert there.settled and journal(there.path) == journal(here.path) and there.best == here.best
+    answer = here.answer
+    assert answer["finger"] and answer["headline"] and answer["trust"]["level"] == "published"
+    assert here.best["evaluation"] in answer["as_good"]["evaluations"]
     # It is settled, so nothing more is measured; with a budget it goes on.
     assert len(there.run(progress=False)) == len(here)
     more = create("there", budget=len(here) + 4).run(progress=False)

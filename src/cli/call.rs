@@ -9,6 +9,7 @@ use crate::study::StudyRecord;
 use clap::{Args, Parser};
 use serde_json::Value;
 use std::ffi::OsString;
+use std::path::Path;
 
 pub use super::study::Shown;
 
@@ -57,6 +58,11 @@ fn read<T: Args>(words: &[OsString]) -> Result<T, Failure> {
 /// Output of the command for a study that has ended.
 pub fn text(Ended { dir, record, ending, known, .. }: &Ended, shown: Shown) -> String {
     summary::printed(dir, record, *ending, *known, shown)
+}
+
+/// The `answer` of `--json` for the study in a folder.
+pub fn answer(record: &StudyRecord, dir: &Path) -> Value {
+    recommended::answer(&Answer::of(record), dir)
 }
 
 /// The `recommended` design of `--json`; of several objectives the first of the front. Null

@@ -23,8 +23,8 @@ fn line(name: &str, text: impl Into<String>) -> Line {
 pub fn brief(answer: &Answer) -> Vec<Line> {
     let record = answer.record;
     let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
-    let simulated = one.filter(|_| answer.front.is_none());
-    let mut lines: Vec<Line> = Vec::new();
+    let simulated = one.filter(|_| answer.front.is_none() && record.on_bench.is_none());
+    let mut lines: Vec<Line> = record.on_bench.iter().flat_map(measured).collect();
     if let Some(found) = simulated {
         lines.extend(found.start.and_then(|start| start.advice()).map(|text| line("start", text)));
         for task in &found.tasks {
@@ -40,12 +40,6 @@ pub fn brief(answer: &Answer) -> Vec<Line> {
         lines.extend(answer.spread_mm.map(|spread| line("infill", moves(answer, spread))));
         lines.extend(extrapolated(found));
     }
-    lines.extend(
-        record
-            .on_bench
-            .iter()
-            .flat_map(|bench| bench.warnings.iter().map(|words| line("warning", words))),
-    );
     lines.extend(answer.front.iter().flat_map(|front| members(record, front)));
     lines.push(line("searched", searched(answer)));
     let first = record.first_current();
@@ -248,14 +242,29 @@ pub fn on_bench(found: &OnBench) -> Vec<Line> {
             ),
         ),
     ];
+    lines.extend(simulated(found));
+    lines.push(line("measured", trust(found)));
+    lines.extend(found.warnings.iter().map(|words| line("warning", words)));
+    lines
+}
+
+/// The same in few lines.
+fn measured(found: &OnBench) -> Vec<Line> {
+    let chance = found.best.first().map(|best| {
+        let [percent, of] = [100.0 * best.probability_best, found.fingers as f64];
+        line("chance", format!("{percent:.0} % to be the best of all {of} fingers"))
+    });
+    let warnings = found.warnings.iter().map(|words| line("warning", words));
+    chance.into_iter().chain(simulated(found)).chain(warnings).collect()
+}
+
+/// The finger that is the best on the bench, as simulated.
+fn simulated(found: &OnBench) -> Vec<Line> {
     let range = Measure::Range.value(&found.simulated).map(mm);
     let range = range.unwrap_or("no range".to_owned());
     let mut simulated = window(&found.simulated);
     simulated[0] = line("simulated", format!("{range}; {}", simulated[0].1));
-    lines.extend(simulated);
-    lines.push(line("measured", trust(found)));
-    lines.extend(found.warnings.iter().map(|words| line("warning", words)));
-    lines
+    simulated
 }
 
 fn trust(found: &OnBench) -> String {

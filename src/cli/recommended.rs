@@ -31,6 +31,8 @@ pub fn json(answer: &Answer) -> Value {
 /// The answer: what to do, what to expect, how far to trust it.
 pub fn answer(answer: &Answer, dir: &Path) -> Value {
     let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
+    // Of fingers predicted for a bench the simulated set and window say nothing.
+    let one = one.filter(|_| answer.record.on_bench.is_none());
     let as_good = one.and_then(|found| found.as_good.as_ref());
     let (command, why) = command::next(answer, dir);
     json!({

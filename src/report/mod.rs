@@ -11,6 +11,7 @@ mod drawn;
 mod elements;
 mod explore;
 mod front;
+pub mod levers;
 mod limits;
 mod marks;
 mod page;

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Most windows that are measured.
-pub const MOST_WINDOWS: usize = 20;
+const MOST_WINDOWS: usize = 20;
 
 /// Of which finger on which task the levers are asked for.
 pub struct Question<'a> {
@@ -34,6 +34,9 @@ pub struct Question<'a> {
     /// Its stiffness, unless it is to be predicted.
     pub given: Option<Prediction>,
 }
+
+/// What is measured.
+type Cell = (Specimen, Robot);
 
 /// A lever that is measured: its row, its ends, and of each end the place of its window; of an end
 /// that changes nothing that of the base.
@@ -55,39 +58,14 @@ impl Question<'_> {
         infill: Option<[f64; 2]>,
         stop: &AtomicBool,
     ) -> Result<Levers, Impossible> {
-        let base = self.cell(self.design, self.given)?;
-        let mut cells = vec![base.clone()];
+        let mut cells = vec![self.cell(self.design, self.given)?];
         if infill.is_none() {
             for design in self.extremes()? {
                 cells.push(self.cell(&design, None)?);
             }
         }
         let infills = cells.len();
-        let (mut tried, mut left_out) = (Vec::new(), Vec::new());
-        for row in rows(self, &base.0.task)? {
-            let ends = [0, 1].map(|end| row.at(self, end));
-            let mut more = Vec::new();
-            let mut place = |end: &Option<Changed>| match end {
-                // A chamfer of 0 is the same shape in another form, which moves a window, too.
-                Some(Changed { value, specimen, robot })
-                    if *value != row.value && (specimen, robot) != (&base.0, &base.1) =>
-                {
-                    more.push((specimen.clone(), robot.clone()));
-                    cells.len() + more.len() - 1
-                }
-                _ => 0,
-            };
-            let places = [place(&ends[0]), place(&ends[1])];
-            match more.len() {
-                0 => continue,
-                count if cells.len() + count > MOST_WINDOWS => left_out.push(row.parameter.name),
-                _ => {
-                    cells.append(&mut more);
-                    let values = ends.map(|end| end.map_or(row.value, |end| end.value));
-                    tried.push(Tried { row, values, places });
-                }
-            }
-        }
+        let (tried, left_out) = self.tried(&mut cells)?;
         let found: Result<Vec<_>, _> =
             cells.par_iter().map(|(specimen, robot)| self.window(specimen, robot, stop)).collect();
         let found = found?;
@@ -99,26 +77,52 @@ impl Question<'_> {
         let mut levers: Vec<_> = tried.into_iter().map(|one| one.lever(&ranges)).collect();
         // Stable, so that equals stay in their order.
         levers.sort_by(|a, b| b.span_mm(base).total_cmp(&a.span_mm(base)));
-        let over = |ranges: &[Option<f64>]| {
-            let all = || ranges.iter().map(|range| range.unwrap_or(0.0));
+        let over = || {
+            let all = || ranges[..infills].iter().map(|range| range.unwrap_or(0.0));
             [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)]
         };
         Ok(Levers {
             task: self.template.task.name.clone(),
             design: self.design.clone(),
             base,
-            infill: Some(infill.unwrap_or_else(|| over(&ranges[..infills]))),
+            infill: infill.unwrap_or_else(over),
             levers,
             left_out,
             windows: cells.len(),
         })
     }
 
-    fn cell(
-        &self,
-        design: &Design,
-        given: Option<Prediction>,
-    ) -> Result<(Specimen, Robot), Impossible> {
+    /// The levers, their ends added to the cells that are measured, the first of which is the finger
+    /// as it is; and the names of those for which no windows are left.
+    fn tried(&self, cells: &mut Vec<Cell>) -> Result<(Vec<Tried>, Vec<String>), Impossible> {
+        let base = cells[0].clone();
+        let (mut tried, mut left_out) = (Vec::new(), Vec::new());
+        for row in rows(self, &base.0.task)? {
+            let (mut more, mut values, mut places) = (Vec::new(), [row.value; 2], [0; 2]);
+            for end in [0, 1] {
+                // A chamfer of 0 is the same shape in another form, which moves a window, too.
+                let changed = row.at(self, end).filter(|end| end.value != row.value);
+                let Some(Changed { value, specimen, robot }) = changed else { continue };
+                let cell = (specimen, robot);
+                if cell != base {
+                    (values[end], places[end]) = (value, cells.len() + more.len());
+                    more.push(cell);
+                }
+            }
+            if more.is_empty() {
+                continue;
+            }
+            if cells.len() + more.len() > MOST_WINDOWS {
+                left_out.push(row.parameter.name);
+                continue;
+            }
+            cells.append(&mut more);
+            tried.push(Tried { row, values, places });
+        }
+        Ok((tried, left_out))
+    }
+
+    fn cell(&self, design: &Design, given: Option<Prediction>) -> Result<Cell, Impossible> {
         under(self.evaluator, self.template, (design, given), &[])
     }
 
@@ -172,6 +176,11 @@ fn range_mm(evaluation: &Evaluation) -> Option<f64> {
     (window.nominal == Outcome::Inserted).then(|| window.range_mm())
 }
 
+/// A value without the rounding noise of sums and products.
+fn written(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
+}
+
 impl Tried {
     fn lever(self, ranges: &[Option<f64>]) -> Lever {
         let Tried { row: Row { parameter, value }, values, places } = self;
@@ -180,9 +189,9 @@ impl Tried {
             unit: label(key).1.trim().to_owned(),
             key: key.to_owned(),
             name: parameter.name,
-            value,
-            low: values[0],
-            high: values[1],
+            value: written(value),
+            low: written(values[0]),
+            high: written(values[1]),
             source: parameter.source,
             ends: places.map(|place| ranges[place]),
         }

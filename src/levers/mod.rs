@@ -22,9 +22,9 @@ pub struct Levers {
     pub design: Design,
     /// The finger as it is.
     pub base: Base,
-    /// Smallest and largest range over infills, if known.
+    /// Smallest and largest range over infills, mm.
     #[serde(rename = "infill_range_mm")]
-    pub infill: Option<[f64; 2]>,
+    pub infill: [f64; 2],
     /// The levers, by how much they move the range, most first.
     pub levers: Vec<Lever>,
     /// Names of levers for which no windows were left.
@@ -101,7 +101,7 @@ impl Levers {
                 |a: (f64, String), b: (f64, String)| if sign * b.0 > sign * a.0 { b } else { a };
             ends().reduce(better).filter(|(by, _)| counts(sign * by))
         };
-        let infill = self.infill.map(apart).filter(|by| counts(*by));
+        let infill = Some(apart(self.infill)).filter(|by| counts(*by));
         let it = if infill.is_some() { "it" } else { &self.task };
         let lever = match (most(1.0), most(-1.0)) {
             (Some((by, step)), _) => Some(format!("{step} widens {it} by {by:.1} mm")),

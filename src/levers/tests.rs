@@ -6,7 +6,7 @@ fn lever(name: &str, at: [f64; 3], ends: [Option<f64>; 2]) -> Lever {
     Lever { key: name.clone(), name, unit: "mm".to_owned(), value, low, high, source, ends }
 }
 
-fn of(infill: Option<[f64; 2]>, levers: Vec<Lever>) -> Levers {
+fn of(infill: [f64; 2], levers: Vec<Lever>) -> Levers {
     let base = Base { range_mm: 4.0, taught_start_mm: 0.2 };
     let (task, design) = ("usb".to_owned(), Design::infill(10.0, 26.0));
     Levers { task, design, base, infill, levers, left_out: Vec::new(), windows: 9 }
@@ -20,23 +20,23 @@ fn the_sentence_names_what_helps_most_and_nothing_that_moves_little() {
     let just = || lever("grip force", [2.5, 5.0, 10.0], [Some(4.0), Some(4.3)]);
     for (infill, levers, said) in [
         (
-            Some([3.6, 4.0]),
+            [3.6, 4.0],
             vec![tilt()],
             "The infill moves usb by 0.4 mm; 5 mm more tilt widens it by 0.9 mm.",
         ),
-        (Some([3.8, 4.0]), vec![little(), tilt()], "5 mm more tilt widens usb by 0.9 mm."),
+        ([3.8, 4.0], vec![little(), tilt()], "5 mm more tilt widens usb by 0.9 mm."),
         (
-            Some([3.7, 4.0]),
+            [3.7, 4.0],
             vec![little()],
             "The infill moves usb by 0.3 mm; nothing else moves it by 0.3 mm.",
         ),
-        (None, vec![little(), just()], "5 mm more grip force widens usb by 0.3 mm."),
+        ([4.0; 2], vec![little(), just()], "5 mm more grip force widens usb by 0.3 mm."),
         (
-            None,
+            [4.0; 2],
             vec![stroke(), little()],
             "Nothing widens usb by 0.3 mm, and 4 mm more stroke narrows it by 4.0 mm.",
         ),
-        (Some([3.9, 4.0]), vec![little()], "Nothing tried moves usb by 0.3 mm."),
+        ([3.9, 4.0], vec![little()], "Nothing tried moves usb by 0.3 mm."),
     ] {
         assert_eq!(of(infill, levers).sentence(), said);
     }
@@ -44,7 +44,7 @@ fn the_sentence_names_what_helps_most_and_nothing_that_moves_little() {
 
 #[test]
 fn a_span_counts_the_present_value_and_what_does_not_insert() {
-    let base = of(None, Vec::new()).base;
+    let base = of([4.0; 2], Vec::new()).base;
     for (ends, span_mm) in [
         ([Some(3.8), Some(4.1)], 0.3),
         ([Some(4.5), Some(5.0)], 1.0),
@@ -57,7 +57,7 @@ fn a_span_counts_the_present_value_and_what_does_not_insert() {
 
 #[test]
 fn a_study_reads_back_what_it_kept() {
-    let kept = of(Some([1.0, 4.0]), vec![lever("tilt", [0.1, 0.2, 0.3], [None, Some(4.4)])]);
+    let kept = of([1.0, 4.0], vec![lever("tilt", [0.1, 0.2, 0.3], [None, Some(4.4)])]);
     let text = serde_json::to_string(&kept).unwrap();
     assert!(text.contains("\"infill_range_mm\":[1.0,4.0]") && text.contains("null,4.4"), "{text}");
     assert_eq!(serde_json::from_str::<Levers>(&text).unwrap(), kept);

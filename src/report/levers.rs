@@ -41,11 +41,10 @@ fn bars(levers: &Levers) -> Vec<Bar<'_>> {
         Bar { name: &lever.name, span_mm, ends, lever: Some(lever) }
     };
     let mut bars: Vec<_> = levers.levers.iter().map(of).collect();
-    if let Some(infill) = levers.infill {
-        let ends = infill.map(|range| (range, format!("{range:.1} mm")));
-        let at = bars.partition_point(|bar| bar.span_mm > apart(infill));
-        bars.insert(at, Bar { name: "infill", span_mm: apart(infill), ends, lever: None });
-    }
+    let span_mm = apart(levers.infill);
+    let ends = levers.infill.map(|range| (range, format!("{range:.1} mm")));
+    let at = bars.partition_point(|bar| bar.span_mm > span_mm);
+    bars.insert(at, Bar { name: "infill", span_mm, ends, lever: None });
     bars
 }
 

@@ -73,6 +73,7 @@ fn what_is_stopped_ends_as_interrupted() {
     interrupted(evaluate.run(&stop).err());
     let (setup, finger) = (usb(), middle());
     interrupted(TrialRequest { setup, finger, ..Default::default() }.run(&stop).err());
+    interrupted(LeversRequest { setup: usb(), finger: middle() }.run(&stop).err());
     let bench = BenchRequest { setup: usb(), measurements: "published".to_owned() };
     let how = HowCalibrated {
         priors: "bench".to_owned(),

@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-parts="stiffness finger shapes bench check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
+parts="stiffness finger shapes bench levers check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 lab=${LAB:-target/release/lab}
@@ -69,6 +69,22 @@ bench() {
     "$optimize" trial --task "$work/patch.toml" --robot ur5e_position --density 30 --direction 0 \
         --set task.strategy.phase.touch.preload_mm=0.6 --svg "$folder/ket8_turns_about_y.svg" > /dev/null
     record bench "$folder"/*.{txt,csv,json,svg}
+}
+
+# What would help a finger more than its infill: that with the widest range of each task.
+levers() {
+    local folder="$reference/levers" task density direction
+    mkdir -p "$folder"
+    while read -r task density direction; do
+        "$optimize" levers --task "$task" --density "$density" --direction "$direction" \
+            --svg "$folder/$task.svg" --json > "$folder/$task.json"
+    done << EOF
+usb 10 26
+ket8 10 0
+ket12 10 0
+rj45 18 20
+EOF
+    record levers "$folder"/*
 }
 
 check() {

@@ -24,6 +24,7 @@ sources() {
         studies) paths="$simulation crates/ask-tell src/study data tasks robots spaces uncertainties" ;;
         checks) paths="$simulation lab/src/analytic robots" ;;
         bench) paths="$simulation crates/ask-tell src/calibration data tasks robots spaces priors" ;;
+        levers) paths="$simulation src/calibration src/levers data tasks robots spaces priors" ;;
         optimizers) paths="crates/ask-tell lab/src/problems results/reference/landscapes" ;;
         *) echo "scripts/stale.sh: no scope is called $1" >&2; exit 2 ;;
     esac

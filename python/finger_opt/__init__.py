@@ -13,7 +13,7 @@ raise :class:`InputError` (a ``ValueError``), what fails while it runs :class:`R
 
 from typing import Any
 
-from ._measure import Evaluation, Trial, evaluate, stiffness, trial
+from ._measure import Evaluation, Levers, Trial, evaluate, levers, stiffness, trial
 from ._native import InputError, RunError, __version__
 from ._optimizer import Optimizer, Point
 from ._run import perform
@@ -23,6 +23,7 @@ from ._task import Task
 __all__ = [
     "Evaluation",
     "InputError",
+    "Levers",
     "Optimizer",
     "Point",
     "RunError",
@@ -31,6 +32,7 @@ __all__ = [
     "Trial",
     "__version__",
     "evaluate",
+    "levers",
     "load_study",
     "perform",
     "stiffness",

@@ -50,6 +50,12 @@ class Evaluation(Record):
     ``failure_positive`` (class 1 to 4 of what ends it), ``peak_force_n``, ``slip_mm``."""
 
 
+class Levers(Record):
+    """What moves the range of one finger on one task: ``sentence``, ``base`` (its ``range_mm`` from a
+    taught start), ``infill_range_mm``, and ``levers``, most first: ``name``, ``value``, ``low`` and
+    ``high`` in ``unit``, their ``source``, and ``range_mm`` at both (``None``: nothing inserts)."""
+
+
 class Trial(Record):
     """One simulated insertion: ``outcome``, ``failure``, ``depth_mm``, ``tilt_deg``,
     ``peak_force_n``, ``slip_mm``, ``phases``, and its course from the start of the search on.
@@ -85,6 +91,21 @@ def evaluate(
     """
     found = _native.evaluate(sources(task), density=density, direction=direction, **settings)
     return Evaluation(json.loads(found))
+
+
+def levers(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    **settings: Any,
+) -> Levers:
+    """What would help a finger more than its infill, as ``optimize levers`` finds it: tilt, strokes,
+    preload, speed, grip, friction, clearance, chamfer, robot, one at a time.
+
+    At most 20 windows, each from a start taught for it. Words and numbers are as for :func:`evaluate`.
+    """
+    found = _native.levers(sources(task), density=density, direction=direction, **settings)
+    return Levers(json.loads(found))
 
 
 def trial(

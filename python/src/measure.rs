@@ -4,7 +4,9 @@ use crate::errors::{InputError, not_forked, raise};
 use crate::keywords::{Keywords, Name, TaskWord, wrong};
 use finger_opt::cli;
 use finger_opt::report;
-use finger_opt::session::{EvaluateRequest, StiffnessRequest, TaskFile, TrialRequest};
+use finger_opt::session::{
+    EvaluateRequest, LeversRequest, StiffnessRequest, TaskFile, TrialRequest,
+};
 use finger_opt::session::{read_space, read_task};
 use input::shipped::Source;
 use insertion::space::Parameter;
@@ -91,6 +93,21 @@ pub fn evaluate<'py>(
     }
     let found = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
     Ok(cli::evaluate::json(&found).to_string())
+}
+
+/// What would help a finger more than its infill, as JSON.
+#[pyfunction]
+#[pyo3(signature = (tasks, /, **settings))]
+pub fn levers<'py>(
+    py: Python<'py>,
+    tasks: Vec<TaskWord>,
+    settings: Option<&Bound<'py, PyDict>>,
+) -> PyResult<String> {
+    let words = Keywords::new(py, settings)?;
+    let request = LeversRequest { setup: words.setup(tasks)?, finger: words.finger()? };
+    words.finish()?;
+    let found = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
+    Ok(report::levers::json(&found).to_string())
 }
 
 /// JSON of the trial, and by name the columns of its course: little-endian float64.

@@ -28,6 +28,14 @@ def test_an_evaluation_has_the_bits_of_the_command_line(command_json):
     assert "range_mm" in here._repr_html_()
 
 
+def test_levers_have_the_bits_of_the_command_line(command_json, fake):
+    there = command_json("levers", "--task", "usb", "--density", "20", "--direction", "10", "--engine", "fake")
+    here = fo.levers("usb", density=20, direction=10, **fake)
+    assert dict(here) == there
+    assert here.base["range_mm"] == fo.evaluate("usb", 20, 10, start="taught", **fake).range_mm
+    assert here.windows <= 20 and {lever["name"] for lever in here["levers"]} >= {"tilt", "grip force"}
+
+
 def test_a_trial_and_its_course(command_json):
     there = command_json("trial", "--task", "usb", "--density", "20", "--direction", "10",
                          "--offset-mm", "-1")

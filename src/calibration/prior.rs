@@ -1,6 +1,7 @@
 //! Unmeasured numbers of a cell, and their bounds: `priors/bench.toml`.
 
 use input::{Check, InputError, read};
+use insertion::finger::file::is_shape;
 use insertion::space::Scale;
 use serde::Deserialize;
 
@@ -32,11 +33,14 @@ pub struct Parameter {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum Target {
-    Task(String),
+    /// A number of the task file, or of the finger file of computed fingers.
+    Number(String),
     /// The width of the socket's opening, mm.
     Clearance,
     /// The radius of the edges that lead in, mm, where the task has them sharp.
     Edges,
+    /// The chamfer at the socket's opening, mm, where the task has none.
+    Chamfer,
     Stiffness,
     Tilting,
     Centre,
@@ -45,9 +49,10 @@ pub enum Target {
 }
 
 /// The targets that are no path in a task file.
-const NAMED: [(&str, Target); 6] = [
+const NAMED: [(&str, Target); 7] = [
     ("task.clearance_mm", Target::Clearance),
     ("task.edge_radius_mm", Target::Edges),
+    ("task.opening_chamfer_mm", Target::Chamfer),
     ("finger.stiffness", Target::Stiffness),
     ("finger.rotation_x_nm_per_rad", Target::Tilting),
     ("finger.rcc_mm", Target::Centre),
@@ -59,6 +64,8 @@ const NAMED: [(&str, Target); 6] = [
 pub enum Way {
     Factor,
     Shift,
+    /// The bounds are values of the number itself.
+    Value,
 }
 
 impl TryFrom<String> for Target {
@@ -67,14 +74,24 @@ impl TryFrom<String> for Target {
         if let Some((_, target)) = NAMED.iter().find(|(known, _)| *known == name) {
             return Ok(target.clone());
         }
-        if name.starts_with("task.") {
-            return Ok(Target::Task(name));
+        if name.starts_with("task.") || is_shape(&name) {
+            return Ok(Target::Number(name));
         }
         let known = NAMED.map(|(name, _)| name);
         Err(format!(
-            "`{name}` sets nothing; there are {}, and paths in a task file",
+            "`{name}` sets nothing; there are {}, and paths in a task or finger file",
             known.join(", ")
         ))
+    }
+}
+
+impl Target {
+    /// What a row of a file calls it.
+    pub fn key(&self) -> &str {
+        match self {
+            Target::Number(path) => path,
+            named => NAMED.iter().find(|(_, target)| target == named).map_or("", |(key, _)| *key),
+        }
     }
 }
 
@@ -92,6 +109,7 @@ impl Parameter {
         match self.way {
             Way::Factor => number * value,
             Way::Shift => number + value,
+            Way::Value => value,
         }
     }
 }
@@ -111,9 +129,10 @@ impl Priors {
             if (*scale == Scale::Log || *way == Way::Factor) && *low <= 0.0 {
                 return check.fail(name, "low must be above 0: a factor, or a logarithm");
             }
-            if parameter.sets == Target::Edges && (*way == Way::Factor || *low < 0.0) {
+            let cut = matches!(parameter.sets, Target::Edges | Target::Chamfer);
+            if cut && (*way == Way::Factor || *low < 0.0) {
                 return check
-                    .fail(name, "must be as = \"shift\" from 0 up: a radius in place of none");
+                    .fail(name, "must be as = \"shift\" from 0 up: a size in place of none");
             }
             if parameter.source.trim().is_empty() {
                 return check.fail(name, "source is empty; say where the bounds come from");

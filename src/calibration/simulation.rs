@@ -9,9 +9,11 @@ use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::finger::Finger;
+use insertion::finger::model::FingerSource;
 use insertion::outcome::Outcome;
 use insertion::robot::{Drive, Robot};
 use insertion::space::Design;
+use insertion::surrogate::Prediction;
 use insertion::trial::{Conditions, Grasp};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -39,10 +41,9 @@ impl<'a> Simulation<'a> {
         cache: Option<PathBuf>,
         stop: &'a AtomicBool,
     ) -> Self {
-        let soft = matches!(evaluator.robot.drive, Drive::Servo(_));
         let has = |parameter: &&Parameter| match &parameter.sets {
-            Target::Task(path) => template.numbers.number(path).is_some(),
-            Target::Flange => soft,
+            Target::Number(path) => number(evaluator, template, path).is_some(),
+            Target::Flange => matches!(evaluator.robot.drive, Drive::Servo(_)),
             _ => true,
         };
         let parameters = parameters.iter().filter(has).collect();
@@ -51,7 +52,9 @@ impl<'a> Simulation<'a> {
 
     /// The window of a design at these shares of the priors; without shares as in the files.
     pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
-        let (specimen, robot) = self.specimen(design, shares)?;
+        let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
+        let values: Vec<_> = values.collect();
+        let (specimen, robot) = under(self.evaluator, self.template, (design, None), &values)?;
         let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;
         let own = self.measure(&specimen, &robot)?;
         if inserts(&own) {
@@ -87,38 +90,54 @@ impl<'a> Simulation<'a> {
         }
         Ok(evaluation)
     }
+}
 
-    fn specimen(&self, design: &Design, shares: &[f64]) -> Result<(Specimen, Robot), Impossible> {
-        let values = || self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
-        let mut set = design.clone();
-        for (parameter, value) in values() {
-            if let Target::Task(path) = &parameter.sets
-                && let Some(own) = design.get(path).or_else(|| self.template.numbers.number(path))
-            {
-                set.0.insert(path.clone(), parameter.applied(own, value));
-            }
+/// The number of that key in the task file, or in the finger file of computed fingers.
+pub fn number(evaluator: &Evaluator, template: &Template, key: &str) -> Option<f64> {
+    template.numbers.number(key).or_else(|| match &evaluator.fingers {
+        FingerSource::Paper => None,
+        FingerSource::Computed(fingers) => fingers.file.numbers.number(key),
+    })
+}
+
+/// A design under these values of parameters, and the robot; its stiffness is predicted unless given.
+pub fn under(
+    evaluator: &Evaluator,
+    template: &Template,
+    (design, given): (&Design, Option<Prediction>),
+    values: &[(&Parameter, f64)],
+) -> Result<(Specimen, Robot), Impossible> {
+    let mut set = design.clone();
+    for (parameter, value) in values {
+        if let Target::Number(key) = &parameter.sets
+            && let Some(own) = design.get(key).or_else(|| number(evaluator, template, key))
+        {
+            set.0.insert(key.clone(), parameter.applied(own, *value));
         }
-        let stiffness = self.evaluator.predict(design)?;
-        let mut specimen = self.evaluator.specimen(self.template, &set, stiffness)?;
-        let mut robot = self.evaluator.robot.clone();
-        for (parameter, value) in values() {
-            change(parameter, value, &mut specimen, &mut robot);
-        }
-        Ok((specimen, robot))
     }
+    let stiffness = given.map_or_else(|| evaluator.predict(&set), Ok)?;
+    let mut specimen = evaluator.specimen(template, &set, stiffness)?;
+    let mut robot = evaluator.robot.clone();
+    for (parameter, value) in values {
+        change(parameter, *value, &mut specimen, &mut robot);
+    }
+    Ok((specimen, robot))
 }
 
 /// Changes what a parameter sets beside the numbers of the task file.
 fn change(parameter: &Parameter, value: f64, specimen: &mut Specimen, robot: &mut Robot) {
     let Finger { compliance, assembly, rotation, rcc, .. } = &mut specimen.finger;
     match parameter.sets {
-        Target::Task(_) => (),
+        Target::Number(_) => (),
         Target::Clearance => {
             let clearance = parameter.applied(0.0, value) * MM;
             specimen.task = Conditions { clearance, ..Conditions::NOMINAL }.task(&specimen.task);
         }
         Target::Edges => {
             specimen.task = specimen.task.rounded(parameter.applied(0.0, value) * MM);
+        }
+        Target::Chamfer => {
+            specimen.task = specimen.task.chamfered(parameter.applied(0.0, value) * MM);
         }
         Target::Stiffness => {
             *compliance = parameter.applied(*compliance, value);

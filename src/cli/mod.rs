@@ -9,6 +9,7 @@ pub mod evaluate;
 mod executor;
 mod export;
 mod finger;
+mod levers;
 mod manual;
 mod measure;
 mod next;
@@ -129,6 +130,10 @@ enum Command {
     )]
     Sensitivity(sensitivity::Arguments),
     #[command(
+        after_help = "Example: optimize levers --task rj45 --density 18 --direction 20 --svg rj45.svg"
+    )]
+    Levers(levers::Arguments),
+    #[command(
         after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
     )]
     Calibrate(calibrate::Arguments),
@@ -231,6 +236,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Finger(arguments)) => finger::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
+        Some(Command::Levers(arguments)) => levers::run(&arguments),
         Some(Command::Calibrate(arguments)) => calibrate::run(&arguments),
         Some(Command::Next(arguments)) => next::run(&arguments),
         Some(Command::Measure(arguments)) => measure::run(&arguments),

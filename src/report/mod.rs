@@ -10,6 +10,7 @@ mod drawn;
 mod elements;
 mod explore;
 mod front;
+pub mod levers;
 mod limits;
 mod marks;
 mod page;

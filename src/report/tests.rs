@@ -15,6 +15,7 @@ use insertion::surrogate::{Model, fit};
 use insertion::trial::engine::EngineKind;
 use insertion::trial::fake::{Altered, FakeRig};
 use insertion::trial::{Grasp, Trial};
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
@@ -328,4 +329,30 @@ fn the_command_that_repeats_a_study_names_all_that_decides() {
          inputs/stiffness.csv --finger-model computed --finger finray9 --engine rapier --optimizer \
          gp --objective range --aggregate weighted --weights 2,1 --seed 7 --budget 200 --batch 4"
     );
+}
+
+#[test]
+fn levers_are_drawn_largest_first_and_grey_where_they_matter_little() {
+    use super::levers;
+    let lever = |name: &str, ends: [Option<f64>; 2]| {
+        json!({"name": name, "key": name, "unit": "mm", "value": 2.0, "low": 1.0, "high": 3.0,
+               "source": "made <up>", "range_mm": ends})
+    };
+    let found = json!({
+        "task": "a<b", "design": {}, "base": {"range_mm": 4.0, "taught_start_mm": 0.0},
+        "infill_range_mm": [3.0, 4.0], "left_out": ["speed"], "windows": 7,
+        "levers": [lever("tilt", [None, Some(4.5)]), lever("grip", [Some(3.9), Some(4.1)])],
+    });
+    let found = serde_json::from_value(found).unwrap();
+    let svg = levers::svg(&found);
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let texts: Vec<_> = document.descendants().filter_map(|node| node.text()).collect();
+    let at = |text: &str| texts.iter().position(|&found| found == text).unwrap();
+    assert!(
+        at("tilt") < at("none at 1 mm") && at("tilt") < at("infill") && at("infill") < at("grip")
+    );
+    let bars = document.descendants().filter_map(|node| node.attribute("fill-opacity"));
+    assert_eq!(bars.collect::<Vec<_>>(), ["0.85", "0.85", "0.85", "0.85", "0.45", "0.45"]);
+    let text = levers::text(&found);
+    assert!(text.contains("7 windows; none left for speed") && text.contains("grip: made <up>"));
 }

@@ -1,4 +1,7 @@
 use super::*;
+use crate::levers::Levers;
+use insertion::evaluation::grid_mm;
+use insertion::task::StartRule;
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
 use std::sync::atomic::AtomicBool;
@@ -70,6 +73,7 @@ fn what_is_stopped_ends_as_interrupted() {
     interrupted(evaluate.run(&stop).err());
     let (setup, finger) = (usb(), middle());
     interrupted(TrialRequest { setup, finger, ..Default::default() }.run(&stop).err());
+    interrupted(LeversRequest { setup: usb(), finger: middle() }.run(&stop).err());
     let bench = BenchRequest { setup: usb(), measurements: "published".to_owned() };
     let how = HowCalibrated {
         priors: "bench".to_owned(),
@@ -78,4 +82,39 @@ fn what_is_stopped_ends_as_interrupted() {
         cache: CacheRequest::default(),
     };
     interrupted(CalibrateRequest { bench, how }.run(&stop, &mut |_| ()).err());
+}
+
+#[test]
+fn levers_begin_at_the_taught_window_and_keep_to_what_can_be() {
+    let finger = |set: &[(&str, f64)]| {
+        let set = set.iter().map(|&(key, value)| (key.to_owned(), value)).collect();
+        FingerRequest { set, ..middle() }
+    };
+    let levers = |set: &[(&str, f64)]| {
+        let request = LeversRequest { setup: usb(), finger: finger(set) };
+        request.run(&NEVER).unwrap()
+    };
+    let named = |found: &Levers, name: &str| {
+        found.levers.iter().find(|lever| lever.name == name).unwrap().clone()
+    };
+    let found = levers(&[]);
+    let setup = SetupRequest { start: Some(StartRule::Taught), ..usb() };
+    let evaluate = EvaluateRequest { setup, finger: middle(), ..Default::default() };
+    let evaluation = evaluate.run(&NEVER).unwrap().evaluation;
+    assert_eq!(found.base.range_mm, evaluation.window.range_mm());
+    assert_eq!(Some(found.base.taught_start_mm), evaluation.taught.map(grid_mm));
+    assert!(found.windows <= 20 && found.levers.len() > 7, "{found:?}");
+    assert_eq!(levers(&[]), found);
+    // Where it is already, nothing is measured again.
+    let chamfer = named(&found, "chamfer at the opening");
+    assert_eq!((chamfer.low, chamfer.value), (0.0, 0.0));
+    assert_eq!(chamfer.ends[0], Some(found.base.range_mm));
+    // A tilt of more than 45 degrees is refused by the task, and no plug is wider than its opening.
+    let walls = [("task.socket.opening_y_mm.0", -6.01), ("task.socket.opening_y_mm.1", 6.01)];
+    let tight = levers(&[("task.strategy.tilt_deg", 43.0), walls[0], walls[1]]);
+    let tilt = named(&tight, "tilt");
+    assert_eq!([tilt.low, tilt.value, tilt.high], [38.0, 43.0, 45.0]);
+    let clearance = named(&tight, "clearance");
+    assert!((0.0..1e-3).contains(&clearance.low), "{clearance:?}");
+    assert!((clearance.high - 0.07).abs() < 1e-9, "{clearance:?}");
 }

@@ -57,6 +57,13 @@ pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typic
 /// Distributions of what nobody measured in a cell, for `calibrate`.
 pub const PRIORS: &[Shipped] = shipped! { "bench": "priors/bench.toml" };
 
+/// What a user can change of a cell beside the infill, for `levers`.
+pub const LEVERS: Shipped = Shipped {
+    name: "levers",
+    file: "priors/levers.toml",
+    text: include_str!("../../../priors/levers.toml"),
+};
+
 /// Measured stiffness of printed fingers.
 pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffness.csv" };
 

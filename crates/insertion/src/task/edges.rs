@@ -178,11 +178,25 @@ impl Task {
         let corners = self.plug.parts.iter().flat_map(|part| part.solid.corners());
         let tip = corners.map(|p| p.z).fold(f64::INFINITY, f64::min);
         for part in &mut task.plug.parts {
-            round(part, radius, |min, _| if min.z < tip + LEAD { named("-z") } else { None });
+            let edges = |min: &Vector3<f64>| if min.z < tip + LEAD { named("-z") } else { None };
+            lead_in(part, radius, Cut::Radius, |min, _| edges(min));
         }
+        task.cut_opening(radius, Cut::Radius);
+        task
+    }
+
+    /// The same with a chamfer, m along either face, on the edges of the socket's boxes along the
+    /// opening; of a thin box, what its thickness allows. What is no box stays as it is.
+    pub fn chamfered(&self, leg: f64) -> Task {
+        let mut task = self.clone();
+        task.cut_opening(leg, Cut::Chamfer);
+        task
+    }
+
+    fn cut_opening(&mut self, size: f64, cut: fn(f64) -> Cut) {
         let [x, y] = self.opening;
-        for part in &mut task.socket {
-            round(part, radius, |min, max| {
+        for part in &mut self.socket {
+            lead_in(part, size, cut, |min, max| {
                 let walls = [
                     (max.x - x[0], "+x+z"),
                     (min.x - x[1], "-x+z"),
@@ -194,20 +208,20 @@ impl Task {
                 Some(beside.filter_map(|(_, edge)| named(edge)).flatten().collect())
             });
         }
-        task
     }
 }
 
-/// Rounds the edges of a box that `which` finds by its smallest and largest corner.
-fn round(
+/// Cuts the edges of a box that `which` finds by its smallest and largest corner.
+fn lead_in(
     part: &mut Part,
-    radius: f64,
+    size: f64,
+    cut_by: fn(f64) -> Cut,
     which: impl Fn(&Vector3<f64>, &Vector3<f64>) -> Option<Vec<Edge>>,
 ) {
     let Solid::Box { min, max } = &part.solid else { return };
     let edges = which(min, max).unwrap_or_default();
-    let radius = radius.min(MOST * (max - min).min());
-    let cuts: Vec<_> = edges.into_iter().map(|edge| (edge, Cut::Radius(radius))).collect();
+    let size = size.min(MOST * (max - min).min());
+    let cuts: Vec<_> = edges.into_iter().map(|edge| (edge, cut_by(size))).collect();
     if cuts.is_empty() {
         return;
     }
@@ -320,5 +334,17 @@ mod tests {
             assert!((inner(before) - inner(after)).abs() < SAME, "{}", before.name);
         }
         assert_eq!(task.opening, round.opening);
+    }
+
+    /// Only the mouth is cut, by half a square along each of its four sides.
+    #[test]
+    fn an_opening_is_chamfered_and_the_plug_is_not() {
+        let task = crate::fixtures::task("ket8");
+        let cut = task.chamfered(0.5 * MM);
+        assert_eq!(task.plug, cut.plug);
+        let all = |task: &Task| task.socket.iter().map(|part| volume(&part.solid)).sum::<f64>();
+        let missing = (all(&task) - all(&cut)) / (MM * MM * MM);
+        // The walls at -y and +y are 80 mm long, those at -x and +x fill the slot's 8.15 mm.
+        assert!((missing - 0.125 * 2.0 * (80.0 + 8.15)).abs() < 1e-6, "{missing} mm3");
     }
 }

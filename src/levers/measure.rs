@@ -1,0 +1,199 @@
+//! The windows of a finger and of its levers.
+
+use super::rows::{Changed, Row, rows};
+use super::{Base, Lever, Levers};
+use crate::calibration::simulation::under;
+use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::tolerance::Search;
+use insertion::evaluation::{Evaluation, grid_mm};
+use insertion::finger::model::FingerSource;
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, label};
+use insertion::surrogate::Prediction;
+use insertion::task::StartRule;
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Most windows that are measured.
+const MOST_WINDOWS: usize = 20;
+
+/// Of which finger on which task the levers are asked for.
+pub struct Question<'a> {
+    /// Measures it.
+    pub evaluator: &'a Evaluator,
+    /// The task; one of the evaluator's.
+    pub template: &'a Template,
+    /// The space, whose bounds hold for the keys that it has.
+    pub space: &'a Space,
+    /// The finger, and what else its design sets.
+    pub design: &'a Design,
+    /// Its stiffness, unless it is to be predicted.
+    pub given: Option<Prediction>,
+}
+
+/// What is measured.
+type Cell = (Specimen, Robot);
+
+/// A lever that is measured: its row, its ends, and of each end the place of its window; of an end
+/// that changes nothing that of the base.
+struct Tried {
+    row: Row,
+    values: [f64; 2],
+    places: [usize; 2],
+}
+
+impl Question<'_> {
+    /// Measures the levers, on the threads of the current pool; `infill` is the smallest and the
+    /// largest range over infills, mm, for which the softest and the stiffest are measured if it is
+    /// not known. Worthless once `stop` is set.
+    ///
+    /// # Errors
+    /// If the finger cannot be simulated as it is.
+    pub fn levers(
+        &self,
+        infill: Option<[f64; 2]>,
+        stop: &AtomicBool,
+    ) -> Result<Levers, Impossible> {
+        let mut cells = vec![self.cell(self.design, self.given)?];
+        if infill.is_none() {
+            for design in self.extremes()? {
+                cells.push(self.cell(&design, None)?);
+            }
+        }
+        let infills = cells.len();
+        let (tried, left_out) = self.tried(&mut cells)?;
+        let found: Result<Vec<_>, _> =
+            cells.par_iter().map(|(specimen, robot)| self.window(specimen, robot, stop)).collect();
+        let found = found?;
+        let ranges: Vec<_> = found.iter().map(range_mm).collect();
+        let base = Base {
+            range_mm: ranges[0].unwrap_or(0.0),
+            taught_start_mm: grid_mm(found[0].taught.unwrap_or(0)),
+        };
+        let mut levers: Vec<_> = tried.into_iter().map(|one| one.lever(&ranges)).collect();
+        // Stable, so that equals stay in their order.
+        levers.sort_by(|a, b| b.span_mm(base).total_cmp(&a.span_mm(base)));
+        let over = || {
+            let all = || ranges[..infills].iter().map(|range| range.unwrap_or(0.0));
+            [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)]
+        };
+        Ok(Levers {
+            task: self.template.task.name.clone(),
+            design: self.design.clone(),
+            base,
+            infill: infill.unwrap_or_else(over),
+            levers,
+            left_out,
+            windows: cells.len(),
+        })
+    }
+
+    /// The levers, their ends added to the cells that are measured, the first of which is the finger
+    /// as it is; and the names of those for which no windows are left.
+    fn tried(&self, cells: &mut Vec<Cell>) -> Result<(Vec<Tried>, Vec<String>), Impossible> {
+        let base = cells[0].clone();
+        let (mut tried, mut left_out) = (Vec::new(), Vec::new());
+        for row in rows(self, &base.0.task)? {
+            let (mut more, mut values, mut places) = (Vec::new(), [row.value; 2], [0; 2]);
+            for end in [0, 1] {
+                // A chamfer of 0 is the same shape in another form, which moves a window, too.
+                let changed = row.at(self, end).filter(|end| end.value != row.value);
+                let Some(Changed { value, specimen, robot }) = changed else { continue };
+                let cell = (specimen, robot);
+                if cell != base {
+                    (values[end], places[end]) = (value, cells.len() + more.len());
+                    more.push(cell);
+                }
+            }
+            if more.is_empty() {
+                continue;
+            }
+            if cells.len() + more.len() > MOST_WINDOWS {
+                left_out.push(row.parameter.name);
+                continue;
+            }
+            cells.append(&mut more);
+            tried.push(Tried { row, values, places });
+        }
+        Ok((tried, left_out))
+    }
+
+    fn cell(&self, design: &Design, given: Option<Prediction>) -> Result<Cell, Impossible> {
+        under(self.evaluator, self.template, (design, given), &[])
+    }
+
+    /// The design with the infill of the space whose finger is softest, and with that of the stiffest.
+    fn extremes(&self) -> Result<[Design; 2], Impossible> {
+        let Question { evaluator, space, design, .. } = self;
+        let values = |key: &'static str| {
+            let of = space.parameters.iter().filter(move |parameter| parameter.key == key);
+            of.flat_map(|parameter| (0..parameter.levels()).map(|level| parameter.value(level)))
+        };
+        let mut all = Vec::new();
+        for density in values(DENSITY_KEY) {
+            for direction in values(DIRECTION_KEY) {
+                let stiffness = evaluator.surrogate.predict(density, direction)?.compliance.mean;
+                all.push((stiffness, density, direction));
+            }
+        }
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let with = |of: Option<&(f64, f64, f64)>| match of {
+            Some(&(_, density, direction)) => {
+                design.with(DENSITY_KEY, density).with(DIRECTION_KEY, direction)
+            }
+            None => (*design).clone(),
+        };
+        Ok([with(all.first()), with(all.last())])
+    }
+
+    /// The window around the start that is taught for this cell.
+    fn window(
+        &self,
+        specimen: &Specimen,
+        robot: &Robot,
+        stop: &AtomicBool,
+    ) -> Result<Evaluation, Impossible> {
+        let mut specimen = specimen.clone();
+        specimen.task.strategy.rule = StartRule::Taught;
+        // A specimen has its finger and its task already.
+        let evaluator = Evaluator {
+            surrogate: Arc::clone(&self.evaluator.surrogate),
+            fingers: FingerSource::Paper,
+            templates: Vec::new(),
+            robot: robot.clone(),
+            engine: self.evaluator.engine,
+        };
+        Ok(evaluator.measure(&specimen, Search::default(), &Plan::WINDOW, stop)?)
+    }
+}
+
+fn range_mm(evaluation: &Evaluation) -> Option<f64> {
+    let window = &evaluation.window;
+    (window.nominal == Outcome::Inserted).then(|| window.range_mm())
+}
+
+/// A value without the rounding noise of sums and products.
+fn written(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
+}
+
+impl Tried {
+    fn lever(self, ranges: &[Option<f64>]) -> Lever {
+        let Tried { row: Row { parameter, value }, values, places } = self;
+        let key = parameter.sets.key();
+        Lever {
+            unit: label(key).1.trim().to_owned(),
+            key: key.to_owned(),
+            name: parameter.name,
+            value: written(value),
+            low: written(values[0]),
+            high: written(values[1]),
+            source: parameter.source,
+            ends: places.map(|place| ranges[place]),
+        }
+    }
+}

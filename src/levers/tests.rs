@@ -1,0 +1,64 @@
+use super::*;
+
+fn lever(name: &str, at: [f64; 3], ends: [Option<f64>; 2]) -> Lever {
+    let [low, value, high] = at;
+    let [name, source] = [name, "made up"].map(str::to_owned);
+    Lever { key: name.clone(), name, unit: "mm".to_owned(), value, low, high, source, ends }
+}
+
+fn of(infill: [f64; 2], levers: Vec<Lever>) -> Levers {
+    let base = Base { range_mm: 4.0, taught_start_mm: 0.2 };
+    let (task, design) = ("usb".to_owned(), Design::infill(10.0, 26.0));
+    Levers { task, design, base, infill, levers, left_out: Vec::new(), windows: 9 }
+}
+
+#[test]
+fn the_sentence_names_what_helps_most_and_nothing_that_moves_little() {
+    let tilt = || lever("tilt", [0.0, 5.0, 10.0], [Some(2.0), Some(4.9)]);
+    let stroke = || lever("stroke", [-8.0, -10.0, -14.0], [Some(3.0), None]);
+    let little = || lever("preload", [0.1, 0.3, 0.9], [Some(3.8), Some(4.2)]);
+    let just = || lever("grip force", [2.5, 5.0, 10.0], [Some(4.0), Some(4.3)]);
+    for (infill, levers, said) in [
+        (
+            [3.6, 4.0],
+            vec![tilt()],
+            "The infill moves usb by 0.4 mm; 5 mm more tilt widens it by 0.9 mm.",
+        ),
+        ([3.8, 4.0], vec![little(), tilt()], "5 mm more tilt widens usb by 0.9 mm."),
+        (
+            [3.7, 4.0],
+            vec![little()],
+            "The infill moves usb by 0.3 mm; nothing else moves it by 0.3 mm.",
+        ),
+        ([4.0; 2], vec![little(), just()], "5 mm more grip force widens usb by 0.3 mm."),
+        (
+            [4.0; 2],
+            vec![stroke(), little()],
+            "Nothing widens usb by 0.3 mm, and 4 mm more stroke narrows it by 4.0 mm.",
+        ),
+        ([3.9, 4.0], vec![little()], "Nothing tried moves usb by 0.3 mm."),
+    ] {
+        assert_eq!(of(infill, levers).sentence(), said);
+    }
+}
+
+#[test]
+fn a_span_counts_the_present_value_and_what_does_not_insert() {
+    let base = of([4.0; 2], Vec::new()).base;
+    for (ends, span_mm) in [
+        ([Some(3.8), Some(4.1)], 0.3),
+        ([Some(4.5), Some(5.0)], 1.0),
+        ([None, Some(4.4)], 4.4),
+        ([Some(4.0), Some(4.0)], 0.0),
+    ] {
+        assert_eq!(lever("tilt", [0.0, 1.0, 2.0], ends).span_mm(base), span_mm);
+    }
+}
+
+#[test]
+fn a_study_reads_back_what_it_kept() {
+    let kept = of([1.0, 4.0], vec![lever("tilt", [0.1, 0.2, 0.3], [None, Some(4.4)])]);
+    let text = serde_json::to_string(&kept).unwrap();
+    assert!(text.contains("\"infill_range_mm\":[1.0,4.0]") && text.contains("null,4.4"), "{text}");
+    assert_eq!(serde_json::from_str::<Levers>(&text).unwrap(), kept);
+}

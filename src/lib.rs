@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! input, contact, finray, ask_tell -> insertion
-//!       -> connector, sensitivity, study, calibration -> answer -> report -> session -> cli
+//!       -> connector, sensitivity, map, study, calibration -> answer -> report -> session -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -20,6 +20,7 @@ pub mod answer;
 pub mod calibration;
 pub mod cli;
 pub mod connector;
+pub mod map;
 pub mod report;
 pub mod sensitivity;
 pub mod session;

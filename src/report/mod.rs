@@ -12,6 +12,7 @@ mod elements;
 mod explore;
 mod front;
 mod limits;
+pub mod map;
 mod marks;
 mod page;
 pub mod printer;

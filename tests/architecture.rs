@@ -3,8 +3,17 @@
 use std::path::Path;
 
 /// A room may use those before it (`docs/architecture.md`).
-const FLOW: [&str; 9] =
-    ["connector", "sensitivity", "map", "study", "calibration", "answer", "report", "session", "cli"];
+const FLOW: [&str; 9] = [
+    "connector",
+    "sensitivity",
+    "map",
+    "study",
+    "calibration",
+    "answer",
+    "report",
+    "session",
+    "cli",
+];
 
 /// Every `crate::ROOM` in a room of `src/` that comes later, as `file -> room`.
 fn upward(folder: &Path, own: usize, found: &mut Vec<String>) {

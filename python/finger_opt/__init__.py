@@ -13,7 +13,7 @@ raise :class:`InputError` (a ``ValueError``), what fails while it runs :class:`R
 
 from typing import Any
 
-from ._measure import Evaluation, Trial, evaluate, stiffness, trial
+from ._measure import CaptureMap, Evaluation, Trial, capture_map, evaluate, stiffness, trial
 from ._native import InputError, RunError, __version__
 from ._optimizer import Optimizer, Point
 from ._run import perform
@@ -21,6 +21,7 @@ from ._study import Study, load_study
 from ._task import Task
 
 __all__ = [
+    "CaptureMap",
     "Evaluation",
     "InputError",
     "Optimizer",
@@ -30,6 +31,7 @@ __all__ = [
     "Task",
     "Trial",
     "__version__",
+    "capture_map",
     "evaluate",
     "load_study",
     "perform",

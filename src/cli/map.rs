@@ -28,7 +28,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         return print_json(&json(&chosen, &map));
     }
-    let wrote = arguments.request.svg.iter().map(|file| format!("wrote         {}\n", file.display()));
+    let wrote =
+        arguments.request.svg.iter().map(|file| format!("wrote         {}\n", file.display()));
     let wrote: String = wrote.collect();
     print(&format!("{}{wrote}", words::wrapped(&text(&chosen, &map))))
 }
@@ -42,8 +43,7 @@ pub fn json(chosen: &Chosen, map: &CaptureMap) -> Value {
 
 fn text(chosen: &Chosen, map: &CaptureMap) -> String {
     let [first, second] = &map.axes;
-    let mut lines =
-        vec![("area".to_owned(), format!("{:.1} {} insert", map.area, map.area_unit))];
+    let mut lines = vec![("area".to_owned(), format!("{:.1} {} insert", map.area, map.area_unit))];
     for (number, axis) in map.axes.iter().enumerate() {
         let ends = map.ends(number);
         let text = ends.map_or("nothing inserts".to_owned(), |[low, high]| {
@@ -63,6 +63,9 @@ fn text(chosen: &Chosen, map: &CaptureMap) -> String {
     };
     let places: usize = map.outcomes.iter().map(Vec::len).sum();
     let steps = format!("{} {}, {} {}", first.step, first.unit, second.step, second.unit);
-    lines.push(("trials".to_owned(), format!("{} for {places} places, every {steps}{coarser}", map.trials)));
+    lines.push((
+        "trials".to_owned(),
+        format!("{} for {places} places, every {steps}{coarser}", map.trials),
+    ));
     format!("task          {}\n{}{}", map.task, chosen::text(chosen), words::lines(lines))
 }

@@ -115,8 +115,10 @@ enum Command {
     #[command(after_help = "Example: optimize trial --task ket12 --density 10 --direction 0 \
                             --offset-mm 0.5 --svg trial.svg")]
     Trial(trial::Arguments),
-    #[command(after_help = "Example: optimize map --task usb --density 10 --direction 26 --axes y,yaw \
-                            --svg map.svg")]
+    #[command(
+        after_help = "Example: optimize map --task usb --density 10 --direction 26 --axes y,yaw \
+                            --svg map.svg"
+    )]
     Map(map::Arguments),
     /// Show the stiffness model and how well it fits
     #[command(after_help = "Example: optimize stiffness --stiffness-data mine.csv --svg model.svg")]

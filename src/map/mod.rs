@@ -15,7 +15,6 @@ use trace::{Found, Node, STEPS_PER_UNIT, Traced};
 /// How far a map reaches along both axes at most, in steps of the grid: 16 mm, and 8 mm or degrees.
 const LIMIT: Node = [16 * STEPS_PER_UNIT, 8 * STEPS_PER_UNIT];
 
-
 /// Outcomes over two errors of the start, on a grid; read back from its JSON it is the same.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaptureMap {
@@ -102,7 +101,8 @@ impl CaptureMap {
 
     /// The stretch along y around no error, without the second error; mm. `None` if that fails.
     pub fn window_mm(&self) -> Option<[f64; 2]> {
-        let [zero, other] = self.axes.each_ref().map(|axis| (-axis.low / axis.step).round() as usize);
+        let [zero, other] =
+            self.axes.each_ref().map(|axis| (-axis.low / axis.step).round() as usize);
         let row = self.outcomes.get(other)?;
         let inserts = |at: &usize| row.get(*at).is_some_and(|mark| mark.0 == Outcome::Inserted);
         let above = (zero..row.len()).take_while(inserts).last()?;

@@ -39,6 +39,8 @@ pub struct Traced<'a> {
     pub high: Node,
     pub nodes: BTreeMap<Node, Found>,
     pub trials: usize,
+    /// Distance of the places that are simulated first, steps of the grid.
+    coarse: i32,
     /// Distance within which the border of the inserting region was looked for, steps of the grid.
     pub step: i32,
     measure: &'a (dyn Fn(Node) -> Outcome + Sync),
@@ -48,12 +50,19 @@ pub struct Traced<'a> {
 pub fn trace(limit: Node, measure: &(dyn Fn(Node) -> Outcome + Sync)) -> Traced<'_> {
     let (low, high) = ([-2 * COARSE, -COARSE], [2 * COARSE, COARSE]);
     let nodes = BTreeMap::new();
-    let mut traced = Traced { low, high, nodes, trials: 0, step: COARSE, measure };
-    let coarse = traced.extend(limit);
-    traced.step = traced.refine(coarse, insert_differently, MOST_TRIALS - PROBES);
+    let coarse = COARSE;
+    let mut traced = Traced { low, high, nodes, trials: 0, coarse, step: coarse, measure };
+    traced.extend(limit);
+    loop {
+        traced.step = traced.refine(insert_differently, MOST_TRIALS - PROBES);
+        // Between the places of the lattice the border may reach farther.
+        if !traced.extend(limit) {
+            break;
+        }
+    }
     traced.probe();
     traced.verify();
-    traced.refine(coarse, |a, b| a != b, MOST_TRIALS);
+    traced.refine(|a, b| a != b, MOST_TRIALS);
     traced
 }
 
@@ -62,10 +71,11 @@ fn insert_differently(a: Outcome, b: Outcome) -> bool {
 }
 
 impl Traced<'_> {
-    /// Simulates a lattice that grows on each side until that fails; gives its distance.
-    fn extend(&mut self, limit: Node) -> i32 {
-        let mut coarse = COARSE;
+    /// Simulates the lattice, which grows on each side until that fails; whether it has grown.
+    fn extend(&mut self, limit: Node) -> bool {
+        let first = (self.low, self.high);
         loop {
+            let coarse = self.coarse;
             let new = self.lattice(coarse);
             self.simulate(new, MOST_TRIALS);
             let before = (self.low, self.high);
@@ -84,22 +94,27 @@ impl Traced<'_> {
                     self.high[axis] = high;
                 }
             }
-            if (self.low, self.high) == before {
-                return coarse;
-            }
             if coarse == COARSE && self.lattice(coarse).len() > MOST_COARSE {
-                coarse *= 2;
+                let coarse = 2 * COARSE;
+                self.coarse = coarse;
                 self.low = self.low.map(|at| at.div_euclid(coarse) * coarse);
                 self.high = self.high.map(|at| -(-at).div_euclid(coarse) * coarse);
+            }
+            let new = self.lattice(self.coarse).into_iter().filter(|&node| !self.simulated(node));
+            if self.trials + new.count() > MOST_TRIALS {
+                (self.low, self.high) = before;
+            }
+            if (self.low, self.high) == before {
+                return before != first;
             }
         }
     }
 
-    /// Fills the grid from a lattice on, at half its distance and again; tries what lies between
+    /// Fills the grid from the lattice on, at half its distance and again; tries what lies between
     /// outcomes that differ in the sense given, as long as there are no more trials than `most`. Gives
     /// the last distance at which that was all.
-    fn refine(&mut self, coarse: i32, differ: fn(Outcome, Outcome) -> bool, most: usize) -> i32 {
-        let (mut half, mut complete, mut traced) = (coarse / 2, true, coarse);
+    fn refine(&mut self, differ: fn(Outcome, Outcome) -> bool, most: usize) -> i32 {
+        let (mut half, mut complete, mut traced) = (self.coarse / 2, true, self.coarse);
         while half >= 1 {
             // First the middles of edges, then those of faces.
             for odd in [1, 2] {
@@ -218,4 +233,72 @@ impl Traced<'_> {
 fn moved(mut node: Node, axis: usize, by: i32) -> Node {
     node[axis] += by;
     node
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Outcome::{Failed, Inserted};
+    use insertion::outcome::FailureClass::{Jammed, PlugMissed};
+    use std::collections::BTreeSet;
+    use std::sync::Mutex;
+
+    const LIMIT: Node = [64, 32];
+
+    /// Places, trials and step of a made-up region (in mm), how many places it has otherwise, and how
+    /// many of them in whether they insert.
+    fn traced(region: &(dyn Fn(f64, f64) -> Outcome + Sync)) -> (usize, usize, i32, [usize; 2]) {
+        let of = |node: Node| {
+            let [y, x] = node.map(|at| f64::from(at) / f64::from(STEPS_PER_UNIT));
+            region(y, x)
+        };
+        let tried = Mutex::new(BTreeSet::new());
+        let measure = |node| {
+            assert!(tried.lock().unwrap().insert(node), "{node:?} tried twice");
+            of(node)
+        };
+        let found = trace(LIMIT, &measure);
+        let count = |wrong: &dyn Fn(Outcome, Outcome) -> bool| {
+            found.nodes.iter().filter(|(node, found)| wrong(found.outcome, of(**node))).count()
+        };
+        assert_eq!(found.trials, tried.lock().unwrap().len());
+        assert!(found.trials <= MOST_TRIALS);
+        let [wide, high] = [0, 1].map(|axis| (found.high[axis] - found.low[axis] + 1) as usize);
+        assert_eq!(found.nodes.len(), wide * high, "a place without an outcome");
+        let wrong = [count(&|a, b| a != b), count(&insert_differently)];
+        (found.nodes.len(), found.trials, found.step, wrong)
+    }
+
+    fn inserted(is: bool) -> Outcome {
+        if is { Inserted } else { Failed(Jammed) }
+    }
+
+    #[test]
+    fn a_disc_and_a_slanted_strip_are_traced_to_the_last_place() {
+        let disc = |y: f64, x: f64| match (y - 1.0).hypot(x) < 3.0 {
+            false if y > 2.0 => Failed(PlugMissed),
+            inserts => inserted(inserts),
+        };
+        let strip = |y: f64, x: f64| inserted((x - 0.3 * y).abs() < 0.4 && y.abs() < 6.0);
+        for (name, region) in [("disc", &disc as &(dyn Fn(f64, f64) -> Outcome + Sync)), ("strip", &strip)] {
+            println!("{name} {:?}", traced(region));
+        }
+    }
+
+    #[test]
+    fn islands_are_found_by_probes_and_followed() {
+        let islands = |y: f64, x: f64| {
+            let hole = (y - 2.5).hypot(x - 0.5) < 0.9;
+            let island = (y + 6.0).hypot(x + 1.5) < 0.8;
+            inserted((y.abs() < 5.0 && x.abs() < 2.2 && !hole) || island)
+        };
+        println!("{:?}", traced(&islands));
+    }
+
+    #[test]
+    fn what_has_no_end_is_cut_off_and_what_does_not_insert_is_small() {
+        println!("{:?}", traced(&|_, _| Inserted));
+        println!("{:?}", traced(&|_, _| Failed(PlugMissed)));
+        println!("{:?}", traced(&|y, x| inserted(((y * 3.1).sin() + (x * 2.7).cos()) > 0.2)));
+    }
 }

@@ -35,7 +35,8 @@ pub fn svg(map: &CaptureMap) -> Result<String, ReportError> {
 
 fn legend(area: &Area<'_>, map: &CaptureMap) -> Drawn {
     let text = |size, colour| words(size, colour, HPos::Left, VPos::Center);
-    let title = format!("{}: {:.1} {} insert, {} trials", map.task, map.area, map.area_unit, map.trials);
+    let title =
+        format!("{}: {:.1} {} insert, {} trials", map.task, map.area, map.area_unit, map.trials);
     area.draw_text(&title, &text(19, INK), (20, 22)).map_err(message)?;
     let met = |outcome| map.outcomes.iter().flatten().any(|mark| mark.0 == outcome);
     let mut x = 20;
@@ -61,7 +62,9 @@ fn draw(area: &Area<'_>, map: &CaptureMap) -> Drawn {
         // What ends alike side by side is one rectangle.
         for stretch in row.chunk_by(|a, b| a == b) {
             let to = from + stretch.len();
-            let colour = COLOURS.into_iter().find(|(outcome, _)| Some(*outcome) == stretch.first().map(|mark| mark.0));
+            let colour = COLOURS
+                .into_iter()
+                .find(|(outcome, _)| Some(*outcome) == stretch.first().map(|mark| mark.0));
             let corners = [
                 (first.value(from) - half(first), y - half(second)),
                 (first.value(to) - half(first), y + half(second)),

@@ -98,7 +98,8 @@ impl<'a> Attempt<'a> {
 
     /// The same, which nothing stops any more.
     pub fn unstoppable(self) -> Attempt<'static> {
-        let Attempt { robot, task, cell, world, target, stage, begun, conditions, socket, .. } = self;
+        let Attempt { robot, task, cell, world, target, stage, begun, conditions, socket, .. } =
+            self;
         let Attempt { time, grasp, watch, edge, phases, trace, recorder, .. } = self;
         Attempt {
             robot,

@@ -280,7 +280,12 @@ mod tests {
         let good = UNCERTAINTIES[0].text;
         for (from, to, key, word) in [
             ("sd_mm = 2.0", "sd_mm = -2.0", "offset.sd_mm", "0 or above"),
-            ("sd_mm = 2.0", "sd_mm = 2.0\nacross_sd_mm = 21.0", "offset.across_sd_mm", "20 at most"),
+            (
+                "sd_mm = 2.0",
+                "sd_mm = 2.0\nacross_sd_mm = 21.0",
+                "offset.across_sd_mm",
+                "20 at most",
+            ),
             ("half_width_percent = 20.0", "half_width_percent = 100.0", "friction", "below 100"),
             ("trials = 100", "trials = 0", "success_rate.trials", "1 .."),
             ("samples = 12", "samples = 1", "robust_range.samples", "2 .."),

@@ -85,7 +85,8 @@ fn a_map_holds_the_window_and_its_mirror_image_is_that_of_the_mirrored_task() {
                 differ += usize::from(inserts(&original, at) != inserts(&other, across));
             }
         }
-        println!("mirrored along {axis}: {differ} {} {}", original.area, other.area);
+        // Rounding is not mirrored.
+        assert!(differ <= 4, "mirrored along {axis}: {differ} places differ");
     }
 }
 
@@ -96,12 +97,11 @@ fn a_square_peg_is_captured_as_far_as_clearance_and_chamfer_reach() {
     let rig = rig(peg(clearance_mm, chamfer_mm));
     let map = map(&rig);
     let reach = clearance_mm / 2.0 + chamfer_mm;
-    println!("{:?} {:?} {:?}", map.ends(0), map.ends(1), map.area);
     for y in -8..=8 {
         for x in -8..=8 {
             let at = [y, x].map(|step| f64::from(step) * 0.25);
             let expected = at.iter().all(|error| error.abs() < reach);
-            if inserts(&map, at) != expected { println!("{at:?} mm"); }
+            assert_eq!(inserts(&map, at), expected, "{at:?} mm");
         }
     }
 }

@@ -160,3 +160,39 @@ impl TryFrom<i8> for Mark {
 fn value(node: i32) -> f64 {
     f64::from(node) / f64::from(STEPS_PER_UNIT)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::ValueEnum;
+    use input::units::N_PER_MM;
+    use insertion::finger::Finger;
+    use insertion::trial::Grasp;
+    use insertion::trial::fake::{FakeRig, window_mm};
+
+    /// A millimetre and a degree take 1 mm off both ends of the closed form's window.
+    #[test]
+    fn the_map_of_the_closed_form_is_the_same_on_any_number_of_threads_and_after_its_json() {
+        let (rig, finger) = (FakeRig::default(), Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM));
+        let (low, high) = window_mm(&finger);
+        for axes in Axes::value_variants() {
+            let plane = Plane::new(&rig, Grasp::of(&finger), *axes);
+            let on = |threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| CaptureMap::trace("closed form", Design::default(), &plane))
+            };
+            let map = on(1);
+            assert_eq!(map, on(3));
+            assert_eq!(map, serde_json::from_str(&serde_json::to_string(&map).unwrap()).unwrap());
+            assert_eq!(map.outcomes, map.full(&plane));
+            let inside = |[below, above]: [f64; 2]| {
+                (0.0..0.25).contains(&(below - low)) && (0.0..0.25).contains(&(high - above))
+            };
+            assert!(inside(map.window_mm().unwrap()) && inside(map.ends(0).unwrap()), "{map:?}");
+            let half = (high - low) / 2.0;
+            let [below, above] = map.ends(1).unwrap();
+            assert!(below == -above && (0.0..0.25).contains(&(half - above)), "{below}, {above}");
+            assert!((map.area / (2.0 * half * half) - 1.0).abs() < 0.15, "{}", map.area);
+        }
+    }
+}

@@ -53,15 +53,23 @@ pub fn trace(limit: Node, measure: &(dyn Fn(Node) -> Outcome + Sync)) -> Traced<
     let coarse = COARSE;
     let mut traced = Traced { low, high, nodes, trials: 0, coarse, step: coarse, measure };
     traced.extend(limit);
+    let mut probed = false;
     loop {
-        traced.step = traced.refine(insert_differently, MOST_TRIALS - PROBES);
+        let most = if probed { MOST_TRIALS } else { MOST_TRIALS - PROBES };
+        traced.step = traced.refine(insert_differently, most);
+        if probed {
+            traced.verify();
+        }
         // Between the places of the lattice the border may reach farther.
-        if !traced.extend(limit) {
+        if traced.extend(limit) {
+            continue;
+        }
+        if probed {
             break;
         }
+        traced.probe();
+        probed = true;
     }
-    traced.probe();
-    traced.verify();
     traced.refine(|a, b| a != b, MOST_TRIALS);
     traced
 }
@@ -280,9 +288,10 @@ mod tests {
             inserts => inserted(inserts),
         };
         let strip = |y: f64, x: f64| inserted((x - 0.3 * y).abs() < 0.4 && y.abs() < 6.0);
-        for (name, region) in [("disc", &disc as &(dyn Fn(f64, f64) -> Outcome + Sync)), ("strip", &strip)] {
-            println!("{name} {:?}", traced(region));
-        }
+        let (_, trials, step, wrong) = traced(&disc);
+        assert!(trials < 250 && (step, wrong) == (1, [0, 0]), "{trials}, {step}, {wrong:?}");
+        let (places, trials, step, wrong) = traced(&strip);
+        assert!(places > 1000 && (step, wrong) == (1, [0, 0]), "{places}, {trials}, {wrong:?}");
     }
 
     #[test]
@@ -292,13 +301,18 @@ mod tests {
             let island = (y + 6.0).hypot(x + 1.5) < 0.8;
             inserted((y.abs() < 5.0 && x.abs() < 2.2 && !hole) || island)
         };
-        println!("{:?}", traced(&islands));
+        let (places, _, step, wrong) = traced(&islands);
+        assert!(places > 900 && (step, wrong) == (1, [0, 0]), "{places}, {step}, {wrong:?}");
     }
 
     #[test]
-    fn what_has_no_end_is_cut_off_and_what_does_not_insert_is_small() {
-        println!("{:?}", traced(&|_, _| Inserted));
-        println!("{:?}", traced(&|_, _| Failed(PlugMissed)));
-        println!("{:?}", traced(&|y, x| inserted(((y * 3.1).sin() + (x * 2.7).cos()) > 0.2)));
+    fn what_has_no_end_is_cut_off_and_what_takes_too_many_trials_is_traced_coarsely() {
+        let (places, _, step, wrong) = traced(&|_, _| Inserted);
+        assert_eq!((places, step, wrong), (129 * 65, 1, [0, 0]));
+        let (places, trials, ..) = traced(&|_, _| Failed(PlugMissed));
+        assert_eq!((places, trials), (17 * 9, 15 + PROBES));
+        let (_, trials, step, _) =
+            traced(&|y, x| inserted((3.1 * y).sin() + (2.7 * x).cos() > 0.2));
+        assert!(trials == MOST_TRIALS && step > 1, "{trials}, {step}");
     }
 }

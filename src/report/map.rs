@@ -35,8 +35,10 @@ pub fn svg(map: &CaptureMap) -> Result<String, ReportError> {
 
 fn legend(area: &Area<'_>, map: &CaptureMap) -> Drawn {
     let text = |size, colour| words(size, colour, HPos::Left, VPos::Center);
-    let title =
-        format!("{}: {:.1} {} insert, {} trials", map.task, map.area, map.area_unit, map.trials);
+    let design = map.design.labelled();
+    let comma = if design.is_empty() { "" } else { ", " };
+    let unit = map.area_unit.replace('2', "²");
+    let title = format!("{}{comma}{design}: {:.1} {unit} insert", map.task, map.area);
     area.draw_text(&title, &text(19, INK), (20, 22)).map_err(message)?;
     let met = |outcome| map.outcomes.iter().flatten().any(|mark| mark.0 == outcome);
     let mut x = 20;

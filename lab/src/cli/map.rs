@@ -8,7 +8,6 @@ use finger_opt::study::write_file;
 use insertion::outcome::Outcome;
 use insertion::trial::NEVER;
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// Compare the capture map of one finger with a trial at every place
 ///
@@ -23,15 +22,13 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let clock = Instant::now();
     let (_, map) = arguments.request.run(&NEVER)?;
-    let traced_s = clock.elapsed().as_secs_f64();
     let full = arguments.request.full(&map, &NEVER)?;
     write_file(&arguments.out, &csv(&map, &full))?;
     let pairs = || map.outcomes.iter().flatten().zip(full.iter().flatten());
     let inserts = |mark: &Mark| mark.0 == Outcome::Inserted;
     print(&format!(
-        "{} {}: {} trials in {traced_s:.1} s, border within {}, area {} {}; of {} places {} are \
+        "{} {}: {} trials, border within {}, area {} {}; of {} places {} are \
          otherwise with a trial at each, {} of them in whether they insert\n",
         map.task,
         map.axes[1].name,

@@ -49,6 +49,7 @@ enum Command {
     Settle(settle::Arguments),
     #[command(after_help = "Example: lab landscape --task usb --out usb.csv")]
     Landscape(landscape::Arguments),
+    #[command(after_help = "Example: lab map --task usb --density 10 --direction 26 --out usb.csv")]
     Map(map::Arguments),
 }
 

@@ -2,9 +2,9 @@
 # Makes every figure under results/reference from the present sources, and notes which sources
 # those were (scripts/stale.sh). The one entry; parts can be named:
 #
-#     scripts/reference.sh                          all parts but the last four
+#     scripts/reference.sh                          all parts but the last five
 #     scripts/reference.sh validation               one part
-#     scripts/reference.sh landscapes firm settled peers   what it leaves out unless named
+#     scripts/reference.sh landscapes firm settled maps peers   what it leaves out unless named
 #
 # Landscapes are recorded functions that optimizers are measured on, not figures of the
 # present model: renewing them means renewing all of results/reference/optimizers.md. Peers
@@ -270,6 +270,20 @@ settled() {
     record studies "$file"
 }
 
+# Capture maps of each task's finger, and how many places a trial at each has otherwise.
+maps() {
+    local folder="$reference/maps" finger task density direction other
+    mkdir -p "$folder"
+    for finger in "usb 10 26" "ket8 10 0" "ket12 10 0" "rj45 18 20"; do
+        read -r task density direction <<< "$finger"
+        for other in x yaw; do
+            "$lab" map --task "$task" --density "$density" --direction "$direction" --axes "y,$other" \
+                --svg "$folder/$task-$other.svg" --out "$folder/$task-$other.csv"
+        done
+    done > "$folder/maps.txt"
+    record windows "$folder"/*
+}
+
 peers() {
     local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv"
     local landscapes=() task
@@ -285,8 +299,8 @@ peers() {
 }
 
 for part in ${*:-$parts}; do
-    case " $parts landscapes firm settled peers " in
+    case " $parts landscapes firm settled maps peers " in
         *" $part "*) echo "== $part" >&2; "$part" ;;
-        *) echo "no part is called $part; there are: $parts landscapes firm settled peers" >&2; exit 2 ;;
+        *) echo "no part is called $part; there are: $parts landscapes firm settled maps peers" >&2; exit 2 ;;
     esac
 done

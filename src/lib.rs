@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! input, contact, finray, ask_tell -> insertion
-//!       -> connector, sensitivity, study, calibration -> levers -> answer -> report -> session -> cli
+//!       -> connector, sensitivity, map, study, calibration -> levers -> answer -> report -> session -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -21,6 +21,7 @@ pub mod calibration;
 pub mod cli;
 pub mod connector;
 pub mod levers;
+pub mod map;
 pub mod report;
 pub mod sensitivity;
 pub mod session;

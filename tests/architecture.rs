@@ -6,6 +6,7 @@ use std::path::Path;
 const FLOW: [&str; 9] = [
     "connector",
     "sensitivity",
+    "map",
     "study",
     "calibration",
     "levers",
@@ -39,7 +40,7 @@ fn no_room_uses_a_later_one() {
     }
     assert_eq!(found, Vec::<String>::new());
     // What the search finds is seen: the command line uses the reports.
-    upward(&source.join("cli"), 3, &mut found);
+    upward(&source.join("cli"), 4, &mut found);
     assert!(found.iter().any(|arrow| arrow.ends_with("-> report")));
     let folders =
         std::fs::read_dir(&source).unwrap().filter(|entry| entry.as_ref().unwrap().path().is_dir());

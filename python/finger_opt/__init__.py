@@ -13,7 +13,9 @@ raise :class:`InputError` (a ``ValueError``), what fails while it runs :class:`R
 
 from typing import Any
 
-from ._measure import Evaluation, Levers, Trial, evaluate, levers, stiffness, trial
+from ._measure import (
+    CaptureMap, Evaluation, Levers, Trial, capture_map, evaluate, levers, stiffness, trial,
+)
 from ._native import InputError, RunError, __version__
 from ._optimizer import Optimizer, Point
 from ._run import perform
@@ -21,6 +23,7 @@ from ._study import Study, load_study
 from ._task import Task
 
 __all__ = [
+    "CaptureMap",
     "Evaluation",
     "InputError",
     "Levers",
@@ -31,6 +34,7 @@ __all__ = [
     "Task",
     "Trial",
     "__version__",
+    "capture_map",
     "evaluate",
     "levers",
     "load_study",

@@ -73,6 +73,33 @@ class Trial(Record):
         self.__dict__["series"] = series
 
 
+class CaptureMap(Record):
+    """How insertions of one finger end over two errors of the start: ``axes`` (each with ``name``,
+    ``unit``, ``low``, ``high``, ``step``), ``area`` in ``area_unit``, ``trials``; a notebook draws it.
+
+    ``outcomes`` and ``simulated`` are NumPy arrays as attributes: a row for each value of the second
+    axis, in it a number for each shift along y. An outcome is 0 if inserted, 1 to 4 for the failure
+    class, -1 if the simulation diverged; what was not simulated is taken over from its neighbours.
+    """
+
+    svg: str
+
+    def __init__(self, fields: dict[str, Any], svg: str) -> None:
+        super().__init__(fields)
+        self.__dict__["svg"] = svg
+
+    @property
+    def outcomes(self) -> np.ndarray:
+        return np.array(self["outcomes"], dtype=np.int64)
+
+    @property
+    def simulated(self) -> np.ndarray:
+        return np.array(self["simulated"], dtype=bool)
+
+    def _repr_html_(self) -> str:
+        return self.svg
+
+
 def evaluate(
     task: Given,
     density: float | None = None,
@@ -129,6 +156,21 @@ def trial(
         series[name] = series[name].reshape(-1, 3)
     series["phase"] = series["phase"].astype(np.int64)
     return Trial(json.loads(fields), series)
+
+
+def capture_map(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    **settings: Any,
+) -> CaptureMap:
+    """Traces the capture map of one finger, as ``optimize map`` does, with at most 300 trials.
+
+    ``axes`` is ``"y,x"``, ``"y,yaw"`` or ``"y,tilt"``. The rest is as for :func:`evaluate`.
+    """
+    settings = {"density": density, "direction": direction, **settings}
+    fields, svg = _native.capture_map(sources(task), **settings)
+    return CaptureMap(json.loads(fields), svg)
 
 
 def stiffness(

@@ -5,7 +5,7 @@ use crate::keywords::{Keywords, Name, TaskWord, wrong};
 use finger_opt::cli;
 use finger_opt::report;
 use finger_opt::session::{
-    EvaluateRequest, LeversRequest, StiffnessRequest, TaskFile, TrialRequest,
+    EvaluateRequest, LeversRequest, MapRequest, StiffnessRequest, TaskFile, TrialRequest,
 };
 use finger_opt::session::{read_space, read_task};
 use input::shipped::Source;
@@ -143,6 +143,27 @@ pub fn trial<'py>(
     column("force_n", &|sample| sample.force_n.to_vec())?;
     column("slip_mm", &|sample| vec![sample.slip_mm])?;
     Ok((cli::trial::json(&done).to_string(), columns))
+}
+
+/// The capture map of a finger, as JSON and as a picture.
+#[pyfunction]
+#[pyo3(signature = (tasks, /, **settings))]
+pub fn capture_map<'py>(
+    py: Python<'py>,
+    tasks: Vec<TaskWord>,
+    settings: Option<&Bound<'py, PyDict>>,
+) -> PyResult<(String, String)> {
+    let words = Keywords::new(py, settings)?;
+    let request = MapRequest {
+        setup: words.setup(tasks)?,
+        finger: words.finger()?,
+        axes: words.choice("axes")?.unwrap_or_default(),
+        svg: words.take("svg")?,
+    };
+    words.finish()?;
+    let (chosen, map) = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
+    let picture = report::map::svg(&map).map_err(|error| raise(error.into()))?;
+    Ok((cli::map::json(&chosen, &map).to_string(), picture))
 }
 
 /// How well the stiffness model fits, as JSON.

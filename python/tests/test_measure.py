@@ -58,6 +58,20 @@ def test_a_trial_and_its_course(command_json):
     assert len(coarse["time_s"]) == pytest.approx(n / 10, abs=2)
 
 
+def test_a_capture_map_is_that_of_the_command_line(command_json, fake):
+    words = ("map", "--task", "usb", "--density", "20", "--direction", "10", "--engine", "fake")
+    there = command_json(*words, "--axes", "y,yaw")
+    here = fo.capture_map("usb", 20, 10, axes="y,yaw", **fake)
+    assert dict(here) == there
+    assert here.outcomes.shape == here.simulated.shape
+    assert here.simulated.sum() == here.trials <= 300
+    first, second = here.axes
+    assert here.area == (here.outcomes == 0).sum() * first["step"] * second["step"]
+    assert here.svg.startswith("<svg") and here._repr_html_() == here.svg
+    with pytest.raises(fo.InputError, match="y,tilt"):
+        fo.capture_map("usb", 20, 10, axes="y,z", **fake)
+
+
 def test_a_changed_task_counts(fake):
     task = fo.Task.from_toml("usb")
     task["finger"] = {"rcc_mm": 11.0}

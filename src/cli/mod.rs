@@ -11,6 +11,7 @@ mod export;
 mod finger;
 mod levers;
 mod manual;
+pub mod map;
 mod measure;
 mod next;
 mod progress;
@@ -115,6 +116,11 @@ enum Command {
     #[command(after_help = "Example: optimize trial --task ket12 --density 10 --direction 0 \
                             --offset-mm 0.5 --svg trial.svg")]
     Trial(trial::Arguments),
+    #[command(
+        after_help = "Example: optimize map --task usb --density 10 --direction 26 --axes y,yaw \
+                            --svg map.svg"
+    )]
+    Map(map::Arguments),
     /// Show the stiffness model and how well it fits
     #[command(after_help = "Example: optimize stiffness --stiffness-data mine.csv --svg model.svg")]
     Stiffness(stiffness::Arguments),
@@ -232,6 +238,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
         Some(Command::Trial(arguments)) => trial::run(&arguments),
+        Some(Command::Map(arguments)) => map::run(&arguments),
         Some(Command::Stiffness(arguments)) => stiffness::run(&arguments),
         Some(Command::Finger(arguments)) => finger::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),

@@ -12,6 +12,7 @@ mod explore;
 mod front;
 pub mod levers;
 mod limits;
+pub mod map;
 mod marks;
 mod page;
 pub mod printer;

@@ -94,10 +94,12 @@ fn cell(errors: &Errors) -> Vec<Factor> {
     let both = |key, half_width: f64, sets| factor(key, -half_width, half_width, sets);
     let percent = 100.0 * errors.friction_half_width;
     let yaw_deg = NORMAL_WIDTH_SD * errors.yaw_sd / DEG;
+    let start_mm = NORMAL_WIDTH_SD * errors.across_sd / MM;
     let across_mm = NORMAL_WIDTH_SD * errors.grasp_across_sd / MM;
     let sd = NORMAL_WIDTH_SD * errors.stiffness_sd_factor;
     vec![
         both("cell.socket_yaw_deg", yaw_deg, |c, _, value| c.yaw = value * DEG),
+        both("cell.start_across_mm", start_mm, |c, _, value| c.start_across = value * MM),
         both("cell.friction_finger_percent", percent, |c, _, value| {
             c.friction_finger = 1.0 + value / 100.0
         }),

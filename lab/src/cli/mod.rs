@@ -4,6 +4,7 @@ mod benchmark;
 mod check;
 mod cross_check;
 mod landscape;
+mod map;
 mod optimizers;
 mod settle;
 mod validate;
@@ -48,6 +49,8 @@ enum Command {
     Settle(settle::Arguments),
     #[command(after_help = "Example: lab landscape --task usb --out usb.csv")]
     Landscape(landscape::Arguments),
+    #[command(after_help = "Example: lab map --task usb --density 10 --direction 26 --out usb.csv")]
+    Map(map::Arguments),
 }
 
 /// Runs `lab` with these arguments, the program's name first.
@@ -69,6 +72,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Windows(arguments) => windows::run(arguments),
         Command::Optimizers(arguments) => optimizers::run(arguments),
         Command::Landscape(arguments) => landscape::run(arguments),
+        Command::Map(arguments) => map::run(arguments),
         Command::Settle(arguments) => settle::run(arguments),
     };
     match done {

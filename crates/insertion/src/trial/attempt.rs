@@ -5,7 +5,7 @@ use super::classify::{Facts, Placement, classify};
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
 use super::watch::{LeadingEdge, Watch};
-use super::{NEVER, PhaseEnd, Poses, Trial};
+use super::{Conditions, NEVER, PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
 use crate::robot::Mounted;
 use crate::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
@@ -53,7 +53,7 @@ pub(super) struct Attempt<'a> {
     stage: Stage,
     /// First phase of the search, as far as it has been made already.
     begun: Option<Begun>,
-    pub yaw: f64,
+    pub conditions: Conditions,
     pub socket: Pose,
     time: f64,
     /// Grasp point in each finger's frame right after the grasp.
@@ -84,7 +84,7 @@ impl<'a> Attempt<'a> {
             target: Tcp { position: pose.translation.vector, tilt: 0.0 },
             stage: Stage::Approach,
             begun: None,
-            yaw: 0.0,
+            conditions: Conditions::NOMINAL,
             socket: Pose::identity(),
             time: 0.0,
             grasp: [Vector3::zeros(); 2],
@@ -98,7 +98,8 @@ impl<'a> Attempt<'a> {
 
     /// The same, which nothing stops any more.
     pub fn unstoppable(self) -> Attempt<'static> {
-        let Attempt { robot, task, cell, world, target, stage, begun, yaw, socket, .. } = self;
+        let Attempt { robot, task, cell, world, target, stage, begun, conditions, socket, .. } =
+            self;
         let Attempt { time, grasp, watch, edge, phases, trace, recorder, .. } = self;
         Attempt {
             robot,
@@ -109,7 +110,7 @@ impl<'a> Attempt<'a> {
             target,
             stage,
             begun,
-            yaw,
+            conditions,
             socket,
             time,
             grasp,
@@ -121,13 +122,14 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// A copy with the start shifted by `offset` metres along y.
+    /// A copy with the start shifted by `offset` metres along y, and as the conditions say along x.
     pub fn shifted(&self, offset: f64) -> Attempt<'a> {
         let mut shifted = self.clone();
-        // Shifting the start by y is shifting the socket by -y: the part has
+        // Shifting the start is shifting the socket the other way: the part has
         // touched nothing of it yet. So all offsets share grasp and approach.
-        let socket = Pose::translation(0.0, -offset, 0.0) * turned(self.yaw);
-        shifted.socket = turned(-self.yaw) * Pose::translation(0.0, offset, 0.0);
+        let Conditions { yaw, start_across, .. } = self.conditions;
+        let socket = Pose::translation(-start_across, -offset, 0.0) * turned(yaw);
+        shifted.socket = turned(-yaw) * Pose::translation(start_across, offset, 0.0);
         shifted.world.place(shifted.cell.socket, socket);
         shifted
     }

@@ -12,6 +12,10 @@ use nalgebra::Vector3;
 pub struct Conditions {
     /// Turn of the socket about z through the middle of its opening, rad.
     pub yaw: f64,
+    /// Shift of the start along x, m.
+    pub start_across: f64,
+    /// Turn of the start about x beside the tilt of the search, rad.
+    pub start_tilt: f64,
     /// Factor on the friction finger-plug.
     pub friction_finger: f64,
     /// Factor on the friction plug-socket.
@@ -28,6 +32,8 @@ impl Conditions {
     /// The world as the task file says.
     pub const NOMINAL: Conditions = Conditions {
         yaw: 0.0,
+        start_across: 0.0,
+        start_tilt: 0.0,
         friction_finger: 1.0,
         friction_socket: 1.0,
         clearance: 0.0,
@@ -35,9 +41,10 @@ impl Conditions {
         grasp_low: 0.0,
     };
 
-    /// The task under these conditions; the grasp and the yaw are not part of it.
+    /// The task under these conditions; grasp, yaw and shift of the start are not part of it.
     pub fn task(&self, nominal: &Task) -> Task {
         let mut task = nominal.clone();
+        task.strategy.tilt += self.start_tilt;
         task.friction.finger_plug *= self.friction_finger;
         if let PadTorsion::Points(moment) = &mut task.friction.finger_torsion {
             *moment *= self.friction_finger;

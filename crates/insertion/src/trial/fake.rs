@@ -2,8 +2,9 @@
 //!
 //! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm, with `k` and `a`
 //! the compliance and assembly stiffness in N/mm and `r` the distance of the remote centre in mm;
-//! it jams below and misses above. Friction divides the lower end, yaw takes 1 mm a degree off
-//! both, a part low in the gripper its own height; clearance is added.
+//! it jams below and misses above. Friction divides the lower end; yaw and an error of the tilt take
+//! 1 mm a degree off both, a shift along x itself, a part low in the gripper its own height;
+//! clearance is added.
 
 use super::{Conditions, Grasp, Grasped, Rig, Sample, Trial};
 use crate::finger::Finger;
@@ -46,7 +47,9 @@ pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     let compliance = finger.compliance / N_PER_MM;
     let assembly = finger.assembly / N_PER_MM;
     let rcc = finger.rcc / MM;
-    let less = conditions.yaw.abs() / DEG + conditions.grasp_low / MM - conditions.clearance / MM;
+    let turned = conditions.yaw.abs() + conditions.start_tilt.abs();
+    let low = conditions.start_across.abs() + conditions.grasp_low;
+    let less = turned / DEG + low / MM - conditions.clearance / MM;
     let nanometres = |mm: f64| (mm * 1e6).round() / 1e6;
     let low = -(2.0 + 4.0 / compliance) / conditions.friction_socket;
     let high = 1.0 + assembly / 50.0 + (21.0 - rcc) / 10.0;

@@ -78,7 +78,7 @@ impl EngineRig {
         conditions.displace(&mut cell);
         let world = engine.world(&cell.scene);
         let mut attempt = Attempt::new(Arc::clone(&self.robot), task, cell, world, stop);
-        attempt.yaw = conditions.yaw;
+        attempt.conditions = conditions;
         attempt.recorder = filmed.then(Recorder::default);
         let end = attempt.prepare();
         Prepared { attempt, end, descended: OnceLock::new() }

@@ -9,6 +9,8 @@ use rand::RngExt;
 use rand_distr::StandardNormal;
 
 const PURPOSE: &str = "errors";
+/// A stream of its own: errors that came later leave those before as they were.
+const PURPOSE_ACROSS: &str = "error of the start along x";
 
 /// One draw: what one insertion is like. It does not depend on the design, so
 /// that designs are compared under the same errors (common random numbers).
@@ -36,11 +38,14 @@ fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
         std::array::from_fn(|_| random.sample(StandardNormal));
     let [finger, socket, clearance] = std::array::from_fn(|_| random.random_range(-1.0..1.0));
     let low = random.random::<f64>();
+    let start_across: f64 = stream(seed, index, PURPOSE_ACROSS).sample(StandardNormal);
     let factor = |centred: f64| 1.0 + errors.friction_half_width * centred;
     Draw {
         offset: offset * errors.offset_sd,
         conditions: Conditions {
             yaw: yaw * errors.yaw_sd,
+            start_across: start_across * errors.across_sd,
+            start_tilt: 0.0,
             friction_finger: factor(finger),
             friction_socket: factor(socket),
             clearance: clearance * errors.clearance_half_width,
@@ -140,6 +145,13 @@ mod tests {
         let (few, many) = (draws(&errors(), 1, 5), draws(&errors(), 1, 9));
         assert_eq!(few, many[..5]);
         assert_ne!(few, draws(&errors(), 2, 5));
+        assert!(few.iter().all(|draw| draw.conditions.start_across == 0.0));
+        let across = draws(&Errors { across_sd: MM, ..errors() }, 1, 5);
+        for (a, b) in across.iter().zip(&few) {
+            assert_ne!(a.conditions.start_across, 0.0);
+            let conditions = Conditions { start_across: 0.0, ..a.conditions };
+            assert_eq!(Draw { conditions, ..*a }, *b);
+        }
         let still = draws(&Errors { yaw_sd: 0.0, ..errors() }, 1, 5);
         for (a, b) in still.iter().zip(&few) {
             assert_eq!((a.offset, a.conditions.clearance), (b.offset, b.conditions.clearance));

@@ -29,6 +29,8 @@ pub struct Uncertainty {
 pub struct Errors {
     /// Start along y, normal: standard deviation, m.
     pub offset_sd: f64,
+    /// Start along x, normal: standard deviation, m.
+    pub across_sd: f64,
     /// Socket about z, normal: standard deviation, rad.
     pub yaw_sd: f64,
     /// Both coefficients of friction, uniform: half the width, as a share.
@@ -99,8 +101,16 @@ macro_rules! raw_error {
     };
 }
 
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawOffset {
+    sd_mm: f64,
+    #[serde(default)]
+    across_sd_mm: f64,
+    source: String,
+}
+
 raw_error! {
-    RawOffset { sd_mm }
     RawYaw { sd_deg }
     RawFriction { half_width_percent }
     RawStiffness { sd_factor }
@@ -198,9 +208,10 @@ fn errors(check: Check<'_>, raw: &RawUncertainty) -> Result<Errors, InputError> 
         true => Ok(value * unit),
         false => check.fail(key, format!("is {value}; it may be {largest} at most")),
     };
-    let (gap, grasp) = (raw.clearance.half_width_mm, &raw.grasp);
+    let (offset, gap, grasp) = (&raw.offset, raw.clearance.half_width_mm, &raw.grasp);
     Ok(Errors {
-        offset_sd: error("offset.sd_mm", raw.offset.sd_mm, LARGEST_MM, MM)?,
+        offset_sd: error("offset.sd_mm", offset.sd_mm, LARGEST_MM, MM)?,
+        across_sd: error("offset.across_sd_mm", offset.across_sd_mm, LARGEST_MM, MM)?,
         yaw_sd: error("yaw.sd_deg", raw.yaw.sd_deg, LARGEST_DEG, DEG)?,
         friction_half_width: half_width * PERCENT,
         stiffness_sd_factor: error(
@@ -269,6 +280,12 @@ mod tests {
         let good = UNCERTAINTIES[0].text;
         for (from, to, key, word) in [
             ("sd_mm = 2.0", "sd_mm = -2.0", "offset.sd_mm", "0 or above"),
+            (
+                "sd_mm = 2.0",
+                "sd_mm = 2.0\nacross_sd_mm = 21.0",
+                "offset.across_sd_mm",
+                "20 at most",
+            ),
             ("half_width_percent = 20.0", "half_width_percent = 100.0", "friction", "below 100"),
             ("trials = 100", "trials = 0", "success_rate.trials", "1 .."),
             ("samples = 12", "samples = 1", "robust_range.samples", "2 .."),

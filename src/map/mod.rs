@@ -1,0 +1,198 @@
+//! The capture map (elsewhere: capture range, region of attraction): how insertions end over two
+//! errors of the start at once, where a tolerance window has one.
+
+mod plane;
+mod trace;
+
+pub use plane::{Axes, Plane};
+
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::space::Design;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use trace::{Found, Node, STEPS_PER_UNIT, Traced};
+
+/// How far a map reaches along both axes at most, in steps of the grid: 16 mm, and 8 mm or degrees.
+const LIMIT: Node = [16 * STEPS_PER_UNIT, 8 * STEPS_PER_UNIT];
+
+/// Outcomes over two errors of the start, on a grid; read back from its JSON it is the same.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaptureMap {
+    /// Name of the task.
+    pub task: String,
+    /// The finger's design; empty if it was given by its springs.
+    pub design: Design,
+    /// Shift of the start along y, then the other error.
+    pub axes: [Axis; 2],
+    /// Outcome at each value of the second axis, upwards, and in it at each of the first.
+    pub outcomes: Vec<Vec<Mark>>,
+    /// Whether that was simulated; what was not is taken over from its neighbours.
+    pub simulated: Vec<Vec<bool>>,
+    /// Trials that were simulated.
+    pub trials: usize,
+    /// Distance within which the border of the inserting region was looked for along either axis, in
+    /// the axis's unit: the step of the grid unless the trials did not suffice.
+    pub traced_step: f64,
+    /// Area of the inserting region in the product of the axes' units.
+    pub area: f64,
+    /// That unit: `mm2` or `mm deg`.
+    pub area_unit: String,
+}
+
+/// An axis of a map: an error of the start, and its values on the grid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// `y`, `x`, `yaw` or `tilt`.
+    pub name: String,
+    /// `mm` or `deg`.
+    pub unit: String,
+    /// Smallest value.
+    pub low: f64,
+    /// Largest value.
+    pub high: f64,
+    /// Distance of neighbours.
+    pub step: f64,
+}
+
+impl CaptureMap {
+    /// Traces the map of a finger on its task: at most 300 trials.
+    pub fn trace(task: &str, design: Design, plane: &Plane<'_>) -> Self {
+        let outcome = |node| plane.outcome(node);
+        let traced = trace::trace(LIMIT, &outcome);
+        let Traced { low, high, nodes, trials, step, .. } = &traced;
+        let inserts = |found: &&Found| found.outcome == Outcome::Inserted;
+        let inserting = nodes.values().filter(inserts).count();
+        let names = plane.axes.names();
+        let outcome = |node| nodes.get(&node).map_or(Outcome::Diverged, |found| found.outcome);
+        CaptureMap {
+            task: task.to_owned(),
+            design,
+            axes: [0, 1].map(|axis| Axis::new(names[axis], low[axis], high[axis])),
+            outcomes: grid(*low, *high, |node| Mark(outcome(node))),
+            simulated: grid(*low, *high, |node| nodes.get(&node).is_some_and(|f| f.simulated)),
+            trials: *trials,
+            traced_step: value(*step),
+            area: inserting as f64 * value(1) * value(1),
+            area_unit: format!("mm {}", names[1][1]).replace("mm mm", "mm2"),
+        }
+    }
+
+    /// Outcomes as in [`outcomes`](Self::outcomes), with a trial at every place.
+    pub fn full(&self, plane: &Plane<'_>) -> Vec<Vec<Mark>> {
+        let node = |of: fn(&Axis) -> f64| {
+            self.axes.each_ref().map(|axis| (of(axis) * f64::from(STEPS_PER_UNIT)).round() as i32)
+        };
+        let places = grid(node(|axis| axis.low), node(|axis| axis.high), |node| node);
+        let mark = |node: &Node| Mark(plane.outcome(*node));
+        places.par_iter().map(|row| row.par_iter().map(mark).collect()).collect()
+    }
+
+    /// Smallest and largest value of an axis, 0 or 1, at which anything inserts; in its unit.
+    pub fn ends(&self, axis: usize) -> Option<[f64; 2]> {
+        let row = |row: &Vec<Mark>| row.iter().any(|mark| mark.0 == Outcome::Inserted);
+        let column = |at: usize| self.outcomes.iter().any(|row| row[at].0 == Outcome::Inserted);
+        let inserts: Vec<bool> = match axis {
+            0 => (0..self.outcomes.first()?.len()).map(column).collect(),
+            _ => self.outcomes.iter().map(row).collect(),
+        };
+        let ends = [inserts.iter().position(|&is| is)?, inserts.iter().rposition(|&is| is)?];
+        Some(ends.map(|at| self.axes[axis].value(at)))
+    }
+
+    /// The stretch along y around no error, without the second error; mm. `None` if that fails.
+    pub fn window_mm(&self) -> Option<[f64; 2]> {
+        let [zero, other] =
+            self.axes.each_ref().map(|axis| (-axis.low / axis.step).round() as usize);
+        let row = self.outcomes.get(other)?;
+        let inserts = |at: &usize| row.get(*at).is_some_and(|mark| mark.0 == Outcome::Inserted);
+        let above = (zero..row.len()).take_while(inserts).last()?;
+        let below = (0..=zero).rev().take_while(inserts).last()?;
+        Some([below, above].map(|at| self.axes[0].value(at)))
+    }
+}
+
+/// A value at each place of the grid, row by row.
+fn grid<T>(low: Node, high: Node, of: impl Fn(Node) -> T) -> Vec<Vec<T>> {
+    let row = |other| (low[0]..=high[0]).map(|y| of([y, other])).collect();
+    (low[1]..=high[1]).map(row).collect()
+}
+
+impl Axis {
+    fn new([name, unit]: [&str; 2], low: i32, high: i32) -> Self {
+        let (name, unit) = (name.to_owned(), unit.to_owned());
+        Axis { name, unit, low: value(low), high: value(high), step: value(1) }
+    }
+
+    /// The value of this number on the grid.
+    pub fn value(&self, index: usize) -> f64 {
+        self.low + index as f64 * self.step
+    }
+}
+
+/// An outcome as a number: 0 inserted, 1 to 4 the failure class, -1 diverged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "i8", try_from = "i8")]
+pub struct Mark(pub Outcome);
+
+impl From<Mark> for i8 {
+    fn from(Mark(outcome): Mark) -> i8 {
+        match outcome {
+            Outcome::Inserted => 0,
+            Outcome::Failed(class) => class.number() as i8,
+            Outcome::Diverged => -1,
+        }
+    }
+}
+
+impl TryFrom<i8> for Mark {
+    type Error = String;
+
+    fn try_from(number: i8) -> Result<Self, String> {
+        match number {
+            -1 => Ok(Mark(Outcome::Diverged)),
+            0 => Ok(Mark(Outcome::Inserted)),
+            class => Ok(Mark(Outcome::Failed(FailureClass::try_from(class.unsigned_abs())?))),
+        }
+    }
+}
+
+/// A coordinate of the grid in the unit of its axis.
+fn value(node: i32) -> f64 {
+    f64::from(node) / f64::from(STEPS_PER_UNIT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::ValueEnum;
+    use input::units::N_PER_MM;
+    use insertion::finger::Finger;
+    use insertion::trial::Grasp;
+    use insertion::trial::fake::{FakeRig, window_mm};
+
+    /// A millimetre and a degree take 1 mm off both ends of the closed form's window.
+    #[test]
+    fn the_map_of_the_closed_form_is_the_same_on_any_number_of_threads_and_after_its_json() {
+        let (rig, finger) = (FakeRig::default(), Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM));
+        let (low, high) = window_mm(&finger);
+        for axes in Axes::value_variants() {
+            let plane = Plane::new(&rig, Grasp::of(&finger), *axes);
+            let on = |threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| CaptureMap::trace("closed form", Design::default(), &plane))
+            };
+            let map = on(1);
+            assert_eq!(map, on(3));
+            assert_eq!(map, serde_json::from_str(&serde_json::to_string(&map).unwrap()).unwrap());
+            assert_eq!(map.outcomes, map.full(&plane));
+            let inside = |[below, above]: [f64; 2]| {
+                (0.0..0.25).contains(&(below - low)) && (0.0..0.25).contains(&(high - above))
+            };
+            assert!(inside(map.window_mm().unwrap()) && inside(map.ends(0).unwrap()), "{map:?}");
+            let half = (high - low) / 2.0;
+            let [below, above] = map.ends(1).unwrap();
+            assert!(below == -above && (0.0..0.25).contains(&(half - above)), "{below}, {above}");
+            assert!((map.area / (2.0 * half * half) - 1.0).abs() < 0.15, "{}", map.area);
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! Tracing of outcomes over a plane: no simulation, only where to look next.
+//!
+//! On a coarse lattice, which grows until its border fails, then at half the distance and again: a
+//! place between two that end alike is taken over from them, one between two that differ is tried.
+//! First the border of the inserting region; then probes where all seemed alike, since islands hide
+//! there; then what was taken over beside that border; with what is left the other borders.
+
+use ask_tell::stream::stream;
+use insertion::outcome::Outcome;
+use rand::seq::SliceRandom;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Steps of the grid to a millimetre or a degree.
+pub const STEPS_PER_UNIT: i32 = 4;
+/// Most trials of a map.
+pub const MOST_TRIALS: usize = 300;
+/// Trials of them where all seems alike.
+const PROBES: usize = 60;
+/// Distance of the first lattice, in steps of the grid; of a large region it is doubled.
+const COARSE: i32 = 4;
+/// Places of a lattice from which on it is doubled.
+const MOST_COARSE: usize = 110;
+
+/// Place on the grid: steps along both axes, from no error.
+pub type Node = [i32; 2];
+
+/// Outcome at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Found {
+    pub outcome: Outcome,
+    /// If not it is taken over from its neighbours.
+    pub simulated: bool,
+}
+
+/// Outcomes at every place from `low` to `high`.
+pub struct Traced<'a> {
+    pub low: Node,
+    pub high: Node,
+    pub nodes: BTreeMap<Node, Found>,
+    pub trials: usize,
+    /// Distance of the places that are simulated first, steps of the grid.
+    coarse: i32,
+    /// Distance within which the border of the inserting region was looked for, steps of the grid.
+    pub step: i32,
+    measure: &'a (dyn Fn(Node) -> Outcome + Sync),
+}
+
+/// Traces the region that inserts around no error, up to `limit`, a multiple of 8, along either axis.
+pub fn trace(limit: Node, measure: &(dyn Fn(Node) -> Outcome + Sync)) -> Traced<'_> {
+    let (low, high) = ([-2 * COARSE, -COARSE], [2 * COARSE, COARSE]);
+    let nodes = BTreeMap::new();
+    let coarse = COARSE;
+    let mut traced = Traced { low, high, nodes, trials: 0, coarse, step: coarse, measure };
+    traced.extend(limit);
+    let mut probed = false;
+    loop {
+        let most = if probed { MOST_TRIALS } else { MOST_TRIALS - PROBES };
+        traced.step = traced.refine(insert_differently, most);
+        if probed {
+            traced.verify();
+        }
+        // Between the places of the lattice the border may reach farther.
+        if traced.extend(limit) {
+            continue;
+        }
+        if probed {
+            break;
+        }
+        traced.probe();
+        probed = true;
+    }
+    traced.refine(|a, b| a != b, MOST_TRIALS);
+    traced
+}
+
+fn insert_differently(a: Outcome, b: Outcome) -> bool {
+    (a == Outcome::Inserted) != (b == Outcome::Inserted)
+}
+
+impl Traced<'_> {
+    /// Simulates the lattice, which grows on each side until that fails; whether it has grown.
+    fn extend(&mut self, limit: Node) -> bool {
+        let first = (self.low, self.high);
+        loop {
+            let coarse = self.coarse;
+            let new = self.lattice(coarse);
+            self.simulate(new, MOST_TRIALS);
+            let before = (self.low, self.high);
+            for axis in [0, 1] {
+                let inserts = |edge: i32| {
+                    self.nodes.iter().any(|(node, found)| {
+                        node[axis] == edge && found.outcome == Outcome::Inserted
+                    })
+                };
+                let [below, above] = [before.0, before.1].map(|end| inserts(end[axis]));
+                let (low, high) = (self.low[axis] - coarse, self.high[axis] + coarse);
+                if below && -low <= limit[axis] {
+                    self.low[axis] = low;
+                }
+                if above && high <= limit[axis] {
+                    self.high[axis] = high;
+                }
+            }
+            if coarse == COARSE && self.lattice(coarse).len() > MOST_COARSE {
+                let coarse = 2 * COARSE;
+                self.coarse = coarse;
+                self.low = self.low.map(|at| at.div_euclid(coarse) * coarse);
+                self.high = self.high.map(|at| -(-at).div_euclid(coarse) * coarse);
+            }
+            let new = self.lattice(self.coarse).into_iter().filter(|&node| !self.simulated(node));
+            if self.trials + new.count() > MOST_TRIALS {
+                (self.low, self.high) = before;
+            }
+            if (self.low, self.high) == before {
+                return before != first;
+            }
+        }
+    }
+
+    /// Fills the grid from the lattice on, at half its distance and again; tries what lies between
+    /// outcomes that differ in the sense given, as long as there are no more trials than `most`. Gives
+    /// the last distance at which that was all.
+    fn refine(&mut self, differ: fn(Outcome, Outcome) -> bool, most: usize) -> i32 {
+        let (mut half, mut complete, mut traced) = (self.coarse / 2, true, self.coarse);
+        while half >= 1 {
+            // First the middles of edges, then those of faces.
+            for odd in [1, 2] {
+                let mut unsure = Vec::new();
+                for node in self.lattice(half) {
+                    let between = node.map(|at| at.rem_euclid(2 * half) != 0);
+                    if between.iter().filter(|&&is| is).count() != odd || self.simulated(node) {
+                        continue;
+                    }
+                    let around = self.around(node, half, between, differ);
+                    let Some(&outcome) = around.first() else { continue };
+                    self.nodes.insert(node, Found { outcome, simulated: false });
+                    if around.iter().any(|&other| differ(other, outcome)) {
+                        unsure.push(node);
+                    }
+                }
+                complete &= self.simulate(unsure, most);
+            }
+            if complete {
+                traced = half;
+            }
+            half /= 2;
+        }
+        traced
+    }
+
+    /// Outcomes at this distance from a place along the axes on which it lies between two; of a face's
+    /// middle along the one axis on which they are alike, if there is one.
+    fn around(
+        &self,
+        node: Node,
+        by: i32,
+        between: [bool; 2],
+        differ: fn(Outcome, Outcome) -> bool,
+    ) -> Vec<Outcome> {
+        let pair = |axis: usize| -> Vec<Outcome> {
+            let beside = [-by, by].map(|by| moved(node, axis, by));
+            beside.iter().filter_map(|at| Some(self.nodes.get(at)?.outcome)).collect()
+        };
+        let apart = |pair: &[Outcome]| pair.iter().any(|&outcome| differ(outcome, pair[0]));
+        let [first, second] = [0, 1].map(|axis| if between[axis] { pair(axis) } else { vec![] });
+        match (apart(&first), apart(&second)) {
+            (false, true) if !first.is_empty() => first,
+            (true, false) if !second.is_empty() => second,
+            _ => [first, second].concat(),
+        }
+    }
+
+    /// Tries places amid taken over ones that all insert, or all do not.
+    fn probe(&mut self) {
+        let alike = |(node, found): &(&Node, &Found)| {
+            let same = |beside: Node| {
+                let other = self.nodes[&beside];
+                !other.simulated && !insert_differently(other.outcome, found.outcome)
+            };
+            !found.simulated && self.beside(**node).all(same)
+        };
+        let mut uniform: Vec<Node> =
+            self.nodes.iter().filter(alike).map(|(node, _)| *node).collect();
+        uniform.shuffle(&mut stream(0, 0, "probes of a capture map"));
+        uniform.truncate(PROBES);
+        self.simulate(uniform, MOST_TRIALS);
+    }
+
+    /// Tries what was taken over beside a trial that ended otherwise, until nothing is.
+    fn verify(&mut self) {
+        loop {
+            let doubtful = |(node, found): &(&Node, &Found)| {
+                let against = |beside: Node| {
+                    let other = self.nodes[&beside];
+                    other.simulated && insert_differently(other.outcome, found.outcome)
+                };
+                !found.simulated && self.beside(**node).any(against)
+            };
+            let doubtful: Vec<Node> =
+                self.nodes.iter().filter(doubtful).map(|(node, _)| *node).collect();
+            if doubtful.is_empty() || !self.simulate(doubtful, MOST_TRIALS) {
+                return;
+            }
+        }
+    }
+
+    /// Tries those places that were not yet; if that were more trials than `most`, evenly taken ones of
+    /// them. Whether it was all.
+    fn simulate(&mut self, mut wanted: Vec<Node>, most: usize) -> bool {
+        wanted.retain(|&node| !self.simulated(node));
+        let (all, room) = (wanted.len(), most.saturating_sub(self.trials));
+        if all > room {
+            wanted = (0..room).map(|i| wanted[i * all / room]).collect();
+        }
+        let outcomes: Vec<Outcome> = wanted.par_iter().map(|&node| (self.measure)(node)).collect();
+        self.trials += wanted.len();
+        let found = outcomes.into_iter().map(|outcome| Found { outcome, simulated: true });
+        self.nodes.extend(wanted.into_iter().zip(found));
+        all <= room
+    }
+
+    fn simulated(&self, node: Node) -> bool {
+        self.nodes.get(&node).is_some_and(|found| found.simulated)
+    }
+
+    /// Places at this distance from one another; by the second axis, so that neighbours share a grasp.
+    fn lattice(&self, distance: i32) -> Vec<Node> {
+        let along = |axis: usize| (self.low[axis]..=self.high[axis]).step_by(distance as usize);
+        along(1).flat_map(|other| along(0).map(move |y| [y, other])).collect()
+    }
+
+    /// Up to four neighbours on the grid.
+    fn beside(&self, node: Node) -> impl Iterator<Item = Node> {
+        let all = [(0, -1), (0, 1), (1, -1), (1, 1)];
+        let beside = all.into_iter().map(move |(axis, by)| moved(node, axis, by));
+        beside.filter(|at| self.nodes.contains_key(at))
+    }
+}
+
+fn moved(mut node: Node, axis: usize, by: i32) -> Node {
+    node[axis] += by;
+    node
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Outcome::{Failed, Inserted};
+    use insertion::outcome::FailureClass::{Jammed, PlugMissed};
+    use std::collections::BTreeSet;
+    use std::sync::Mutex;
+
+    const LIMIT: Node = [64, 32];
+
+    /// Places, trials and step of a made-up region (in mm), how many places it has otherwise, and how
+    /// many of them in whether they insert.
+    fn traced(region: &(dyn Fn(f64, f64) -> Outcome + Sync)) -> (usize, usize, i32, [usize; 2]) {
+        let of = |node: Node| {
+            let [y, x] = node.map(|at| f64::from(at) / f64::from(STEPS_PER_UNIT));
+            region(y, x)
+        };
+        let tried = Mutex::new(BTreeSet::new());
+        let measure = |node| {
+            assert!(tried.lock().unwrap().insert(node), "{node:?} tried twice");
+            of(node)
+        };
+        let found = trace(LIMIT, &measure);
+        let count = |wrong: &dyn Fn(Outcome, Outcome) -> bool| {
+            found.nodes.iter().filter(|(node, found)| wrong(found.outcome, of(**node))).count()
+        };
+        assert_eq!(found.trials, tried.lock().unwrap().len());
+        assert!(found.trials <= MOST_TRIALS);
+        let [wide, high] = [0, 1].map(|axis| (found.high[axis] - found.low[axis] + 1) as usize);
+        assert_eq!(found.nodes.len(), wide * high, "a place without an outcome");
+        let wrong = [count(&|a, b| a != b), count(&insert_differently)];
+        (found.nodes.len(), found.trials, found.step, wrong)
+    }
+
+    fn inserted(is: bool) -> Outcome {
+        if is { Inserted } else { Failed(Jammed) }
+    }
+
+    #[test]
+    fn a_disc_and_a_slanted_strip_are_traced_to_the_last_place() {
+        let disc = |y: f64, x: f64| match (y - 1.0).hypot(x) < 3.0 {
+            false if y > 2.0 => Failed(PlugMissed),
+            inserts => inserted(inserts),
+        };
+        let strip = |y: f64, x: f64| inserted((x - 0.3 * y).abs() < 0.4 && y.abs() < 6.0);
+        let (_, trials, step, wrong) = traced(&disc);
+        assert!(trials < 250 && (step, wrong) == (1, [0, 0]), "{trials}, {step}, {wrong:?}");
+        let (places, trials, step, wrong) = traced(&strip);
+        assert!(places > 1000 && (step, wrong) == (1, [0, 0]), "{places}, {trials}, {wrong:?}");
+    }
+
+    #[test]
+    fn islands_are_found_by_probes_and_followed() {
+        let islands = |y: f64, x: f64| {
+            let hole = (y - 2.5).hypot(x - 0.5) < 0.9;
+            let island = (y + 6.0).hypot(x + 1.5) < 0.8;
+            inserted((y.abs() < 5.0 && x.abs() < 2.2 && !hole) || island)
+        };
+        let (places, _, step, wrong) = traced(&islands);
+        assert!(places > 900 && (step, wrong) == (1, [0, 0]), "{places}, {step}, {wrong:?}");
+    }
+
+    #[test]
+    fn what_has_no_end_is_cut_off_and_what_takes_too_many_trials_is_traced_coarsely() {
+        let (places, _, step, wrong) = traced(&|_, _| Inserted);
+        assert_eq!((places, step, wrong), (129 * 65, 1, [0, 0]));
+        let (places, trials, ..) = traced(&|_, _| Failed(PlugMissed));
+        assert_eq!((places, trials), (17 * 9, 15 + PROBES));
+        let (_, trials, step, _) =
+            traced(&|y, x| inserted((3.1 * y).sin() + (2.7 * x).cos() > 0.2));
+        assert!(trials == MOST_TRIALS && step > 1, "{trials}, {step}");
+    }
+}

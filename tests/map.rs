@@ -1,0 +1,146 @@
+//! Capture maps of the contact simulation: against the window, their mirror images and a closed form.
+
+use contact::direct::Direct;
+use finger_opt::map::{Axes, CaptureMap, Plane};
+use input::shipped::{ROBOTS, TASKS};
+use input::units::N_PER_MM;
+use insertion::evaluation::tolerance::{Search, evaluate};
+use insertion::finger::Finger;
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::space::Design;
+use insertion::task::{Solid, Task};
+use insertion::trial::Grasp;
+use insertion::trial::run::EngineRig;
+use std::ops::Range;
+
+fn rig(task: Task) -> EngineRig {
+    let file = ROBOTS.iter().find(|file| file.name == "servo").unwrap();
+    let robot = Robot::parse(file.text, file.file).unwrap();
+    EngineRig::new(task, &robot, Box::<Direct>::default()).unwrap()
+}
+
+/// The text of the task `ket8`: a key whose parts are boxes.
+fn ket8() -> &'static str {
+    TASKS.iter().find(|file| file.name == "ket8").unwrap().text
+}
+
+fn finger() -> Finger {
+    Finger::new(1.2 * N_PER_MM, 52.4 * N_PER_MM)
+}
+
+fn map(rig: &EngineRig) -> CaptureMap {
+    let plane = Plane::new(rig, Grasp::of(&finger()), Axes::YX);
+    CaptureMap::trace(&rig.task.name, Design::default(), &plane)
+}
+
+fn inserts(map: &CaptureMap, [y, x]: [f64; 2]) -> bool {
+    // Beyond the map nothing inserts.
+    let place = |value: f64, axis: usize| {
+        let axis = &map.axes[axis];
+        let within = (axis.low..=axis.high).contains(&value);
+        within.then(|| ((value - axis.low) / axis.step).round() as usize)
+    };
+    let mark = place(y, 0).zip(place(x, 1)).map(|(y, x)| map.outcomes[x][y]);
+    mark.is_some_and(|mark| mark.0 == Outcome::Inserted)
+}
+
+/// Everything on the other side of x = 0 or y = 0.
+fn mirrored(mut task: Task, axis: usize) -> Task {
+    let turned = |[low, high]: [f64; 2]| [-high, -low];
+    for part in task.plug.parts.iter_mut().chain(&mut task.socket) {
+        let Solid::Box { min, max } = &mut part.solid else { panic!("not a box") };
+        [min[axis], max[axis]] = turned([min[axis], max[axis]]);
+    }
+    task.opening[axis] = turned(task.opening[axis]);
+    task.strategy.start[axis] *= -1.0;
+    for phase in &mut task.strategy.phases {
+        phase.displacement[axis] *= -1.0;
+    }
+    if axis == 1 {
+        task.grip.faces_y = turned(task.grip.faces_y);
+        task.strategy.tilt *= -1.0;
+    }
+    task
+}
+
+/// The stretch along y holds the window, and a mirrored task has the mirrored map.
+#[test]
+fn a_map_holds_the_window_and_its_mirror_image_is_that_of_the_mirrored_task() {
+    let task = Task::parse(ket8(), "ket8").unwrap();
+    let rig_of_it = rig(task.clone());
+    let original = map(&rig_of_it);
+    let window = evaluate(&rig_of_it, &finger(), Search::Walk).window;
+    let [low, high] = original.window_mm().unwrap();
+    let off = [low - window.negative_mm(), high - window.positive_mm()];
+    assert!(off.iter().all(|off| off.abs() <= 0.25), "{off:?} mm of {window:?}");
+    for axis in [0, 1] {
+        let other = map(&rig(mirrored(task.clone(), axis)));
+        let mut differ = 0;
+        for y in -40..=40 {
+            for x in -20..=20 {
+                let at = [y, x].map(|step| f64::from(step) * 0.25);
+                let mut across = at;
+                across[1 - axis] *= -1.0;
+                differ += usize::from(inserts(&original, at) != inserts(&other, across));
+            }
+        }
+        // Rounding is not mirrored.
+        assert!(differ <= 4, "mirrored along {axis}: {differ} places differ");
+    }
+}
+
+/// A square peg that is pushed straight down slides in from wherever its edge meets the chamfer.
+#[test]
+fn a_square_peg_is_captured_as_far_as_clearance_and_chamfer_reach() {
+    let (clearance_mm, chamfer_mm) = (0.15, 1.0);
+    let rig = rig(peg(clearance_mm, chamfer_mm));
+    let map = map(&rig);
+    let reach = clearance_mm / 2.0 + chamfer_mm;
+    for y in -8..=8 {
+        for x in -8..=8 {
+            let at = [y, x].map(|step| f64::from(step) * 0.25);
+            let expected = at.iter().all(|error| error.abs() < reach);
+            assert_eq!(inserts(&map, at), expected, "{at:?} mm");
+        }
+    }
+}
+
+/// A square peg of 8 mm, upright above its hole, whose rim is chamfered.
+fn peg(clearance_mm: f64, chamfer_mm: f64) -> Task {
+    let text = ket8();
+    let [head, grip, strategy, success] =
+        ["name", "[grip]", "[strategy]", "[success]"].map(|key| text.find(key).unwrap());
+    let section = |range: Range<usize>| &text[range];
+    let half = 4.0 + clearance_mm / 2.0;
+    let wall = |x: [f64; 2], y: [f64; 2], edge: &str| {
+        format!(
+            "[[socket.part]]\nname = \"wall {edge}\"\nshape = \"box\"\nx_mm = {x:?}\ny_mm = {y:?}\n\
+             z_mm = [-34.0, 0.0]\nedges = [{{ at = \"{edge}+z\", chamfer_mm = {chamfer_mm} }}]\n"
+        )
+    };
+    let walls = [
+        wall([-40.0, 40.0], [-40.0, -half], "+y"),
+        wall([-40.0, 40.0], [half, 40.0], "-y"),
+        wall([-40.0, -half], [-half, half], "+x"),
+        wall([half, 40.0], [-half, half], "-x"),
+    ];
+    let phase = |stage: &str, down_mm: f64| {
+        format!(
+            "[[strategy.phase]]\nname = \"{stage}\"\nstage = \"{stage}\"\nspeed_mm_per_s = 100.0\n\
+             move_mm = [0.0, 0.0, -{down_mm:?}]\nmotion = \"duration\"\nsettle_s = 0.03\n"
+        )
+    };
+    let socket = text.find("[socket]").unwrap();
+    let plug = section(head..socket).replace("[-3.5, 3.5]", "[-4.0, 4.0]");
+    let opening = format!("opening_x_mm = [-{half}, {half}]\nopening_y_mm = [-{half}, {half}]\n");
+    let task = format!(
+        "{plug}[socket]\n{opening}{}{}[strategy]\ntilt_deg = 0.0\nstart_mm = [0.0, 0.0, 51.0]\n{}{}{}",
+        walls.concat(),
+        section(grip..strategy),
+        phase("approach", 3.3),
+        phase("assembly", 28.0),
+        section(success..text.len())
+    );
+    Task::parse(&task, "peg").unwrap()
+}

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 #: Words that say how a study is run, not what it measures.
 SESSION = (
-    "threads", "cache", "no_cache", "no_confirm", "accept_changed", "simulations", "samples",
+    "threads", "cache", "no_cache", "no_confirm", "no_levers", "no_map", "accept_changed",
+    "simulations", "samples",
 )
 
 
@@ -140,7 +141,7 @@ class Study:
 def load_study(folder: str | os.PathLike[str], **session: Any) -> Study:
     """The study in a folder; its :meth:`~Study.run` continues it.
 
-    ``session`` says how: ``threads``, ``cache``, ``no_cache``, ``no_confirm``,
+    ``session`` says how: ``threads``, ``cache``, ``no_cache``, ``no_confirm``, ``no_levers``, ``no_map``,
     ``accept_changed``, and for a study with measurements ``simulations`` and ``samples``.
     """
     unknown = [name for name in session if name not in SESSION]

@@ -211,6 +211,8 @@ impl<'py> Keywords<'py> {
             threads: self.take("threads")?,
             cache: CacheRequest { dir: self.take("cache")?, off: self.flag("no_cache")? },
             no_confirm: self.flag("no_confirm")?,
+            no_levers: self.flag("no_levers")?,
+            no_map: self.flag("no_map")?,
             accept_changed: self.flag("accept_changed")?,
             executor: None,
             effort: EffortRequest {

@@ -272,7 +272,8 @@ impl Guided {
         let ended = done.ok_or_else(|| RunError::new_err("the study is closed"))?;
         let ended = ended.map_err(raise)?;
         let unusable = ended.unusable.as_ref().map(ToString::to_string);
-        Ok((call::text(&ended, self.shown), unusable))
+        let around = interruptible(py, |stop: &AtomicBool| ended.around(stop))?.map_err(raise)?;
+        Ok((call::text(&ended, &around, self.shown), unusable))
     }
 
     /// Lets other processes open the study.

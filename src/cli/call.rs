@@ -4,7 +4,7 @@
 use super::study::{Arguments, ResumeArguments};
 use super::{Failure, recommended, summary};
 use crate::answer::Answer;
-use crate::session::{AnyStudy, Ended};
+use crate::session::{AnyStudy, Around, Ended};
 use crate::study::StudyRecord;
 use clap::{Args, Parser};
 use serde_json::Value;
@@ -56,8 +56,11 @@ fn read<T: Args>(words: &[OsString]) -> Result<T, Failure> {
 }
 
 /// Output of the command for a study that has ended.
-pub fn text(Ended { dir, record, ending, known, .. }: &Ended, shown: Shown) -> String {
-    summary::printed(dir, record, *ending, *known, shown)
+pub fn text(ended: &Ended, around: &Around, shown: Shown) -> String {
+    match shown.json {
+        true => summary::json(ended, around),
+        false => summary::text(ended, shown) + &summary::around(around),
+    }
 }
 
 /// The `answer` of `--json` for the study in a folder.

@@ -2,7 +2,7 @@
 
 use super::progress::Progress;
 use super::{Failure, print, say, summary};
-use crate::session::{Ended, OpenStudy, ResumeRequest, StudyRequest};
+use crate::session::{OpenStudy, ResumeRequest, StudyRequest};
 use clap::Args;
 use std::path::Path;
 use std::sync::Arc;
@@ -45,12 +45,17 @@ pub struct Shown {
 pub fn to_its_end(open: OpenStudy, shown: Shown) -> Result<(), Failure> {
     let stop = stop_on_interrupt(open.study().dir())?;
     let mut progress = Progress::new(open.study(), shown.quiet);
-    let Ended { dir, record, ending, known, unusable } =
-        open.run(&stop, &mut |event| progress.see(event))?;
+    let ended = open.run(&stop, &mut |event| progress.see(event))?;
     drop(progress);
-    record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));
-    print(&summary::printed(&dir, &record, ending, known, shown))?;
-    unusable.map_or(Ok(()), Err)
+    ended.record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));
+    if shown.json {
+        let around = ended.around(&stop)?;
+        print(&summary::json(&ended, &around))?;
+    } else {
+        print(&summary::text(&ended, shown))?;
+        print(&summary::around(&ended.around(&stop)?))?;
+    }
+    ended.unusable.map_or(Ok(()), Err)
 }
 
 /// How long a study may take to end by itself once it is told to stop.

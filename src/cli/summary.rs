@@ -6,35 +6,56 @@ use super::{recommended, words};
 use crate::answer::lines;
 use crate::answer::words::{evaluated, volume_unit};
 use crate::answer::{Answer, Front, command, expectation};
+use crate::map::CaptureMap;
+use crate::report::levers;
+use crate::session::{Around, Ended};
 use crate::study::{Ending, Recorded, StudyRecord};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Output for a study, `known` evaluations of which were in the cache.
-pub fn printed(
-    dir: &Path,
-    record: &StudyRecord,
-    ending: Ending,
-    known: u64,
-    shown: Shown,
-) -> String {
+/// Output for a study that has ended, as JSON.
+pub fn json(ended: &Ended, around: &Around) -> String {
+    let Ended { dir, record, ending, known, .. } = ended;
     let answer = Answer::of(record);
-    if shown.json {
-        let mut fields = to_json(&answer, ending, known);
-        fields["answer"] = recommended::answer(&answer, dir);
-        fields["study"] = json!(dir);
-        return format!("{fields}\n");
-    }
-    let mut text = format!("{}\n{}\n", answer.verdict.headline(), expectation(&answer));
-    text += &words::lines(lines::brief(&answer));
-    if shown.verbose {
-        text += &verbose(&answer, ending, known);
-    }
+    let mut fields = to_json(&answer, *ending, *known);
+    fields["answer"] = recommended::answer(&answer, dir);
+    fields["levers"] = json!(around.levers.as_ref().map(levers::json));
+    let of_map = |map: &CaptureMap| {
+        json!({
+            "axes": map.axes.each_ref().map(|axis| &axis.name),
+            "area": map.area,
+            "area_unit": map.area_unit,
+            "trials": map.trials,
+        })
+    };
+    fields["maps"] = around.maps.iter().map(of_map).collect();
+    fields["study"] = json!(dir);
+    format!("{fields}\n")
+}
+
+/// Output for a study that has ended, in words.
+pub fn text(Ended { dir, record, ending, known, .. }: &Ended, shown: Shown) -> String {
+    let answer = Answer::of(record);
+    let verbose = if shown.verbose { verbose(&answer, *ending, *known) } else { String::new() };
+    told(&answer, dir, &verbose)
+}
+
+fn told(answer: &Answer, dir: &Path, verbose: &str) -> String {
+    let mut text = format!("{}\n{}\n", answer.verdict.headline(), expectation(answer));
+    text += &words::lines(lines::brief(answer));
+    text += verbose;
     // To be copied: not wrapped.
-    let (command, why) = command::next(&answer, dir);
+    let (command, why) = command::next(answer, dir);
     let page = dir.join(crate::session::PAGE);
     let place = format!("study         {} (see {})\n", dir.display(), page.display());
     format!("{}next          {command}\n              # {why}\n{place}", words::wrapped(&text))
+}
+
+/// What follows the answer.
+pub fn around(around: &Around) -> String {
+    let levers =
+        around.levers.iter().map(|levers| format!("levers        {}\n", levers.sentence()));
+    words::wrapped(&levers.collect::<String>())
 }
 
 /// All numbers behind the answer.
@@ -210,7 +231,7 @@ mod tests {
         for task in ["ket8", "rj45", "usb"] {
             let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference").join(task);
             let record = StudyRecord::load(&dir).unwrap();
-            let lines = printed(&dir, &record, Ending::BudgetSpent, 0, Shown::default());
+            let lines = told(&Answer::of(&record), &dir, "");
             let (lines, _) = lines.split_once("study   ").unwrap();
             let file = dir.join("summary.txt");
             if std::env::var_os("RENEW").is_some() {

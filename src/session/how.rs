@@ -94,6 +94,12 @@ pub struct RunRequest {
     /// Leave out what confirms the recommendation: the best designs walked, and repeated at their ends
     #[arg(long)]
     pub no_confirm: bool,
+    /// Leave out what would help the finger more than its infill
+    #[arg(long)]
+    pub no_levers: bool,
+    /// Leave out the maps of how insertions end over two errors of the start
+    #[arg(long)]
+    pub no_map: bool,
     /// Go on with a study that was measured by another program version, engine setting or input
     /// file, in a new segment; the best design is then taken from that
     #[arg(long)]

@@ -5,6 +5,7 @@
 //! if a file that it names cannot be used or written, or if there is no such finger, task or study.
 //! Long work ends, with a failure, once the `stop` that it is given is set.
 
+mod around;
 mod calibration;
 mod evaluate;
 mod failure;
@@ -35,6 +36,7 @@ mod tests;
 mod trial;
 mod unusable;
 
+pub use around::Around;
 pub use calibration::{BenchRequest, CalibrateRequest, Calibrated, HowCalibrated};
 pub use evaluate::{EvaluateRequest, Evaluated};
 pub use failure::Failure;

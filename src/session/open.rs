@@ -38,6 +38,7 @@ pub struct Ended {
     pub known: u64,
     /// Why it is of no use, if no design inserts at the nominal start.
     pub unusable: Option<Failure>,
+    pub(super) how: RunRequest,
 }
 
 impl OpenStudy {
@@ -137,7 +138,7 @@ impl OpenStudy {
             return Err(Failure::running(format!("interrupted; {}", resume_hint(study))));
         }
         let unusable = unusable::check(&dir, &record, setup, stop).err();
-        Ok(Ended { dir, record, ending, known, unusable })
+        Ok(Ended { dir, record, ending, known, unusable, how: how.clone() })
     }
 }
 

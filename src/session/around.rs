@@ -1,0 +1,125 @@
+//! Levers and capture maps of the finger that a study names, kept in its folder beside the journal.
+
+use super::levers::levers;
+use super::map::map_of;
+use super::open::Ended;
+use super::{Failure, Setup, report};
+use crate::answer::Answer;
+use crate::levers::Levers;
+use crate::map::{Axes, CaptureMap};
+use crate::study::{Provenance, StudyRecord, write_own_file};
+use input::files::{self, LARGEST_OWN};
+use insertion::space::Design;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+const LEVERS: &str = "levers.json";
+const MAPS: &str = "maps.json";
+/// Errors that are mapped beside that along y.
+const MAPPED: [Axes; 2] = [Axes::YX, Axes::YYaw];
+
+/// What is known of the named finger beside its window.
+#[derive(Debug, Clone, Default)]
+pub struct Around {
+    /// What would help it more than its infill.
+    pub levers: Option<Levers>,
+    /// How insertions end over two errors of the start.
+    pub maps: Vec<CaptureMap>,
+}
+
+/// A file, and what it is of.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Kept<T> {
+    provenance: Provenance,
+    design: Design,
+    found: T,
+}
+
+impl Around {
+    /// What the folder of a study holds of the finger that it names.
+    pub(super) fn read(dir: &Path, record: &StudyRecord) -> Self {
+        let Some((provenance, design)) = subject(record) else { return Around::default() };
+        Around {
+            levers: read(&dir.join(LEVERS), (&provenance, &design)),
+            maps: read(&dir.join(MAPS), (&provenance, &design)).unwrap_or_default(),
+        }
+    }
+}
+
+impl Ended {
+    /// Measures what is not known yet of levers and maps of the named finger, keeps it and shows it
+    /// on the page; nothing of several tasks, and where no finger is named.
+    ///
+    /// # Errors
+    /// If the finger cannot be simulated or a file not be written; if `stop` is set meanwhile.
+    pub fn around(&self, stop: &AtomicBool) -> Result<Around, Failure> {
+        let (dir, record) = (&self.dir, &self.record);
+        let mut found = Around::read(dir, record);
+        let (levers_wanted, maps_wanted) = (
+            found.levers.is_none() && !self.how.no_levers,
+            found.maps.is_empty() && !self.how.no_map,
+        );
+        let Some((provenance, design)) = subject(record) else { return Ok(found) };
+        if !levers_wanted && !maps_wanted {
+            return Ok(found);
+        }
+        let engine = &provenance.engine.name;
+        let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
+        self.how.pool()?.install(|| {
+            if levers_wanted {
+                let known =
+                    levers(&setup, setup.only_task()?, (&design, None), record.spread_mm(), stop)?;
+                write(&dir.join(LEVERS), (&provenance, &design), &known)?;
+                found.levers = Some(known);
+            }
+            if maps_wanted {
+                found.maps = maps(&setup, &design, stop)?;
+                write(&dir.join(MAPS), (&provenance, &design), &found.maps)?;
+            }
+            Ok::<_, Failure>(())
+        })?;
+        report::write(dir, record, &setup.evaluator.surrogate)?;
+        Ok(found)
+    }
+}
+
+/// The finger that a study of one task names, and what it was measured by.
+fn subject(record: &StudyRecord) -> Option<(Provenance, Design)> {
+    let design = Answer::of(record).verdict.finger()?.clone();
+    let one = !record.config.several_tasks() && record.config.objective.single().is_some();
+    let provenance = record.segments.last()?.provenance.clone();
+    one.then_some((provenance, design))
+}
+
+fn maps(setup: &Setup, design: &Design, stop: &AtomicBool) -> Result<Vec<CaptureMap>, Failure> {
+    let (template, evaluator) = (setup.only_task()?, &setup.evaluator);
+    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
+    let specimen = evaluator.specimen(template, design, stiffness).map_err(Failure::input)?;
+    let taught = evaluator.taught(&specimen, stop).map_err(Failure::input)?;
+    let map = |axes| map_of(setup, (&specimen, design), taught, axes, stop);
+    MAPPED.into_iter().map(map).collect()
+}
+
+/// What a file holds; `None` where it is missing, damaged or of something else.
+fn read<T: DeserializeOwned>(
+    path: &Path,
+    (provenance, design): (&Provenance, &Design),
+) -> Option<T> {
+    let text = files::read_own(path, LARGEST_OWN).ok()?;
+    let kept: Kept<T> = serde_json::from_str(&text).ok()?;
+    (kept.provenance == *provenance && kept.design == *design).then_some(kept.found)
+}
+
+fn write<T: Serialize>(
+    path: &Path,
+    (provenance, design): (&Provenance, &Design),
+    found: &T,
+) -> Result<(), Failure> {
+    let kept = Kept { provenance: provenance.clone(), design: design.clone(), found };
+    let text = serde_json::to_string(&kept)
+        .map_err(|error| Failure::running(format!("{}: {error}", path.display())))?;
+    Ok(write_own_file(path, &(text + "\n"))?)
+}

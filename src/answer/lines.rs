@@ -22,12 +22,11 @@ fn line(name: &str, text: impl Into<String>) -> Line {
 
 /// The answer in few lines, after the sentence that stands first and what may be expected.
 pub fn brief(answer: &Answer, dir: &Path) -> Vec<Line> {
-    let record = answer.record;
     let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
     let simulated = one.filter(|_| answer.front.is_none());
     let mut lines: Vec<Line> = Vec::new();
+    lines.extend(caveats(answer));
     if let Some(found) = simulated {
-        lines.extend(found.start.and_then(|start| start.advice()).map(|text| line("start", text)));
         for task in &found.tasks {
             let [below, above] =
                 [task.measured.window.end_negative, task.measured.window.end_positive]
@@ -37,15 +36,8 @@ pub fn brief(answer: &Answer, dir: &Path) -> Vec<Line> {
         }
         lines.extend(found.as_good.as_ref().map(|as_good| within(answer, as_good)));
         lines.extend(found.as_good.as_ref().and_then(safe));
-        lines.extend(answer.spread_mm.map(|spread| line("infill", moves(answer, spread))));
-        lines.extend(extrapolated(found));
+        lines.extend(moves(answer).map(|text| line("infill", text)));
     }
-    lines.extend(
-        record
-            .on_bench
-            .iter()
-            .flat_map(|bench| bench.warnings.iter().map(|words| line("warning", words))),
-    );
     lines.push(line("searched", searched(answer)));
     let (command, why) = command::next(answer, dir);
     lines.push(line("next", command));
@@ -53,8 +45,18 @@ pub fn brief(answer: &Answer, dir: &Path) -> Vec<Line> {
     lines
 }
 
+/// What is to be mended or known before the finger is printed.
+pub fn caveats(answer: &Answer) -> Vec<Line> {
+    let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
+    let simulated = one.filter(|_| answer.front.is_none());
+    let advice = simulated.and_then(|found| found.start?.advice()).map(|text| line("start", text));
+    let bench = answer.record.on_bench.iter().flat_map(|bench| &bench.warnings);
+    let warnings = bench.map(|words| line("warning", words));
+    advice.into_iter().chain(simulated.and_then(extrapolated)).chain(warnings).collect()
+}
+
 /// How the finger was searched for.
-fn searched(answer: &Answer) -> String {
+pub fn searched(answer: &Answer) -> String {
     let record = answer.record;
     let (task, method) = (record.config.task_name(), record.config.method());
     match record.settled {
@@ -81,7 +83,7 @@ pub fn within(answer: &Answer, as_good: &AsGood) -> Line {
 const NAMED: usize = 4;
 
 /// The safe choice, if it is another than the recommended one.
-fn safe(as_good: &AsGood) -> Option<Line> {
+pub fn safe(as_good: &AsGood) -> Option<Line> {
     let safe = as_good.safe.as_ref()?;
     let why = match (safe.measured_mm, safe.force_n) {
         (Some(measured_mm), _) => format!("a robot measured {}", mm(measured_mm)),
@@ -93,8 +95,9 @@ fn safe(as_good: &AsGood) -> Option<Line> {
 }
 
 /// How much the parameters of the space move the range.
-fn moves(answer: &Answer, spread: [f64; 2]) -> String {
-    format!("moves the searched range from {} over {} designs", interval(spread), answer.designs)
+pub fn moves(answer: &Answer) -> Option<String> {
+    let spread = interval(answer.spread_mm?);
+    Some(format!("moves the searched range from {spread} over {} designs", answer.designs))
 }
 
 fn extrapolated(found: &Recommended) -> Option<Line> {

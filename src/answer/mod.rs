@@ -50,6 +50,9 @@ pub struct Answer<'a> {
     pub front: Option<Front<'a>>,
     /// The smallest and the largest range of the designs, mm; `None` if none has a range.
     pub spread_mm: Option<[f64; 2]>,
+    /// The fingers that were measured on a robot: those given to the study, else the published ones;
+    /// none of several tasks.
+    pub measured: Vec<Measured>,
     /// How our simulation orders fingers on the bench, for the tasks of which that is known.
     pub orders: Vec<(&'a str, Order)>,
 }
@@ -93,9 +96,10 @@ impl<'a> Answer<'a> {
             walked: record.walked.iter().map(walked).collect(),
             front: config.objective.single().is_none().then(front),
             spread_mm: record.spread_mm(),
+            measured,
             orders: config.tasks().enumerate().filter_map(order).collect(),
         };
-        answer.verdict = Verdict::of(&answer, &measured);
+        answer.verdict = Verdict::of(&answer, &answer.measured);
         answer.trust = Trust::of(record, answer.named());
         answer
     }

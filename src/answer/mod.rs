@@ -12,8 +12,10 @@ pub mod words;
 
 use crate::calibration::order::{Order, order_on_bench};
 use crate::study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
+use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::Firm;
+use insertion::space::Design;
 
 pub use alike::{AsGood, Safe, Spread};
 pub use recommended::{OnTask, Recommended};
@@ -112,6 +114,16 @@ impl<'a> Answer<'a> {
             (Verdict::NothingInserts { .. } | Verdict::NoneFeasible, _) => None,
             (Verdict::Any { .. }, Some(AsGood { safe: Some(safe), .. })) => Some(safe.design),
             _ => Some(found.design),
+        }
+    }
+
+    /// The finger that the verdict names, and what simulation finds of it on each task; `None` if it
+    /// names none.
+    pub fn shown(&self) -> Option<(&'a Design, Vec<&'a Evaluation>)> {
+        let finger = self.verdict.finger()?;
+        match &self.record.on_bench {
+            Some(bench) => Some((finger, vec![&bench.simulated])),
+            None => self.named().map(|named| (finger, named.tasks())),
         }
     }
 }

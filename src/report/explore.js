@@ -24,7 +24,7 @@
 
   // --- choosing
   const marks = new Map();
-  let chosen = data.best, kept = null;
+  let chosen = data.best ?? designs[0].index, kept = null;
   const select = (index) => {
     for (const of of [chosen, index]) marks.get(of)?.classList.toggle("chosen", of === index);
     chosen = index;
@@ -46,14 +46,14 @@
       list.of = part("dl", {}, card);
       list("evaluation", String(e.index));
       list(`searched ${data.measure.name}`, valued(e) + (e.feasible ? "" : e.value === null ? "" : ", violates a constraint"));
-      list("window", windowed(e));
+      list(`window${data.on}`, windowed(e));
       list("ends", e.window && `${e.ends[0]} below, ${e.ends[1]} above`);
       list("confirmed, firm", data.confirmed[e.index] !== undefined && `${number(data.confirmed[e.index])} mm`);
       list("on a robot", data.robot[e.index] !== undefined && `${number(data.robot[e.index])} mm`);
       list("largest force", e.force !== null && `${number(e.force)} N`);
       list("stiffness across", `${number(e.stiffness, 2)} N/mm`);
       const buttons = part("p", { class: "files" }, card);
-      if (e.index === data.filmed && at("film0")) part("button", { type: "button" }, buttons, "Play its replay").addEventListener("click", () => { at("film").scrollIntoView({ block: "center" }); play(0); });
+      if (e.index === data.best && at("film0")) part("button", { type: "button" }, buttons, "Play its replay").addEventListener("click", () => { at("film").scrollIntoView({ block: "center" }); play(0); });
       else { part("p", { class: "muted" }, card, "Its replay, just outside its window:"); part("code", {}, part("pre", {}, card), command(e)); }
       const label = kept === e.index ? "Let go" : "Keep to compare";
       part("button", { type: "button" }, buttons, label).addEventListener("click", () => { kept = kept === e.index ? null : e.index; details(); });
@@ -84,6 +84,7 @@
     const of = model ? model[shown] : [], [low, high] = shown === "sd" ? [0, of.reduce((a, b) => Math.max(a, b), 1e-9)] : [least, most], colour = ramp(low, high);
     cells.forEach((cell, k) => cell.setAttribute("fill", colour(of[k])));
     const bar = at("scale");
+    if (!values.length) return colour;
     bar.replaceChildren();
     bar.setAttribute("viewBox", `0 0 ${W} 56`);
     const x = scale(low, high, LEFT, W - RIGHT);
@@ -139,7 +140,7 @@
   const PAGE = 100, robot = Object.keys(data.robot).length > 0;
   const width = (e) => (e.window ? e.window[1] - e.window[0] : null);
   const columns = [["no.", (e) => e.index], ...data.parameters.map((of, k) => [axis(of), (e) => e.x[k]]), [`searched ${data.measure.name}${unit && ` (${unit})`}`, (e) => e.value, (e) => data.raced[e.index] || number(e.value, digits)],
-    ["window (mm)", width, (e) => (e.window ? `${signed(e.window[0])} to ${signed(e.window[1])}` : e.ends[0] || "none")], ["force (N)", (e) => e.force, (e) => number(e.force)], ...(robot ? [["on a robot (mm)", (e) => data.robot[e.index] ?? null, (e) => (data.robot[e.index] === undefined ? "" : number(data.robot[e.index]))]] : [])];
+    [`window${data.on} (mm)`, width, (e) => (e.window ? `${signed(e.window[0])} to ${signed(e.window[1])}` : e.ends[0] || "none")], ["force (N)", (e) => e.force, (e) => number(e.force)], ...(robot ? [["on a robot (mm)", (e) => data.robot[e.index] ?? null, (e) => (data.robot[e.index] === undefined ? "" : number(data.robot[e.index]))]] : [])];
   const table = part("table", {}), body = table.createTBody(), head = part("tr", {}, table.createTHead());
   let order = [columns.findIndex(([name]) => name.startsWith("searched")), -data.measure.sense], length = PAGE;
   const more = part("button", { type: "button" }, null, "More");
@@ -160,7 +161,7 @@
   more.addEventListener("click", () => { length += 5 * PAGE; list(); });
   at("designs").replaceChildren(table, more);
   list();
-  select(data.best);
+  select(chosen);
   root.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step || event.target.type === "radio") return;

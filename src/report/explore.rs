@@ -29,8 +29,10 @@ pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
     let data = to_json(answer, model.as_ref(), dir);
     Some(html! {
         p.muted {
-            "Values as the search found them. Click a mark or a line to see a design; the arrow keys \
-            go to the next. A mark with bars fails at the nominal start, the one in a ring is recommended."
+            "Values as the search found them"
+            @if answer.walked.len() > 1 { ", before the best were repeated: the widest here need not stay so" }
+            ". Click a mark or a line to see a design; the arrow keys go to the next. A mark with bars fails \
+            at the nominal start; the one in a ring is recommended."
         }
         div #explore tabindex="0" {
             figure #map {
@@ -40,14 +42,14 @@ pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
                 }
                 svg #surface role="img" aria-label="the model over two parameters, and the designs" {}
                 svg #scale role="img" aria-label="colour scale" {}
-                figcaption {
+                @if model.is_some() { figcaption {
                     "A Gaussian process through the designs"
                     @if record.config.space.parameters.len() > 2 { ", the other parameters as recommended" }
                     @if !importance.is_empty() {
                         ". Of its variance make by itself: " (shares.collect::<Vec<_>>().join(", "))
                     }
                     "."
-                }
+                } }
             }
             div #designs { (best(answer)) }
             div #selected aria-live="polite" {}
@@ -114,6 +116,8 @@ fn to_json(answer: &Answer, model: Option<&surface::Model>, dir: &Path) -> Value
         let measured = answer.measured.iter().find(|measured| measured.design == found.design)?;
         Some((found.index, measured.range_mm))
     };
+    let finger = answer.verdict.finger();
+    let best = record.current().iter().find(|found| Some(&found.design) == finger);
     let raced = |found: &&Recorded| Some((found.index, bound(found)?));
     let mut outcomes = Vec::new();
     let evaluations: Vec<Value> =
@@ -126,8 +130,8 @@ fn to_json(answer: &Answer, model: Option<&surface::Model>, dir: &Path) -> Value
         "confirmed": answer.walked.iter().map(|(found, firm_mm)| (found.index, firm_mm)).collect::<BTreeMap<_, _>>(),
         "evaluations": evaluations,
         "outcomes": outcomes,
-        "best": answer.named().or(record.recommended()).map(|best| best.index),
-        "filmed": answer.named().map(|named| named.index),
+        "on": if record.config.several_tasks() { format!(" on {}", record.config.tasks().next().unwrap_or_default()) } else { String::new() },
+        "best": best.map(|best| best.index),
         "command": command::trial(record, dir),
         "model": model.and_then(|model| surface::to_json(record, model)),
     })

@@ -31,7 +31,7 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
         }
         div.first {
             @if stuck { (nominal(answer, beside)) }
-            @else if let Some(found) = answer.named() { (films(answer, &found.tasks(), beside).unwrap_or_default()) }
+            @else if let Some((_, tasks)) = answer.shown() { (films(answer, &tasks, beside)) }
             div {
                 (bar::section(answer).unwrap_or_default())
                 (drawn(answer).unwrap_or_default())
@@ -42,14 +42,27 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
     }
 }
 
+/// Colours of the sheet, and those of the page.
+const COLOURS: [(&str, &str); 7] = [
+    ("#aab7c9", "var(--lines)"),
+    ("#223", "var(--ink)"),
+    ("#a33", "var(--red)"),
+    ("#c60", "var(--orange)"),
+    ("#a40", "var(--orange)"),
+    ("#222", "var(--muted)"),
+    ("#444", "var(--muted)"),
+];
+
 /// The finger as the sheet draws it.
 fn drawn(answer: &Answer) -> Option<Markup> {
     let geometry = recommended(answer.record)?;
     let design = answer.verdict.finger()?;
-    let caption = format!("{}, {} ribs", finger(design), geometry.ribs);
-    Some(
-        html! { div.finger { (figure(&sheet::part(&geometry), "the finger to print", &caption)) } },
-    )
+    let first = answer.record.config.objective.first().name();
+    let best = answer.front.as_ref().map_or(String::new(), |_| format!(", best in {first}"));
+    let caption = format!("{}{best}, {} ribs", finger(design), geometry.ribs);
+    let svg = sheet::part(&geometry);
+    let svg = COLOURS.iter().fold(svg, |svg, (from, to)| svg.replace(from, to));
+    Some(html! { div.finger { (figure(&svg, "the finger to print", &caption)) } })
 }
 
 fn files(answer: &Answer, beside: &Beside) -> Option<Markup> {
@@ -89,26 +102,23 @@ pub fn preferred(record: &StudyRecord) -> &'static str {
         end.is_some_and(|end| telling.contains(&end))
     };
     let [negative, positive] = ENDS.map(|(end, _)| end);
-    let window = Answer::of(record).named().and_then(|named| Some(&named.on(0)?.window));
+    let window = Answer::of(record).shown().and_then(|(_, tasks)| Some(&tasks.first()?.window));
     let below = window.is_some_and(|w| telling(w.end_negative) && !telling(w.end_positive));
     if below { negative } else { positive }
 }
 
 /// Both frames of an end, ready to be played, and buttons for all ends.
-fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Option<Markup> {
+fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
     let films = &beside.films;
     let (shown, linked): (Vec<&Film>, Vec<&Film>) =
         films.iter().partition(|film| film.data.is_some());
-    let named = answer.named()?;
-    let other = answer.verdict.finger().filter(|design| **design != named.design);
-    (!films.is_empty()).then(|| {
-        html! {
+    html! {
+        @if !films.is_empty() {
             div.films {
                 // What a film holds came from a file: it runs its script, and reaches nothing else.
-                iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
-                p #caption.muted { @if let Some(film) = shown.first() { (caption(film, tasks)) } }
-                @if other.is_some() {
-                    p.muted { "Shown is " (finger(&named.design)) ", the best by simulation alone." }
+                @if let Some(film) = shown.first() {
+                    iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
+                    p #caption.muted { (caption(film, tasks)) }
                 }
                 p.files {
                     @for (at, film) in shown.iter().enumerate() {
@@ -129,7 +139,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Option<Mark
                 script { (PreEscaped(include_str!("films.js"))) }
             }
         }
-    })
+    }
 }
 
 fn label(answer: &Answer, film: &Film) -> String {

@@ -28,6 +28,7 @@ const SAID: [&str; 9] = [
 /// What decided the results, how to read them, and how to make them again; folded.
 pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     let found = answer.recommended.iter().flat_map(|found| lines::recommended(answer, found));
+    let found = found.filter(|_| answer.verdict.finger().is_some());
     let more: Vec<_> = found.filter(|(name, _)| !SAID.contains(&name.as_str())).collect();
     html! {
         details {

@@ -10,7 +10,7 @@ use insertion::trial::record::Frame;
 use serde_json::{Value, json};
 
 /// Time between two frames of a page, s, unless there would be too many.
-const INTERVAL: f64 = 4e-3;
+const INTERVAL: f64 = 6e-3;
 const MOST: f64 = 500.0;
 /// Height of the jaws above the grasp point, mm: for the eye.
 const JAW_MM: f64 = 45.0;

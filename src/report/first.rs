@@ -6,7 +6,7 @@ use super::page::{Beside, Film};
 use super::printer::{self, recommended};
 use super::replay::{ENDS, pair_file};
 use super::{bar, explore};
-use crate::answer::words::{finger, outcome, remedy};
+use crate::answer::words::{design, finger, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
 use crate::study::StudyRecord;
 use finray::export::sheet;
@@ -27,6 +27,7 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
                 (expectation(answer)) ". "
                 @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
             }
+            @if matches!(answer.verdict, Verdict::NoneFeasible) { p.warn { (none(answer)) } }
             @for (_, text) in lines::caveats(answer) { p.warn { (text) } }
         }
         div.first {
@@ -39,6 +40,19 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
             }
         }
         div.next { h2 { "Next: " (why) } pre { code { (command) } } }
+    }
+}
+
+/// Why no design is named.
+fn none(answer: &Answer) -> String {
+    match &answer.nearest {
+        None => format!("None of {} evaluations gave a value.", answer.designs),
+        Some((nearest, constraints)) => format!(
+            "Evaluation {} ({}) violates them least: {}.",
+            nearest.index,
+            design(&nearest.design),
+            constraints.join("; ")
+        ),
     }
 }
 

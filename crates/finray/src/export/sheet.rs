@@ -143,7 +143,7 @@ fn direction(geometry: &Geometry, view: View) -> Markup {
             (line(from, end(design)))
         }
         g fill="#a40" font-size="4" {
-            (label(0.0))
+            @if design == 0.0 || design.abs() > 8.0 { (label(0.0)) }
             @if design != 0.0 { (label(design)) }
         }
     }

@@ -4,13 +4,15 @@
     scripts/check_pages.py target/debug/optimize
 
 A small study and a recorded trial, whose space, robot and phase have names that would do harm if
-a page let them; light and dark, desktop and phone. No word on the console, no request, nothing
-wider than the screen; hover, click, keys, film. Ends with an error at the first thing that is
-not so. Needs Chromium; nothing is fetched.
+a page let them, a study of thousands of designs and one in which nothing inserts; light and dark,
+desktop and phone. No word on the console, no request, nothing wider than the screen; what a first
+screen must have; contrast and size of the text; hover, click, keys, film. Ends with an error at the
+first thing that is not so. Needs Chromium; nothing is fetched.
 """
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 from browser import Browser
@@ -44,9 +46,22 @@ def make(program, folder):
     run("trial", "--task", task, "--robot", robot, "--density", 20, "--direction", 10, "--record", replay)
     # Where a study keeps its films; the fake engine makes none.
     (study / "replay").mkdir(exist_ok=True)
-    (study / "replay" / "1-positive.html").write_bytes(replay.read_bytes())
+    for end in ["positive", "negative"]:
+        (study / "replay" / f"1-{end}.html").write_bytes(replay.read_bytes())
     run("report", study)
-    return study / "report.html", replay
+    many = folder / "many"
+    fine = (ROOT / "spaces/infill.toml").read_text().replace("step = 1.0", "step = 0.25").replace("step = 1\n", "step = 0.25\n")
+    (folder / "fine.toml").write_text(fine)
+    run("--task", "usb", "--space", folder / "fine.toml", "--engine", "fake", "--optimizer", "sobol", "--budget", 5000,
+        "--no-confirm", "--no-cache", "--quiet", "--out", many)
+    tight = (ROOT / "tasks/usb.toml").read_text().replace("7.49", "5.90").replace("7.51", "5.90")
+    (folder / "tight.toml").write_text(tight)
+    stuck = subprocess.run([program, "--task", folder / "tight.toml", "--budget", "4", "--no-cache", "--quiet", "--out", folder / "stuck"],
+                           capture_output=True, check=False)
+    check(stuck.returncode == 1, "a study in which nothing inserts ends without an error")
+    compared = folder / "compare.html"
+    run("compare", study, "--html", compared)
+    return study / "report.html", replay, many / "report.html", folder / "stuck/report.html", compared
 
 
 def check(holds, what):
@@ -73,28 +88,72 @@ def surface(page, where):
     page.hover("#surface .mark:not(.best) .core")
     tip = page.js('document.querySelector("#tip").hidden ? "" : document.querySelector("#tip").textContent')
     check("evaluation" in tip and "infill density" in tip, f"{where}: hover says {tip!r}")
-    page.click("#bars .mark:not(.best)")
-    chosen = page.js('document.querySelector("#selected").textContent')
-    check("(recommended)" not in chosen and page.js('document.querySelectorAll(".chosen").length') >= 3,
-          f"{where}: a click on a bar chose {chosen!r}")
+    selected = 'document.querySelector("#selected").textContent'
+    page.click("#designs tbody tr:nth-child(3) td")
+    chosen = page.js(selected)
+    check("(recommended)" not in chosen and "optimize trial" in chosen and page.js('document.querySelectorAll(".chosen").length') == 2,
+          f"{where}: a click on a line chose {chosen!r}")
     page.js('document.querySelector("#explore").focus()')
     page.key("ArrowRight", 39)
-    check(page.js('document.querySelector("#selected").textContent') != chosen, f"{where}: the arrow key chose nothing")
+    check(page.js(selected) != chosen, f"{where}: the arrow key chose nothing")
+    page.click("#selected .card:last-child button:last-child")
+    page.click("#designs tbody tr:nth-child(2) td")
+    check(page.js('document.querySelectorAll("#selected .card").length') == 2, f"{where}: two are not compared")
+    colours = '[...document.querySelectorAll("#surface rect")].map((cell) => cell.getAttribute("fill")).join()'
+    mean = page.js(colours)
+    page.click("#shown input[value=sd]")
+    check(page.js(colours) != mean, f"{where}: the deviation is not shown")
+    check(page.js('document.querySelectorAll("#scale line").length') >= 3, f"{where}: the scale has no ticks")
+    first = 'document.querySelector("#designs tbody tr:nth-child(2)").textContent'
+    before = page.js(first)
+    page.click("#designs th:nth-child(2) button")
+    page.click("#designs th:nth-child(2) button")
+    check(page.js(first) != before, f"{where}: the table is not sorted")
+
+
+# Whether all of an element is on the screen as it opens.
+SEEN = """(selector) => { const e = document.querySelector(selector); if (!e) return false;
+  const b = e.getBoundingClientRect(); return b.width > 0 && b.top + scrollY >= 0 && b.bottom + scrollY <= innerHeight; }"""
+# The least contrast of what is read outside of pictures, and what has it.
+FAINT = f"""(() => {{ const contrast = {CONTRAST};
+  const under = (e) => {{ for (; e; e = e.parentElement) {{ const c = getComputedStyle(e).backgroundColor;
+      if (/^rgb\\(/.test(c)) return c; }} return "rgb(255, 255, 255)"; }};
+  const own = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+  return [...document.querySelectorAll("body *:not(script):not(style)")].filter((e) => own(e) && !e.closest("svg") && e.getClientRects().length)
+    .map((e) => [contrast(getComputedStyle(e).color, under(e)), e.textContent.slice(0, 40)]).sort((a, b) => a[0] - b[0])[0]; }})()"""
+# The smallest text as it is seen, px.
+SMALL = """(() => { const own = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+  const size = (e) => { const px = parseFloat(getComputedStyle(e).fontSize), svg = e.closest("svg");
+    return svg ? px * svg.getBoundingClientRect().width / svg.viewBox.baseVal.width : px; };
+  return [...document.querySelectorAll("body *:not(script):not(style)")].filter((e) => own(e) && e.getClientRects().length && getComputedStyle(e).display !== "none")
+    .map((e) => [size(e), e.textContent.slice(0, 40)]).sort((a, b) => a[0] - b[0])[0]; })()"""
+
+
+def legible(page, where, width):
+    """Text stands out, and is large enough on a phone."""
+    faint, what = page.js(FAINT)
+    check(faint >= 4.5, f"{where}: {what!r} has a contrast of {faint:.2f} to 1")
+    small, what = page.js(SMALL)
+    check(width > 390 or small >= 11.95, f"{where}: {what!r} is {small:.1f} px high")
+
+
+def opens(page, where, parts):
+    """A first screen without scrolling has these parts."""
+    for part in parts:
+        check(page.js(f"({SEEN})({part!r})"), f"{where}: {part} is not on the first screen")
 
 
 def film(page, where):
-    """Opens in a frame that reaches nothing outside, and closes by its button and by Escape."""
+    """Stands at its end in a frame that reaches nothing outside, and plays after one click."""
     check(page.js('document.querySelector("#film").sandbox.value') == "allow-scripts", f"{where}: the frame is open")
-    page.click("button[data-film]")
-    page.wait('"ready" in document.querySelector("#player").dataset')
+    state = 'document.querySelector("#film").dataset.state'
+    page.wait(f'{state} === "ready"')
     check(page.js('document.querySelector("#film").contentDocument') is None, f"{where}: the film reaches the page")
-    page.rest()
-    page.key("Escape", 27)
-    page.wait('!document.querySelector("#player").open')
     page.click("button[data-film]")
-    page.wait('document.querySelector("#player").open')
-    page.click("#close")
-    check(not page.js('document.querySelector("#player").open'), f"{where}: the film does not close")
+    page.wait(f'{state} === "playing"')
+    page.click("button[data-film='1']")
+    page.wait(f'{state} === "playing" && document.querySelector("button[data-film=\'1\'").ariaPressed === "true"')
+    page.rest()
 
 
 def play(page, where):
@@ -124,20 +183,41 @@ def scrub(page, where):
 
 def main(program):
     with tempfile.TemporaryDirectory() as folder, Browser() as browser:
-        report, replay = make(program, Path(folder))
+        report, replay, many, stuck, compared = make(program, Path(folder))
         for dark in [False, True]:
             for width in [1280, 390]:
                 where = f"{'dark' if dark else 'light'}, {width} px"
                 page = browser.open(report, width, 900, dark)
-                surface(page, f"report, {where}")
+                if width == 1280:
+                    opens(page, f"report, {where}", ["h1", ".trust", "#film", ".finger svg", ".next code"])
                 film(page, f"report, {where}")
+                surface(page, f"report, {where}")
+                legible(page, f"report, {where}", width)
                 whole(page, f"report, {where}")
+                page.close()
+                page = browser.open(stuck, width, 900, dark)
+                if width == 1280:
+                    opens(page, f"stuck, {where}", ["h1", "img", ".next code"])
+                said = page.js("document.body.textContent")
+                check("No finger inserts" in said and "class" in said and "finger.stl" not in said, f"stuck, {where}: {said[:200]}")
+                legible(page, f"stuck, {where}", width)
+                whole(page, f"stuck, {where}")
+                page.close()
+                page = browser.open(compared, width, 900, dark)
+                legible(page, f"compare, {where}", width)
+                whole(page, f"compare, {where}")
                 page.close()
                 page = browser.open(replay, width, 900, dark)
                 play(page, f"replay, {where}")
                 scrub(page, f"replay, {where}")
                 whole(page, f"replay, {where}")
                 page.close()
+        size, began = many.stat().st_size, time.monotonic()
+        page = browser.open(many)
+        took = time.monotonic() - began
+        whole(page, "many designs")
+        check(size < 1_000_000 and took < 2, f"many designs: {size} bytes, {took:.1f} s")
+        page.close()
     print("the pages are whole: light and dark, desktop and phone")
 
 

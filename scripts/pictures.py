@@ -15,12 +15,14 @@ MOMENT = 1.17
 def main(report, film, folder):
     folder = Path(folder)
     with Browser() as browser:
-        page = browser.open(report, 1280, 800)
+        page = browser.open(report, 1280, 900)
+        page.wait('document.querySelector("#film").dataset.state')
         page.picture(folder / "report.png")
-        box = page.js("""(() => { const box = document.querySelector(".views").getBoundingClientRect();
+        box = page.js("""(() => { const box = document.querySelector("#explore").getBoundingClientRect();
             return [box.x, box.y + scrollY, box.width, box.height]; })()""")
         page.picture(folder / "report-designs.png", clip=box, scale=0.7)
         page = browser.open(report, 390, 844)
+        page.wait('document.querySelector("#film").dataset.state')
         page.picture(folder / "report-phone.png")
         page = browser.open(film, 1280, 760)
         page.js(f"""(() => {{ const time = document.querySelector("#time"); time.value = {MOMENT};

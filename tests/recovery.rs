@@ -58,7 +58,7 @@ fn measurements_taken_when_the_budget_is_spent_are_kept() {
     let dir = dir.to_str().expect("a path in UTF-8");
     assert_eq!(answer(&optimize(&["resume", dir, "--quiet", "--json"])), after);
     optimize(&["report", dir]).succeeds();
-    assert!(read(&folder.dir("a").join("report.html")).contains("Best on the bench"));
+    assert!(read(&folder.dir("a").join("report.html")).contains("Predicted for the bench"));
     let title = optimize(&["export", "finger", dir, "--format", "dxf", "--out", "/dev/null"]);
     let density = after["recommended"]["values"]["infill_density_percent"].to_string();
     let density = density.trim_end_matches(".0").to_owned();

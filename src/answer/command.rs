@@ -72,26 +72,9 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
 pub fn again(record: &StudyRecord) -> Vec<String> {
     let config = &record.config;
     let named = Named { record, dir: Path::new("") };
-    let provenance = named.provenance();
-    let tasks = named.tasks();
+    let mut words = vec!["optimize".to_owned(), format!("--task {}", named.tasks())];
+    words.extend(setup(&named));
     let named = |role: &str, shipped| named.input(role, shipped);
-    let mut words = vec![
-        "optimize".to_owned(),
-        format!("--task {tasks}"),
-        format!("--space {}", named("space", SPACES)),
-        format!("--robot {}", named("robot", ROBOTS)),
-    ];
-    if name(provenance, "stiffness", STIFFNESS).is_none() {
-        words.push(format!("--stiffness-data {}", named("stiffness", &[])));
-    }
-    words.push(format!("--finger-model {}", config.finger_model.name()));
-    if provenance.input_sha256.contains_key(FINGER) {
-        words.push(format!("--finger {}", named(FINGER, FINGERS)));
-    }
-    let engine = &provenance.engine.name;
-    if engine != EngineKind::Direct.name() {
-        words.push(format!("--engine {engine}"));
-    }
     words.push(format!("--optimizer {}", config.optimizer));
     words.push(format!("--objective {}", config.objective));
     words.extend(config.constraints.iter().map(|limit| format!("--constraint '{limit}'")));
@@ -112,6 +95,40 @@ pub fn again(record: &StudyRecord) -> Vec<String> {
     words.push(format!("--batch {}", config.batch));
     if config.asynchronous {
         words.push("--async".to_owned());
+    }
+    words
+}
+
+/// The command of a trial of the first task, up to the design and the offset; `dir` is the study's
+/// folder.
+pub fn trial(record: &StudyRecord, dir: &Path) -> String {
+    let named = Named { record, dir };
+    let mut words =
+        vec!["optimize trial".to_owned(), format!("--task {}", named.input("task_1", TASKS))];
+    words.extend(setup(&named).into_iter().filter(|word| !USUAL.contains(&word.as_str())));
+    words.join(" ")
+}
+
+/// Options of a trial that need not be given.
+const USUAL: [&str; 2] = ["--space infill", "--robot servo"];
+
+/// Options from the space to the engine.
+fn setup(named: &Named) -> Vec<String> {
+    let provenance = named.provenance();
+    let mut words = vec![
+        format!("--space {}", named.input("space", SPACES)),
+        format!("--robot {}", named.input("robot", ROBOTS)),
+    ];
+    if name(provenance, "stiffness", STIFFNESS).is_none() {
+        words.push(format!("--stiffness-data {}", named.input("stiffness", &[])));
+    }
+    words.push(format!("--finger-model {}", named.record.config.finger_model.name()));
+    if provenance.input_sha256.contains_key(FINGER) {
+        words.push(format!("--finger {}", named.input(FINGER, FINGERS)));
+    }
+    let engine = &provenance.engine.name;
+    if engine != EngineKind::Direct.name() {
+        words.push(format!("--engine {engine}"));
     }
     words
 }

@@ -25,8 +25,8 @@ pub fn brief(answer: &Answer) -> Vec<Line> {
     let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
     let simulated = one.filter(|_| answer.front.is_none() && record.on_bench.is_none());
     let mut lines: Vec<Line> = record.on_bench.iter().flat_map(measured).collect();
+    lines.extend(caveats(answer));
     if let Some(found) = simulated {
-        lines.extend(found.start.and_then(|start| start.advice()).map(|text| line("start", text)));
         for task in &found.tasks {
             let window = &task.measured.window;
             let [below, above] = [window.end_negative, window.end_positive].map(words::end);
@@ -37,8 +37,7 @@ pub fn brief(answer: &Answer) -> Vec<Line> {
         lines.extend(limits.map(|(measure, said)| line("constraint", format!("{measure} {said}"))));
         lines.extend(found.as_good.as_ref().map(|as_good| within(answer, as_good)));
         lines.extend(found.as_good.as_ref().and_then(safe));
-        lines.extend(answer.spread_mm.map(|spread| line("infill", moves(answer, spread))));
-        lines.extend(extrapolated(found));
+        lines.extend(moves(answer).map(|text| line("infill", text)));
     }
     lines.extend(answer.front.iter().flat_map(|front| members(record, front)));
     lines.push(line("searched", searched(answer)));
@@ -68,8 +67,18 @@ fn members(record: &StudyRecord, front: &Front) -> Vec<Line> {
 /// Designs of a front that are told.
 const MEMBERS: usize = 4;
 
+/// What is to be mended or known before the finger is printed.
+pub fn caveats(answer: &Answer) -> Vec<Line> {
+    let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
+    let simulated = one.filter(|_| answer.front.is_none() && answer.record.on_bench.is_none());
+    let advice = simulated.and_then(|found| found.start?.advice()).map(|text| line("start", text));
+    let bench = answer.record.on_bench.iter().flat_map(|bench| &bench.warnings);
+    let warnings = bench.map(|words| line("warning", words));
+    advice.into_iter().chain(simulated.and_then(extrapolated)).chain(warnings).collect()
+}
+
 /// How the finger was searched for.
-fn searched(answer: &Answer) -> String {
+pub fn searched(answer: &Answer) -> String {
     let record = answer.record;
     let (task, method) = (record.config.task_name(), record.config.method());
     match record.settled {
@@ -96,7 +105,7 @@ pub fn within(answer: &Answer, as_good: &AsGood) -> Line {
 const NAMED: usize = 4;
 
 /// The safe choice, if it is another than the recommended one.
-fn safe(as_good: &AsGood) -> Option<Line> {
+pub fn safe(as_good: &AsGood) -> Option<Line> {
     let safe = as_good.safe.as_ref()?;
     let why = match (safe.measured_mm, safe.force_n) {
         (Some(measured_mm), _) => format!("a robot measured {}", mm(measured_mm)),
@@ -108,8 +117,9 @@ fn safe(as_good: &AsGood) -> Option<Line> {
 }
 
 /// How much the parameters of the space move the range.
-fn moves(answer: &Answer, spread: [f64; 2]) -> String {
-    format!("moves the searched range from {} over {} designs", interval(spread), answer.designs)
+pub fn moves(answer: &Answer) -> Option<String> {
+    let spread = interval(answer.spread_mm?);
+    Some(format!("moves the searched range from {spread} over {} designs", answer.designs))
 }
 
 fn extrapolated(found: &Recommended) -> Option<Line> {
@@ -254,8 +264,7 @@ fn measured(found: &OnBench) -> Vec<Line> {
         let [percent, of] = [100.0 * best.probability_best, found.fingers as f64];
         line("chance", format!("{percent:.0} % to be the best of all {of} fingers"))
     });
-    let warnings = found.warnings.iter().map(|words| line("warning", words));
-    chance.into_iter().chain(simulated(found)).chain(warnings).collect()
+    chance.into_iter().chain(simulated(found)).collect()
 }
 
 /// The finger that is the best on the bench, as simulated.

@@ -12,8 +12,10 @@ pub mod words;
 
 use crate::calibration::order::{Order, order_on_bench};
 use crate::study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
+use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::Firm;
+use insertion::space::Design;
 
 pub use alike::{AsGood, Safe, Spread};
 pub use recommended::{OnTask, Recommended};
@@ -50,6 +52,9 @@ pub struct Answer<'a> {
     pub front: Option<Front<'a>>,
     /// The smallest and the largest range of the designs, mm; `None` if none has a range.
     pub spread_mm: Option<[f64; 2]>,
+    /// The fingers that were measured on a robot: those given to the study, else the published ones;
+    /// none of several tasks.
+    pub measured: Vec<Measured>,
     /// How our simulation orders fingers on the bench, for the tasks of which that is known.
     pub orders: Vec<(&'a str, Order)>,
 }
@@ -93,9 +98,10 @@ impl<'a> Answer<'a> {
             walked: record.walked.iter().map(walked).collect(),
             front: config.objective.single().is_none().then(front),
             spread_mm: record.spread_mm(),
+            measured,
             orders: config.tasks().enumerate().filter_map(order).collect(),
         };
-        answer.verdict = Verdict::of(&answer, &measured);
+        answer.verdict = Verdict::of(&answer, &answer.measured);
         answer.trust = Trust::of(record, answer.named());
         answer
     }
@@ -108,6 +114,16 @@ impl<'a> Answer<'a> {
             (Verdict::NothingInserts { .. } | Verdict::NoneFeasible, _) => None,
             (Verdict::Any { .. }, Some(AsGood { safe: Some(safe), .. })) => Some(safe.design),
             _ => Some(found.design),
+        }
+    }
+
+    /// The finger that the verdict names, and what simulation finds of it on each task; `None` if it
+    /// names none.
+    pub fn shown(&self) -> Option<(&'a Design, Vec<&'a Evaluation>)> {
+        let finger = self.verdict.finger()?;
+        match &self.record.on_bench {
+            Some(bench) => Some((finger, vec![&bench.simulated])),
+            None => self.named().map(|named| (finger, named.tasks())),
         }
     }
 }

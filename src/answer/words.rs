@@ -4,7 +4,7 @@ use crate::study::{Recorded, StudyRecord};
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
 use insertion::evaluation::{RobustRange, SuccessRate, Window};
-use insertion::outcome::Outcome;
+use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, label};
 use insertion::surrogate::Estimate;
 
@@ -55,6 +55,25 @@ pub fn number(value: f64, decimals: usize, unit: &str) -> String {
 pub fn outcome(outcome: Outcome) -> String {
     let class = outcome.failure().map_or(String::new(), |number| format!(" (class {number})"));
     format!("{}{class}", outcome.label())
+}
+
+/// What to change where the nominal start already ends so, in a sentence without its full stop.
+pub fn remedy(nominal: Outcome) -> &'static str {
+    match nominal {
+        Outcome::Failed(FailureClass::ContactLossBeforeSearch) => {
+            "Check the grip's force and friction, and that the start is clear of the socket"
+        }
+        Outcome::Failed(FailureClass::PlugMissed) => {
+            "Check the task's start and the strokes of its search: the plug never meets the opening"
+        }
+        Outcome::Failed(FailureClass::Jammed) => {
+            "Check the clearance of plug and socket, the strokes, and the finger's remote centre"
+        }
+        Outcome::Failed(FailureClass::ContactLossInInsertion) => {
+            "Check the grip's force and friction against the force that the insertion needs"
+        }
+        Outcome::Diverged | Outcome::Inserted => "Check the task's masses, shapes and strokes",
+    }
 }
 
 /// End of a window at one side.

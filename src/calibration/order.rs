@@ -91,19 +91,6 @@ pub fn errors_percent() -> [f64; 2] {
     errors.fold([f64::INFINITY, 0.0], |[least, most], error| [least.min(error), most.max(error)])
 }
 
-/// Spearman's rank correlation between published simulation and bench, and its number of designs.
-pub fn rank_correlation(task: &str) -> Option<(f64, usize)> {
-    let bench = of_task(task, Origin::Bench);
-    let pairs: Vec<(f64, f64)> = of_task(task, Origin::Simulation)
-        .iter()
-        .filter_map(|a| {
-            let b = bench.iter().find(|b| b.design == a.design)?;
-            Some((a.tolerable_range_mm?, b.tolerable_range_mm?))
-        })
-        .collect();
-    Some((spearman(&pairs)?, pairs.len()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,7 +1,7 @@
 //! `optimize compare DIR..`: studies of the same problem side by side.
 
 use super::{Failure, print, print_json};
-use crate::report::compare::{Comparison, TOLERANCE_MM, compare, svg};
+use crate::report::compare::{Comparison, TOLERANCE_MM, compare, page, svg};
 use crate::study::{StudyRecord, write_file};
 use clap::Args;
 use serde_json::json;
@@ -16,6 +16,9 @@ pub struct Arguments {
     /// Draw the best so far of each optimizer
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
+    /// Write table and picture as a page
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -27,6 +30,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let comparison = compare(&studies).map_err(Failure::usage)?;
     if let Some(file) = &arguments.svg {
         write_file(file, &svg(&comparison)?)?;
+    }
+    if let Some(file) = &arguments.html {
+        write_file(file, &page(&comparison)?)?;
     }
     if arguments.json {
         return print_json(&json!(comparison));

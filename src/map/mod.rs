@@ -87,6 +87,16 @@ impl CaptureMap {
         places.par_iter().map(|row| row.par_iter().map(mark).collect()).collect()
     }
 
+    /// What it shows, in a sentence.
+    pub fn caption(&self) -> String {
+        let [first, second] = self.axes.each_ref().map(|axis| &axis.name);
+        let (area, unit) = (self.area, self.area_unit.replace('2', "²"));
+        format!(
+            "Capture range over errors of the start in {first} and {second}: {area:.1} {unit} insert, by {} trials",
+            self.trials
+        )
+    }
+
     /// Smallest and largest value of an axis, 0 or 1, at which anything inserts; in its unit.
     pub fn ends(&self, axis: usize) -> Option<[f64; 2]> {
         let row = |row: &Vec<Mark>| row.iter().any(|mark| mark.0 == Outcome::Inserted);

@@ -1,7 +1,6 @@
-//! Predictions of the fingers on the bench: what a study with measurements leads with.
+//! Predictions of the fingers on the bench.
 
-use super::elements::{definitions, table};
-use crate::answer::lines;
+use super::elements::table;
 use crate::answer::words::{infill, interval, mm};
 use crate::study::{BenchFinger, OnBench, StudyRecord};
 use insertion::outcome::FailureClass;
@@ -13,16 +12,12 @@ const TABLE: &str = "bench_predictions.csv";
 /// The section; `None` without measurements.
 pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let found = record.on_bench.as_ref()?;
-    let best = found.best.first()?;
     Some(html! {
-        p.big { (infill(&best.design)) }
-        (definitions(&lines::on_bench(found)))
-        p { a href=(TABLE) { "table of all predicted fingers" } }
         (table(
             &["finger", "range on the bench", "80 % interval", "is the best", "fails below | above"],
             &found.best.iter().map(row).collect::<Vec<_>>(),
         ))
-        p { (how(found)) }
+        p { (how(found)) " " a href=(TABLE) { "All predicted fingers" } "." }
     })
 }
 
@@ -43,8 +38,7 @@ fn how(found: &OnBench) -> String {
     format!(
         "From {simulations} simulations under drawn friction, preload, robot and print, and the \
          measurements; the Gaussian process that stands in for the simulator misses fresh ones by \
-         {:.2} mm. The search below did not know the measurements: it looked for the widest simulated \
-         window.",
+         {:.2} mm. The search did not know the measurements: it looked for the widest simulated window.",
         found.trust.emulator_error_mm
     )
 }

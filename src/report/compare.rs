@@ -3,10 +3,12 @@
 use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, legend, message, sheet};
 use super::convergence::best_so_far;
+use super::elements::{document, figure, table};
 use super::marks::{line, stairs};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
 use crate::study::{StudyConfig, StudyRecord};
 use insertion::evaluation::objective::{Aggregate, Constraint};
+use maud::html;
 use plotters::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -180,6 +182,49 @@ fn curve(record: &StudyRecord) -> Vec<f64> {
     let none = record.evaluations.len() - known.len();
     let values = known.into_iter().map(|(_, value)| value);
     std::iter::repeat_n(f64::NEG_INFINITY, none).chain(values).collect()
+}
+
+/// The comparison as a page that opens offline: who gets there first, the table, and the courses.
+pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
+    let Comparison { task, objective, best_known_mm, target_mm, groups } = comparison;
+    let number = |n: Option<f64>| n.map_or("–".to_owned(), |n| format!("{n:.1}"));
+    let late =
+        |group: &&OptimizerGroup| group.evaluations_to_target.median.unwrap_or(f64::INFINITY);
+    let mut groups: Vec<&OptimizerGroup> = groups.iter().collect();
+    groups.sort_by(|a, b| late(a).total_cmp(&late(b)));
+    let finding = groups.first().filter(|first| late(first).is_finite()).map_or(
+        format!("No optimizer reaches {target_mm:.1} mm in half of its studies"),
+        |first| {
+            let median = number(first.evaluations_to_target.median);
+            format!(
+                "{} reaches {target_mm:.1} mm first: after {median} evaluations",
+                first.optimizer
+            )
+        },
+    );
+    let row = |group: &&OptimizerGroup| {
+        let (batch, studies) = (group.batch.to_string(), group.studies.to_string());
+        let mut row = vec![group.optimizer.clone(), batch, studies, group.reached.to_string()];
+        row.extend(group.evaluations_to_target.all().map(number));
+        row
+    };
+    let head = ["optimizer", "batch", "studies", "reached", "25 %", "median", "75 %"];
+    let caption = "Best so far: the median as a line, the quartiles as a band.";
+    let body = html! {
+        main {
+            header {
+                p.muted { (task) ", " (objective) }
+                h1 { (finding) }
+                p.lead {
+                    "Best known " (format!("{best_known_mm:.1}")) " mm; evaluations are counted up to \
+                    " (TOLERANCE_MM) " mm below it."
+                }
+            }
+            section { h2 { "Evaluations" } (table(&head, &groups.iter().map(row).collect::<Vec<_>>())) }
+            section { h2 { "Course" } (figure(&svg(comparison)?, "best so far by optimizer", caption)) }
+        }
+    };
+    Ok(document(&format!("{task}: optimizers compared"), body))
 }
 
 const COLOURS: [Colour; 6] = [BLUE, ORANGE, GREEN, RED, MUTED, INK];

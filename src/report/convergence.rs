@@ -2,11 +2,11 @@
 
 use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
-use super::drawn::{drawn, turning};
+use super::drawn::{PLOTTED, drawn, note, turning};
 use super::elements::figure;
-use super::marks::{PointMark, line, points, stairs};
-use super::theme::{BLUE, MUTED, ORANGE, RED};
-use crate::answer::words::volume_unit;
+use super::marks::{PointMark, dashed, line, points, stairs};
+use super::theme::{BLUE, GREEN, MUTED, ORANGE, RED};
+use crate::answer::words::{settled, volume_unit};
 use crate::study::{Recorded, StudyRecord, volume};
 use insertion::evaluation::objective::Measure;
 use maud::Markup;
@@ -30,7 +30,13 @@ pub(super) fn section(record: &StudyRecord, size: (u32, u32)) -> Result<Markup, 
              front."
         }
     };
-    Ok(figure(&svg(record, size)?, "best value against evaluations", caption))
+    let settled = record.settled.then(|| format!(" Settled {}.", settled(record)));
+    let confirmed = (!record.walked.is_empty() && record.config.objective.single().is_some())
+        .then_some(" Confirmed: walked step by step.");
+    let note = note(record).map(|note| format!(" {note}"));
+    let more = [settled, confirmed.map(str::to_owned), note].into_iter().flatten();
+    let caption = more.fold(caption.to_owned(), |caption, more| caption + &more);
+    Ok(figure(&svg(record, size)?, "best value against evaluations", &caption))
 }
 
 /// Best value of a design that keeps all constraints after each evaluation, from the first
@@ -56,16 +62,20 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     let count = record.evaluations.len();
     let objectives = &record.config.objective;
     let best = best_so_far(record);
+    let at = |r: &Recorded| Some((r.index as f64, r.value()?));
     // The values of one of several objectives have no place beside a volume.
     let values: Vec<f64> = match objectives.single() {
         Some(_) => record.evaluations.iter().filter_map(Recorded::value).collect(),
         None => best.iter().map(|b| b.1).collect(),
     };
-    let mut range = around(values.iter().copied().chain([0.0]), 0.12);
+    let confirmed: Vec<(f64, f64)> =
+        record.walked.iter().filter_map(|walked| at(&walked.recorded)).collect();
+    let shown = values.iter().chain(confirmed.iter().map(|(_, value)| value));
+    let mut range = around(shown.copied().chain([0.0]), 0.12);
     if values.iter().all(|&value| value >= 0.0) {
         range.start = range.start.max(-0.02 * range.end);
     }
-    let bottom = range.start.max(0.0);
+    let (bottom, top) = (range.start.max(0.0), range.end);
     let last = count.max(2) as f64 - 1.0;
     let x = ("evaluation", -0.02 * last..1.02 * last);
     let (label, name) = match objectives.single() {
@@ -78,10 +88,12 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
         let note = Text::new("no evaluations yet", (0.5, 0.5), style);
         return chart.draw_series([note]).map(|_| ()).map_err(message);
     }
-    let at = |r: &Recorded| Some((r.index as f64, r.value()?));
+    if record.settled {
+        dashed(&mut chart, [bottom, top].map(|value| (last, value)))?;
+    }
     if objectives.single().is_some() {
         let (raced, full): (Vec<&Recorded>, Vec<&Recorded>) =
-            drawn(record, &record.evaluations).into_iter().partition(|r| r.raced());
+            drawn(record, &record.evaluations, PLOTTED).into_iter().partition(|r| r.raced());
         let bounds = raced.into_iter().filter_map(at);
         points(&mut chart, bounds, PointMark::ring(BLUE, 3, 1), "at most (raced)")?;
         let (inside, outside): (Vec<&Recorded>, Vec<&Recorded>) =
@@ -90,8 +102,10 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
             (inside.into_iter().filter_map(at), outside.into_iter().filter_map(at));
         points(&mut chart, inside, PointMark::dot(BLUE, 3), "each evaluation")?;
         points(&mut chart, outside, PointMark::ring(MUTED, 3, 1), "violates a constraint")?;
+        points(&mut chart, confirmed, PointMark::disc(GREEN, 5), "confirmed")?;
     }
-    let lost = drawn(record, &record.evaluations).into_iter().filter(|r| r.score.is_none());
+    let lost =
+        drawn(record, &record.evaluations, PLOTTED).into_iter().filter(|r| r.score.is_none());
     let lost = lost.map(|r| (r.index as f64, bottom));
     points(&mut chart, lost, PointMark::cross(RED, 4), "no value")?;
     line(&mut chart, stairs(turning(best)), ORANGE.rgb().stroke_width(3), name)?;

@@ -1,10 +1,20 @@
 //! Building blocks of the page's sections.
 
-use super::theme::inline;
+use super::theme::{inline, variables};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A page that fetches nothing.
-pub(super) fn document(title: &str, style: &str, body: Markup) -> String {
+pub(super) fn document(title: &str, body: Markup) -> String {
+    let (light, dark) = (variables(false), variables(true));
+    let style = format!(
+        ":root{{color-scheme:light dark;{light}}}\n@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{}",
+        include_str!("style.css")
+    );
+    styled(title, &style, body)
+}
+
+/// The same in a style of its own.
+pub(super) fn styled(title: &str, style: &str, body: Markup) -> String {
     let policy =
         "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
     let page = html! {
@@ -21,6 +31,13 @@ pub(super) fn document(title: &str, style: &str, body: Markup) -> String {
         }
     };
     page.into_string()
+}
+
+/// An SVG from a file as the address of a picture, which runs no script.
+pub(super) fn inert(svg: &str) -> String {
+    let marks = [('%', "%25"), ('#', "%23"), ('<', "%3C"), ('>', "%3E"), ('"', "%22")];
+    let svg = marks.iter().fold(svg.to_owned(), |svg, (mark, code)| svg.replace(*mark, code));
+    format!("data:image/svg+xml,{svg}")
 }
 
 pub(super) fn definitions(pairs: &[(String, String)]) -> Markup {

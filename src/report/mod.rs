@@ -1,36 +1,36 @@
 //! Plots and pages of a study and of the stiffness model: pure functions of
 //! what was measured. Nothing here simulates, and nothing reads or writes files.
 
+mod bar;
 mod bench;
-mod best;
 mod chart;
 pub mod compare;
 mod convergence;
 mod drawn;
 mod elements;
 mod explore;
+mod first;
 mod front;
 pub mod levers;
-mod limits;
 pub mod map;
 mod marks;
 mod page;
 pub mod printer;
 mod provenance;
-mod published;
 pub mod replay;
 pub mod sensitivity;
+mod set;
 mod shape;
 pub mod stiffness;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod theme;
-mod windows;
 
 pub use convergence::svg as convergence_svg;
+pub use first::preferred;
 pub use front::svg as front_svg;
-pub use page::{Beside, card, page};
+pub use page::{Beside, Film, card, page};
 
 /// Why a plot could not be made: the drawing library refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,48 +1,66 @@
 //! `report.html`: one file, a little script of its own, nothing fetched.
 
-use super::elements::document;
-use super::theme::variables;
+use super::elements::{definitions, document, figure};
 use super::{
-    ReportError, bench, best, convergence, drawn, explore, front, limits, printer, provenance,
-    published, shape, windows,
+    ReportError, bench, convergence, explore, first, front, provenance, replay, set, shape,
 };
-use crate::answer::Answer;
-use crate::answer::words::settled;
+use crate::answer::{Answer, expectation, lines};
 use crate::study::StudyRecord;
 use insertion::surrogate::Model;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
+use std::path::PathBuf;
 
 /// Pixels of a plot in the page: narrow, so that its text stays readable when
 /// a phone shrinks it to fit.
-const PLOT: (u32, u32) = (560, 400);
+const PLOT: (u32, u32) = (440, 330);
+/// Bytes of films that a page holds; others it links to.
+const FILMS: usize = 600_000;
 
 /// Files beside the page in the folder of a study.
 #[derive(Debug, Clone, Default)]
 pub struct Beside {
-    /// Its films: what a button says, and the page that plays it.
-    pub replays: Vec<(String, String)>,
-    /// Whether the recommended finger's files for the printer are there.
-    pub printable: bool,
+    /// The folder, as commands name it.
+    pub dir: PathBuf,
+    /// Its films.
+    pub films: Vec<Film>,
+    /// Those of [`printer::FILES`](super::printer::FILES) that are there.
+    pub files: Vec<&'static str>,
+    /// Where nothing inserts, an SVG of the design that comes nearest at the nominal start.
+    pub nominal: Option<String>,
+    /// What moves the window: a sentence, and an SVG.
+    pub levers: Option<(String, String)>,
+    /// Maps of what the window is over two errors: captions and SVGs.
+    pub maps: Vec<(String, String)>,
+}
+
+/// A film at an end of a window.
+#[derive(Debug, Clone)]
+pub struct Film {
+    /// Place of the task.
+    pub task: usize,
+    /// The end, one of [`replay::ENDS`].
+    pub end: &'static str,
+    /// Its recordings as JSON without a `<`; `None` if the page only links to it.
+    pub data: Option<String>,
+}
+
+impl Beside {
+    /// Takes in a film by its page, as long as there is room for it.
+    pub fn add(&mut self, task: usize, end: &'static str, page: &str) {
+        let held: usize = self.films.iter().flat_map(|film| &film.data).map(String::len).sum();
+        let data = replay::data(page).filter(|data| held + data.len() <= FILMS);
+        self.films.push(Film { task, end, data: data.map(str::to_owned) });
+    }
 }
 
 /// The report of a study as a page that opens offline. `model` is the stiffness model of the
-/// study; the map marks the designs it was fitted to.
+/// study.
 pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<String, ReportError> {
-    let (config, title) = (&record.config, title(record));
-    let sections = sections(&Answer::of(record), model, beside)?;
+    let answer = Answer::of(record);
+    let sections = sections(&answer, model, beside)?;
     let body = html! {
         main {
-            header {
-                h1 { (title) }
-                p.muted {
-                    "Robustness of a compliant finger in a connector insertion, by \
-                    contact simulation: " (config.counted(record.evaluations.len())) "."
-                    @if record.settled {
-                        " Settled " (settled(record)) "."
-                    }
-                    @if let Some(note) = drawn::note(record) { " " (note) }
-                }
-            }
+            (first::screen(&answer, beside))
             nav aria-label="contents" {
                 @for (id, title, _) in &sections { a href=(format!("#{id}")) { (title) } }
             }
@@ -51,21 +69,18 @@ pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<Stri
             }
         }
     };
-    Ok(document(&title, &style(), body))
+    Ok(document(&title(record), body))
 }
 
 /// The answer of a study as a piece of a page, for notebooks.
 pub fn card(record: &StudyRecord) -> String {
-    let (config, title) = (&record.config, title(record));
+    let answer = Answer::of(record);
     let card = html! {
         div.finger-opt {
-            h3 { (title) }
-            p { (config.counted(record.evaluations.len())) }
-            @if let Some(bench) = bench::section(record) {
-                (bench)
-                h4 { "By simulation alone" }
-            }
-            (best::section(&Answer::of(record)))
+            h3 { (answer.verdict.headline()) }
+            p { (expectation(&answer)) " (" (answer.trust.label()) ")" }
+            (definitions(&lines::brief(&answer)))
+            p { (title(record)) }
         }
     };
     card.into_string()
@@ -80,68 +95,25 @@ type Section = (&'static str, String, Markup);
 /// Id, title and body of each section; what does not apply is left out.
 fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Section>, ReportError> {
     let record = answer.record;
-    let windows = each_task(record, |task| windows::section(record, task));
-    let published = each_task(record, |task| published::section(record, task));
-    let section = |id, title: &str, body| Some((id, title.to_owned(), body));
-    let (best, played) = match record.on_bench {
-        None => ("Best design", "Both ends of its window, played"),
-        Some(_) => ("Best by simulation alone", "Both ends of its simulated window, played"),
+    let section = |id, title: &str, body: Option<Markup>| Some((id, title.to_owned(), body?));
+    let set_title = match record.on_bench {
+        None => "Fingers as good",
+        Some(_) => "As good by simulation alone",
     };
+    let drawn = |(caption, svg): &(String, String)| figure(svg, caption, caption);
+    let maps = (!beside.maps.is_empty())
+        .then(|| html! { div.views { @for map in &beside.maps { (drawn(map)) } } });
     let sections = [
-        bench::section(record).and_then(|bench| section("bench", "Best on the bench", bench)),
-        section("best", best, best::section(answer)),
-        films(&beside.replays).and_then(|films| section("replay", played, films)),
-        explore::section(record).and_then(|views| section("explore-views", "All designs", views)),
-        printer::section(record)
-            .filter(|_| beside.printable)
-            .and_then(|printer| section("printer", "To the printer", printer)),
-        section("windows", "Tolerance windows of the best designs", windows),
-        shape::section(record).and_then(|shape| section("shape", "Beyond the infill alone", shape)),
-        front::section(answer, PLOT)?
-            .and_then(|front| section("front", "Between the objectives", front)),
-        section("published", "Published ranges beside ours", published),
-        section("limits", "What this does not say", limits::section(answer, model)),
-        section("failures", "How the trials ended", provenance::outcomes(record)),
-        section("convergence", "Convergence", convergence::section(record, PLOT)?),
-        section("provenance", "Provenance", provenance::provenance(record)),
+        section("bench", "Predicted for the bench", bench::section(record)),
+        section("set", set_title, set::section(answer)),
+        section("front", "Between the objectives", front::section(answer, PLOT)?),
+        section("shape", "Beyond the infill alone", shape::section(record)),
+        section("levers", "What moves the window", beside.levers.as_ref().map(drawn)),
+        section("maps", "Where it captures", maps),
+        section("explore-views", "All designs", explore::section(answer, &beside.dir)),
+        section("convergence", "Convergence", Some(convergence::section(record, PLOT)?)),
+        section("failures", "How the trials ended", Some(provenance::outcomes(record))),
+        section("provenance", "Provenance", Some(provenance::section(answer, model))),
     ];
     Ok(sections.into_iter().flatten().collect())
-}
-
-/// Buttons that play the films; nothing without films.
-fn films(replays: &[(String, String)]) -> Option<Markup> {
-    (!replays.is_empty()).then(|| {
-        html! {
-            p { "The last start that inserts beside the first that fails:" }
-            @for (i, (label, page)) in replays.iter().enumerate() {
-                button type="button" data-film=(format!("film{i}")) { (label) }
-                script type="application/json" id=(format!("film{i}")) {
-                    (PreEscaped(explore::embedded(&page.as_str().into())))
-                }
-            }
-            dialog #player aria-label="a film of two trials" {
-                button #close type="button" { "Close" }
-                // What a film holds came from a file: it runs its script, and reaches nothing else.
-                iframe #film title="a film of two trials" sandbox="allow-scripts" {}
-            }
-        }
-    })
-}
-
-/// A part for each task, under its name if there are several.
-fn each_task(record: &StudyRecord, part: impl Fn(usize) -> Markup) -> Markup {
-    html! {
-        @for (at, name) in record.config.tasks().enumerate() {
-            @if record.config.several_tasks() { h3 { (name) } }
-            (part(at))
-        }
-    }
-}
-
-fn style() -> String {
-    let (light, dark) = (variables(false), variables(true));
-    format!(
-        ":root{{color-scheme:light dark;{light}}}\n@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{}",
-        include_str!("style.css")
-    )
 }

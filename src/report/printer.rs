@@ -1,30 +1,20 @@
-//! The recommended finger for the printer: links to the two files that the study wrote beside the page.
+//! The recommended finger for the printer: the files that the study wrote beside the page.
 
 use crate::answer::Answer;
 use crate::study::StudyRecord;
-use finray::export::title;
 use finray::geometry::Geometry;
 use input::shipped::FINGERS;
 use insertion::finger::file::FingerFile;
-use maud::{Markup, html};
 
 /// The surface of the recommended finger, in the folder of its study.
 pub const SURFACE: &str = "finger.stl";
+/// The same with its unit.
+pub const THREE_MF: &str = "finger.3mf";
 /// How to print it and how to check the print.
 pub const SHEET: &str = "finger-sheet.html";
-
-/// The section; `None` if nothing is recommended.
-pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
-    let geometry = recommended(record)?;
-    Some(html! {
-        p {
-            a href=(SURFACE) { (SURFACE) } " is " (title(&geometry)) ", with each of its "
-            (geometry.ribs) " ribs; both fingers of a gripper are this part. "
-            a href=(SHEET) { (SHEET) } " says how to print it and how to check the print. "
-            "For other programs and slicers: " code { "optimize export finger" } "."
-        }
-    })
-}
+/// The files with their names for readers.
+pub const FILES: [(&str, &str); 3] =
+    [(SURFACE, SURFACE), (THREE_MF, "3MF"), (SHEET, "print sheet")];
 
 /// The finger file of a study; the shipped one of a study that has none.
 pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {

@@ -1,11 +1,98 @@
 //! How the trials of a study ended, and what decided its results.
 
 use super::elements::{definitions, table};
-use crate::answer::words;
+use crate::answer::{Answer, command, lines, words};
 use crate::study::{Provenance, Recorded, StudyRecord};
 use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::Measure;
 use insertion::outcome::{FailureClass, Outcome};
+use insertion::stiffness::Axis;
+use insertion::surrogate::Model;
 use maud::{Markup, html};
+
+/// Key of the remote centre, where a space has it among its parameters.
+const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
+/// Lines of the recommended finger that stand elsewhere on the page.
+const SAID: [&str; 9] = [
+    "best design",
+    "firm range",
+    "window",
+    "ends",
+    "from its ribs",
+    "as good",
+    "spread",
+    "  softest",
+    "  stiffest",
+];
+
+/// What decided the results, how to read them, and how to make them again; folded.
+pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
+    let found = answer.recommended.iter().flat_map(|found| lines::recommended(answer, found));
+    let found = found.filter(|_| answer.verdict.finger().is_some());
+    let more: Vec<_> = found.filter(|(name, _)| !SAID.contains(&name.as_str())).collect();
+    html! {
+        details {
+            summary { "How to read the numbers" }
+            ul { @for text in reading(answer, model) { li { (text) } } }
+        }
+        @if !more.is_empty() {
+            details { summary { "More of the finger that simulation recommends" } (definitions(&more)) }
+        }
+        details { summary { "Settings and hashes" } (provenance(answer.record)) }
+        p {
+            a href="evaluations.csv" { "evaluations.csv" } ", " a href="journal.jsonl" { "journal.jsonl" }
+            ". The same study again, in its folder:"
+        }
+        pre { code { (command::again(answer.record).join(" ")) } }
+    }
+}
+
+/// What limits the numbers.
+fn reading(answer: &Answer, model: &Model) -> Vec<String> {
+    let goals = answer.record.config.goals();
+    let robust = goals.need(Measure::RobustRange);
+    let mut texts = vec![
+        "The ends of a window are known to the 0.1 mm grid: the next step does not insert, and the \
+         range is up to 0.2 mm wider."
+            .to_owned(),
+        "The search looks every 0.5 mm outward and bisects before the first failure, so it can step over \
+         a gap: for a design that was not walked use optimize evaluate --walk before you print."
+            .to_owned(),
+        stiffness(model, robust),
+    ];
+    let draws = "Success rate and robust range are those of the assumed errors, not of your cell; all \
+                 designs meet the same draws.";
+    texts.extend(goals.need_draws().then(|| draws.to_owned()));
+    let parameters = &answer.record.config.space.parameters;
+    texts.push(match parameters.iter().any(|parameter| parameter.key == REMOTE_CENTRE_KEY) {
+        true => "The finger's remote centre is a number of the design here; whether a finger with this \
+                 infill and this centre can be made was not checked."
+            .to_owned(),
+        false => "The finger's remote centre is where the task file puts it, at one distance or along a \
+                  straight line over the infill direction. On a printed finger it moves with the infill; how \
+                  far was not measured."
+            .to_owned(),
+    });
+    texts
+}
+
+fn stiffness(model: &Model, robust: bool) -> String {
+    let error = |axis| {
+        let percent = model.chosen(axis)?.mean_absolute_percent;
+        percent.is_finite().then(|| format!("by {percent:.1} % in {}", axis.label()))
+    };
+    let errors: Vec<String> = Axis::ALL.into_iter().filter_map(error).collect();
+    let missed = match errors.is_empty() {
+        true => "how far it misses others is not known".to_owned(),
+        false => format!("left out in turn they are missed {} on average", errors.join(" and ")),
+    };
+    let ribs = if model.ratios { " and from the ribs of the finger" } else { "" };
+    let carried = match robust {
+        true => "the robust range alone carries its error",
+        false => "its error is not carried into the range",
+    };
+    format!("Stiffness is predicted from {}{ribs}; {missed}; {carried}.", model.counted())
+}
 
 pub(super) fn outcomes(record: &StudyRecord) -> Markup {
     let searches = || record.evaluations.iter().flat_map(Recorded::tasks);
@@ -40,7 +127,7 @@ pub(super) fn outcomes(record: &StudyRecord) -> Markup {
     }
 }
 
-pub(super) fn provenance(record: &StudyRecord) -> Markup {
+fn provenance(record: &StudyRecord) -> Markup {
     let config = &record.config;
     let mut rows: Vec<(String, String)> = Vec::new();
     let mut add = |name: &str, value: String| rows.push((name.to_owned(), value));

@@ -109,20 +109,22 @@ pub(super) fn boundary(
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
     // Of a front there is no one finger to show.
-    let found = record.config.objective.single().and_then(|_| Answer::of(record).named());
+    let found = record.config.objective.single().and_then(|_| Answer::of(record).shown());
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
         for (end, outward) in ENDS {
             let file = dir.join(pair_file(at, end));
-            let pair = match found.and_then(|best| Some((best, best.on(at)?))) {
-                None => None,
-                Some((best, task)) => {
-                    let specimen = setup
-                        .evaluator
-                        .specimen(template, &best.design, best.stiffness)
-                        .map_err(Failure::input)?;
-                    pair(setup, &specimen, task, (end, outward), (pool, stop))?
-                }
-            };
+            let pair =
+                match found.as_ref().and_then(|(design, tasks)| Some((*design, *tasks.get(at)?))) {
+                    None => None,
+                    Some((design, task)) => {
+                        let stiffness = setup.evaluator.predict(design).map_err(Failure::input)?;
+                        let specimen = setup
+                            .evaluator
+                            .specimen(template, design, stiffness)
+                            .map_err(Failure::input)?;
+                        pair(setup, &specimen, task, (end, outward), (pool, stop))?
+                    }
+                };
             // What was filmed meanwhile is worthless.
             if stop.load(Ordering::SeqCst) {
                 return Ok(());

@@ -133,11 +133,15 @@ impl OpenStudy {
             film::boundary(&dir, &record, setup, pool, stop)?;
         }
         printable::write(&dir, &record)?;
+        // Before the page, which shows its picture.
+        let unusable = match interrupted() {
+            true => None,
+            false => unusable::check(&dir, &record, setup, stop).err(),
+        };
         report::write(&dir, &record, &setup.evaluator.surrogate)?;
         if interrupted() {
             return Err(Failure::running(format!("interrupted; {}", resume_hint(study))));
         }
-        let unusable = unusable::check(&dir, &record, setup, stop).err();
         Ok(Ended { dir, record, ending, known, unusable, how: how.clone() })
     }
 }

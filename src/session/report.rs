@@ -1,7 +1,7 @@
 //! The tables, plots and page of a study.
 
-use super::Failure;
 use super::setup::surrogate_of;
+use super::{Around, Failure, unusable};
 use crate::report::replay::{ENDS, pair_file};
 use crate::report::{self, Beside, printer};
 use crate::study::{StudyRecord, write_evaluations_csv, write_own_file};
@@ -29,21 +29,36 @@ pub(super) fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(
     if let Some(front) = report::front_svg(record, FILE)? {
         write_own_file(&dir.join("front.svg"), &front)?;
     }
-    write_own_file(&dir.join(PAGE), &report::page(record, model, &beside(dir, record))?)?;
+    write_own_file(&dir.join(PAGE), &report::page(record, model, &beside(dir, record)?)?)?;
     Ok(())
 }
 
-/// The films and the files for the printer that the study kept.
-fn beside(dir: &Path, record: &StudyRecord) -> Beside {
-    let several = record.config.several_tasks();
-    let of = |(at, task): (usize, &str)| {
-        let on = if several { format!(" on {task}") } else { String::new() };
-        ENDS.map(|(end, _)| {
-            let page = files::read_own(&dir.join(pair_file(at, end)), LARGEST_OWN).ok()?;
-            Some((format!("Play the {end} end{on}"), page))
-        })
+/// What the study kept beside its page.
+fn beside(dir: &Path, record: &StudyRecord) -> Result<Beside, Failure> {
+    let read = |name: &str| files::read_own(&dir.join(name), LARGEST_OWN).ok();
+    let names = printer::FILES.iter().map(|(name, _)| *name);
+    let mut beside = Beside {
+        dir: dir.to_owned(),
+        files: names.filter(|name| dir.join(name).exists()).collect(),
+        nominal: read(unusable::PICTURE),
+        ..Beside::default()
     };
-    let replays = record.config.tasks().enumerate().flat_map(of).flatten().collect();
-    let printable = [printer::SURFACE, printer::SHEET].iter().all(|name| dir.join(name).exists());
-    Beside { replays, printable }
+    let around = Around::read(dir, record);
+    let levers = around.levers.iter();
+    beside.levers = levers.map(|found| (found.sentence(), report::levers::svg(found))).next();
+    for map in &around.maps {
+        beside.maps.push((map.caption(), report::map::svg(map)?));
+    }
+    // First what is shown first: a page has no room for the films of many tasks.
+    let shown = report::preferred(record);
+    let (first, others): (Vec<_>, Vec<_>) =
+        ENDS.into_iter().map(|(end, _)| end).partition(|end| *end == shown);
+    for (task, end) in (0..record.config.tasks.len())
+        .flat_map(|task| first.iter().chain(&others).map(move |&end| (task, end)))
+    {
+        if let Some(page) = read(&pair_file(task, end)) {
+            beside.add(task, end, &page);
+        }
+    }
+    Ok(beside)
 }

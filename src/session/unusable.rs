@@ -2,13 +2,13 @@
 
 use super::failure::not_stopped;
 use super::{Failure, Setup};
-use crate::answer::words::outcome;
+use crate::answer::words::{outcome, remedy};
 use crate::study::{StudyRecord, write_own_file};
 use insertion::trial::{Grasp, picture};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-const PICTURE: &str = "nominal.svg";
+pub(super) const PICTURE: &str = "nominal.svg";
 
 /// Fails, with what the design that comes nearest does at the nominal start, if none inserts there;
 /// if `stop` is set meanwhile.
@@ -27,20 +27,20 @@ pub(super) fn check(
     let rig = evaluator.rig(&specimen, taught, 1.0).map_err(Failure::input)?;
     let trial = rig.hold(Grasp { stop, ..Grasp::of(&specimen.finger) }).trial(0.0);
     not_stopped(stop)?;
-    let label = format!("{}, nominal start, evaluation {}", specimen.task.name, nearest.index);
-    let file = dir.join(PICTURE);
-    write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
     let class = outcome(trial.outcome);
     let phase =
         trial.phases.last().map_or(String::new(), |phase| format!(" in phase {}", phase.name));
+    let label = format!("evaluation {} at the nominal start: {class}{phase}", nearest.index);
+    let file = dir.join(PICTURE);
+    write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
     Err(Failure::running(format!(
         "no design of the study inserts at the nominal start of {}: evaluation {} ends with {class}{phase}, \
-         at depth {:.2} mm and tilt {:.2} deg; {} shows it. Check the task's start, strokes and \
-         clearances, and the finger's remote centre",
+         at depth {:.2} mm and tilt {:.2} deg; {} shows it. {}",
         specimen.task.name,
         nearest.index,
         trial.depth_mm,
         trial.tilt_deg,
-        file.display()
+        file.display(),
+        remedy(trial.outcome)
     )))
 }

@@ -10,7 +10,7 @@ use insertion::trial::record::Frame;
 use serde_json::{Value, json};
 
 /// Time between two frames of a page, s, unless there would be too many.
-const INTERVAL: f64 = 4e-3;
+const INTERVAL: f64 = 6e-3;
 const MOST: f64 = 500.0;
 /// Height of the jaws above the grasp point, mm: for the eye.
 const JAW_MM: f64 = 45.0;
@@ -51,6 +51,7 @@ pub(super) fn to_json(film: &Film) -> Value {
         outcome => outcome.word().to_owned(),
     };
     let mut page = json!({
+        "label": film.label,
         "outcome": outcome,
         "kind": trial.outcome.word(),
         // Rounded as the times are, so that the last frame has its outcome.
@@ -120,15 +121,15 @@ fn shapes((kind, of, geoms): &(&str, &str, Vec<Geom>)) -> Vec<Value> {
 /// Position, mm, and quaternion x, y, z, w.
 fn pose(pose: &Pose) -> [f64; 7] {
     let (p, q) = (pose.translation.vector / MM, pose.rotation.coords);
-    let [x, y, z] = [p.x, p.y, p.z].map(|mm| round(mm, 4));
-    let [i, j, k, w] = [q.x, q.y, q.z, q.w].map(|value| round(value, 6));
+    let [x, y, z] = [p.x, p.y, p.z].map(|mm| round(mm, 3));
+    let [i, j, k, w] = [q.x, q.y, q.z, q.w].map(|value| round(value, 5));
     [x, y, z, i, j, k, w]
 }
 
 /// Point, mm, and force, N.
 fn contact(contact: &ContactPoint) -> [f64; 6] {
     let (p, f) = (contact.point.coords / MM, contact.force);
-    [round(p.x, 3), round(p.y, 3), round(p.z, 3), round(f.x, 2), round(f.y, 2), round(f.z, 2)]
+    [round(p.x, 2), round(p.y, 2), round(p.z, 2), round(f.x, 1), round(f.y, 1), round(f.z, 1)]
 }
 
 fn round(value: f64, digits: i32) -> f64 {

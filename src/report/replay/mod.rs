@@ -4,7 +4,7 @@ mod curve;
 mod film;
 mod table;
 
-use super::elements::document;
+use super::elements::styled;
 use super::explore::embedded;
 pub use curve::svg as curve_svg;
 pub use table::csv;
@@ -41,24 +41,29 @@ pub fn pair_file(task: usize, end: &str) -> String {
 /// that draws in WebGL is as small (three.js has 700 kB, this 18).
 pub fn page(title: &str, films: &[Film]) -> String {
     let data: Vec<_> = films.iter().map(film::to_json).collect();
-    document(
+    around(title, &embedded(&data.into()))
+}
+
+const DATA: &str = "<script type=\"application/json\" id=\"films\">";
+
+/// The recordings of a page of films, as they stand in it; `None` of another page.
+pub fn data(page: &str) -> Option<&str> {
+    let (_, rest) = page.split_once(DATA)?;
+    rest.split('<').next()
+}
+
+/// The page without films, to put the data of one in behind [`DATA`].
+pub(super) fn viewer() -> String {
+    around("film", "")
+}
+
+fn around(title: &str, data: &str) -> String {
+    styled(
         title,
         include_str!("viewer.css"),
         html! {
             h1 { (title) }
-            div.films {
-                @for (i, film) in films.iter().enumerate() {
-                    figure {
-                        figcaption {
-                            span class=(format!("key{i}")) { (film.label) }
-                            span id=(format!("phase{i}")) {}
-                            b id=(format!("outcome{i}")) {}
-                        }
-                        canvas id=(format!("film{i}")) tabindex="0"
-                            aria-label="the trial in 3-D: arrow keys turn, plus and minus zoom" {}
-                    }
-                }
-            }
+            div #views {}
             (controls())
             div #phases {}
             div #curves {}
@@ -68,7 +73,7 @@ pub fn page(title: &str, films: &[Film]) -> String {
                 the fingers do. The tips of the fingers are where they are; what lies between tip \
                 and jaw is drawn for the eye, its bend as many times as large as the slider says."
             }
-            script type="application/json" id="films" { (PreEscaped(embedded(&data.into()))) }
+            (PreEscaped(DATA)) (PreEscaped(data)) (PreEscaped("</script>"))
             script { (PreEscaped(include_str!("viewer.js"))) }
         },
     )

@@ -9,6 +9,15 @@
   const MM_PER_N = 0.12, LONGEST = 25, LEAST = 0.05;
   const state = { time: 0, playing: false, speed: 0.25, yaw: -0.55, pitch: 0.3, distance: 105, target: [0, 0, 8], bend: 1 };
 
+  // Inside a report the frames at the end come first, and nothing but them.
+  const compact = document.body.classList.contains("compact");
+  films.forEach((film, i) => {
+    const part = (name, more, ...inside) => { const e = Object.assign(document.createElement(name), more); e.append(...inside); return e; };
+    const canvas = part("canvas", { id: "film" + i, tabIndex: 0, ariaLabel: "the trial in 3-D: arrow keys turn, plus and minus zoom" });
+    const words = part("figcaption", {}, part("span", { className: "key" + i, textContent: film.label || "" }), part("span", { id: "phase" + i }), part("b", { id: "outcome" + i }));
+    at("views").append(part("figure", {}, words, canvas));
+  });
+
   // --- vectors, quaternions (x, y, z, w), column-major matrices
   const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
   const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -264,8 +273,9 @@
     if (state.playing) requestAnimationFrame(tick);
   };
   const play = (on) => {
-    if (on && state.time >= end) state.time = 0;
+    if (on && state.time >= end) state.time = compact ? begin : 0;
     state.playing = on; at("play").textContent = on ? "Pause" : "Play";
+    if (compact) window.parent.postMessage(on ? "playing" : "paused", "*");
     if (on) { last = performance.now(); requestAnimationFrame(tick); }
   };
   at("time").max = end;
@@ -289,6 +299,10 @@
   const KEYS = { ArrowLeft: () => orbit(0.1, 0), ArrowRight: () => orbit(-0.1, 0), ArrowUp: () => orbit(0, 0.1), ArrowDown: () => orbit(0, -0.1), "+": () => zoom(0.9), "-": () => zoom(1.1) };
   for (const { canvas } of views) {
     const held = new Map();
+    let moved = 0;
+    canvas.addEventListener("pointerdown", () => { moved = 0; });
+    canvas.addEventListener("pointermove", (event) => { moved += Math.abs(event.movementX) + Math.abs(event.movementY); });
+    canvas.addEventListener("click", () => { if (compact && moved < 6) play(!state.playing); });
     canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); held.set(event.pointerId, [event.clientX, event.clientY]); });
     for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => held.delete(event.pointerId));
     canvas.addEventListener("pointermove", (event) => {
@@ -311,11 +325,10 @@
   window.addEventListener("resize", refresh);
   // The search is what one has come to see.
   const grasp = films[0].phases.findIndex(([name]) => name === "carry");
-  seekTo(grasp >= 0 ? films[0].phases[grasp][1] : 0);
-  // Inside a report.
-  if (window.parent !== window) {
-    window.addEventListener("keydown", (event) => { if (event.key === "Escape") window.parent.postMessage("close", "*"); });
-    window.addEventListener("focus", () => at("play").focus());
+  const begin = grasp >= 0 ? films[0].phases[grasp][1] : 0;
+  seekTo(compact ? end : begin);
+  if (compact) {
+    window.addEventListener("message", ({ source }) => { if (source === window.parent) play(!state.playing); });
     window.parent.postMessage("ready", "*");
   }
 })();

@@ -59,6 +59,24 @@ pub fn svg(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
     svg.into_string() + "\n"
 }
 
+/// The finger as the sheet draws it, with its lengths (in a group of class `lengths`) and infill
+/// directions, as an SVG of its own.
+pub fn part(geometry: &Geometry) -> String {
+    let outline = &geometry.finger.outline;
+    let (length, width) = (outline.length / MM, outline.width / MM);
+    let view = View { origin: Point2::new(22.0, 26.0), scale: ROOM[0] / length };
+    let size = [ROOM[0] + 44.0, width * view.scale + 50.0];
+    let svg = html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (size[0]) " " (size[1].ceil()) }
+            font-family="sans-serif" font-size="3.6" {
+            (drawing(geometry, view))
+            (lengths(outline, view))
+            (direction(geometry, view))
+        }
+    };
+    svg.into_string()
+}
+
 /// Profile, and the part of it that the gripper holds.
 fn drawing(geometry: &Geometry, view: View) -> Markup {
     let outline = &geometry.finger.outline;
@@ -90,7 +108,7 @@ fn lengths(outline: &Outline, view: View) -> Markup {
     let pad = format!("pad {pad} at {}°, roof {roof}", degrees(outline.pad_angle));
     let middle = view.place(at(arc / 2.0, -width));
     html! {
-        g font-size="3.2" fill="#222" {
+        g class="lengths" font-size="3.2" fill="#222" {
             (view.length(at(0.0, -width), at(length, -width), -16.0, &mm(length)))
             (view.length(at(arc, -width), at(length, -width), -8.0, &mm(length - arc)))
             (view.length(at(length, -width), at(length, 0.0), -8.0, &mm(width)))
@@ -125,7 +143,7 @@ fn direction(geometry: &Geometry, view: View) -> Markup {
             (line(from, end(design)))
         }
         g fill="#a40" font-size="4" {
-            (label(0.0))
+            @if design == 0.0 || design.abs() > 8.0 { (label(0.0)) }
             @if design != 0.0 { (label(design)) }
         }
     }

@@ -1,0 +1,28 @@
+"use strict";
+// The films on the first screen: a document of its own in a frame, which can be heard, not looked into.
+var play = (() => {
+  const at = (id) => document.getElementById(id), frame = at("film");
+  if (!frame) return () => {};
+  const viewer = JSON.parse(at("viewer").textContent), buttons = [...document.querySelectorAll("button[data-film]")];
+  let shown = -1, wanted = false;
+  const show = (k) => {
+    shown = k;
+    delete frame.dataset.state;
+    frame.srcdoc = viewer.replace("<body>", '<body class="compact">').replace('id="films">', () => `id="films">${at(`film${k}`).textContent}`);
+    at("caption").textContent = buttons[k].dataset.caption;
+  };
+  const play = (k) => {
+    if (k !== shown) { wanted = true; show(k); return; }
+    if (frame.dataset.state) frame.contentWindow.postMessage("play", "*"); else wanted = true;
+  };
+  window.addEventListener("message", ({ source, data }) => {
+    if (source !== frame.contentWindow) return;
+    frame.dataset.state = String(data);
+    buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(k === shown && data === "playing")));
+    if (data === "ready" && wanted) { wanted = false; frame.contentWindow.postMessage("play", "*"); }
+  });
+  buttons.forEach((button, k) => button.addEventListener("click", () => play(k)));
+  // After the page itself has been drawn.
+  if (buttons.length) requestAnimationFrame(() => setTimeout(() => shown < 0 && show(0)));
+  return play;
+})();

@@ -49,7 +49,7 @@ finger() {
     } > "$folder/table.txt"
     "$optimize" finger --density 20 --direction 20 --svg "$folder/finray9.svg" > "$folder/finray9.txt"
     "$optimize" finger --density 20 --direction 20 --load-n 0,20 --svg "$folder/coupling.svg" > /dev/null
-    record windows "$folder"/*
+    record maps "$folder"/*
 }
 
 # What the published experiments say of every finger, each measured one predicted without it.
@@ -265,7 +265,7 @@ maps() {
                 --svg "$folder/$task-$other.svg" --out "$folder/$task-$other.csv"
         done
     done > "$folder/maps.txt"
-    record windows "$folder"/*
+    record maps "$folder"/*
 }
 
 peers() {

@@ -49,7 +49,7 @@ finger() {
     } > "$folder/table.txt"
     "$optimize" finger --density 20 --direction 20 --svg "$folder/finray9.svg" > "$folder/finray9.txt"
     "$optimize" finger --density 20 --direction 20 --load-n 0,20 --svg "$folder/coupling.svg" > /dev/null
-    record maps "$folder"/*
+    record windows "$folder"/*
 }
 
 # What the published experiments say of every finger, each measured one predicted without it.

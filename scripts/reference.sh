@@ -281,7 +281,7 @@ maps() {
                 --svg "$folder/$task-$other.svg" --out "$folder/$task-$other.csv"
         done
     done > "$folder/maps.txt"
-    record windows "$folder"/*
+    record maps "$folder"/*
 }
 
 peers() {

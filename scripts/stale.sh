@@ -21,6 +21,7 @@ libraries='^name = "(nalgebra|simba|libm|rapier3d.*|parry3d.*|rand.*|sobol_burle
 sources() {
     case $1 in
         windows) paths="$simulation data tasks robots" ;;
+        maps) paths="$simulation data tasks robots src/map" ;;
         studies) paths="$simulation crates/ask-tell src/study data tasks robots spaces uncertainties" ;;
         checks) paths="$simulation lab/src/analytic robots" ;;
         bench) paths="$simulation crates/ask-tell src/calibration data tasks robots spaces priors" ;;

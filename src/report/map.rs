@@ -44,11 +44,11 @@ fn legend(area: &Area<'_>, map: &CaptureMap) -> Drawn {
     let mut x = 20;
     for (outcome, colour) in COLOURS.into_iter().filter(|(outcome, _)| met(*outcome)) {
         area.draw(&Rectangle::new([(x, 44), (x + 14, 58)], filled(colour))).map_err(message)?;
-        area.draw_text(outcome.label(), &text(14, INK), (x + 20, 52)).map_err(message)?;
-        x += 44 + 7 * outcome.label().len() as i32;
+        area.draw_text(outcome.label(), &text(15, INK), (x + 20, 52)).map_err(message)?;
+        x += 44 + 8 * outcome.label().len() as i32;
     }
     area.draw(&Circle::new((x + 6, 51), 2, MUTED.rgb().filled())).map_err(message)?;
-    area.draw_text("simulated", &text(14, INK), (x + 16, 52)).map_err(message)
+    area.draw_text("simulated", &text(15, INK), (x + 16, 52)).map_err(message)
 }
 
 fn draw(area: &Area<'_>, map: &CaptureMap) -> Drawn {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// A room may use those before it (`docs/architecture.md`).
-const FLOW: [&str; 9] = [
+const FLOW: [&str; 10] = [
     "connector",
     "sensitivity",
     "map",

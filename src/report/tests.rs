@@ -164,7 +164,7 @@ fn a_best_design_outside_the_hull_is_warned_of() {
 fn empty_failed_and_diverged_studies_still_have_a_page() {
     let jammed = Outcome::Failed(FailureClass::Jammed);
     for (evaluations, words) in [
-        (vec![], "<h1>No design keeps all constraints</h1>"),
+        (vec![], "<h1>No design can be recommended</h1>"),
         (vec![at_nominal(0, [10.0, 0.0], Outcome::Diverged)], "<h1>No finger inserts on"),
         (
             vec![at_nominal(0, [10.0, 0.0], jammed)],
@@ -223,7 +223,7 @@ fn fronts_constraints_and_tasks_have_their_places_on_the_page() {
         recorded.score.as_mut().unwrap().violations = vec![1.0 + recorded.index as f64];
     }
     let html = self::html(&study);
-    assert!(html.contains("<h1>No design keeps all constraints</h1>"));
+    assert!(html.contains("<h1>No design can be recommended</h1>"));
     assert!(html.contains("Evaluation 0 ("), "the one that violates least");
     assert!(study.best().is_none() && study.front().is_empty());
 }

@@ -42,8 +42,13 @@ impl Around {
     /// What the folder of a study holds of the finger that it names.
     pub(super) fn read(dir: &Path, record: &StudyRecord) -> Self {
         let Some((provenance, design)) = subject(record) else { return Around::default() };
+        let levers: Option<Levers> = read(&dir.join(LEVERS), (&provenance, &design));
         Around {
-            levers: read(&dir.join(LEVERS), (&provenance, &design)),
+            // The span of the infill is that of all evaluations until now.
+            levers: levers.map(|found| Levers {
+                infill: record.spread_mm().unwrap_or(found.infill),
+                ..found
+            }),
             maps: read(&dir.join(MAPS), (&provenance, &design)).unwrap_or_default(),
         }
     }

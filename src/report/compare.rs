@@ -5,6 +5,7 @@ use super::chart::{Area, Drawn, around, axes, legend, message, sheet};
 use super::convergence::best_so_far;
 use super::elements::{document, figure, table};
 use super::marks::{line, stairs};
+use super::page::PLOT;
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
 use crate::study::{StudyConfig, StudyRecord};
 use insertion::evaluation::objective::{Aggregate, Constraint};
@@ -209,6 +210,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
         row
     };
     let head = ["optimizer", "batch", "studies", "reached", "25 %", "median", "75 %"];
+    let course = sheet("the comparison", PLOT, |area| draw(area, comparison, ""))?;
     let caption = "Best so far: the median as a line, the quartiles as a band.";
     let body = html! {
         main {
@@ -221,7 +223,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
                 }
             }
             section { h2 { "Evaluations" } (table(&head, &groups.iter().map(row).collect::<Vec<_>>())) }
-            section { h2 { "Course" } (figure(&svg(comparison)?, "best so far by optimizer", caption)) }
+            section { h2 { "Course" } (figure(&course, "best so far by optimizer", caption)) }
         }
     };
     Ok(document(&format!("{task}: optimizers compared"), body))
@@ -231,18 +233,18 @@ const COLOURS: [Colour; 6] = [BLUE, ORANGE, GREEN, RED, MUTED, INK];
 
 /// `compare.svg`: best so far of each optimizer, the median as a line and the quartiles as a band.
 pub fn svg(comparison: &Comparison) -> Result<String, ReportError> {
-    sheet("the comparison", (880, 480), |area| draw(area, comparison))
+    let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
+    sheet("the comparison", (880, 480), |area| draw(area, comparison, &title))
 }
 
-fn draw(area: &Area<'_>, comparison: &Comparison) -> Drawn {
+fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> Drawn {
     let groups = &comparison.groups;
     let longest = groups.iter().map(|g| g.best_so_far_mm.len()).max().unwrap_or(0).max(1) as f64;
     let values = groups.iter().flat_map(|g| g.best_so_far_mm.iter().flat_map(|q| q.all()));
     let range = around(values.flatten().chain([comparison.best_known_mm]), 0.06);
-    let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
     let label = format!("{} (mm)", comparison.objective);
     let x = ("number of evaluations", 0.0..longest * 1.02 + 0.5);
-    let mut chart = axes(area, &title, x, (&label, range))?;
+    let mut chart = axes(area, title, x, (&label, range))?;
     let coloured = || groups.iter().zip(COLOURS.iter().cycle());
     for (group, colour) in coloured().filter(|(group, _)| group.studies > 1) {
         let mut outline = quartile(group, 0);

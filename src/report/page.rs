@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 /// Pixels of a plot in the page: narrow, so that its text stays readable when
 /// a phone shrinks it to fit.
-const PLOT: (u32, u32) = (440, 330);
+pub(super) const PLOT: (u32, u32) = (356, 300);
 /// Bytes of films that a page holds; others it links to.
 const FILMS: usize = 600_000;
 

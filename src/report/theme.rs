@@ -24,7 +24,7 @@ colours! {
     MUTED = "muted", (96, 103, 112), "#9aa3ad";
     LINES = "lines", (222, 225, 230), "#30363d";
     BLUE = "blue", (24, 103, 178), "#6cb2f2";
-    ORANGE = "orange", (196, 88, 16), "#f0a060";
+    ORANGE = "orange", (178, 78, 12), "#f0a060";
     GREEN = "green", (38, 132, 82), "#62c894";
     RED = "red", (190, 50, 44), "#f2837b";
 }

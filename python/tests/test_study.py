@@ -162,7 +162,7 @@ def test_a_loaded_study_takes_every_word_of_resume_that_suits_it(command, create
     assert code == 0
     words = set(re.findall(r"^ +(?:-\w, )?--([a-z-]+)", text, re.MULTILINE))
     # run() says where and how loudly, and what it gives is no text.
-    words -= {"executor", "quiet", "json", "help"}
+    words -= {"executor", "quiet", "json", "verbose", "help"}
     assert {word.replace("_", "-") for word in SESSION} == words
     study = create("words", budget=3).run(progress=False)
     fo.load_study(study.path, no_confirm=True, simulations=50, samples=50)
@@ -363,7 +363,7 @@ def test_the_command_hands_a_study_to_an_executor(command, expected, tmp_path, f
              "--no-cache", "--quiet", "--out", str(tmp_path / "handed"), "--executor"]
     code, out, errors = command(*words, "processes:2")
     assert code == 0, errors
-    assert "best design" in out
+    assert "next          optimize next" in out
     code, out, errors = command("resume", str(tmp_path / "handed"), "--executor", "processes")
     assert code == 0, errors
     assert expected.startswith(journal(tmp_path / "handed"))

@@ -75,8 +75,7 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     let evaluations = |name| folder.journal(name).lines().skip(2).collect::<Vec<_>>().join("\n");
     assert_eq!(evaluations("a"), evaluations("b"));
     let page = read(&folder.dir("a").join("report.html"));
-    let places =
-        ["<section id=\"bench\">", "<section id=\"set\">"].map(|words| page.find(words));
+    let places = ["<section id=\"bench\">", "<section id=\"set\">"].map(|words| page.find(words));
     assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
     assert!(!read(&folder.dir("b").join("report.html")).contains("for the bench</h2>"));
     let plain = folder.study("b", 12, &["--task", "ket8", "--verbose"]);

@@ -51,15 +51,12 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
 
 fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Row> {
     // The finger that is named among several as good ones was not confirmed by itself.
-    let named = answer.named().filter(|named| named.index != found.design.index);
-    if let Some(other) = named.and_then(|named| named.on(at)) {
-        let mut rows = vec![Row::simulated(&other.window, None)];
-        rows.extend(published(&answer.trust, at));
-        return rows;
-    }
-    let firm = task.firm.and_then(|firm| firm.window_mm());
-    let mut rows = vec![Row::simulated(&task.measured.window, firm)];
-    if let Some(by_ribs) = found.by_ribs {
+    let other = answer.named().filter(|named| named.index != found.design.index);
+    let mut rows = vec![match other.and_then(|named| named.on(at)) {
+        Some(other) => Row::simulated(&other.window, None),
+        None => Row::simulated(&task.measured.window, task.firm.and_then(|firm| firm.window_mm())),
+    }];
+    if let Some(by_ribs) = found.by_ribs.filter(|_| other.is_none()) {
         let text = lines::by_ribs(by_ribs).into_iter().nth(at);
         let text = text.map_or(String::new(), |(name, text)| format!("{name}: {text}"));
         let window = match by_ribs {
@@ -69,16 +66,13 @@ fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> V
         let parts = window.map(|window| ("ribs", window)).into_iter().collect();
         rows.push(Row { name: text, parts, ends: [None; 2] });
     }
-    rows.extend(published(&answer.trust, at));
+    if let Trust::Published { nearest, .. } = &answer.trust {
+        rows.extend(nearest.get(at).iter().flat_map(|(_, fingers)| fingers).map(measured));
+    }
     rows
 }
 
-/// Fingers that a robot measured; only their ranges are known, so the bars lie about the start.
-fn published(trust: &Trust, task: usize) -> Vec<Row> {
-    let Trust::Published { nearest, .. } = trust else { return Vec::new() };
-    nearest.get(task).iter().flat_map(|(_, fingers)| fingers).map(measured).collect()
-}
-
+/// A finger that a robot measured; only its range is known, so the bar lies about the start.
 fn measured(Measured { design, range_mm }: &Measured) -> Row {
     Row::new(
         format!("measured on a robot, {}: {}", infill(design), mm(*range_mm)),

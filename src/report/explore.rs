@@ -24,13 +24,11 @@ pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
     let record = answer.record;
     record.best()?;
     let model = surface::Model::of(record);
-    let importance = model.as_ref().map_or(Vec::new(), |model| surface::importance(record, model));
-    let shares = importance.iter().map(|(name, share)| format!("{name} {:.0} %", 100.0 * share));
     let data = to_json(answer, model.as_ref(), dir);
     Some(html! {
         p.muted {
             "Values as the search found them"
-            @if answer.walked.len() > 1 { ", before the best were repeated: the widest here need not stay so" }
+            @if !answer.walked.is_empty() { ", before the best were repeated: the widest here need not stay so" }
             ". Click a mark or a line to see a design; the arrow keys go to the next. A mark with bars fails \
             at the nominal start; the one in a ring is recommended."
         }
@@ -45,9 +43,6 @@ pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
                 @if model.is_some() { figcaption {
                     "A Gaussian process through the designs"
                     @if record.config.space.parameters.len() > 2 { ", the other parameters as recommended" }
-                    @if !importance.is_empty() {
-                        ". Of its variance make by itself: " (shares.collect::<Vec<_>>().join(", "))
-                    }
                     "."
                 } }
             }

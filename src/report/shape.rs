@@ -1,8 +1,7 @@
 //! Gain from the parameters of the finger itself beyond the infill alone.
 
-use super::elements::table;
 use super::printer::finger_file;
-use crate::answer::words::{infill, mm, stiffness};
+use crate::answer::words::infill;
 use crate::study::{Recorded, StudyRecord};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
@@ -27,12 +26,6 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     };
     let alone =
         crate::study::best(&record.config.goals(), record.current().iter().filter(is_plain));
-    let head = ["", "range", "largest contact force", "compliance", "assembly"];
-    let mut rows = Vec::new();
-    if let Some(alone) = alone {
-        rows.push(row(&format!("infill alone: {}", infill(&alone.design)), alone));
-    }
-    rows.push(row("with the finger's parameters", best));
     let changed: Vec<String> = plain
         .iter()
         .filter_map(|&(key, from)| Some((key, from, best.design.get(key)?)))
@@ -43,9 +36,8 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
         })
         .collect();
     Some(html! {
-        (table(&head, &rows))
         @match alone {
-            Some(alone) => p { (gain(alone, best)) }
+            Some(alone) => p { "Against the infill alone, " (infill(&alone.design)) ": " (gain(alone, best)) }
             None => p { "No evaluation of this study has the finger as its file has it." }
         }
         @if changed.is_empty() {
@@ -61,19 +53,6 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     })
 }
 
-fn row(name: &str, recorded: &Recorded) -> Vec<String> {
-    let each = |value: fn(&Evaluation) -> String| {
-        recorded.tasks.iter().map(value).collect::<Vec<_>>().join(", ")
-    };
-    vec![
-        name.to_owned(),
-        each(|task| mm(task.window.range_mm())),
-        each(|task| Measure::PeakForce.show(task.peak_force_n)),
-        stiffness(recorded.stiffness.compliance),
-        stiffness(recorded.stiffness.assembly),
-    ]
-}
-
 fn gain(alone: &Recorded, best: &Recorded) -> String {
     let of = |(before, now): (&Evaluation, &Evaluation)| {
         let [force, other] = [now, before].map(|task| Measure::PeakForce.show(task.peak_force_n));
@@ -81,5 +60,5 @@ fn gain(alone: &Recorded, best: &Recorded) -> String {
         format!("{more:+.1} mm of range, at {force} in place of {other}")
     };
     let gains = alone.tasks.iter().zip(&best.tasks).map(of);
-    format!("The finger's parameters give {}.", gains.collect::<Vec<_>>().join("; "))
+    format!("the finger's parameters give {}.", gains.collect::<Vec<_>>().join("; "))
 }

@@ -3,7 +3,7 @@
 
 use crate::study::StudyRecord;
 use ask_tell::gp::{FitEffort, Gp, fit};
-use insertion::space::{Parameter, label};
+use insertion::space::Parameter;
 use serde_json::{Value, json};
 
 /// Most evaluations that the model goes through; of more, evenly taken ones.
@@ -12,10 +12,8 @@ const MOST: usize = 300;
 const NOISE: f64 = 0.03;
 /// Most cells along an axis of the surface.
 const CELLS: u32 = 41;
-/// Points over the other parameters for the share of one.
-const SAMPLES: u32 = 48;
-/// Values of one parameter for its share.
-const LEVELS: u32 = 9;
+/// Steps along an axis to see how far the mean goes.
+const LEVELS: u32 = 20;
 
 /// The process of a study, fitted once a page.
 pub(super) struct Model {
@@ -72,9 +70,10 @@ pub(super) fn to_json(record: &StudyRecord, model: &Model) -> Option<Value> {
     let best = record.recommended()?;
     let base: Vec<f64> =
         parameters.iter().map(|p| unit(p, best.design.get(&p.key).unwrap_or(p.low))).collect();
-    let shares = shares(model, parameters.len());
     let mut axes: Vec<usize> = (0..parameters.len()).collect();
-    axes.sort_by(|&a, &b| shares[b].total_cmp(&shares[a]).then(a.cmp(&b)));
+    axes.sort_by(|&a, &b| {
+        reach(model, &base, b).total_cmp(&reach(model, &base, a)).then(a.cmp(&b))
+    });
     axes.truncate(2);
     axes.sort_unstable();
     let levels = |parameter: &Parameter| -> Vec<f64> {
@@ -97,52 +96,16 @@ pub(super) fn to_json(record: &StudyRecord, model: &Model) -> Option<Value> {
     Some(json!({"axes": axes, "x": xs, "y": ys, "mean": mean, "sd": sd}))
 }
 
-/// The share of the variance over the space that each parameter makes by itself (Sobol's first
-/// order index, I. M. Sobol 2001, Math. Comput. Simul. 55:271) by the model's mean; by name.
-pub(super) fn importance(record: &StudyRecord, model: &Model) -> Vec<(String, f64)> {
-    let parameters = &record.config.space.parameters;
-    if parameters.len() < 2 {
-        return Vec::new();
-    }
-    let names = parameters.iter().map(|parameter| label(&parameter.key).0);
-    let mut named: Vec<(String, f64)> = names.zip(shares(model, parameters.len())).collect();
-    named.sort_by(|a, b| b.1.total_cmp(&a.1));
-    named
-}
-
-fn shares(model: &Model, parameters: usize) -> Vec<f64> {
-    let points: Vec<Vec<f64>> = (1..=SAMPLES).map(|i| spread(i, parameters)).collect();
-    let variance = |values: &[f64]| {
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64
-    };
-    let one = |axis: usize| {
-        let (mut means, mut all) = (Vec::new(), Vec::new());
-        for level in 0..LEVELS {
-            let at = (f64::from(level) + 0.5) / f64::from(LEVELS);
-            let values: Vec<f64> = points
-                .iter()
-                .map(|point| {
-                    let mut point = point.clone();
-                    point[axis] = at;
-                    model.at(&point).0
-                })
-                .collect();
-            means.push(values.iter().sum::<f64>() / values.len() as f64);
-            all.extend(values);
-        }
-        let whole = variance(&all);
-        if whole > 0.0 { variance(&means) / whole } else { 0.0 }
-    };
-    (0..parameters).map(one).collect()
-}
-
-/// The i-th of evenly spread points of the unit cube (Kronecker's sequence of square roots of primes).
-fn spread(i: u32, parameters: usize) -> Vec<f64> {
-    const PRIMES: [f64; 8] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0];
-    (0..parameters)
-        .map(|k| (f64::from(i) * (PRIMES[k % 8] + (k / 8) as f64 * 23.0).sqrt()).fract())
-        .collect()
+/// How far the model's mean goes along an axis through a point.
+fn reach(model: &Model, base: &[f64], axis: usize) -> f64 {
+    let along = (0..=LEVELS).map(|level| {
+        let mut point = base.to_vec();
+        point[axis] = f64::from(level) / f64::from(LEVELS);
+        model.at(&point).0
+    });
+    let [low, high] =
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+    high - low
 }
 
 fn round(value: f64) -> f64 {

@@ -243,8 +243,9 @@ fn a_second_writer_is_refused_even_if_the_lock_is_removed() {
     // nothing: the second try does.
     let inode = || fs::metadata(studies.dir("s").join(".lock")).unwrap().ino();
     let before = inode();
+    let done = lines(&studies.dir("s/journal.jsonl"));
     let mut second = start(command(&["resume", "--quiet"]).arg(studies.dir("s")));
-    studies.wait_for_lines("s", lines(&studies.dir("s").join("journal.jsonl")) + 1);
+    studies.wait_for_lines("s", done + 1, &mut second);
     assert_eq!(inode(), before);
     second.kill().unwrap();
     second.wait().unwrap();

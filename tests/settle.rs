@@ -91,7 +91,7 @@ fn neither_threads_nor_kills_change_a_study_that_settles() {
         let name = format!("killed-{round}");
         // Some in the search, most while something is confirmed.
         let mut child: Child = start(&mut settling(&folder, &name, &more));
-        folder.wait_for_lines(&name, if round % 4 == 0 { 10 } else { 29 });
+        folder.wait_for_lines(&name, if round % 4 == 0 { 10 } else { 29 }, &mut child);
         std::thread::sleep(Duration::from_millis(random.random_range(0..60)));
         child.kill().expect("it can be killed");
         child.wait().expect("it ends");

@@ -111,17 +111,6 @@ fn every_optimizer_asks_distinct_points_within_the_bounds_in_both_directions_ali
 }
 
 #[test]
-fn it_finds_the_minimum() {
-    let mut talk = Talk::begin(&header("cma-es", "minimize", Some(6)));
-    let mut best = Value::Null;
-    for _ in 0..40 {
-        let points = talk.ask(6);
-        best = talk.answer(&told(&points, 1.0))["best"].clone();
-    }
-    assert!(best["value"].as_f64().unwrap() < 1e-3 && best["values"]["n"] == 7.0, "{best}");
-}
-
-#[test]
 fn a_batch_may_be_asked_and_told_in_any_parts() {
     let mut whole = Talk::begin(&header("cma-es", "minimize", Some(5)));
     let mut parts = Talk::begin(&header("cma-es", "minimize", Some(5)));

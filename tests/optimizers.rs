@@ -161,23 +161,6 @@ fn the_proposals_are_those_of_every_other_machine() {
 }
 
 #[test]
-fn a_history_told_again_leads_to_the_same_proposals() {
-    for kind in OptimizerKind::all() {
-        let grid = Grid::new(vec![51, 31]);
-        let mut first = build(kind, grid.clone(), 5);
-        let history = run(&mut *first, &grid, hill, (9, 4));
-        let mut second = build(kind, grid.clone(), 5);
-        for batch in history.chunks(4) {
-            assert_eq!(second.ask(4), batch, "{kind}");
-            let told: Vec<_> =
-                batch.iter().map(|p| Observation::new(p.clone(), hill(&grid, p, 0))).collect();
-            second.tell(&told);
-        }
-        assert_eq!(first.ask(7), second.ask(7), "{kind}");
-    }
-}
-
-#[test]
 fn asking_again_before_telling_gives_other_points() {
     for kind in OptimizerKind::all() {
         let grid = Grid::new(vec![9, 9]);

@@ -71,13 +71,14 @@ fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
     let file = folder.file("bench.csv", format!("{HEAD}ket8,10,0,7.6\nket8,20,0,5.7\n"));
     let kills = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(KILLS);
     let with_bench = [&FEW[..], &["--measurements", &file]].concat();
-    let flags: [&[&str]; 14] = [
+    let flags: [&[&str]; 15] = [
         &with_bench,
         &["--no-confirm"],
         &["--optimizer", "cma-es"],
         &["--polish", "6"],
         &["--objective", "centred-range"],
         &["--objective", "success-rate", "--uncertainty", "typical"],
+        &["--objective", "robust-range", "--uncertainty", "typical"],
         &["--objective", "range,peak-force"],
         &["--constraint", "peak-force<=30"],
         &["--task", "usb,ket8", "--aggregate", "weighted", "--weights", "1,2"],
@@ -99,6 +100,7 @@ fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
             kill(child, "KILL");
             let resumed = answer(&optimize(&["resume", &folder.word(&name), "--quiet", "--json"]));
             assert_eq!(resumed, whole, "{flags:?}");
+            assert_eq!(folder.journal(&name), folder.journal(&format!("whole-{i}")), "{flags:?}");
         }
     }
 }

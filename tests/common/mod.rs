@@ -1,6 +1,7 @@
 //! Runs the real binary on the fake engine.
 #![allow(dead_code, reason = "each test file uses its own part of this")]
 
+pub mod memory;
 mod ran;
 
 pub use ran::{Ran, read, run};

@@ -342,4 +342,3 @@ fn changed_goals_are_another_study_and_odd_ones_are_not_compared() {
     optimize(&["compare", &dir("s"), &dir("front")]).fails(2, &["objective"]);
     optimize(&["compare", &dir("s")]).succeeds();
 }
-

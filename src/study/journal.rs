@@ -15,7 +15,6 @@ use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// An open journal.
 pub struct Journal {
     pub(super) path: PathBuf,
     store: Box<dyn Store>,
@@ -26,9 +25,7 @@ pub struct Journal {
     broken: bool,
 }
 
-/// Contents of a journal.
 pub struct Contents {
-    /// The evaluations, by index.
     pub evaluations: Vec<Recorded>,
     /// Where what they were measured with changed; the first begins at 0.
     pub segments: Vec<Segment>,

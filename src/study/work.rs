@@ -26,7 +26,6 @@ use std::fmt::Display;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Work {
-    /// The number of its proposal in the study.
     pub proposal: u64,
     /// The design, in the units its keys carry.
     pub design: Design,
@@ -88,13 +87,11 @@ fn read<T: DeserializeOwned, U: DeserializeOwned>(
 }
 
 impl Work {
-    /// As bytes.
     pub fn encode(&self) -> Result<Vec<u8>, WorkError> {
         let line = seal(self, None);
         Ok(line.map_err(|error| WorkError::bytes("work", error))?.into_bytes())
     }
 
-    /// The work of these bytes.
     pub fn decode(bytes: &[u8]) -> Result<Work, WorkError> {
         let again = |work: &Work, _: &IgnoredAny| seal(work, None);
         Ok(read(bytes, "work", again)?.0)

@@ -43,7 +43,6 @@ pub(crate) struct CmaEsOptimizer {
 }
 
 impl CmaEsOptimizer {
-    /// CMA-ES over `grid`.
     pub fn new(grid: Grid, seed: u64) -> Self {
         let free = grid.free_axes();
         let step = |&i: &usize| MIN_STD_STEPS / f64::from(grid.levels()[i] - 1);

@@ -3,9 +3,8 @@
 mod common;
 
 use ask_tell::stream::stream;
-use common::{Ran, Studies, command, optimize, read, run, sealed};
+use common::{Studies, answer, command, optimize, read, run, sealed};
 use rand::RngExt;
-use serde_json::Value;
 use std::fs;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
@@ -18,17 +17,6 @@ const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "2
 const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";
 /// Kills of each flag; set the environment variable `KILLS` for more.
 const KILLS: u32 = 2;
-
-/// What a study answers, without where it is and what it took from the cache.
-fn answer(ran: &Ran) -> Value {
-    let mut json = ran.json();
-    let fields = json.as_object_mut().expect("an object");
-    fields.remove("study");
-    fields.remove("cached");
-    // It may name the study's folder.
-    fields["answer"].as_object_mut().expect("an object").remove("next");
-    json
-}
 
 #[test]
 fn a_changed_task_needs_evaluations_of_its_own() {

@@ -4,7 +4,7 @@
 mod common;
 
 use ask_tell::stream::stream;
-use common::{Ran, Studies, command, read, run, start};
+use common::{Studies, answer, command, read, run, start};
 use rand::RngExt;
 use serde_json::Value;
 use std::process::{Child, Command};
@@ -18,13 +18,6 @@ fn settling(folder: &Studies, name: &str, more: &[&str]) -> Command {
     let mut command = command(&["--engine", "fake", "--quiet", "--json", "--task", "usb"]);
     command.arg("--out").arg(folder.dir(name)).args(more);
     command
-}
-
-/// What a study answers, without where it is.
-fn answer(ran: &Ran) -> Value {
-    let mut json = ran.json();
-    json.as_object_mut().expect("an object").remove("study");
-    json
 }
 
 /// Confirmations, without the provenance.

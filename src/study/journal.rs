@@ -203,7 +203,7 @@ impl Contents {
                 self.evaluations.push(recorded);
             }
             Some(segment) if segment.first != expected => {
-                return Err(LineError::Order { found: segment.first, expected });
+                return Err(LineError::Order(segment.first, expected));
             }
             Some(segment) => {
                 segment.provenance.check().map_err(LineError::Format)?;

@@ -265,12 +265,9 @@ mod tests {
             let success = Some(SuccessRate { failed_draws: failed_draws.to_vec(), ..counts });
             taken_from(work.clone(), Evaluation { success, ..sound() }, 1.0)
         };
-        assert!(ended(0, &[0, 2, 6], 5) && ended(1, &[0, 1, 6], 4) && ended(6, &[2, 6], 0));
+        // What else cannot be is a matter of the race: tests/race.rs.
+        assert!(ended(0, &[0, 2, 6], 5) && ended(6, &[2, 6], 0));
         assert!(!ended(1, &[2, 6], 5), "it had not lost yet");
-        assert!(!ended(1, &[0, 2, 6], 4), "it had lost before");
-        assert!(!ended(0, &[1, 2, 6], 5), "it did not meet draw 1");
-        assert!(!ended(4, &[2, 6], 0), "two draws are missing");
-        assert!(!ended(5, &[0, 2, 6], 0), "it had lost long before");
     }
 
     proptest! {

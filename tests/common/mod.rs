@@ -44,6 +44,17 @@ pub fn end(child: Child) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
+/// What a study answers, without where it is and what it took from the cache.
+pub fn answer(ran: &Ran) -> serde_json::Value {
+    let mut json = ran.json();
+    let fields = json.as_object_mut().expect("an object");
+    fields.remove("study");
+    fields.remove("cached");
+    // It may name the study's folder.
+    fields["answer"].as_object_mut().expect("an object").remove("next");
+    json
+}
+
 /// Number of lines of a file; 0 if it is not there.
 pub fn lines(path: &Path) -> usize {
     std::fs::read_to_string(path).unwrap_or_default().lines().count()

@@ -22,6 +22,7 @@ use insertion::space::{Design, Space};
 use insertion::surrogate::{Estimate, Prediction};
 use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
@@ -282,6 +283,24 @@ fn a_design_that_cannot_be_stops_the_study_and_is_named() {
         assert!(error.contains(part), "{error}");
     }
     assert_eq!(store.journal().lines().count(), 2 + 2);
+}
+
+struct Panics;
+
+impl Evaluate for Panics {
+    fn evaluate(&self, _: &Design) -> Result<Measured, Impossible> {
+        panic!("a defect")
+    }
+}
+
+#[test]
+fn a_panic_in_a_measuring_thread_ends_the_study() {
+    let studies = Studies::new();
+    let (dir, store) = (folder(&studies), Memory::default());
+    let panics = AssertUnwindSafe(|| memory::run(&dir, &store, &Panics, &walk, 2));
+    assert!(catch_unwind(panics).is_err());
+    let again = run(&dir, &store).unwrap();
+    assert_eq!(again, Ending::BudgetSpent, "journal and lock are as they should be");
 }
 
 #[test]

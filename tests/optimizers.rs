@@ -191,6 +191,15 @@ fn those_that_learn_find_the_hill_and_those_that_spread_come_near_it() {
     }
 }
 
+/// Its search is folded back at the faces.
+#[test]
+fn a_slope_leads_cma_es_to_its_corner() {
+    let grid = Grid::new(vec![101, 1, 101]);
+    let slope: Objective = |grid, point, _| Some(grid.unit(point).iter().sum());
+    let points = run(&mut *build(OptimizerKind::CmaEs, grid.clone(), 5), &grid, slope, (30, 4));
+    assert!(points.contains(&GridPoint(vec![100, 0, 100])));
+}
+
 /// Beyond 250 points the process is made of neighbours.
 #[test]
 fn a_process_that_knows_much_keeps_the_contract_and_still_climbs() {

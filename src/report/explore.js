@@ -139,8 +139,10 @@
   // --- the table, as long as one wants it
   const PAGE = 100, robot = Object.keys(data.robot).length > 0;
   const width = (e) => (e.window ? e.window[1] - e.window[0] : null);
-  const columns = [["no.", (e) => e.index], ...data.parameters.map((of, k) => [axis(of), (e) => e.x[k]]), [`searched ${data.measure.name}${unit && ` (${unit})`}`, (e) => e.value, (e) => data.raced[e.index] || number(e.value, digits)],
+  const own = data.parameters.map((of, k) => [axis(of), (e) => e.x[k]]), found = [[`searched ${data.measure.name}${unit && ` (${unit})`}`, (e) => e.value, (e) => data.raced[e.index] || number(e.value, digits)],
     [`window${data.on} (mm)`, width, (e) => (e.window ? `${signed(e.window[0])} to ${signed(e.window[1])}` : e.ends[0] || "none")], ["force (N)", (e) => e.force, (e) => number(e.force)], ...(robot ? [["on a robot (mm)", (e) => data.robot[e.index] ?? null, (e) => (data.robot[e.index] === undefined ? "" : number(data.robot[e.index]))]] : [])];
+  // Of many parameters the results stand first, where they are seen.
+  const columns = [["no.", (e) => e.index], ...(own.length > 3 ? [...found, ...own] : [...own, ...found])];
   const table = part("table", {}), body = table.createTBody(), head = part("tr", {}, table.createTHead());
   let order = [columns.findIndex(([name]) => name.startsWith("searched")), -data.measure.sense], length = PAGE;
   const more = part("button", { type: "button" }, null, "More");

@@ -6,7 +6,7 @@ use super::page::{Beside, Film};
 use super::printer::{self, recommended};
 use super::replay::{ENDS, pair_file};
 use super::{bar, explore};
-use crate::answer::words::{design, finger, outcome, remedy};
+use crate::answer::words::{design, finger, infill, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
 use crate::study::StudyRecord;
 use finray::export::sheet;
@@ -73,7 +73,7 @@ fn drawn(answer: &Answer) -> Option<Markup> {
     let design = answer.verdict.finger()?;
     let first = answer.record.config.objective.first().name();
     let best = answer.front.as_ref().map_or(String::new(), |_| format!(", best in {first}"));
-    let caption = format!("{}{best}, {} ribs", finger(design), geometry.ribs);
+    let caption = format!("{}{best}, {} ribs", infill(design), geometry.ribs);
     let svg = sheet::part(&geometry);
     let svg = COLOURS.iter().fold(svg, |svg, (from, to)| svg.replace(from, to));
     Some(html! { div.finger { (figure(&svg, "the finger to print", &caption)) } })

@@ -92,7 +92,7 @@ impl Grid {
     }
 
     /// All points in lexicographic order.
-    pub(crate) fn points(&self) -> impl Iterator<Item = GridPoint> {
+    pub fn points(&self) -> impl Iterator<Item = GridPoint> {
         let first = GridPoint(vec![0; self.dimension()]);
         std::iter::successors(Some(first), |point| self.after(point))
     }

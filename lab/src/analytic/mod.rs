@@ -35,7 +35,7 @@ mod peg;
 mod spring;
 mod table;
 
-pub use table::{json, table};
+pub use table::table;
 
 /// Constructor of the engine under check; its argument scales the production step.
 pub type Make<'a> = &'a dyn Fn(f64) -> Box<dyn Engine>;

@@ -1,7 +1,6 @@
-//! Results of the checks as text and as JSON.
+//! Results of the checks as text.
 
 use super::{CheckRow, Tolerance};
-use serde_json::{Value, json};
 
 /// Width of the quantities; the rest of a longer one goes to the next line.
 const QUANTITY: usize = 29;
@@ -35,28 +34,6 @@ pub fn table(rows: &[CheckRow]) -> String {
         0 => format!("pass: all {} checks\n", rows.len()),
         failed => format!("fail: {failed} of {} checks\n", rows.len()),
     }
-}
-
-/// JSON array with an object for each row.
-pub fn json(rows: &[CheckRow]) -> Value {
-    let row = |row: &CheckRow| {
-        let (kind, tolerance) = match row.tolerance {
-            Tolerance::Relative(share) => ("relative", share),
-            Tolerance::Absolute(error) => ("absolute", error),
-        };
-        json!({
-            "check": row.check,
-            "quantity": row.quantity,
-            "expected": row.expected,
-            "measured": row.measured,
-            "error": row.error(),
-            "unit": row.unit,
-            "tolerance": tolerance,
-            "tolerance_kind": kind,
-            "passed": row.passed,
-        })
-    };
-    rows.iter().map(row).collect()
 }
 
 /// Quantity split at the end of a word where its column ends.
@@ -115,9 +92,5 @@ mod tests {
         assert!(text.ends_with("\nfail: 2 of 3 checks\n"), "{text}");
         // The long name is whole, in two lines.
         assert!(text.contains("by more words ") && text.contains("\n      than its"), "{text}");
-        let value = json(&rows());
-        assert_eq!(value[0]["tolerance_kind"], "relative");
-        // Null stands for a divergence.
-        assert!(value[2]["measured"].is_null());
     }
 }

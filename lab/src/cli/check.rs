@@ -39,8 +39,8 @@ pub struct Arguments {
     /// Robot of the windows
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, requires = "windows")]
     robot: String,
-    /// Print the result as JSON
-    #[arg(long)]
+    /// Print the windows as JSON
+    #[arg(long, requires = "windows")]
     json: bool,
 }
 
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let rows = analytic::run(&|factor| engine.build(factor));
     let failed = rows.iter().filter(|row| !row.passed).count();
-    arguments.show(analytic::table(&rows), &analytic::json(&rows))?;
+    print(&analytic::table(&rows))?;
     verdict("checks", failed, rows.len())
 }
 
@@ -72,13 +72,11 @@ impl Arguments {
         };
         let found = pairs::measure(&tasks, &self.fingers.designs());
         let failed = found.iter().filter(|pair| !pair.agrees(allowed)).count();
-        let json = pairs::json(&found, Some(allowed), way, keys);
-        self.show(pairs::text(&found, Some(allowed)), &json.into())?;
+        match self.json {
+            true => print_json(&pairs::json(&found, Some(allowed), way, keys).into())?,
+            false => print(&pairs::text(&found, Some(allowed)))?,
+        }
         verdict("windows", failed, found.len())
-    }
-
-    fn show(&self, table: String, json: &serde_json::Value) -> Result<(), Failure> {
-        if self.json { print_json(json) } else { print(&table) }
     }
 }
 
@@ -94,8 +92,7 @@ fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays,
 }
 
 fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
-    let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
-    let rig = Arc::new(rig);
+    let rig = Arc::new(EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?);
     let way = |search| Way { name: search_name(search).to_owned(), rig: rig.clone(), search };
     let ways = [Search::Walk, Search::Strides].map(way).to_vec();
     Ok(TaskWays { task, ways })

@@ -27,14 +27,11 @@ pub struct Arguments {
     /// Task: ket8, ket12, rj45, usb, all, or the path of a task file of such a name
     #[arg(long, value_name = "NAME", default_value = "all")]
     task: String,
-    /// Robot: see `optimize tasks`, or the path of a robot file
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
-    robot: String,
     /// A few trials far from the windows' ends, and no windows of the second engine
     #[arg(long)]
     reduced: bool,
     /// Time one trial of each task in both engines instead, one thread, medians of 5
-    #[arg(long, conflicts_with = "reduced")]
+    #[arg(long, conflicts_with_all = ["reduced", "json"])]
     time: bool,
     /// Print the result as JSON
     #[arg(long)]
@@ -44,7 +41,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kinds = [arguments.engine, arguments.against];
     let names = kinds.map(EngineKind::name);
-    let robot = session::robot(&arguments.robot)?;
+    let robot = session::robot(DEFAULT_ROBOT)?;
     let ways = |task: Task| {
         let way = |engine: EngineKind| {
             let rig = engine.rig(&task, &robot, &FingerSource::Paper.any(&task), 1.0);
@@ -59,16 +56,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // The softest and the stiffest.
     let mut designs = Fingers::Three.designs();
     designs.remove(1);
-    let show = |text: String, json: serde_json::Value| match arguments.json {
-        true => print_json(&json),
-        false => print(&text),
-    };
     if arguments.time {
-        let rows = engines::time(&tasks, &designs);
-        return show(engines::time_text(&rows, names), engines::time_json(&rows, names));
+        return print(&engines::time_text(&engines::time(&tasks, &designs), names));
     }
     let check = engines::run(&tasks, &designs, arguments.reduced);
-    show(engines::text(&check, names), engines::json(&check, names))?;
+    match arguments.json {
+        true => print_json(&engines::json(&check, names))?,
+        false => print(&engines::text(&check, names))?,
+    }
     match check.passed() {
         true => Ok(()),
         false => Err(Failure::running(format!("{} do not agree well enough", names.join(" and ")))),

@@ -1,8 +1,8 @@
 //! `lab landscape`: every design of a space, and what is firm of the widest.
 
 use super::{Failure, print};
+use ask_tell::Grid;
 use ask_tell::stream::stream;
-use ask_tell::{Grid, GridPoint};
 use clap::Args;
 use finger_opt::session::{Setup, SetupRequest};
 use finger_opt::study::write_file;
@@ -20,6 +20,10 @@ use std::sync::atomic::AtomicBool;
 
 /// Most designs of a recorded space.
 const LARGEST: u64 = 20_000;
+/// How many of the widest designs are confirmed, and how many random ones.
+const CONFIRMED: usize = 100;
+/// Seed of the random designs and of the repeats.
+const SEED: u64 = 0;
 
 /// Measure every design of a space, and confirm the widest
 ///
@@ -29,12 +33,6 @@ const LARGEST: u64 = 20_000;
 pub struct Arguments {
     #[command(flatten)]
     setup: SetupRequest,
-    /// How many of the widest designs are confirmed, and how many random ones
-    #[arg(long, value_name = "N", default_value_t = 100)]
-    confirm: usize,
-    /// Seed of the random designs and of the repeats
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    seed: u64,
     /// Table that is written
     #[arg(long, value_name = "FILE.csv")]
     out: PathBuf,
@@ -59,16 +57,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "the space has {size} designs; a landscape has at most {LARGEST}: give a coarser --space"
         )));
     }
-    let designs: Vec<Design> =
-        (0..grid.size()).map(|index| setup.space.design(&point(&grid, index))).collect();
+    let designs: Vec<Design> = grid.points().map(|point| setup.space.design(&point)).collect();
     let searched = designs
         .par_iter()
         .map(|design| window(&setup, design, Search::Strides))
         .collect::<Result<Vec<Measured>, Failure>>()?;
-    let wanted = wanted(&searched, arguments);
+    let wanted = wanted(&searched);
     let found = wanted
         .par_iter()
-        .map(|&at| confirmed(&setup, &designs[at], &searched[at], arguments.seed))
+        .map(|&at| confirmed(&setup, &designs[at], &searched[at]))
         .collect::<Result<Vec<Confirmed>, Failure>>()?;
     let mut text = header(&setup);
     for (at, (design, measured)) in designs.iter().zip(&searched).enumerate() {
@@ -77,17 +74,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     write_file(&arguments.out, &text)?;
     print(&format!("{} designs, {} of them confirmed\n", designs.len(), found.len()))
-}
-
-/// The point of this number, the last axis counting first.
-fn point(grid: &Grid, mut index: u64) -> GridPoint {
-    let mut levels = grid.levels().to_vec();
-    for level in levels.iter_mut().rev() {
-        let count = u64::from(*level);
-        *level = (index % count) as u32;
-        index /= count;
-    }
-    GridPoint(levels)
 }
 
 fn window(setup: &Setup, design: &Design, search: Search) -> Result<Measured, Failure> {
@@ -102,27 +88,22 @@ fn refused(error: Impossible) -> Failure {
 }
 
 /// The widest designs, then random others, by their places.
-fn wanted(searched: &[Measured], arguments: &Arguments) -> Vec<usize> {
+fn wanted(searched: &[Measured]) -> Vec<usize> {
     let mut places: Vec<usize> = (0..searched.len()).collect();
     let range = |at: usize| searched[at].tasks[0].window.range_mm();
     places.sort_by(|&a, &b| range(b).total_cmp(&range(a)));
-    let mut rest = places.split_off(arguments.confirm.min(places.len()));
-    rest.shuffle(&mut stream(arguments.seed, 0, "landscape"));
-    places.extend(rest.into_iter().take(arguments.confirm));
+    let mut rest = places.split_off(CONFIRMED.min(places.len()));
+    rest.shuffle(&mut stream(SEED, 0, "landscape"));
+    places.extend(rest.into_iter().take(CONFIRMED));
     places
 }
 
-fn confirmed(
-    setup: &Setup,
-    design: &Design,
-    searched: &Measured,
-    seed: u64,
-) -> Result<Confirmed, Failure> {
+fn confirmed(setup: &Setup, design: &Design, searched: &Measured) -> Result<Confirmed, Failure> {
     let (evaluator, stop) = (&setup.evaluator, AtomicBool::new(false));
     let specimen =
         evaluator.specimen(&evaluator.templates[0], design, searched.stiffness).map_err(refused)?;
     let firm = |found: &Evaluation| {
-        evaluator.firm(&specimen, found, seed, &stop).map_err(|e| Failure::running(e.to_string()))
+        evaluator.firm(&specimen, found, SEED, &stop).map_err(|e| Failure::running(e.to_string()))
     };
     let repeated = firm(&searched.tasks[0])?;
     let walked = window(setup, design, Search::Walk)?.tasks.swap_remove(0);

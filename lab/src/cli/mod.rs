@@ -38,8 +38,12 @@ enum Command {
     CrossCheck(cross_check::Arguments),
     #[command(after_help = "Example: lab validate --task ket8 --strides")]
     Validate(validate::Arguments),
-    #[command(after_help = "Example: lab benchmark --repeats 8")]
-    Benchmark(benchmark::Arguments),
+    /// Measure how fast this machine simulates.
+    ///
+    /// One finger is evaluated on every task, on as many threads as a study would
+    /// use; the time of a study is estimated from it. Close other programs first.
+    #[command(after_help = "Example: lab benchmark")]
+    Benchmark,
     #[command(after_help = "Example: lab windows --random 40 --out windows.csv")]
     Windows(windows::Arguments),
     #[command(after_help = "Example: lab optimizers --functions branin --optimizers gp")]
@@ -65,7 +69,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(arguments) => check::run(arguments),
         Command::CrossCheck(arguments) => cross_check::run(arguments),
         Command::Validate(arguments) => validate::run(arguments),
-        Command::Benchmark(arguments) => benchmark::run(arguments),
+        Command::Benchmark => benchmark::run(),
         Command::Windows(arguments) => windows::run(arguments),
         Command::Optimizers(arguments) => optimizers::run(arguments),
         Command::Landscape(arguments) => landscape::run(arguments),

@@ -2,7 +2,7 @@
 
 use super::optimizers::landscape;
 use super::{Failure, print};
-use crate::problems::{SettleLimits, settle, settled_markdown};
+use crate::problems::{settle, settled_markdown};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -18,9 +18,6 @@ pub struct Arguments {
     /// Searches of each landscape, with seeds from 0
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     seeds: u64,
-    /// Spend this many evaluations in place of settling
-    #[arg(long, value_name = "N")]
-    budget: Option<usize>,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -29,8 +26,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .to_owned();
     for file in &arguments.landscape {
         let (name, landscape) = landscape(file)?;
-        let limits = SettleLimits::of(landscape.grid.dimension(), arguments.budget);
-        let found = settle(&landscape, limits, arguments.seeds);
+        let found = settle(&landscape, arguments.seeds);
         text += &settled_markdown(&name, landscape.best_firm(), &found);
     }
     print(&text)

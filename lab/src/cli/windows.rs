@@ -47,16 +47,13 @@ pub struct Arguments {
     /// Quarter of the step, and each end judged by repeats
     #[arg(long)]
     reference: bool,
-    /// Robot: see `optimize tasks`, or the path of a robot file
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
-    robot: String,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let [reference, file] = &arguments.compare[..] {
         return print(&windows::compare(&read(reference)?, &read(file)?));
     }
-    let robot = session::robot(&arguments.robot)?;
+    let robot = session::robot(DEFAULT_ROBOT)?;
     let mut rows = Vec::new();
     for task in tasks(&arguments.task)? {
         let designs = designs(&task.name, arguments.random)?;

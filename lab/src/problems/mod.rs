@@ -8,7 +8,7 @@ mod settled;
 
 pub use functions::Function;
 pub use landscape::Landscape;
-pub use settled::{Limits as SettleLimits, settle, settled_markdown};
+pub use settled::{settle, settled_markdown};
 
 use ask_tell::cmaes::{Restarts, Solution, StartBox, Tolerances};
 use ask_tell::{Grid, GridPoint, Observation, Optimizer, OptimizerKind, build};

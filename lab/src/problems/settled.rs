@@ -7,20 +7,13 @@ use rayon::prelude::*;
 
 /// Evaluations at a time.
 const BATCH: usize = 4;
-
-/// Limits of a search that settles.
-#[derive(Debug, Clone, Copy)]
-pub struct Limits {
-    /// Evaluations after which it ends, settled or not.
-    pub budget: usize,
-    /// Evaluations before which it does not settle, and in a row for which no gain is expected.
-    pub least: usize,
-    pub quiet: usize,
-    /// Points confirmed at a time.
-    pub at_once: usize,
-    /// What counts as a gain.
-    pub gain: Gain,
-}
+/// Evaluations after which a search ends, settled or not.
+const BUDGET: usize = 500;
+/// Points confirmed at a time.
+const AT_ONCE: usize = 2;
+/// What counts as a gain.
+const GAIN: Gain =
+    Gain { least: 0.3, probability: 0.02, noise_floor: DEFAULT_NOISE_FLOOR, floor: 0.0 };
 
 /// How one search ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,27 +27,20 @@ pub struct Settled {
     pub firm_mm: f64,
 }
 
-impl Limits {
-    /// Of a space with so many axes; with a budget it does not settle before.
-    pub fn of(dimension: usize, budget: Option<usize>) -> Self {
-        let gain =
-            Gain { least: 0.3, probability: 0.02, noise_floor: DEFAULT_NOISE_FLOOR, floor: 0.0 };
-        let least = budget.unwrap_or(20 + 4 * dimension);
-        Limits { budget: budget.unwrap_or(500), least, quiet: 12 * dimension, at_once: 2, gain }
-    }
-}
-
 /// Searches of a landscape with the optimizer `gp`, one for each seed from 0.
-pub fn settle(landscape: &Landscape, limits: Limits, seeds: u64) -> Vec<Settled> {
-    (0..seeds).into_par_iter().map(|seed| one(landscape, limits, seed)).collect()
+pub fn settle(landscape: &Landscape, seeds: u64) -> Vec<Settled> {
+    (0..seeds).into_par_iter().map(|seed| one(landscape, seed)).collect()
 }
 
-fn one(landscape: &Landscape, limits: Limits, seed: u64) -> Settled {
+fn one(landscape: &Landscape, seed: u64) -> Settled {
+    let axes = landscape.grid.dimension();
+    // Evaluations before which it does not settle, and in a row for which no gain is expected.
+    let (least, enough) = (20 + 4 * axes, 12 * axes);
     let mut optimizer = build(OptimizerKind::Gp, landscape.grid.clone(), seed);
     let (mut told, mut confirmed): (Vec<Observation>, Vec<Confirmed>) = (Vec::new(), Vec::new());
     let (mut quiet, mut settled) = (0, false);
-    while told.len() < limits.budget && !settled {
-        let points = optimizer.ask(BATCH.min(limits.budget - told.len()));
+    while told.len() < BUDGET && !settled {
+        let points = optimizer.ask(BATCH.min(BUDGET - told.len()));
         if points.is_empty() {
             break;
         }
@@ -65,13 +51,13 @@ fn one(landscape: &Landscape, limits: Limits, seed: u64) -> Settled {
         optimizer.tell(&batch);
         let count = batch.len();
         told.extend(batch);
-        if told.len() >= limits.least {
-            let calm = confirm(landscape, &told, &mut confirmed, limits, true);
+        if told.len() >= least {
+            let calm = confirm(landscape, &told, &mut confirmed, true);
             quiet = if calm { quiet + count } else { 0 };
-            settled = quiet >= limits.quiet;
+            settled = quiet >= enough;
         }
     }
-    confirm(landscape, &told, &mut confirmed, limits, false);
+    confirm(landscape, &told, &mut confirmed, false);
     let last = confirmed.iter().filter(|confirmed| confirmed.last);
     Settled {
         evaluations: told.len(),
@@ -87,15 +73,14 @@ fn confirm(
     landscape: &Landscape,
     told: &[Observation],
     confirmed: &mut Vec<Confirmed>,
-    limits: Limits,
     searching: bool,
 ) -> bool {
     let rank: Vec<usize> = (0..told.len()).collect();
     loop {
-        let outlook = Outlook::new(&landscape.grid, told, confirmed, limits.gain);
+        let outlook = Outlook::new(&landscape.grid, told, confirmed, GAIN);
         let advice = match searching {
-            true => outlook.advise(&rank, limits.at_once),
-            false => outlook.confirm_only(&rank, limits.at_once),
+            true => outlook.advise(&rank, AT_ONCE),
+            false => outlook.confirm_only(&rank, AT_ONCE),
         };
         let Advice::Confirm(places) = advice else { return advice == Advice::Settled };
         for at in places {

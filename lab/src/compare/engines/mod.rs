@@ -49,11 +49,15 @@ pub struct TrialPair {
 }
 
 impl TrialPair {
-    /// Whether both inserted the plug, or neither.
     pub fn agrees(&self) -> bool {
-        let [first, second] = self.outcomes.map(|outcome| outcome == Outcome::Inserted);
-        first == second
+        alike(self.outcomes)
     }
+}
+
+/// Whether both inserted the plug, or neither.
+fn alike(outcomes: [Outcome; 2]) -> bool {
+    let [first, second] = outcomes.map(|outcome| outcome == Outcome::Inserted);
+    first == second
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -246,35 +250,14 @@ pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
     );
     for row in rows {
         let [a, b] = [0, 1].map(|i| format!("{:.3} ({:.2})", row.wall_s[i], row.simulated_s[i]));
-        let same = (row.outcomes[0] == Outcome::Inserted) == (row.outcomes[1] == Outcome::Inserted);
         text += &format!(
             "{:<7}{:<13}{a:>20}{b:>20}{:>8.3}{}\n",
             row.subject.task,
             row.subject.infill(),
             row.ratio(),
-            if same { "" } else { "  another outcome" }
+            if alike(row.outcomes) { "" } else { "  another outcome" }
         );
     }
-    text + &format!("mean ratio of wall to simulated time: {:.3}\n", mean_ratio(rows))
-}
-
-pub fn time_json(rows: &[Timing], names: [&str; 2]) -> Value {
-    json!({
-        "engines": names,
-        "runs": RUNS,
-        "mean_ratio": mean_ratio(rows),
-        "trials": rows.iter().map(|row| {
-            let measured = json!({
-                "finger": row.subject.infill(),
-                "simulated_s": row.simulated_s,
-                "wall_s": row.wall_s,
-                "ratio": row.ratio(),
-            });
-            subject_json(&row.subject.task, &row.subject.design, measured)
-        }).collect::<Vec<_>>(),
-    })
-}
-
-fn mean_ratio(rows: &[Timing]) -> f64 {
-    rows.iter().map(Timing::ratio).sum::<f64>() / rows.len() as f64
+    let mean = rows.iter().map(Timing::ratio).sum::<f64>() / rows.len() as f64;
+    text + &format!("mean ratio of wall to simulated time: {mean:.3}\n")
 }

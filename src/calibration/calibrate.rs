@@ -6,6 +6,7 @@ use super::prior::Parameter;
 use super::process::COORDINATES;
 use super::statistics::{mean, spearman};
 use super::subject::Subject;
+use crate::study::LeaveOneOut;
 use ask_tell::stream::stream;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -127,26 +128,17 @@ pub struct LeftOut {
     pub predicted: Predicted,
 }
 
-/// Accuracy of the predictions of left-out fingers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Accuracy {
-    pub fingers: usize,
-    /// Mean of `|predicted - measured| / measured`, percent; `None` without fingers.
-    pub mean_deviation_percent: Option<f64>,
-    pub spearman: Option<f64>,
-    /// Fingers whose measured range lies in its interval.
-    pub inside: usize,
-}
-
 impl LeftOut {
     pub fn inside(&self) -> bool {
         (self.predicted.low_mm..=self.predicted.high_mm).contains(&self.measured_mm)
     }
 }
 
-impl Accuracy {
-    /// Of these fingers. One that does not insert at all has no deviation in percent.
-    pub fn of(left_out: &[LeftOut]) -> Self {
+impl TaskResult {
+    /// Accuracy of the predictions of left-out fingers, made with an emulator of this error. One that
+    /// does not insert at all has no deviation in percent.
+    pub fn trust(&self, emulator_error_mm: f64) -> LeaveOneOut {
+        let left_out = &self.left_out;
         let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
         let percent = |one: &LeftOut| {
             100.0 * (one.predicted.mean_mm - one.measured_mm).abs() / one.measured_mm
@@ -154,16 +146,13 @@ impl Accuracy {
         let deviations: Vec<f64> = wide.map(percent).collect();
         let pairs: Vec<(f64, f64)> =
             left_out.iter().map(|one| (one.predicted.mean_mm, one.measured_mm)).collect();
-        Accuracy {
+        LeaveOneOut {
             fingers: left_out.len(),
             mean_deviation_percent: mean(&deviations),
             spearman: spearman(&pairs),
             inside: left_out.iter().filter(|one| one.inside()).count(),
+            emulator_error_mm,
         }
-    }
-
-    pub fn coverage_percent(&self) -> Option<f64> {
-        (self.fingers > 0).then(|| 100.0 * self.inside as f64 / self.fingers as f64)
     }
 }
 

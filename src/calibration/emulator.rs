@@ -52,11 +52,8 @@ pub enum CalibrationError {
 /// A designed set of simulations.
 #[derive(Debug, Clone, Copy)]
 pub struct Set<'a> {
-    /// Name of the task.
     pub task: &'a str,
-    /// Number of simulations.
     pub count: usize,
-    /// Names the set.
     pub seed: u64,
 }
 

@@ -87,18 +87,3 @@ pub fn three(mut designs: Vec<Measurement>) -> Vec<Measurement> {
     places.dedup();
     places.into_iter().map(|place| designs[place]).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn all_published_rows_are_read() {
-        for task in ["ket8", "ket12", "rj45", "usb"] {
-            assert_eq!(of_task(task, Origin::Simulation).len(), 11, "{task}");
-            assert_eq!(of_task(task, Origin::Bench).len(), 11, "{task}");
-        }
-        assert!(of_task("mine", Origin::Bench).is_empty());
-        assert_eq!(designs().len(), 11);
-    }
-}

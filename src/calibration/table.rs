@@ -1,10 +1,10 @@
 //! A calibration as JSON, as CSV, as text, and as a study keeps it.
 
-use super::calibrate::{Accuracy, Calibration, Coordinate, LeftOut, Prediction, TaskResult};
+use super::calibrate::{Calibration, Coordinate, LeftOut, Prediction, TaskResult};
 use super::predict::{INTERVAL, Predicted};
 use super::subject::Subject;
 use crate::calibration::statistics::mean;
-use crate::study::{BenchEffort, BenchFinger, LeaveOneOut, OnBench, Provenance};
+use crate::study::{BenchEffort, BenchFinger, OnBench, Provenance};
 use insertion::evaluation::Evaluation;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde_json::{Map, Value, json};
@@ -84,7 +84,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
 
 /// Caveats on a task's predictions, a line each.
 pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
-    let accuracy = Accuracy::of(&result.left_out);
+    let accuracy = result.trust(subject.emulator.error_mm);
     let mut lines = Vec::new();
     let scale = subject.emulator.mean_mm.max(1.0);
     if accuracy.fingers < 3 {
@@ -153,7 +153,9 @@ pub fn json(calibration: &Calibration, subjects: &[Subject]) -> Value {
 }
 
 fn task_json(subject: &Subject, result: &TaskResult) -> Value {
-    let accuracy = Accuracy::of(&result.left_out);
+    let accuracy = result.trust(subject.emulator.error_mm);
+    let coverage_percent =
+        (accuracy.fingers > 0).then(|| 100.0 * accuracy.inside as f64 / accuracy.fingers as f64);
     let predictions = result.predictions.iter().map(|prediction| {
         let mut fields = design_json(&subject.designs[prediction.finger]);
         fields.extend(numbers(prediction).map(|(key, value, _)| (key.to_owned(), json!(value))));
@@ -175,7 +177,7 @@ fn task_json(subject: &Subject, result: &TaskResult) -> Value {
         "designs": accuracy.fingers,
         "loo_mean_deviation_percent": accuracy.mean_deviation_percent,
         "loo_spearman": accuracy.spearman,
-        "loo_coverage_80_percent": accuracy.coverage_percent(),
+        "loo_coverage_80_percent": coverage_percent,
         "simulations": subject.emulator.simulations,
         "fresh_simulations": subject.emulator.fresh,
         "emulator_error_mm": subject.emulator.error_mm,
@@ -253,7 +255,7 @@ const LISTED: usize = 5;
 
 /// A task's result within 80 columns.
 pub fn text(subject: &Subject, result: &TaskResult) -> String {
-    let accuracy = Accuracy::of(&result.left_out);
+    let accuracy = result.trust(subject.emulator.error_mm);
     let emulator = &subject.emulator;
     let mut lines = vec![format!(
         "{}: {} measured fingers; {} simulations, emulated within {:.2} mm ({} fresh ones)",
@@ -336,7 +338,6 @@ pub fn on_bench(
     provenance: Provenance,
     effort: BenchEffort,
 ) -> OnBench {
-    let accuracy = Accuracy::of(&result.left_out);
     let finger = |prediction: &&Prediction| BenchFinger {
         design: subject.designs[prediction.finger].clone(),
         range_mm: prediction.range.mean_mm,
@@ -351,13 +352,7 @@ pub fn on_bench(
         measured: subject.measured().len(),
         ranges: Vec::new(),
         fingers: result.predictions.len(),
-        trust: LeaveOneOut {
-            fingers: accuracy.fingers,
-            mean_deviation_percent: accuracy.mean_deviation_percent,
-            spearman: accuracy.spearman,
-            inside: accuracy.inside,
-            emulator_error_mm: subject.emulator.error_mm,
-        },
+        trust: result.trust(subject.emulator.error_mm),
         warnings: warnings(subject, result),
         best: by_range(result).iter().take(KEPT).map(finger).collect(),
         simulated,

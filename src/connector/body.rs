@@ -177,27 +177,6 @@ mod tests {
     use super::*;
     use insertion::task::Solid;
 
-    fn cube(name: &str, low: [f64; 3], high: [f64; 3]) -> Part {
-        let solid = Solid::Box { min: Vector3::from(low) * MM, max: Vector3::from(high) * MM };
-        Part { name: name.to_owned(), solid, friction: None }
-    }
-
-    #[test]
-    fn boxes_overlap_by_what_they_share_and_stand_apart_by_the_gap() {
-        let parts = [
-            cube("a", [0.0; 3], [10.0, 10.0, 5.0]),
-            cube("b", [0.0, 0.0, 4.5], [10.0, 10.0, 9.0]),
-            cube("c", [0.0, 0.0, 9.3], [10.0, 10.0, 12.0]),
-        ];
-        let body = ConvexBody::new(&parts);
-        let found = body.own_overlaps();
-        assert_eq!(found.len(), 1);
-        assert!((found[0].0 - 0.5 * MM).abs() < 1e-9, "{found:?}");
-        assert!((body.own_gap(1, 2) - 0.3 * MM).abs() < 1e-9);
-        assert_eq!(body.part_at(&Point3::new(5.0 * MM, 5.0 * MM, 4.7 * MM)), Some(0));
-        assert_eq!(body.part_at(&Point3::new(5.0 * MM, 5.0 * MM, 9.1 * MM)), None);
-    }
-
     #[test]
     fn a_wedge_is_clipped_where_its_slope_is_cut() {
         // Width in x grows from 0 to 10 over a height of 10.

@@ -233,13 +233,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_plug_wider_than_its_opening_stays_outside() {
-        let key = ["[-6.0, 6.0]", "[-6.2, 6.2]"].map(|y| y.to_owned() + "\nz_mm = [0.0, 50.0]");
-        let seat = deepest(&changed("ket12", &key[0], &key[1]));
-        assert!(seat.depth < 0.1 * MM, "{seat:?}");
-    }
-
     /// usb: the lower edge over the opening's middle, touch to 0.3 mm below the top.
     #[test]
     fn the_commanded_edge_starts_over_the_opening_and_ends_below() {

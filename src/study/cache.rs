@@ -115,20 +115,13 @@ impl Cache {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::fits::tests::sound;
     use input::shipped::ROBOTS;
-    use insertion::evaluation::tolerance::{Search, evaluate};
-    use insertion::finger::Finger;
     use insertion::trial::engine::EngineKind;
-    use insertion::trial::fake::FakeRig;
 
     fn cache(dir: &Path) -> Cache {
         let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
         Cache::new(dir, &robot, &EngineKind::Direct.record())
-    }
-
-    fn measured(compliance: f64) -> Evaluation {
-        let finger = Finger::new(compliance, 2e4);
-        evaluate(&FakeRig::default(), &finger, Search::Walk)
     }
 
     fn files(dir: &Path) -> Vec<PathBuf> {
@@ -144,8 +137,8 @@ mod tests {
         let cache = cache(dir.path());
         let (a, b) = (cache.key(&0.1), cache.key(&(0.1 + f64::EPSILON)));
         assert_eq!(cache.get(&a), None);
-        cache.put(&a, &measured(3e3));
-        assert_eq!(cache.get(&a), Some(measured(3e3)));
+        cache.put(&a, &sound());
+        assert_eq!(cache.get(&a), Some(sound()));
         assert_eq!((cache.get(&b), cache.found(), cache.problem()), (None, 1, None));
         let robot = Robot::parse(ROBOTS[1].text, ROBOTS[1].file).unwrap();
         let (direct, rapier) = (EngineKind::Direct.record(), EngineKind::Rapier.record());
@@ -163,7 +156,7 @@ mod tests {
     fn a_torn_or_damaged_file_is_as_good_as_none_and_is_written_again() {
         let dir = tempfile::tempdir().unwrap();
         let cache = cache(dir.path());
-        let (key, found) = (cache.key(&1), measured(3e3));
+        let (key, found) = (cache.key(&1), sound());
         cache.put(&key, &found);
         let [file] = &files(dir.path())[..] else { panic!("one file") };
         let whole = fs::read(file).unwrap();
@@ -179,7 +172,7 @@ mod tests {
         }
         // Another evaluation's file under this name.
         let other = cache.key(&2);
-        cache.put(&other, &measured(2e3));
+        cache.put(&other, &Evaluation { trials: found.trials + 1, ..sound() });
         fs::copy(cache.path(&other), file).unwrap();
         assert_eq!(cache.get(&key), None);
         cache.put(&key, &found);
@@ -191,13 +184,13 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let caches = [cache(dir.path()), cache(dir.path())];
         let key = caches[0].key(&1);
-        caches[0].put(&key, &measured(3e3));
+        caches[0].put(&key, &sound());
         std::thread::scope(|scope| {
             for cache in caches.iter().cycle().take(8) {
                 scope.spawn(|| {
                     for _ in 0..200 {
-                        cache.put(&key, &measured(3e3));
-                        assert_eq!(cache.get(&key), Some(measured(3e3)));
+                        cache.put(&key, &sound());
+                        assert_eq!(cache.get(&key), Some(sound()));
                     }
                 });
             }
@@ -213,7 +206,7 @@ mod tests {
         fs::write(&file, "").unwrap();
         let cache = cache(&file);
         let key = cache.key(&1);
-        cache.put(&key, &measured(3e3));
+        cache.put(&key, &sound());
         assert_eq!(cache.get(&key), None);
         assert!(cache.problem().unwrap().contains("file: "));
     }

@@ -22,16 +22,12 @@ pub const LARGEST_BATCH: u64 = 10_000;
 pub struct StudyConfig {
     /// Names of the tasks, at least one.
     pub tasks: Vec<String>,
-    /// Name of the robot.
     pub robot: String,
     /// Where the springs of a finger come from that were not measured.
     #[serde(default, skip_serializing_if = "is_default")]
     pub finger_model: FingerModelKind,
-    /// Name of the optimizer.
     pub optimizer: String,
-    /// Objectives.
     pub objective: Objectives,
-    /// Constraints on a design.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<Constraint>,
     /// How the values of several tasks become one; there are several if it is there.
@@ -66,7 +62,6 @@ pub struct StudyConfig {
     /// Whether each result is told as it comes, and one more design asked for.
     #[serde(rename = "async", default, skip_serializing_if = "std::ops::Not::not")]
     pub asynchronous: bool,
-    /// Steps after the search.
     #[serde(default, skip_serializing_if = "is_default")]
     pub conclusion: Conclusion,
     /// Provenance at the beginning of the study.
@@ -200,7 +195,6 @@ impl StudyConfig {
         }
     }
 
-    /// Goals for a design.
     pub fn goals(&self) -> Goals {
         Goals {
             objectives: self.objective.clone(),

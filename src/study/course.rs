@@ -50,7 +50,6 @@ pub enum Ending {
 pub struct Wanted {
     /// Its number in the order in which designs were proposed, from 0.
     pub proposal: u64,
-    /// The design.
     pub design: Design,
     /// Race that it is measured in, if it is.
     pub race: Option<Race>,
@@ -65,7 +64,6 @@ pub enum Next {
     Wait,
     /// Say, by [`judged`](Course::judged), whether a gain is expected after so many evaluations.
     Judge(usize),
-    /// Nothing.
     Ended(Ending),
 }
 
@@ -74,7 +72,6 @@ pub enum Next {
 pub struct Arrived {
     /// The number of its proposal.
     pub proposal: u64,
-    /// Measurements.
     pub measured: Measured,
     /// When, and how long it took.
     pub timing: Timing,

@@ -101,11 +101,6 @@ pub enum LineError {
     #[error("not a line of this program's journals: {0}")]
     Format(String),
     /// Lines are missing, doubled or in the wrong order.
-    #[error("evaluation {found} stands where evaluation {expected} belongs")]
-    Order {
-        /// Index in the line.
-        found: u64,
-        /// Index by its place in the file.
-        expected: u64,
-    },
+    #[error("evaluation {0} stands where evaluation {1} belongs")]
+    Order(u64, u64),
 }

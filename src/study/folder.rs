@@ -71,9 +71,7 @@ pub struct Study {
 /// Treatment of a study that the present program and inputs would measure otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IfChanged {
-    /// Do not go on.
     Refuse,
-    /// Go on in a new segment.
     NewSegment,
 }
 

@@ -15,7 +15,6 @@ use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// An open journal.
 pub struct Journal {
     pub(super) path: PathBuf,
     store: Box<dyn Store>,
@@ -26,9 +25,7 @@ pub struct Journal {
     broken: bool,
 }
 
-/// Contents of a journal.
 pub struct Contents {
-    /// The evaluations, by index.
     pub evaluations: Vec<Recorded>,
     /// Where what they were measured with changed; the first begins at 0.
     pub segments: Vec<Segment>,
@@ -206,7 +203,7 @@ impl Contents {
                 self.evaluations.push(recorded);
             }
             Some(segment) if segment.first != expected => {
-                return Err(LineError::Order { found: segment.first, expected });
+                return Err(LineError::Order(segment.first, expected));
             }
             Some(segment) => {
                 segment.provenance.check().map_err(LineError::Format)?;

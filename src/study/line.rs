@@ -95,7 +95,7 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
         return Err(LineError::Format(format!("op_code {} is not 4", trial.op_code)));
     }
     if trial.evaluation != expected {
-        return Err(LineError::Order { found: trial.evaluation, expected });
+        return Err(LineError::Order(trial.evaluation, expected));
     }
     let timing: Timing = serde_json::from_str(&rest).map_err(format)?;
     Ok(Recorded {

@@ -27,29 +27,30 @@ mod walk;
 mod walked;
 mod work;
 
-pub use cache::Cache;
-pub use config::{
+pub(crate) use cache::Cache;
+pub(crate) use config::{
     Conclusion, Confirmation, INDIFFERENCE_MM, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET,
     StudyConfig, study_name,
 };
-pub use course::{Arrived, Course, Ending, Next, Wanted};
-pub use error::{LineError, StudyError};
-pub use folder::{
-    CONFIG_FILE, FINGER, IfChanged, Inputs, JOURNAL_FILE, Study, input_path, read_config, sha256,
-    write_file, write_own_file,
+pub use course::Ending;
+pub(crate) use course::{Arrived, Course, Next, Wanted};
+pub use error::StudyError;
+pub(crate) use folder::{
+    FINGER, IfChanged, Inputs, input_path, read_config, sha256, write_own_file,
 };
-pub use header::SCHEMA_VERSION;
-pub use journal::Journal;
+pub use folder::{Study, write_file};
 pub use line::{decode, encode};
-pub use on_bench::{BenchEffort, BenchFinger, LeaveOneOut, OnBench};
-pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
-pub use record::{
-    ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, front, nearest, volume,
-};
-pub use runner::{Judge, Runner};
-pub use seal::{sha256_hex, strip_times};
-pub use simulated::Simulated;
-pub use store::{FileStore, Store};
-pub use table::{evaluations_csv, write_evaluations_csv};
-pub use walk::{Confirmed, Confirmer, Kept};
-pub use work::{Work, WorkError};
+pub(crate) use on_bench::{BenchEffort, BenchFinger, LeaveOneOut, OnBench};
+pub(crate) use provenance::{BENCH_ROLES, Provenance};
+pub use provenance::{SOURCES, Segment};
+pub(crate) use record::{ByRibs, Volume, Walked, best, nearest, volume};
+pub use record::{Recorded, StudyRecord, Timing};
+pub use runner::Runner;
+pub(crate) use seal::sha256_hex;
+pub use seal::strip_times;
+pub(crate) use simulated::Simulated;
+pub use store::Store;
+pub use table::evaluations_csv;
+pub(crate) use table::write_evaluations_csv;
+pub(crate) use walk::{Confirmed, Confirmer, Kept};
+pub(crate) use work::{Work, WorkError};

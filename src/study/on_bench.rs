@@ -18,16 +18,13 @@ pub(super) const BENCH_FILE: &str = "bench.json";
 pub struct OnBench {
     /// Provenance of the prediction: of another it says nothing.
     pub provenance: Provenance,
-    /// How much was computed.
     pub effort: BenchEffort,
-    /// Fingers that were measured.
     pub measured: usize,
     /// Those of them whose range was measured whole, and that range, mm.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ranges: Vec<(Design, f64)>,
     /// Fingers of the space that were predicted.
     pub fingers: usize,
-    /// How far it is to be trusted.
     pub trust: LeaveOneOut,
     /// Caveats, a line each.
     pub warnings: Vec<String>,
@@ -64,11 +61,9 @@ pub struct BenchEffort {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeaveOneOut {
-    /// How many there are.
     pub fingers: usize,
     /// Mean of `|predicted - measured| / measured`, percent.
     pub mean_deviation_percent: Option<f64>,
-    /// Rank correlation.
     pub spearman: Option<f64>,
     /// How many lie in their 80 % intervals.
     pub inside: usize,
@@ -80,7 +75,6 @@ pub struct LeaveOneOut {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BenchFinger {
-    /// The finger.
     pub design: Design,
     /// Mean of its range, mm.
     pub range_mm: f64,

@@ -27,7 +27,6 @@ pub struct Provenance {
     /// `stiffness`; `uncertainty`, the `finger` of computed ones, `measurements` and `priors` where
     /// there is one), in hexadecimal.
     pub input_sha256: BTreeMap<String, String>,
-    /// The contact engine.
     pub engine: EngineRecord,
 }
 

@@ -115,16 +115,14 @@ impl Standing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::fits::tests::sound;
     use input::shipped::SPACES;
     use insertion::evaluation::objective::Constraint;
-    use insertion::evaluation::tolerance::{Search, evaluate};
-    use insertion::finger::Finger;
     use insertion::surrogate::Prediction;
-    use insertion::trial::fake::FakeRig;
 
     /// A design with a window, mm, and a force, N.
     fn recorded(index: u64, density: f64, window: [i32; 2], force_n: f64) -> Recorded {
-        let mut task = evaluate(&FakeRig::default(), &Finger::new(3e3, 2e4), Search::Strides);
+        let mut task = sound();
         (task.window.negative_steps, task.window.positive_steps) = (window[0], window[1]);
         task.peak_force_n = force_n;
         Recorded {

@@ -14,7 +14,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Measures designs by simulation, or finds them in the cache.
 pub struct Simulated<'a> {
-    /// Evaluator of designs.
     pub evaluator: &'a Evaluator,
     /// How the ends of a window are looked for.
     pub search: Search,

@@ -24,17 +24,13 @@ use std::sync::{Mutex, PoisonError};
 
 /// Means of measuring the best designs.
 pub struct Confirmer<'a> {
-    /// Walks a design.
     pub walker: &'a dyn Evaluate,
     /// Measures the computed finger of a design, where the study's fingers are the paper's.
     pub by_ribs: Option<&'a Evaluator>,
-    /// Repeats its ends.
     pub evaluator: &'a Evaluator,
-    /// Does the measuring.
     pub pool: &'a ThreadPool,
     /// Set when the study is to stop: trials then end at once.
     pub stop: &'a AtomicBool,
-    /// Whether nothing is confirmed.
     pub no_confirm: bool,
     /// Told of each design that is repeated or walked, how many are, and of how many.
     pub done: &'a (dyn Fn(Confirmed, &Recorded, [usize; 2]) + Sync),
@@ -43,9 +39,7 @@ pub struct Confirmer<'a> {
 /// Kind of confirmation of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Confirmed {
-    /// Its ends were repeated.
     Repeated,
-    /// It was walked.
     Walked,
 }
 

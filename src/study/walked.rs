@@ -28,7 +28,6 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Name of the file.
 pub(super) const WALK_FILE: &str = "walk.json";
 /// How many designs are repeated at their ends.
 pub(super) const REPEATED: usize = 9;
@@ -50,7 +49,6 @@ pub(super) struct WalkFile {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Row {
-    /// Index of the evaluation.
     pub evaluation: u64,
     /// Results of the repeats on each task at the ends that the search had found.
     pub firm: Vec<Firm>,

@@ -26,7 +26,6 @@ use std::fmt::Display;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Work {
-    /// The number of its proposal in the study.
     pub proposal: u64,
     /// The design, in the units its keys carry.
     pub design: Design,
@@ -88,13 +87,11 @@ fn read<T: DeserializeOwned, U: DeserializeOwned>(
 }
 
 impl Work {
-    /// As bytes.
     pub fn encode(&self) -> Result<Vec<u8>, WorkError> {
         let line = seal(self, None);
         Ok(line.map_err(|error| WorkError::bytes("work", error))?.into_bytes())
     }
 
-    /// The work of these bytes.
     pub fn decode(bytes: &[u8]) -> Result<Work, WorkError> {
         let again = |work: &Work, _: &IgnoredAny| seal(work, None);
         Ok(read(bytes, "work", again)?.0)
@@ -257,16 +254,6 @@ mod tests {
     }
 
     #[test]
-    fn the_lies_that_were_believed_are_refused() {
-        assert!(taken(sound(), 1.0));
-        for wall_s in [-1e9, f64::INFINITY] {
-            assert!(!taken(sound(), wall_s), "{wall_s} s");
-        }
-        let lie = Evaluation { trials: 20_000_000, ..sound() };
-        assert!(!taken(lie, 1.0));
-    }
-
-    #[test]
     fn a_race_that_did_not_end_so_is_refused() {
         let race = Race { bar_share: 0.75, draws: 8, first: vec![6, 2] };
         let work = Work { race: Some(race), ..work() };
@@ -278,12 +265,9 @@ mod tests {
             let success = Some(SuccessRate { failed_draws: failed_draws.to_vec(), ..counts });
             taken_from(work.clone(), Evaluation { success, ..sound() }, 1.0)
         };
-        assert!(ended(0, &[0, 2, 6], 5) && ended(1, &[0, 1, 6], 4) && ended(6, &[2, 6], 0));
+        // What else cannot be is a matter of the race: tests/race.rs.
+        assert!(ended(0, &[0, 2, 6], 5) && ended(6, &[2, 6], 0));
         assert!(!ended(1, &[2, 6], 5), "it had not lost yet");
-        assert!(!ended(1, &[0, 2, 6], 4), "it had lost before");
-        assert!(!ended(0, &[1, 2, 6], 5), "it did not meet draw 1");
-        assert!(!ended(4, &[2, 6], 0), "two draws are missing");
-        assert!(!ended(5, &[0, 2, 6], 0), "it had lost long before");
     }
 
     proptest! {
@@ -293,7 +277,7 @@ mod tests {
             at in 0..BOUNDS.len(),
             near in prop::sample::select(vec![0, 1]),
             away in prop::sample::select(vec![0.0, 1e-9, 1.0, -1.0, 1e3, -1e3, 1e17, -1e17, f64::NAN]),
-            wall_s in prop::sample::select(vec![0.0, 1.0, -1e-9, 1e300, f64::NAN]),
+            wall_s in prop::sample::select(vec![0.0, 1.0, -1e-9, 1e300, f64::INFINITY, f64::NAN]),
         ) {
             let (_, change, bounds) = BOUNDS[at];
             let mut evaluation = sound();
@@ -301,7 +285,7 @@ mod tests {
             change(&mut evaluation, value);
             // What is no number is not written as one.
             let raced = evaluation.success.as_ref().is_some_and(|success| success.raced().is_some());
-            let sound = fits::implausible(&evaluation).is_none() && wall_s >= 0.0 && !raced;
+            let sound = fits::implausible(&evaluation).is_none() && (0.0..f64::INFINITY).contains(&wall_s) && !raced;
             let taken = taken(evaluation, wall_s);
             prop_assert!(taken == sound || value.is_nan(), "{value}, {wall_s} s");
         }

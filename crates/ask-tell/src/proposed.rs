@@ -104,19 +104,3 @@ impl Costs {
         Some(self.proposed.grid.free_unit(best))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_point_comes_once_and_then_none() {
-        let mut proposed = Proposed::new(Grid::new(vec![7, 1, 5]), 3);
-        let mut all = BTreeSet::new();
-        while let Some(point) = proposed.next_unseen() {
-            assert!(proposed.grid().contains(&point) && all.insert(point));
-        }
-        assert_eq!(all.len(), 35);
-        assert_eq!(proposed.stop(), Some(StopReason::GridExhausted));
-    }
-}

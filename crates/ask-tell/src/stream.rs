@@ -16,19 +16,3 @@ pub fn stream(study_seed: u64, evaluation: u64, purpose: &str) -> ChaCha8Rng {
     hash.update(purpose.as_bytes());
     ChaCha8Rng::from_seed(hash.finalize().into())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use rand::Rng;
-
-    #[test]
-    fn each_part_of_the_name_changes_the_stream() {
-        let first = |seed, evaluation, purpose| stream(seed, evaluation, purpose).next_u64();
-        let base = first(1, 2, "ask");
-        assert_eq!(base, first(1, 2, "ask"));
-        assert_ne!(base, first(0, 2, "ask"));
-        assert_ne!(base, first(1, 3, "ask"));
-        assert_ne!(base, first(1, 2, "restart"));
-    }
-}

@@ -113,11 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_unknown_name_is_answered_with_the_nearest_and_all() {
-        let error = resolve("task", TASKS, "rj54").unwrap_err().to_string();
-        for part in ["rj54", "did you mean `rj45`", "ket8, ket12, rj45, usb"] {
-            assert!(error.contains(part), "{error}");
-        }
+    fn a_name_of_which_half_differs_is_not_near() {
         assert_eq!(nearest("hexapod", &["usb", "rj45"]), None);
     }
 }

@@ -43,7 +43,6 @@ pub(crate) struct CmaEsOptimizer {
 }
 
 impl CmaEsOptimizer {
-    /// CMA-ES over `grid`.
     pub fn new(grid: Grid, seed: u64) -> Self {
         let free = grid.free_axes();
         let step = |&i: &usize| MIN_STD_STEPS / f64::from(grid.levels()[i] - 1);
@@ -137,27 +136,5 @@ impl Optimizer for CmaEsOptimizer {
 
     fn stop(&self) -> Option<StopReason> {
         self.costs.proposed.stop()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_slope_leads_to_its_corner() {
-        let mut cma = CmaEsOptimizer::new(Grid::new(vec![101, 1, 101]), 5);
-        let mut best = 0;
-        for _ in 0..30 {
-            let points = cma.ask(4);
-            let value = |p: &GridPoint| p.0[0] + p.0[2];
-            best = points.iter().map(value).max().unwrap_or(0).max(best);
-            let tell = |p: GridPoint| {
-                let value = f64::from(value(&p));
-                Observation::new(p, Some(value))
-            };
-            cma.tell(&points.into_iter().map(tell).collect::<Vec<_>>());
-        }
-        assert_eq!(best, 200);
     }
 }

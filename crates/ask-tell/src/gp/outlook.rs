@@ -11,7 +11,7 @@ use super::data::{Standardised, spread, standardise};
 use super::fit::{FitEffort, fit};
 use super::model::Gp;
 use super::search::Room;
-use crate::process::{Process, matern52};
+use crate::process::{Process, distance2, matern52};
 use crate::proposed::Proposed;
 use crate::{Grid, GridPoint, Observation};
 use libm::{exp, sqrt};
@@ -99,8 +99,7 @@ struct Drops {
 }
 
 fn kernel(a: &[f64], b: &[f64], length: f64) -> f64 {
-    let r2: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
-    matern52(r2 / (length * length))
+    matern52(distance2(a, b) / (length * length))
 }
 
 impl Model {

@@ -65,7 +65,6 @@ impl Trained {
         self.models.first().map_or(0, Gp::len)
     }
 
-    /// Number of objectives.
     pub fn objectives(&self) -> usize {
         self.models.len() - self.zeros.len()
     }

@@ -50,38 +50,3 @@ pub(crate) fn inverse(factor: &Factor) -> DMatrix<f64> {
     }
     inverse
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn matrix() -> DMatrix<f64> {
-        DMatrix::from_row_slice(3, 3, &[4.0, 2.0, 0.5, 2.0, 5.0, 1.0, 0.5, 1.0, 3.0])
-    }
-
-    #[test]
-    fn the_inverse_and_one_point_more_agree_with_the_matrix() {
-        let a = matrix();
-        let whole = factor(a.clone()).unwrap();
-        let inverse = inverse(&whole);
-        let expected = a.clone().try_inverse().unwrap();
-        for (i, j) in [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)] {
-            assert!((inverse[(i, j)] - expected[(i, j)]).abs() < 1e-14, "{i} {j}");
-        }
-        let part = factor(a.view((0, 0), (2, 2)).into_owned()).unwrap();
-        let grown = with_point(&part, &DVector::from_vec(vec![0.5, 1.0]), 3.0).unwrap();
-        assert!((grown.l() - whole.l()).norm() < 1e-14);
-        assert!(
-            (whole.l() * half_solved(&whole, &a.column(0).into_owned()) - a.column(0)).norm()
-                < 1e-14
-        );
-    }
-
-    #[test]
-    fn what_is_not_positive_definite_is_refused() {
-        assert!(factor(DMatrix::repeat(2, 2, 1.0)).is_none());
-        assert!(factor(DMatrix::repeat(1, 1, f64::NAN)).is_none());
-        let one = factor(DMatrix::identity(1, 1)).unwrap();
-        assert!(with_point(&one, &DVector::from_vec(vec![2.0]), 1.0).is_none());
-    }
-}

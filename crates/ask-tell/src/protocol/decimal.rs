@@ -41,22 +41,3 @@ impl Decimal {
         format!("{}e{}", self.digits, self.exponent).parse().unwrap_or(f64::NAN)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sums_are_exact_where_binary_ones_are_not() {
-        let of = |value| Decimal::of(value).unwrap();
-        assert_eq!(of(0.1).plus(2, of(0.1)).unwrap().nearest(), 0.3);
-        assert_eq!(of(1e15).plus(3, of(0.25)).unwrap().nearest(), 1e15 + 0.75);
-        assert_eq!(of(-2.5).plus(1, of(2.5)).unwrap().nearest(), 0.0);
-        assert_eq!(of(1.0).over_ten_to(9).nearest(), 1e-9);
-        assert_eq!(of(1e300).plus(1, of(1.0)), None, "301 digits");
-        assert_eq!(Decimal::of(f64::NAN), None);
-        for value in [5e-324, -1.7976931348623157e308, 123456.789, 0.0] {
-            assert_eq!(of(value).nearest(), value);
-        }
-    }
-}

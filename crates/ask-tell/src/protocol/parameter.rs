@@ -33,7 +33,6 @@ pub(super) struct Parameter {
 }
 
 impl Parameter {
-    /// Checks a parameter.
     pub fn new(line: ParameterLine) -> Result<Parameter, String> {
         let fail = |problem| Err(format!("parameter `{}`: {problem}", line.name));
         let span = line.high - line.low;
@@ -80,7 +79,6 @@ impl Parameter {
         Ok(Parameter { exact: exact(), line, steps })
     }
 
-    /// Number of distinct values.
     pub fn levels(&self) -> u32 {
         self.steps + 1
     }

@@ -111,17 +111,6 @@ fn every_optimizer_asks_distinct_points_within_the_bounds_in_both_directions_ali
 }
 
 #[test]
-fn it_finds_the_minimum() {
-    let mut talk = Talk::begin(&header("cma-es", "minimize", Some(6)));
-    let mut best = Value::Null;
-    for _ in 0..40 {
-        let points = talk.ask(6);
-        best = talk.answer(&told(&points, 1.0))["best"].clone();
-    }
-    assert!(best["value"].as_f64().unwrap() < 1e-3 && best["values"]["n"] == 7.0, "{best}");
-}
-
-#[test]
 fn a_batch_may_be_asked_and_told_in_any_parts() {
     let mut whole = Talk::begin(&header("cma-es", "minimize", Some(5)));
     let mut parts = Talk::begin(&header("cma-es", "minimize", Some(5)));
@@ -244,15 +233,16 @@ fn what_is_known_can_be_told_and_is_not_asked_again() {
             answer["best"],
             json!({"id": null, "values": {"x": 0.0, "n": 3.0}, "value": 3.0})
         );
-        talk.error(r#"{"tell":[{"values":{"x":0,"n":3},"value":1}]}"#, "though it is known");
-        talk.error(r#"{"tell":[{"values":{"x":0},"value":1}]}"#, "`n` is missing");
-        talk.error(
-            r#"{"tell":[{"values":{"x":0.5,"n":1},"value":1}]}"#,
-            "`x` must be low + k step",
-        );
-        talk.error(r#"{"tell":[{"values":{"x":0,"n":1,"m":1},"value":1}]}"#, "`m` is no parameter");
-        talk.error(r#"{"tell":[{"values":{"x":0,"n":1}}]}"#, "value");
-        talk.error(r#"{"tell":[[0,1.5]]}"#, "must be an object");
+        for (told, part) in [
+            (r#"{"values":{"x":0,"n":3},"value":1}"#, "though it is known"),
+            (r#"{"values":{"x":0},"value":1}"#, "`n` is missing"),
+            (r#"{"values":{"x":0.5,"n":1},"value":1}"#, "`x` must be low + k step"),
+            (r#"{"values":{"x":0,"n":1,"m":1},"value":1}"#, "`m` is no parameter"),
+            (r#"{"values":{"x":0,"n":1}}"#, "value"),
+            ("[0,1.5]", "must be an object"),
+        ] {
+            talk.error(&format!("{{\"tell\":[{told}]}}"), part);
+        }
         let mut seen = vec![json!({"x": 0.0, "n": 3.0}), json!({"x": 1.0, "n": 5.0})];
         let mut open = None;
         while seen.len() < 55 {

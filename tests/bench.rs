@@ -2,25 +2,24 @@
 
 mod common;
 
-use common::{Studies, optimize_line, read};
+use common::{Studies, optimize, optimize_line};
 
 #[test]
 fn measurements_are_added_checked_and_refused() {
     let folder = Studies::new();
-    let path = folder.dir("bench.csv");
-    let file = path.display();
+    let file = folder.word("bench.csv");
     let add = |more: &str| {
         optimize_line(&format!("measure add {file} --task ket8 --density 20 --direction {more}"))
     };
     add("0 --range-mm 5.7").succeeds();
     add("10 --negative-mm -1.5 --failure-negative 3").succeeds();
-    let before = read(&path);
+    let before = folder.read("bench.csv");
     add("0 --range-mm 5.8").fails(2, &["line 4: task: ", "line 2"]);
     add("0.35 --range-mm 5.8").fails(2, &["degrees, as in 20"]);
-    assert_eq!(read(&path), before);
+    assert_eq!(folder.read("bench.csv"), before);
     let checked = optimize_line(&format!("measure check {file} --json")).json();
     assert_eq!((&checked["lines"], &checked["tasks"][0]["bounds"]), (&2.into(), &1.into()));
-    std::fs::write(&path, before.replace("ket8", "ket80")).expect("the file is written");
+    folder.file("bench.csv", before.replace("ket8", "ket80"));
     optimize_line(&format!("measure check {file}"))
         .fails(2, &["line 2: task: ", "did you mean `ket8`"]);
     assert_eq!(optimize_line("measure check published --json").json()["lines"], 44);
@@ -41,15 +40,14 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     assert!((best - 1.0).abs() < 1e-9, "{best}");
     assert!(found["parameters"][0]["moved"].is_boolean());
     let folder = Studies::new();
-    let empty = folder.dir("empty.csv");
-    std::fs::write(&empty, "").expect("the file is written");
-    let more = format!("{} --count 2 --among published", empty.display());
+    let more = format!("{} --count 2 --among published", folder.file("empty.csv", ""));
     let next = optimize_line(&format!("next {few} {more}")).json();
     assert_eq!((next["next"].as_array().map(Vec::len), &next["stop"]), (Some(2), &false.into()));
     assert!(next["next"][0]["reason"].as_str().is_some_and(|reason| !reason.is_empty()));
     assert!(next["next"][0]["expected_gain_mm"].as_f64().is_some_and(|gain| gain > 0.0));
 }
 
+const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";
 /// What makes a prediction quick.
 const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
 
@@ -64,7 +62,7 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     }
     assert!(best["range_mm"].is_number() && found["bench"]["loo_spearman"].is_number(), "{found}");
     // The best of the table is the one that is named.
-    let table = read(&folder.dir("a").join("bench_predictions.csv"));
+    let table = folder.read("a/bench_predictions.csv");
     let rows = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
     let number = |cell: &str| cell.parse::<f64>().expect("a number");
     let first = rows.max_by(|a, b| number(a[3]).total_cmp(&number(b[3]))).expect("a line");
@@ -74,51 +72,53 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     assert_eq!(found["recommended_by_simulation"], plain["recommended"]);
     let evaluations = |name| folder.journal(name).lines().skip(2).collect::<Vec<_>>().join("\n");
     assert_eq!(evaluations("a"), evaluations("b"));
-    let page = read(&folder.dir("a").join("report.html"));
+    let page = folder.read("a/report.html");
     let places = ["Best on the bench", "Best by simulation alone"].map(|words| page.find(words));
     assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
-    assert!(!read(&folder.dir("b").join("report.html")).contains("on the bench</h2>"));
+    assert!(!folder.read("b/report.html").contains("on the bench</h2>"));
     let plain = folder.study("b", 12, &["--task", "ket8", "--verbose"]);
-    assert!(
-        plain.succeeds().contains("our validation ranked 11 printed fingers -0.62"),
-        "{}",
-        plain.stdout
-    );
+    let order = "our validation ranked 11 printed fingers -0.62";
+    assert!(plain.succeeds().contains(order), "{}", plain.stdout);
 }
 
 #[test]
 fn measurements_are_kept_with_a_study_and_new_ones_leave_its_evaluations() {
     let folder = Studies::new();
-    let path = folder.dir("bench.csv");
-    let file = path.to_str().expect("a path in UTF-8");
-    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
-    let lines = format!("{head}ket8,10,0,7.6\nket8,20,0,5.7\nusb,20,0,5.7\n");
-    std::fs::write(&path, &lines).expect("the file is written");
+    let lines = format!("{HEAD}ket8,10,0,7.6\nket8,20,0,5.7\nusb,20,0,5.7\n");
+    let file = folder.file("bench.csv", &lines);
     let with = |more: &[&str]| {
-        folder.study("a", 12, &[&FEW[..], &["--json", "--measurements", file], more].concat())
+        folder.study("a", 12, &[&FEW[..], &["--json", "--measurements", &file], more].concat())
     };
     let before = with(&[]).json();
     assert_eq!(before["bench"]["measured"], 2);
-    std::fs::remove_file(&path).expect("the file is removed");
+    std::fs::remove_file(&file).expect("the file is removed");
     folder.resume("a").succeeds();
-    std::fs::write(&path, lines + "ket8,25,20,9.9\n").expect("the file is written");
+    folder.file("bench.csv", lines + "ket8,25,20,9.9\n");
     with(&[]).fails(2, &["input_sha256.measurements", "--accept-changed"]);
     let after = with(&["--accept-changed"]).json();
     assert_eq!(after["bench"]["measured"], 3);
     assert_eq!(after["recommended_by_simulation"], before["recommended_by_simulation"]);
     assert_ne!(after["recommended"]["bench"], before["recommended"]["bench"]);
     assert_eq!(after["evaluations"], 12);
+    // Whoever asks from now on gets the same answer, and nobody has to accept anything again.
+    let dir = folder.word("a");
+    for again in [with(&[]), optimize(&["resume", &dir, "--quiet", "--json"])] {
+        assert_eq!(again.json()["recommended"], after["recommended"]);
+    }
+    folder.report("a").succeeds();
+    assert!(folder.read("a/report.html").contains("Best on the bench"));
+    let title = optimize(&["export", "finger", &dir, "--format", "dxf", "--out", "/dev/null"]);
+    let density = after["recommended"]["values"]["infill_density_percent"].to_string();
+    let density = format!("{} %", density.trim_end_matches(".0"));
+    assert!(title.succeeds().contains(&density), "{}", title.stdout);
 }
 
 #[test]
 fn measurements_that_a_study_cannot_use_are_refused_before_it_begins() {
     let folder = Studies::new();
-    let path = folder.dir("bench.csv");
-    let file = path.to_str().expect("a path in UTF-8");
-    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
     let refused = |lines: &str, more: &[&str], parts: &[&str]| {
-        std::fs::write(&path, format!("{head}{lines}")).expect("the file is written");
-        folder.study("a", 12, &[more, &["--measurements", file]].concat()).fails(2, parts);
+        let file = folder.file("bench.csv", format!("{HEAD}{lines}"));
+        folder.study("a", 12, &[more, &["--measurements", &file]].concat()).fails(2, parts);
         assert!(!folder.dir("a").exists());
     };
     let line = "ket8,10,0,7.6\n";

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Studies, command, read, run};
+use common::{Studies, command, run};
 
 fn compare(studies: &Studies, names: &[&str], more: &[&str]) -> common::Ran {
     let mut command = command(&["compare"]);
@@ -22,8 +22,7 @@ fn optimizers_are_compared_over_their_seeds() {
         }
     }
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let file = studies.dir("compare.svg");
-    let more = ["--json", "--svg", file.to_str().unwrap()];
+    let more = ["--json", "--svg", &studies.word("compare.svg")];
     let result = compare(&studies, &names, &more).json();
     let groups = result["optimizers"].as_array().unwrap();
     assert_eq!(groups.len(), 3);
@@ -36,7 +35,7 @@ fn optimizers_are_compared_over_their_seeds() {
         assert_eq!(group["evaluations_to_target"]["median"].is_null(), reached < 2, "{group}");
     }
     assert!(groups.iter().any(|group| group["reached"].as_u64() > Some(0)));
-    let svg = read(&file);
+    let svg = studies.read("compare.svg");
     assert!(svg.contains("sobol (3 studies)") && svg.contains("<polygon"));
     let text = compare(&studies, &names, &[]);
     assert!(text.succeeds().contains("best known"));

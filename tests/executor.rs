@@ -20,8 +20,7 @@ exit 1
 #[test]
 fn a_signal_to_the_program_alone_ends_the_interpreter_too() {
     let studies = Studies::new();
-    let interpreter = studies.dir("python");
-    std::fs::write(&interpreter, INTERPRETER).unwrap();
+    let interpreter = studies.file("python", INTERPRETER);
     std::fs::set_permissions(&interpreter, std::fs::Permissions::from_mode(0o755)).unwrap();
     for (signal, code) in
         [("-INT", Some(1)), ("-TERM", Some(1)), ("-HUP", Some(1)), ("-KILL", None)]

@@ -46,15 +46,13 @@ fn a_standard_error_that_has_gone_or_is_full_ends_nothing() {
         ("closed", "2>&- >/dev/null"),
     ];
     for (name, end) in ends {
-        let dir = studies.dir(name);
-        let line = format!("set -o pipefail; \"$0\" {study} \"$1\" {end}");
-        shell(&line, &[dir.to_str().unwrap()]).succeeds();
-        assert_eq!(lines(&dir.join("journal.jsonl")), 62, "{name}");
+        let line = |words: &str| format!("set -o pipefail; \"$0\" {words} {end}");
+        shell(&line(&format!("{study} \"$1\"")), &[&studies.word(name)]).succeeds();
+        assert_eq!(studies.journal(name).lines().count(), 62, "{name}");
         // A plain error says what it can and keeps its exit code.
-        let line = format!("set -o pipefail; \"$0\" --task usd --budget 3 {end}");
-        assert_eq!(shell(&line, &[]).code, Some(2), "{name}");
-        let line = format!("set -o pipefail; \"$0\" --task usb --budget x {end}");
-        assert_eq!(shell(&line, &[]).code, Some(2), "{name}");
+        for words in ["--task usd --budget 3", "--task usb --budget x"] {
+            assert_eq!(shell(&line(words), &[]).code, Some(2), "{name}");
+        }
     }
     shell("\"$0\" tasks > /dev/full", &[]).fails(1, &["cannot write the output"]);
     shell("set -o pipefail; \"$0\" tasks | head -1", &[]).succeeds();
@@ -83,10 +81,9 @@ fn an_output_that_is_no_plain_file_is_written_in_place() {
     assert!(fs::symlink_metadata(&pipe).unwrap().file_type().is_fifo());
     svg(Path::new("/dev/full")).fails(1, &["/dev/full: cannot write"]);
     // A name that others write to beside it is never touched.
-    let plain = studies.dir("plain.svg");
-    fs::write(studies.dir("plain.svg.new"), "mine").unwrap();
-    svg(&plain).succeeds();
-    assert_eq!(read(&studies.dir("plain.svg.new")), "mine");
+    studies.file("plain.svg.new", "mine");
+    svg(&studies.dir("plain.svg")).succeeds();
+    assert_eq!(studies.read("plain.svg.new"), "mine");
 }
 
 #[test]
@@ -113,42 +110,41 @@ fn no_link_in_a_study_folder_is_followed() {
         ("journal.jsonl", ["", "journal.jsonl"]),
         ("inputs", ["inputs", "cannot create the folder"]),
     ] {
-        let dir = studies.dir(&format!("study-{name}"));
-        fs::create_dir(&dir).unwrap();
-        fs::write(&victim, "precious").unwrap();
+        let study = format!("study-{name}");
+        fs::create_dir(studies.dir(&study)).unwrap();
+        studies.file("victim", "precious");
         let target = if name == "inputs" { studies.dir("elsewhere") } else { victim.clone() };
-        symlink(target, dir.join(name)).unwrap();
-        let ran = studies.study(dir.file_name().unwrap().to_str().unwrap(), 4, &[]);
+        symlink(target, studies.dir(&study).join(name)).unwrap();
+        let ran = studies.study(&study, 4, &[]);
         assert!(matches!(ran.code, Some(1 | 2)), "{name}: {}", ran.stderr);
         assert!(parts.iter().all(|part| ran.stderr.contains(part)), "{name}: {}", ran.stderr);
         assert_eq!(read(&victim), "precious", "{name}");
         assert!(paths(&studies.dir("elsewhere")).is_empty(), "{name}");
     }
     // Neither as a second name of a file.
-    let dir = studies.dir("hard");
-    fs::create_dir(&dir).unwrap();
-    fs::hard_link(&victim, dir.join(".lock")).unwrap();
+    fs::create_dir(studies.dir("hard")).unwrap();
+    fs::hard_link(&victim, studies.dir("hard/.lock")).unwrap();
     studies.study("hard", 4, &[]).fails(1, &[".lock", "another name"]);
     assert_eq!(read(&victim), "precious");
     // Links to what is written whole are replaced, and temporary names are not foreseeable.
     studies.study("s", 4, &[]).succeeds();
     let files = ["report.html", "evaluations.csv", "walk.json", "study.toml"];
     for name in files {
-        let _ = fs::remove_file(studies.dir("s").join(format!("{name}.new")));
-        symlink(&victim, studies.dir("s").join(format!("{name}.new"))).unwrap();
+        symlink(&victim, studies.dir(&format!("s/{name}.new"))).unwrap();
     }
-    fs::remove_file(studies.dir("s").join("report.html")).unwrap();
-    symlink(&victim, studies.dir("s").join("report.html")).unwrap();
+    fs::remove_file(studies.dir("s/report.html")).unwrap();
+    symlink(&victim, studies.dir("s/report.html")).unwrap();
     studies.study("s", 8, &[]).succeeds();
     assert_eq!(read(&victim), "precious");
-    assert!(read(&studies.dir("s").join("report.html")).contains("<html"));
+    assert!(studies.read("s/report.html").contains("<html"));
 }
 
 #[test]
 fn a_pipe_or_a_huge_file_in_place_of_an_own_one_neither_hangs_nor_fills_the_memory() {
     let studies = Studies::new();
-    studies.study("s", 4, &["--cache", studies.dir("cache").to_str().unwrap()]).succeeds();
-    let config = studies.dir("s").join("study.toml");
+    let cache = studies.word("cache");
+    studies.study("s", 4, &["--cache", &cache]).succeeds();
+    let config = studies.dir("s/study.toml");
     let text = read(&config);
     fs::remove_file(&config).unwrap();
     mkfifo(&config);
@@ -168,7 +164,7 @@ fn a_pipe_or_a_huge_file_in_place_of_an_own_one_neither_hangs_nor_fills_the_memo
             fs::File::create(entry).unwrap().set_len(3 << 30).unwrap();
         }
     }
-    studies.study("t", 4, &["--cache", studies.dir("cache").to_str().unwrap()]).succeeds();
+    studies.study("t", 4, &["--cache", &cache]).succeeds();
     assert_eq!(studies.journal("t"), studies.journal("s"));
     assert!(entries.iter().all(|entry| fs::symlink_metadata(entry).unwrap().is_file()));
 }
@@ -219,8 +215,8 @@ fn a_journal_that_others_change_stops_the_study_and_is_saved() {
             // As the message says: put in its place it goes on.
             let done = saved.len() as u32 + 5;
             fs::rename(&rescued, journal(&studies.dir(name))).unwrap();
-            let config = studies.dir(name).join("study.toml");
-            fs::write(&config, read(&config).replace("100000", &done.to_string())).unwrap();
+            let config = format!("{name}/study.toml");
+            studies.file(&config, studies.read(&config).replace("100000", &done.to_string()));
             studies.resume(name).succeeds();
             assert_eq!(body(&studies.journal(name)), all[..done as usize]);
         }
@@ -234,17 +230,18 @@ fn a_second_writer_is_refused_even_if_the_lock_is_removed() {
     let mut first = studies.begun("s", 100_000, &more, 5);
     let owner = first.id().to_string();
     studies.study("s", 100_000, &more).fails(1, &["another process", &owner, "--out"]);
-    optimize(&["report", studies.dir("s").to_str().unwrap()]).succeeds();
-    fs::remove_file(studies.dir("s").join(".lock")).unwrap();
+    studies.report("s").succeeds();
+    fs::remove_file(studies.dir("s/.lock")).unwrap();
     studies.resume("s").fails(1, &["another process"]);
     first.kill().unwrap();
     first.wait().unwrap();
     // The lock of a dead process blocks nobody. Who locks a file that is no longer there has locked
     // nothing: the second try does.
-    let inode = || fs::metadata(studies.dir("s").join(".lock")).unwrap().ino();
+    let inode = || fs::metadata(studies.dir("s/.lock")).unwrap().ino();
     let before = inode();
+    let done = lines(&studies.dir("s/journal.jsonl"));
     let mut second = start(command(&["resume", "--quiet"]).arg(studies.dir("s")));
-    studies.wait_for_lines("s", lines(&studies.dir("s").join("journal.jsonl")) + 1);
+    studies.wait_for_lines("s", done + 1, &mut second);
     assert_eq!(inode(), before);
     second.kill().unwrap();
     second.wait().unwrap();
@@ -253,9 +250,7 @@ fn a_second_writer_is_refused_even_if_the_lock_is_removed() {
 /// A copy of a shipped file in which the first line that begins with `key` is another.
 fn changed(studies: &Studies, name: &str, text: &str, key: &str, by: &str) -> String {
     let line = text.lines().find(|line| line.starts_with(key)).expect("the key is there");
-    let path = studies.dir(name);
-    fs::write(&path, text.replacen(line, by, 1)).unwrap();
-    path.to_str().unwrap().to_owned()
+    studies.file(name, text.replacen(line, by, 1))
 }
 
 #[test]
@@ -309,15 +304,16 @@ fn what_a_terminal_would_obey_is_shown_instead() {
     let studies = Studies::new();
     let ran = optimize(&["--task", "\u{1b}[31mred\u{9b}2J", "--budget", "3"]);
     ran.fails(2, &["\\u001b[31mred\\u009b2J"]);
-    assert!(!ran.stderr.chars().any(|c| c.is_control() && c != '\n'), "{:?}", ran.stderr);
-    let ran = optimize(&["--task", "usb", "--budget", "\u{1b}[31m"]);
-    ran.fails(2, &["--budget"]);
-    assert!(!ran.stderr.chars().any(|c| c.is_control() && c != '\n'), "{:?}", ran.stderr);
+    let usage = optimize(&["--task", "usb", "--budget", "\u{1b}[31m"]);
+    usage.fails(2, &["--budget"]);
+    for said in [ran.stderr, usage.stderr] {
+        assert!(!said.chars().any(|c| c.is_control() && c != '\n'), "{said:?}");
+    }
     let name = "e\u{1b}[31m";
     studies.study(name, 6, &[]).succeeds();
     let svg = studies.dir("compare.svg");
     let compare = run(command(&["compare"]).arg(studies.dir(name)).arg("--svg").arg(&svg));
-    for text in [compare.succeeds(), &read(&svg), &read(&studies.dir(name).join("report.html"))] {
+    for text in [compare.succeeds(), &read(&svg), &studies.read(&format!("{name}/report.html"))] {
         assert!(!text.chars().any(|c| c.is_control() && !"\n\t\r".contains(c)));
     }
 }
@@ -326,7 +322,6 @@ fn what_a_terminal_would_obey_is_shown_instead() {
 fn a_study_that_was_written_by_hand_is_checked_anew() {
     let studies = Studies::new();
     studies.study("s", 6, &[]).succeeds();
-    let report = || optimize(&["report", studies.dir("s").to_str().unwrap()]);
     let both = |change: &dyn Fn(&str) -> String, words: &[&str]| {
         let paths = ["study.toml", "journal.jsonl"].map(|name| studies.dir("s").join(name));
         let before = paths.each_ref().map(|path| read(path));
@@ -337,12 +332,11 @@ fn a_study_that_was_written_by_hand_is_checked_anew() {
         }
         assert_ne!(before, paths.each_ref().map(|path| read(path)), "{words:?}: no change");
         studies.resume("s").fails(2, words);
-        assert!(matches!(report().code, Some(0 | 2)), "{words:?}");
+        assert!(matches!(studies.report("s").code, Some(0 | 2)), "{words:?}");
         for (path, text) in paths.iter().zip(&before) {
             fs::write(path, text).unwrap();
         }
     };
-    let replace = |a: &'static str, b: &'static str| move |text: &str| text.replacen(a, b, 1);
     for (key, value) in [("batch", "0"), ("batch", "4294967295"), ("budget", "9223372036854775807")]
     {
         let change = move |text: &str| {
@@ -367,14 +361,10 @@ fn a_study_that_was_written_by_hand_is_checked_anew() {
         }
     };
     both(&values, &["journal.jsonl", "line 3", "it has 0 values"]);
-    both(
-        &replace(
-            "\"params\":{\"infill_density_percent\":",
-            "\"params\":{\"infill_density_percent\":0.0",
-        ),
-        &["line 3"],
-    );
-    both(&replace("\"positive_mm\":", "\"positive_mm\":1e30"), &["line 3"]);
+    let density = "\"params\":{\"infill_density_percent\":";
+    both(&|text: &str| text.replacen(density, &format!("{density}0.0"), 1), &["line 3"]);
+    let end = "\"positive_mm\":";
+    both(&|text: &str| text.replacen(end, &format!("{end}1e30"), 1), &["line 3"]);
     studies.resume("s").succeeds();
 }
 
@@ -382,11 +372,11 @@ fn a_study_that_was_written_by_hand_is_checked_anew() {
 fn the_journal_says_what_came_from_the_cache_and_a_swapped_entry_is_measured_again() {
     let studies = Studies::new();
     let cache = studies.dir("cache");
-    let more = ["--cache", cache.to_str().unwrap(), "--optimizer", "random"];
+    let more = ["--cache", &studies.word("cache"), "--optimizer", "random"];
     studies.study("first", 6, &more).succeeds();
     studies.study("second", 9, &more).succeeds();
     let counted = |name: &str, value: &str| {
-        let text = read(&studies.dir(name).join("journal.jsonl"));
+        let text = studies.read(&format!("{name}/journal.jsonl"));
         text.lines().filter(|line| line.contains(&format!("\"cached\":[{value}]"))).count()
     };
     assert_eq!((counted("first", "true"), counted("first", "false")), (0, 6));
@@ -448,21 +438,21 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
         assert_eq!(paths(&full), Vec::<PathBuf>::new(), "{words}");
     }
     // What was there stays as it was.
-    let kept = studies.dir("kept.csv");
     let add = |limit: &str| {
         let words = format!("measure add --task usb {finger} --range-mm 5 --date");
         let line = format!("{limit} exec \"$0\" {words} \"$1\" \"$2\"");
         let day = if limit.is_empty() { "2026-01-01" } else { "2026-01-02" };
-        shell(&line, &[day, kept.to_str().unwrap()])
+        shell(&line, &[day, &studies.word("kept.csv")])
     };
     add("").succeeds();
-    let before = read(&kept);
+    let before = studies.read("kept.csv");
     add("ulimit -f 0;").fails(1, &["kept.csv: cannot write"]);
-    assert_eq!(read(&kept), before);
-    let (before, page) = (paths(&study), read(&study.join("report.html")));
-    shell("ulimit -f 0; exec \"$0\" report \"$1\"", &[study.to_str().unwrap()])
+    assert_eq!(studies.read("kept.csv"), before);
+    let folder = || (paths(&study), studies.read("study/report.html"));
+    let before = folder();
+    shell("ulimit -f 0; exec \"$0\" report \"$1\"", &[&studies.word("study")])
         .fails(1, &["cannot write"]);
-    assert_eq!((paths(&study), read(&study.join("report.html"))), (before, page));
+    assert_eq!(folder(), before);
 }
 
 /// Files and times from the clock of another machine, years ahead or behind, change nothing.
@@ -470,7 +460,7 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
 fn clocks_that_disagree_change_no_journal() {
     let studies = Studies::new();
     let cache = studies.dir("cache");
-    let more = ["--cache", cache.to_str().unwrap()];
+    let more = ["--cache", &studies.word("cache")];
     studies.study("whole", 22, &more).succeeds();
     let year = Duration::from_secs(365 * 24 * 3600);
     let now = std::time::SystemTime::now();
@@ -491,7 +481,7 @@ fn clocks_that_disagree_change_no_journal() {
         });
         let shifted = shifted.collect::<Vec<_>>().join("\"datetime_");
         assert!(shifted.contains(date));
-        fs::write(dir.join("journal.jsonl"), sealed(&shifted)).unwrap();
+        studies.file(&format!("{name}/journal.jsonl"), sealed(&shifted));
         let mut folders = vec![dir.clone(), cache.clone()];
         while let Some(folder) = folders.pop() {
             for path in paths(&folder) {
@@ -503,7 +493,7 @@ fn clocks_that_disagree_change_no_journal() {
         }
         studies.resume(name).succeeds();
         assert_eq!(studies.journal(name), studies.journal("whole"), "{name}");
-        optimize(&["report", dir.to_str().unwrap()]).succeeds();
+        studies.report(name).succeeds();
         studies.study(&format!("{name}-cached"), 22, &more).succeeds();
         assert_eq!(studies.journal(&format!("{name}-cached")), studies.journal("whole"));
     }
@@ -516,9 +506,8 @@ fn a_limit_of_the_file_size_is_a_message_and_leaves_a_whole_journal() {
     let expected = studies.journal("reference");
     let study = "--task usb --engine fake --budget 22 --no-cache --quiet --out";
     let line = format!("ulimit -f 16; exec \"$0\" {study} \"$1\"");
-    let dir = studies.dir("limited");
-    let ran = shell(&line, &[dir.to_str().unwrap()]);
-    ran.fails(1, &["journal.jsonl: cannot write", "optimize resume"]);
+    shell(&line, &[&studies.word("limited")])
+        .fails(1, &["journal.jsonl: cannot write", "optimize resume"]);
     let kept = studies.journal("limited");
     assert!(kept.lines().count() > 3 && expected.starts_with(&kept));
     studies.resume("limited").succeeds();

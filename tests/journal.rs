@@ -4,10 +4,10 @@ mod common;
 
 use ask_tell::GridPoint;
 use ask_tell::{Grid, Observation, Optimizer, StopReason};
+use common::memory::{self, Memory};
 use common::{Studies, read, sealed};
 use finger_opt::study::{
-    Ending, Recorded, Runner, Store, Study, StudyError, StudyRecord, Timing, decode, encode,
-    strip_times,
+    Ending, Recorded, StudyError, StudyRecord, Timing, decode, encode, strip_times,
 };
 use insertion::evaluation::evaluator::{Evaluate, Measured};
 use insertion::evaluation::objective::Score;
@@ -22,9 +22,8 @@ use insertion::space::{Design, Space};
 use insertion::surrogate::{Estimate, Prediction};
 use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
-use std::io;
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 const FIXTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/study");
@@ -196,41 +195,6 @@ impl Optimizer for Walk {
     }
 }
 
-/// Memory whose operations fail from a given one on, as a full disk's do.
-#[derive(Clone)]
-struct Failing {
-    bytes: Arc<Mutex<Vec<u8>>>,
-    /// Operations left before the failures.
-    left: u32,
-    /// Whether cutting back fails as well.
-    truncate_fails: bool,
-}
-
-impl Store for Failing {
-    fn read(&mut self) -> io::Result<Vec<u8>> {
-        Ok(self.bytes.lock().unwrap().clone())
-    }
-
-    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let fails = self.left == 0;
-        let written = if fails { &bytes[..bytes.len() / 2] } else { bytes };
-        self.bytes.lock().unwrap().extend_from_slice(written);
-        if fails {
-            return Err(io::ErrorKind::StorageFull.into());
-        }
-        self.left -= 1;
-        Ok(())
-    }
-
-    fn truncate(&mut self, len: u64) -> io::Result<()> {
-        if self.left == 0 && self.truncate_fails {
-            return Err(io::ErrorKind::StorageFull.into());
-        }
-        self.bytes.lock().unwrap().truncate(len as usize);
-        Ok(())
-    }
-}
-
 /// The closed form for a finger whose stiffness follows from its infill.
 struct ClosedForm;
 
@@ -247,47 +211,41 @@ impl Evaluate for ClosedForm {
     }
 }
 
+/// A folder of the fixture's configuration.
+fn folder(studies: &Studies) -> PathBuf {
+    std::fs::create_dir(studies.dir("s")).unwrap();
+    std::fs::copy(format!("{FIXTURE}/study.toml"), studies.dir("s/study.toml")).unwrap();
+    studies.dir("s")
+}
+
+fn walk(grid: Grid) -> Box<dyn Optimizer> {
+    Box::new(Walk { grid, at: 0, stride: 1 })
+}
+
 /// Runs the fixture's configuration with its journal in `store`.
-fn run(dir: &Path, store: Failing) -> Result<Ending, StudyError> {
-    let mut study = Study::resume_with(dir, Box::new(store))?;
-    let grid = Grid::new(study.config.space.levels());
-    let mut optimizer = Walk { grid, at: 0, stride: 1 };
-    let stop = AtomicBool::new(false);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    let runner =
-        Runner { evaluator: &ClosedForm, pool: &pool, stop: &stop, judge: &|_, _| Ok(false) };
-    runner.run(&mut study, &mut optimizer, &mut |_| ())
+fn run(dir: &Path, store: &Memory) -> Result<Ending, StudyError> {
+    Ok(memory::run(dir, store, &ClosedForm, &walk, 2)?.0)
 }
 
 #[test]
 fn whichever_write_fails_the_journal_stays_whole_and_the_study_goes_on() {
     let studies = Studies::new();
-    let dir = studies.dir("s");
-    std::fs::create_dir(&dir).unwrap();
-    std::fs::copy(format!("{FIXTURE}/study.toml"), dir.join("study.toml")).unwrap();
-    let store = |bytes: &[u8], left, truncate_fails| Failing {
-        bytes: Arc::new(Mutex::new(bytes.to_vec())),
-        left,
-        truncate_fails,
-    };
-    let text =
-        |store: &Failing| strip_times(std::str::from_utf8(&store.bytes.lock().unwrap()).unwrap());
-    let undisturbed = store(&[], u32::MAX, false);
-    assert_eq!(run(&dir, undisturbed.clone()).unwrap(), Ending::BudgetSpent);
-    let expected = text(&undisturbed);
+    let dir = folder(&studies);
+    let undisturbed = Memory::default();
+    assert_eq!(run(&dir, &undisturbed).unwrap(), Ending::BudgetSpent);
+    let expected = undisturbed.journal();
     // The header is one write, each evaluation is one.
     for writes in 0..11 {
         for truncate_fails in [false, true] {
-            let failing = store(&[], writes, truncate_fails);
-            let error = run(&dir, failing.clone()).unwrap_err().to_string();
+            let failing = Memory { left: Some(writes), truncate_fails, ..Memory::default() };
+            let error = run(&dir, &failing).unwrap_err().to_string();
             assert!(error.contains("journal.jsonl: cannot write"), "{error}");
-            let left = failing.bytes.lock().unwrap().clone();
             if !truncate_fails {
-                assert!(expected.starts_with(&text(&failing)), "write {writes}");
+                assert!(expected.starts_with(&failing.journal()), "write {writes}");
             }
-            let again = store(&left, u32::MAX, false);
-            assert_eq!(run(&dir, again.clone()).unwrap(), Ending::BudgetSpent);
-            assert_eq!(text(&again), expected, "write {writes}");
+            let again = Memory { bytes: failing.bytes, ..Memory::default() };
+            assert_eq!(run(&dir, &again).unwrap(), Ending::BudgetSpent);
+            assert_eq!(again.journal(), expected, "write {writes}");
         }
     }
 }
@@ -316,38 +274,42 @@ impl Evaluate for NotAll {
 #[test]
 fn a_design_that_cannot_be_stops_the_study_and_is_named() {
     let studies = Studies::new();
-    let dir = studies.dir("s");
-    std::fs::create_dir(&dir).unwrap();
-    std::fs::copy(format!("{FIXTURE}/study.toml"), dir.join("study.toml")).unwrap();
-    let mut study = Study::resume(&dir).unwrap();
-    let grid = Grid::new(study.config.space.levels());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let runner = Runner {
-        evaluator: &NotAll,
-        pool: &pool,
-        stop: &AtomicBool::new(false),
-        judge: &|_, _| Ok(false),
-    };
-    let mut walk = Walk { grid, at: 0, stride: 1 };
-    let error = runner.run(&mut study, &mut walk, &mut |_| ()).unwrap_err();
+    let dir = folder(&studies);
+    let store = Memory::default();
+    let error = memory::run(&dir, &store, &NotAll, &walk, 1).unwrap_err();
     assert!(error.is_bad_input());
     let error = error.to_string();
     for part in ["evaluation 2 of infill_density_percent = 13", "strategy.tilt_deg: must lie"] {
         assert!(error.contains(part), "{error}");
     }
-    drop(study);
-    assert_eq!(StudyRecord::load(&dir).unwrap().evaluations.len(), 2);
+    assert_eq!(store.journal().lines().count(), 2 + 2);
+}
+
+struct Panics;
+
+impl Evaluate for Panics {
+    fn evaluate(&self, _: &Design) -> Result<Measured, Impossible> {
+        panic!("a defect")
+    }
+}
+
+#[test]
+fn a_panic_in_a_measuring_thread_ends_the_study() {
+    let studies = Studies::new();
+    let (dir, store) = (folder(&studies), Memory::default());
+    let panics = AssertUnwindSafe(|| memory::run(&dir, &store, &Panics, &walk, 2));
+    assert!(catch_unwind(panics).is_err());
+    let again = run(&dir, &store).unwrap();
+    assert_eq!(again, Ending::BudgetSpent, "journal and lock are as they should be");
 }
 
 #[test]
 fn a_journal_of_other_proposals_is_refused() {
     let studies = Studies::new();
-    let dir = studies.dir("s");
-    std::fs::create_dir(&dir).unwrap();
-    std::fs::copy(format!("{FIXTURE}/study.toml"), dir.join("study.toml")).unwrap();
+    let dir = folder(&studies);
     let journal = read(Path::new(&format!("{FIXTURE}/journal.jsonl"))).into_bytes();
     let bytes = Arc::new(Mutex::new(journal));
-    let error = run(&dir, Failing { bytes, left: u32::MAX, truncate_fails: false }).unwrap_err();
+    let error = run(&dir, &Memory { bytes, ..Memory::default() }).unwrap_err();
     let said = error.to_string();
     assert!(error.is_bad_input() && said.contains("evaluation 0 is of"), "{error}");
     assert!(said.contains("another version"), "{error}");

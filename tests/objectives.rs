@@ -2,13 +2,13 @@
 
 mod common;
 
-use common::{Ran, Studies, optimize, read, run};
+use common::{Ran, Studies, optimize, run};
 use serde_json::Value;
 use std::fs;
 
 /// A journal's evaluations, without its header.
 fn evaluations(studies: &Studies, name: &str) -> Vec<Value> {
-    let journal = read(&studies.dir(name).join("journal.jsonl"));
+    let journal = studies.read(&format!("{name}/journal.jsonl"));
     journal.lines().skip(2).map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
@@ -21,7 +21,7 @@ fn column(studies: &Studies, name: &str, key: &str) -> Vec<String> {
 }
 
 fn report(studies: &Studies, name: &str) -> String {
-    read(&studies.dir(name).join("report.html"))
+    studies.read(&format!("{name}/report.html"))
 }
 
 fn number(value: &Value) -> f64 {
@@ -33,24 +33,6 @@ fn evaluate(density: u32, direction: u32, more: &[&str]) -> Ran {
     let finger = ["--density", &density, "--direction", &direction];
     let task = ["evaluate", "--task", "usb", "--engine", "fake"];
     optimize(&[&task[..], &finger, more].concat())
-}
-
-/// The journal depends on no thread count, and on no interruption.
-fn is_durable(studies: &Studies, name: &str, budget: u32, more: &[&str]) {
-    studies.study(name, budget, more).succeeds();
-    let expected = studies.journal(name);
-    for threads in ["1", "2", "8"] {
-        let other = format!("{name}-{threads}");
-        studies.study(&other, budget, &[more, &["--threads", threads]].concat()).succeeds();
-        assert_eq!(studies.journal(&other), expected, "{threads} threads");
-    }
-    let path = studies.dir(name).join("journal.jsonl");
-    let whole = read(&path);
-    for kept in [whole.len() / 3, whole.len() * 2 / 3, whole.len() - 1] {
-        fs::write(&path, &whole.as_bytes()[..kept]).unwrap();
-        studies.resume(name).succeeds();
-        assert_eq!(studies.journal(name), expected, "{kept} bytes kept");
-    }
 }
 
 #[test]
@@ -81,12 +63,10 @@ fn a_success_rate_is_that_of_the_evaluation_with_the_studys_seed() {
 #[test]
 fn errors_from_a_file_are_kept_with_the_study() {
     let studies = Studies::new();
-    let file = studies.dir("errors.toml");
     let text = include_str!("../uncertainties/typical.toml");
     let text = text.replace("samples = 12", "samples = 5").replace("\"typical\"", "\"mine\"");
-    fs::write(&file, &text).unwrap();
-    let more = ["--objective", "robust-range", "--uncertainty", file.to_str().unwrap()];
-    is_durable(&studies, "s", 10, &more);
+    let file = studies.file("errors.toml", &text);
+    studies.study("s", 10, &["--objective", "robust-range", "--uncertainty", &file]).succeeds();
     for line in evaluations(&studies, "s") {
         let robust = &line["user_attrs"]["tasks"][0];
         assert_eq!(robust["robust_ranges_mm"].as_array().map(Vec::len), Some(5));
@@ -95,17 +75,17 @@ fn errors_from_a_file_are_kept_with_the_study() {
     }
     fs::remove_file(&file).unwrap();
     studies.resume("s").succeeds();
-    assert_eq!(read(&studies.dir("s").join("inputs/uncertainty.toml")), text);
-    let config = read(&studies.dir("s").join("study.toml"));
+    assert_eq!(studies.read("s/inputs/uncertainty.toml"), text);
+    let config = studies.read("s/study.toml");
     assert!(config.contains("uncertainty = \"mine\""), "{config}");
-    fs::write(studies.dir("s").join("inputs/uncertainty.toml"), "").unwrap();
+    studies.file("s/inputs/uncertainty.toml", "");
     studies.resume("s").fails(2, &["uncertainty.toml", "was changed"]);
 }
 
 #[test]
 fn draws_belong_to_the_cached_evaluation() {
     let studies = Studies::new();
-    let dir = studies.dir("cache").to_str().unwrap().to_owned();
+    let dir = studies.word("cache");
     let cached = |name: &str, more: &[&str]| {
         let cache = ["--optimizer", "sobol", "--cache", &dir, "--json"];
         studies.study(name, 8, &[&cache[..], more].concat()).json()["cached"].clone()
@@ -126,7 +106,6 @@ fn draws_belong_to_the_cached_evaluation() {
 fn only_a_design_that_keeps_the_constraints_is_recommended() {
     let studies = Studies::new();
     let constraint = ["--constraint", "peak-force<=8.6", "--constraint", "slip <= 0.2"];
-    is_durable(&studies, "s", 24, &constraint);
     let free = studies.study("free", 24, &["--json"]).json();
     assert!(number(&free["best"]["peak_force_n"]) > 8.6);
     let result = studies.study("s", 24, &[&constraint[..], &["--json"]].concat()).json();
@@ -181,10 +160,9 @@ fn where_nothing_keeps_the_constraints_nothing_is_recommended() {
 fn two_objectives_give_a_front() {
     let studies = Studies::new();
     let more = ["--objective", "range,peak-force"];
-    is_durable(&studies, "s", 30, &more);
-    let first = read(&studies.dir("s").join("journal.jsonl"));
-    assert!(first.lines().next().unwrap().contains("\"directions\":[2,1]"), "{first}");
     let result = studies.study("s", 30, &[&more[..], &["--json"]].concat()).json();
+    let first = studies.journal("s");
+    assert!(first.lines().next().unwrap().contains("\"directions\":[2,1]"), "{first}");
     let front = result["front"].as_array().unwrap();
     let pair = |of: &Value| (number(&of["objective_1_mm"]), number(&of["objective_2_n"]));
     let all: Vec<(f64, f64)> = evaluations(&studies, "s")
@@ -211,7 +189,7 @@ fn two_objectives_give_a_front() {
     assert!(text.stdout.contains("from the reference range 0.0 mm, peak-force"));
     let page = report(&studies, "s");
     assert!(page.contains("<section id=\"front\">") && page.contains("hypervolume"));
-    assert!(read(&studies.dir("s").join("front.svg")).contains("peak-force (N)"));
+    assert!(studies.read("s/front.svg").contains("peak-force (N)"));
     assert_eq!(column(&studies, "s", "objective_2_n"), column(&studies, "s", "peak_force_n"));
 }
 
@@ -223,8 +201,7 @@ fn constraints_bound_the_front_and_three_objectives_are_possible() {
     let front = result["front"].as_array().unwrap();
     assert!(!front.is_empty());
     assert!(front.iter().all(|design| number(&design["objective_1_mm"]) >= 6.0), "{result}");
-    let sense = read(&studies.dir("s").join("journal.jsonl"));
-    assert!(sense.contains("\"directions\":[2,1,1]"));
+    assert!(studies.journal("s").contains("\"directions\":[2,1,1]"));
     for optimizer in ["random", "sobol", "grid"] {
         let more = ["--objective", "range,peak-force", "--optimizer", optimizer];
         studies.study(optimizer, 9, &more).succeeds();
@@ -239,15 +216,13 @@ fn a_force_is_made_small() {
     let least = forces.iter().map(|n| n.parse().unwrap()).fold(f64::INFINITY, f64::min);
     assert_eq!(number(&result["best"]["objective_n"]), least);
     assert_eq!(least, 8.0, "the shortest reach there is");
-    assert!(read(&studies.dir("s").join("journal.jsonl")).contains("\"directions\":[1]"));
+    assert!(studies.journal("s").contains("\"directions\":[1]"));
 }
 
 /// A second task for the closed form: usb with the remote centre elsewhere.
 fn far(studies: &Studies) -> String {
     let text = include_str!("../tasks/usb.toml").replace("name = \"usb\"", "name = \"far\"");
-    let file = studies.dir("far.toml");
-    fs::write(&file, text.replace("[friction]", "[finger]\nrcc_mm = 29.0\n[friction]")).unwrap();
-    file.to_str().unwrap().to_owned()
+    studies.file("far.toml", text.replace("[friction]", "[finger]\nrcc_mm = 29.0\n[friction]"))
 }
 
 #[test]
@@ -292,16 +267,16 @@ fn several_tasks_are_evaluated_and_aggregated() {
 }
 
 #[test]
-fn a_study_of_several_tasks_is_durable_and_has_its_own_folder() {
+fn a_study_of_several_tasks_keeps_them_and_has_its_own_folder() {
     let studies = Studies::new();
     let file = far(&studies);
     let tasks = format!("usb,{file}");
     let more = ["--task", &tasks, "--objective", "success-rate", "--constraint", "range>=5"];
-    is_durable(&studies, "s", 12, &more);
+    studies.study("s", 12, &more).succeeds();
     fs::remove_file(file).unwrap();
     studies.resume("s").succeeds();
-    assert!(read(&studies.dir("s").join("inputs/task_2.toml")).contains("\"far\""));
-    optimize(&["report", studies.dir("s").to_str().unwrap()]).succeeds();
+    assert!(studies.read("s/inputs/task_2.toml").contains("\"far\""));
+    studies.report("s").succeeds();
     let line = &evaluations(&studies, "s")[0];
     let rate = |of: &Value| number(&of["success_rate"]);
     let (usb, far) = (rate(&line["user_attrs"]["tasks"][0]), rate(&line["user_attrs"]["tasks"][1]));
@@ -344,10 +319,9 @@ fn bad_goals_are_answered_with_2_and_what_would_be_right() {
     ] {
         let studies = Studies::new();
         let given = if arguments.contains(&"--task") { &[][..] } else { &["--task", "usb"] };
-        let dir = studies.dir("s");
-        let study = ["--engine", "fake", "--budget", "4", "--out", dir.to_str().unwrap()];
+        let study = ["--engine", "fake", "--budget", "4", "--out", &studies.word("s")];
         optimize(&[&study[..], given, arguments].concat()).fails(2, parts);
-        assert!(!dir.exists(), "bad usage leaves no folder behind");
+        assert!(!studies.dir("s").exists(), "bad usage leaves no folder behind");
     }
     optimize(&[&["evaluate", "--task", "usb,rj45"], &finger[..]].concat())
         .fails(2, &["one --task"]);
@@ -363,14 +337,8 @@ fn changed_goals_are_another_study_and_odd_ones_are_not_compared() {
         .fails(2, &["constraints.0: the study has \"slip<=1\", now has nothing"]);
     studies.study("s", 4, &["--task", "usb,rj45"]).fails(2, &["tasks.1"]);
     studies.study("front", 4, &["--objective", "range,slip"]).succeeds();
-    let dir = |name| studies.dir(name).to_str().unwrap().to_owned();
+    let dir = |name| studies.word(name);
     optimize(&["compare", &dir("front")]).fails(2, &["range,slip", "one objective in mm"]);
     optimize(&["compare", &dir("s"), &dir("front")]).fails(2, &["objective"]);
     optimize(&["compare", &dir("s")]).succeeds();
-}
-
-#[test]
-fn the_shipped_errors_are_listed() {
-    let tasks = optimize(&["tasks"]);
-    assert!(tasks.succeeds().contains("uncertainties\n  typical"), "{}", tasks.stdout);
 }

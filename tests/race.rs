@@ -2,10 +2,11 @@
 
 mod common;
 
-use ask_tell::{Grid, OptimizerKind, build};
-use common::{Studies, read, sealed};
+use ask_tell::{Grid, Optimizer, OptimizerKind, build};
+use common::memory::{self, Memory};
+use common::{Studies, sealed};
 use finger_opt::session::{OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform};
-use finger_opt::study::{Runner, Store, Study, StudyRecord, strip_times};
+use finger_opt::study::StudyRecord;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Measured};
 use insertion::evaluation::robustness::race::{self, Race};
@@ -20,9 +21,7 @@ use insertion::trial::engine::EngineKind;
 use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
 use std::fs;
-use std::io;
 use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, Mutex};
 
 const FIXTURE: &str = include_str!("fixtures/study/study.toml");
 
@@ -74,25 +73,6 @@ fn table() -> impl Strategy<Value = Table> {
     })
 }
 
-#[derive(Clone, Default)]
-struct Memory(Arc<Mutex<Vec<u8>>>);
-
-impl Store for Memory {
-    fn read(&mut self) -> io::Result<Vec<u8>> {
-        Ok(self.0.lock().unwrap().clone())
-    }
-
-    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.0.lock().unwrap().extend_from_slice(bytes);
-        Ok(())
-    }
-
-    fn truncate(&mut self, len: u64) -> io::Result<()> {
-        self.0.lock().unwrap().truncate(len as usize);
-        Ok(())
-    }
-}
-
 /// A study of 24 evaluations in a folder of its own.
 struct Racing {
     dir: tempfile::TempDir,
@@ -112,22 +92,8 @@ impl Racing {
     }
 
     fn run(&self, table: &Table, threads: usize) -> StudyRecord {
-        let mut study = Study::resume_with(self.dir.path(), Box::new(self.store.clone())).unwrap();
-        let grid = Grid::new(study.config.space.levels());
-        let mut optimizer = build(OptimizerKind::Random, grid, 3);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let runner = Runner {
-            evaluator: table,
-            pool: &pool,
-            stop: &AtomicBool::new(false),
-            judge: &|_, _| Ok(false),
-        };
-        runner.run(&mut study, &mut *optimizer, &mut |_| ()).unwrap();
-        study.record()
-    }
-
-    fn journal(&self) -> String {
-        strip_times(std::str::from_utf8(&self.store.0.lock().unwrap()).unwrap())
+        let random = |grid: Grid| -> Box<dyn Optimizer> { build(OptimizerKind::Random, grid, 3) };
+        memory::run(self.dir.path(), &self.store, table, &random, threads).unwrap().1
     }
 }
 
@@ -165,11 +131,11 @@ proptest! {
             prop_assert!(sound, "{rate:?}, at most {bound:?}, {best:?}");
         }
         // Killed anywhere, gone on with by any number of threads.
-        let expected = racing.journal();
-        let kept = (at * racing.store.0.lock().unwrap().len() as f64) as usize;
-        racing.store.0.lock().unwrap().truncate(kept);
+        let expected = racing.store.journal();
+        let kept = (at * racing.store.bytes.lock().unwrap().len() as f64) as usize;
+        racing.store.bytes.lock().unwrap().truncate(kept);
         racing.run(&table, threads[1]);
-        prop_assert_eq!(racing.journal(), expected);
+        prop_assert_eq!(racing.store.journal(), expected);
     }
 
     /// Where a worker counts one draw more or less, or takes one for another, it is not believed.
@@ -205,10 +171,8 @@ proptest! {
 
 /// Errors by another name than the shipped ones, kept with the study.
 fn errors(studies: &Studies) -> String {
-    let path = studies.dir("errors.toml");
     let text = include_str!("../uncertainties/typical.toml");
-    fs::write(&path, text.replace("\"typical\"", "\"mine\"")).unwrap();
-    path.to_str().unwrap().to_owned()
+    studies.file("errors.toml", text.replace("\"typical\"", "\"mine\""))
 }
 
 /// The journal of a study that is measured by workers.
@@ -243,7 +207,7 @@ fn raced(studies: &Studies, name: &str) -> usize {
 fn a_race_leaves_one_journal_whoever_measures_and_whatever_the_cache_holds() {
     let studies = Studies::new();
     let errors = errors(&studies);
-    let cache = studies.dir("cache").to_str().unwrap().to_owned();
+    let cache = studies.word("cache");
     let asked = ["--objective", "success-rate", "--uncertainty", &errors];
     studies.study("s", 24, &asked).succeeds();
     let expected = studies.journal("s");
@@ -258,10 +222,9 @@ fn a_race_leaves_one_journal_whoever_measures_and_whatever_the_cache_holds() {
         studies.study(name, 24, &[&asked[..], &more].concat()).succeeds();
         assert_eq!(studies.journal(name), expected, "{name}");
     }
-    let path = studies.dir("s").join("journal.jsonl");
-    let whole = read(&path);
+    let whole = studies.read("s/journal.jsonl");
     for kept in [whole.len() / 2, whole.len() * 4 / 5] {
-        fs::write(&path, &whole.as_bytes()[..kept]).unwrap();
+        studies.file("s/journal.jsonl", &whole[..kept]);
         studies.resume("s").succeeds();
         assert_eq!(studies.journal("s"), expected, "{kept} bytes kept");
     }
@@ -270,17 +233,15 @@ fn a_race_leaves_one_journal_whoever_measures_and_whatever_the_cache_holds() {
 #[test]
 fn a_bound_is_said_and_shown_as_one() {
     let studies = Studies::new();
-    let ran = studies.study(
-        "s",
-        24,
-        &["--objective", "success-rate", "--uncertainty", &errors(&studies), "--verbose"],
-    );
+    let errors = errors(&studies);
+    let asked = ["--objective", "success-rate", "--uncertainty", &errors, "--verbose"];
+    let ran = studies.study("s", 24, &asked);
     let said = format!("{} of 24 designs ended early", raced(&studies, "s"));
     assert!(ran.succeeds().contains(&said), "{}", ran.stdout);
-    let page = read(&studies.dir("s").join("report.html"));
-    assert!(
-        page.contains(&said) && page.contains("at most 0.") && page.contains("at most (raced)")
-    );
+    let page = studies.read("s/report.html");
+    for said in [&said, "at most 0.", "at most (raced)"] {
+        assert!(page.contains(said), "{said}");
+    }
     let mut table = csv::Reader::from_path(studies.dir("s").join("evaluations.csv")).unwrap();
     let header = table.headers().unwrap().clone();
     let mut bounds = 0;
@@ -300,27 +261,25 @@ fn a_study_from_before_there_were_races_goes_on_without() {
     let studies = Studies::new();
     let asked = ["--objective", "success-rate", "--uncertainty", &errors(&studies)];
     studies.study("s", 8, &asked).succeeds();
-    let dir = studies.dir("s");
-    let config = read(&dir.join("study.toml"));
-    fs::write(dir.join("study.toml"), config.replacen("race = true\n", "", 1)).unwrap();
+    let config = studies.read("s/study.toml");
+    studies.file("s/study.toml", config.replacen("race = true\n", "", 1));
     studies.resume("s").fails(2, &["race"]);
-    fs::remove_file(dir.join("journal.jsonl")).unwrap();
+    fs::remove_file(studies.dir("s/journal.jsonl")).unwrap();
     // Resumed, or asked for by the same command.
     studies.resume("s").succeeds();
     studies.study("s", 24, &asked).succeeds();
     assert_eq!((raced(&studies, "s"), studies.journal("s").lines().count()), (0, 26));
     // Nor did they say which draws failed.
-    let journal = read(&dir.join("journal.jsonl"));
+    let journal = studies.read("s/journal.jsonl");
     let without = |line: &str| match line.split_once(",\"success_failed_draws\":[") {
         Some((before, rest)) => format!("{before}{}\n", rest.split_once(']').unwrap().1),
         None => format!("{line}\n"),
     };
     let old = sealed(&journal.lines().map(without).collect::<String>());
     assert!(old.len() < journal.len());
-    fs::write(dir.join("journal.jsonl"), old).unwrap();
+    studies.file("s/journal.jsonl", old);
     assert_eq!(studies.resume("s").succeeds(), studies.study("s", 24, &asked).succeeds());
-    let wrong = read(&dir.join("study.toml")).replacen("\"success-rate\"", "\"robust-range\"", 1);
-    let wrong = wrong.replacen("seed = 0", "race = true\nseed = 0", 1);
-    fs::write(dir.join("study.toml"), wrong).unwrap();
+    let wrong = studies.read("s/study.toml").replacen("\"success-rate\"", "\"robust-range\"", 1);
+    studies.file("s/study.toml", wrong.replacen("seed = 0", "race = true\nseed = 0", 1));
     studies.resume("s").fails(2, &["study.toml", "race: goes with"]);
 }

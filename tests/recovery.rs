@@ -3,11 +3,9 @@
 mod common;
 
 use ask_tell::stream::stream;
-use common::{Ran, Studies, command, optimize, read, run};
+use common::{Studies, answer, command, optimize, read, run, sealed};
 use rand::RngExt;
-use serde_json::Value;
 use std::fs;
-use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
@@ -16,62 +14,16 @@ use std::time::{Duration, Instant};
 const SOON: Duration = Duration::from_secs(4);
 /// What makes a prediction for the bench quick.
 const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
+const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";
 /// Kills of each flag; set the environment variable `KILLS` for more.
 const KILLS: u32 = 2;
-
-/// A measurement file of two fingers.
-fn bench(folder: &Studies) -> (std::path::PathBuf, String) {
-    let path = folder.dir("bench.csv");
-    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
-    let lines = format!("{head}ket8,10,0,7.6\nket8,20,0,5.7\n");
-    fs::write(&path, &lines).expect("the file is written");
-    (path, lines)
-}
-
-/// What a study answers, without where it is and what it took from the cache.
-fn answer(ran: &Ran) -> Value {
-    let mut json = ran.json();
-    let fields = json.as_object_mut().expect("an object");
-    fields.remove("study");
-    fields.remove("cached");
-    // It may name the study's folder.
-    fields["answer"].as_object_mut().expect("an object").remove("next");
-    json
-}
-
-#[test]
-fn measurements_taken_when_the_budget_is_spent_are_kept() {
-    let folder = Studies::new();
-    let (path, lines) = bench(&folder);
-    let file = path.to_str().expect("a path in UTF-8");
-    let with = |more: &[&str]| {
-        folder.study("a", 12, &[&FEW[..], &["--json", "--measurements", file], more].concat())
-    };
-    let before = answer(&with(&[]));
-    fs::write(&path, lines + "ket8,25,20,9.9\n").expect("the file is written");
-    let after = answer(&with(&["--accept-changed"]));
-    assert_eq!(after["bench"]["measured"], 3);
-    assert_ne!(after["recommended"]["bench"], before["recommended"]["bench"]);
-    // Whoever asks from now on gets the same answer, and nobody has to accept anything again.
-    assert_eq!(answer(&with(&[])), after);
-    let dir = folder.dir("a");
-    let dir = dir.to_str().expect("a path in UTF-8");
-    assert_eq!(answer(&optimize(&["resume", dir, "--quiet", "--json"])), after);
-    optimize(&["report", dir]).succeeds();
-    assert!(read(&folder.dir("a").join("report.html")).contains("Best on the bench"));
-    let title = optimize(&["export", "finger", dir, "--format", "dxf", "--out", "/dev/null"]);
-    let density = after["recommended"]["values"]["infill_density_percent"].to_string();
-    let density = density.trim_end_matches(".0").to_owned();
-    assert!(title.succeeds().contains(&format!("{density} %")), "{}", title.stdout);
-}
 
 #[test]
 fn a_changed_task_needs_evaluations_of_its_own() {
     let folder = Studies::new();
-    let task = folder.dir("usb.toml");
     let usb = include_str!("../tasks/usb.toml");
-    fs::write(&task, usb).expect("the file is written");
-    let own = ["--task", task.to_str().expect("a path in UTF-8"), "--json"];
+    let task = folder.file("usb.toml", usb);
+    let own = ["--task", &task, "--json"];
     folder.study("s", 12, &own).succeeds();
     let journal = folder.journal("s");
     fs::write(&task, format!("# other\n{usb}")).expect("the file is written");
@@ -101,31 +53,20 @@ fn kill(mut child: Child, signal: &str) -> Duration {
     sent.elapsed()
 }
 
-/// Waits until a journal has so many lines, or its study has ended.
-fn wait_for_lines(path: &Path, lines: usize, child: &mut Child) {
-    let begun = Instant::now();
-    while fs::read_to_string(path).unwrap_or_default().lines().count() < lines
-        && child.try_wait().expect("it can be asked").is_none()
-    {
-        assert!(begun.elapsed() < Duration::from_secs(60), "no journal of {lines} lines");
-        std::thread::sleep(Duration::from_millis(1));
-    }
-}
-
 #[test]
 fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
     let folder = Studies::new();
-    let (path, _) = bench(&folder);
-    let file = path.to_str().expect("a path in UTF-8");
+    let file = folder.file("bench.csv", format!("{HEAD}ket8,10,0,7.6\nket8,20,0,5.7\n"));
     let kills = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(KILLS);
-    let with_bench = [&FEW[..], &["--measurements", file]].concat();
-    let flags: [&[&str]; 14] = [
+    let with_bench = [&FEW[..], &["--measurements", &file]].concat();
+    let flags: [&[&str]; 15] = [
         &with_bench,
         &["--no-confirm"],
         &["--optimizer", "cma-es"],
         &["--polish", "6"],
         &["--objective", "centred-range"],
         &["--objective", "success-rate", "--uncertainty", "typical"],
+        &["--objective", "robust-range", "--uncertainty", "typical"],
         &["--objective", "range,peak-force"],
         &["--constraint", "peak-force<=30"],
         &["--task", "usb,ket8", "--aggregate", "weighted", "--weights", "1,2"],
@@ -141,17 +82,13 @@ fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
         let whole = answer(&whole);
         for round in 0..kills {
             let name = format!("killed-{i}-{round}");
-            let mut killed = folder.command(&name, 20, flags);
-            let killed = killed.env("FINGER_OPT_FAKE_DELAY_US", "150").stdout(Stdio::null());
-            let mut child = killed.stderr(Stdio::null()).spawn().expect("the command starts");
-            let journal = folder.dir(&name).join("journal.jsonl");
-            wait_for_lines(&journal, random.random_range(2..24), &mut child);
+            let lines = random.random_range(2..24);
+            let child = folder.begun(&name, 20, flags, lines);
             std::thread::sleep(Duration::from_millis(random.random_range(0..40)));
             kill(child, "KILL");
-            let dir = folder.dir(&name);
-            let dir = dir.to_str().expect("a path in UTF-8");
-            let resumed = answer(&optimize(&["resume", dir, "--quiet", "--json"]));
+            let resumed = answer(&optimize(&["resume", &folder.word(&name), "--quiet", "--json"]));
             assert_eq!(resumed, whole, "{flags:?}");
+            assert_eq!(folder.journal(&name), folder.journal(&format!("whole-{i}")), "{flags:?}");
         }
     }
 }
@@ -165,16 +102,12 @@ fn one_signal_ends_a_study_within_half_a_second_in_every_phase() {
             let name = format!("{phase}-{i}");
             let many = ["--task", "ket8", "--samples", "20000", "--measurements", "published"];
             let flags: &[&str] = if phase == "bench" { &many } else { &[] };
-            let mut study = folder.command(&name, budget, flags);
-            let study = study.env("FINGER_OPT_FAKE_DELAY_US", "100").stdout(Stdio::null());
-            let mut child = study.stderr(Stdio::null()).spawn().expect("the command starts");
-            wait_for_lines(&folder.dir(&name).join("journal.jsonl"), 10, &mut child);
+            let mut child = folder.begun(&name, budget, flags, 10);
             std::thread::sleep(Duration::from_millis(if phase == "bench" { 1500 } else { 0 }));
             assert!(child.try_wait().expect("it can be asked").is_none(), "{name} has ended");
             let took = kill(child, signal);
             assert!(took < SOON, "{name}: {took:?} after SIG{signal}");
-            let dir = folder.dir(&name);
-            optimize(&["report", dir.to_str().expect("a path in UTF-8")]).succeeds();
+            folder.report(&name).succeeds();
         }
     }
 }
@@ -211,15 +144,14 @@ fn what_another_program_adds_to_a_journal_is_passed_over_and_said() {
     let folder = Studies::new();
     let expected = answer(&folder.study("whole", 24, &["--json"]));
     folder.study("s", 16, &[]).succeeds();
-    let path = folder.dir("s").join("journal.jsonl");
+    let path = folder.dir("s/journal.jsonl");
     let foreign = [
         r#"{"op_code":3,"worker_id":"5b0e-140","study_id":0,"system_attr":{"dashboard:note_id":1}}"#,
         r#"{"op_code":4,"worker_id":"5b0e-140","study_id":0,"datetime_start":"2026-01-01T00:00:00"}"#,
     ];
     let text = read(&path) + &foreign.join("\n") + "\n";
     fs::write(&path, text).expect("the journal is written");
-    let dir = folder.dir("s");
-    let report = optimize(&["report", dir.to_str().expect("a path in UTF-8")]);
+    let report = folder.report("s");
     assert!(report.stderr.contains("records of other programs"), "{}", report.stderr);
     report.succeeds();
     assert_eq!(answer(&folder.study("s", 24, &["--json"])), expected);
@@ -231,25 +163,12 @@ fn what_another_program_adds_to_a_journal_is_passed_over_and_said() {
     folder.resume("s").fails(2, &["line 6", "damaged"]);
 }
 
-/// The journal with a number of one evaluation changed, and the check made to fit.
-fn with_lie(text: &str, evaluation: usize, from: &str, to: &str) -> String {
-    use sha2::{Digest, Sha256};
-    let lie = |(number, line): (usize, &str)| {
-        let Some((content, rest)) = line.split_once(",\"check\":\"") else {
-            return line.to_owned();
-        };
-        if number != 2 + evaluation {
-            return line.to_owned();
-        }
-        assert!(content.contains(from), "{from}: {content}");
-        let at = content.find(from).expect("it is there") + from.len();
-        let end = at + content[at..].find([',', '}']).expect("a number ends");
-        let content = format!("{}{to}{}", &content[..at], &content[end..]);
-        let digest = Sha256::digest(content.as_bytes());
-        let check: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
-        format!("{content},\"check\":\"{check}{}", &rest[16..])
-    };
-    text.lines().enumerate().map(lie).map(|line| line + "\n").collect()
+/// The journal with a number of evaluation 5 changed, and the check made to fit.
+fn with_lie(text: &str, from: &str, to: &str) -> String {
+    let line = text.lines().nth(2 + 5).expect("evaluation 5");
+    let at = line.find(from).expect("it is there") + from.len();
+    let end = at + line[at..].find([',', '}']).expect("a number ends");
+    sealed(&text.replacen(line, &format!("{}{to}{}", &line[..at], &line[end..]), 1))
 }
 
 #[test]
@@ -269,9 +188,8 @@ fn an_impossible_entry_costs_itself_and_not_those_after_it() {
         let name = format!("lie-{i}");
         folder.study(&name, 16, &[]).succeeds();
         let path = folder.dir(&name).join("journal.jsonl");
-        fs::write(&path, with_lie(&read(&path), 5, key, lie)).expect("the journal is written");
-        let dir = folder.dir(&name);
-        let report = optimize(&["report", dir.to_str().expect("a path in UTF-8")]);
+        fs::write(&path, with_lie(&read(&path), key, lie)).expect("the journal is written");
+        let report = folder.report(&name);
         report.succeeds();
         assert!(report.stderr.contains("evaluation 5 is passed over"), "{key}: {}", report.stderr);
         // What was proposed after it repeats, and the study goes on as it would have.
@@ -287,8 +205,7 @@ fn an_impossible_entry_costs_itself_and_not_those_after_it() {
 #[test]
 fn twenty_who_add_measurements_at_once_lose_none() {
     let folder = Studies::new();
-    let path = folder.dir("bench.csv");
-    let file = path.to_str().expect("a path in UTF-8");
+    let (path, file) = (folder.dir("bench.csv"), &folder.word("bench.csv"));
     let add = |direction: usize, more: &[&str]| {
         let direction = direction.to_string();
         let line = ["measure", "add", file, "--task", "usb", "--density", "20"];
@@ -312,7 +229,7 @@ fn twenty_who_add_measurements_at_once_lose_none() {
         run(&mut add(30, &["--set", "task.strategy.tilt_deg=8"])).succeeds();
         let after = fs::metadata(&link).expect("it is there");
         assert_eq!((after.ino(), after.mode() & 0o777), (before, 0o640));
-        assert_eq!(lines(link.to_str().expect("a path in UTF-8")), 21);
+        assert_eq!(lines(&folder.word("link.csv")), 21);
         fs::set_permissions(&path, fs::Permissions::from_mode(0o440)).expect("a mode");
         run(&mut add(31, &[])).fails(2, &["bench.csv", "read-only"]);
         assert_eq!(lines(file), 21);
@@ -322,14 +239,11 @@ fn twenty_who_add_measurements_at_once_lose_none() {
 #[test]
 fn the_order_of_measured_lines_changes_no_answer() {
     let folder = Studies::new();
-    let path = folder.dir("bench.csv");
-    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
     let lines = ["ket8,10,0,7.6\n", "ket8,20.5,0,5.7\n", "ket8,12.5,13,6.4\n"];
     let asked = |lines: &[&str], command: &str, more: &[&str]| {
-        fs::write(&path, head.to_owned() + &lines.concat()).expect("the file is written");
-        let file = path.to_str().expect("a path in UTF-8");
+        let file = folder.file("bench.csv", HEAD.to_owned() + &lines.concat());
         let all =
-            [&[command, "--engine", "fake", "--json", "--measurements", file], &FEW[..], more];
+            [&[command, "--engine", "fake", "--json", "--measurements", &file], &FEW[..], more];
         optimize(&all.concat()).json()
     };
     let turned = [lines[2], lines[0], lines[1]];
@@ -341,20 +255,17 @@ fn the_order_of_measured_lines_changes_no_answer() {
 #[test]
 fn files_that_are_too_much_are_refused_at_once() {
     let folder = Studies::new();
-    let path = folder.dir("bench.csv");
-    let file = path.to_str().expect("a path in UTF-8");
-    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
-    let next = || optimize(&["next", "--task", "ket8", "--measurements", file]);
     let finger = |i: u32| format!("ket8,{}.{:02},{},5.7\n", 10 + i % 20, i / 20, i % 41);
     let many: String = (0..201).map(finger).collect();
-    fs::write(&path, head.to_owned() + &many).expect("the file is written");
+    let file = &folder.file("bench.csv", HEAD.to_owned() + &many);
+    let next = || optimize(&["next", "--task", "ket8", "--measurements", file]);
     next().fails(2, &["201 different fingers", "at most 200"]);
     // Sparse: nothing of it is on the disk.
-    fs::File::options().write(true).open(&path).and_then(|f| f.set_len(3 << 30)).expect("a size");
+    fs::File::options().write(true).open(file).and_then(|f| f.set_len(3 << 30)).expect("a size");
     let begun = Instant::now();
     next().fails(2, &["longer than"]);
     assert!(begun.elapsed() < Duration::from_secs(5));
-    fs::write(&path, "x".repeat(5_000_000)).expect("the file is written");
+    folder.file("bench.csv", "x".repeat(5_000_000));
     let long = optimize(&["measure", "check", file]);
     assert_eq!(long.code, Some(2));
     assert!(long.stderr.len() < 3000, "{} bytes", long.stderr.len());
@@ -363,21 +274,17 @@ fn files_that_are_too_much_are_refused_at_once() {
 #[test]
 fn an_export_overwrites_no_neighbour_and_a_task_path_may_have_a_comma() {
     let folder = Studies::new();
-    let out = folder.dir("part.curaprofile");
-    let neighbour = folder.dir("part-outline.stl");
-    fs::write(&neighbour, "precious").expect("the file is written");
+    let out = folder.word("part.curaprofile");
+    let neighbour = folder.file("part-outline.stl", "precious");
     let export = |density: &str| {
         let finger = ["export", "finger", "--density", density, "--direction", "0"];
-        let out = out.to_str().expect("a path in UTF-8");
-        optimize(&[&finger[..], &["--format", "cura", "--out", out]].concat())
+        optimize(&[&finger[..], &["--format", "cura", "--out", &out]].concat())
     };
     export("20").fails(2, &["part-outline.stl", "is there already"]);
-    assert_eq!(read(&neighbour), "precious");
+    assert_eq!(folder.read("part-outline.stl"), "precious");
     fs::remove_file(&neighbour).expect("it is removed");
     export("20").succeeds();
     export("20").succeeds();
-    let task = folder.dir("usb,old.toml");
-    fs::write(&task, include_str!("../tasks/usb.toml")).expect("the file is written");
-    let task = task.to_str().expect("a path in UTF-8");
-    folder.study("s", 4, &["--task", task]).succeeds();
+    let task = folder.file("usb,old.toml", include_str!("../tasks/usb.toml"));
+    folder.study("s", 4, &["--task", &task]).succeeds();
 }

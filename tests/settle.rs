@@ -4,7 +4,7 @@
 mod common;
 
 use ask_tell::stream::stream;
-use common::{Ran, Studies, command, read, run, start};
+use common::{Studies, answer, command, read, run, start};
 use rand::RngExt;
 use serde_json::Value;
 use std::process::{Child, Command};
@@ -18,13 +18,6 @@ fn settling(folder: &Studies, name: &str, more: &[&str]) -> Command {
     let mut command = command(&["--engine", "fake", "--quiet", "--json", "--task", "usb"]);
     command.arg("--out").arg(folder.dir(name)).args(more);
     command
-}
-
-/// What a study answers, without where it is.
-fn answer(ran: &Ran) -> Value {
-    let mut json = ran.json();
-    json.as_object_mut().expect("an object").remove("study");
-    json
 }
 
 /// Confirmations, without the provenance.
@@ -91,7 +84,7 @@ fn neither_threads_nor_kills_change_a_study_that_settles() {
         let name = format!("killed-{round}");
         // Some in the search, most while something is confirmed.
         let mut child: Child = start(&mut settling(&folder, &name, &more));
-        folder.wait_for_lines(&name, if round % 4 == 0 { 10 } else { 29 });
+        folder.wait_for_lines(&name, if round % 4 == 0 { 10 } else { 29 }, &mut child);
         std::thread::sleep(Duration::from_millis(random.random_range(0..60)));
         child.kill().expect("it can be killed");
         child.wait().expect("it ends");

@@ -4,7 +4,7 @@ mod common;
 
 use ask_tell::OptimizerKind;
 use ask_tell::stream::stream;
-use common::{SLOW, Studies, end, optimize, read, run, start};
+use common::{SLOW, Studies, end, read, run, start};
 use rand::RngExt;
 use std::fs;
 use std::io::Write;
@@ -55,12 +55,10 @@ fn every_optimizer_goes_on_under_a_raised_budget_as_if_it_had_been_so_from_the_s
 #[test]
 fn a_study_of_every_design_ends_when_there_are_no_more() {
     let studies = Studies::new();
-    let space = studies.dir("small.toml");
     let infill = include_str!("../spaces/infill.toml");
     let text = infill.replace("high = 30.0", "high = 15.0").replace("high = 40.0", "high = 0.0");
-    fs::write(&space, text).unwrap();
-    let space = space.to_str().unwrap();
-    let result = studies.study("small", 50, &["--json", "--space", space]).json();
+    let space = studies.file("small.toml", text);
+    let result = studies.study("small", 50, &["--json", "--space", &space]).json();
     assert_eq!((&result["evaluations"], &result["ending"]), (&6.into(), &"space_exhausted".into()));
     // The copy in the study's folder is enough to go on.
     fs::remove_file(space).unwrap();
@@ -164,12 +162,11 @@ fn another_configuration_is_refused_field_by_field() {
     ] {
         studies.study("reference", BUDGET, &more).fails(2, &[field, "another configuration"]);
     }
-    let config = studies.dir("reference").join("study.toml");
-    let text = read(&config);
-    fs::write(&config, text.replace("seed = 0", "sead = 0")).unwrap();
+    let text = studies.read("reference/study.toml");
+    studies.file("reference/study.toml", text.replace("seed = 0", "sead = 0"));
     studies.resume("reference").fails(2, &["study.toml", "sead"]);
-    fs::write(&config, text).unwrap();
-    fs::write(studies.dir("reference").join("inputs/task_1.toml"), "name = 'x'").unwrap();
+    studies.file("reference/study.toml", text);
+    studies.file("reference/inputs/task_1.toml", "name = 'x'");
     studies.resume("reference").fails(2, &["task_1.toml", "was changed"]);
     assert_eq!(studies.journal("reference"), expected);
 }
@@ -179,7 +176,7 @@ fn another_configuration_is_refused_field_by_field() {
 fn an_interrupt_stops_soon_and_leaves_whole_evaluations_in_journal_and_cache() {
     let studies = Studies::new();
     let expected = reference(&studies);
-    let cache = studies.dir("cache").to_str().unwrap().to_owned();
+    let cache = studies.word("cache");
     let child = studies.begun("stopped", BUDGET, &["--cache", &cache], 5);
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(kill.expect("kill").success());
@@ -189,16 +186,14 @@ fn an_interrupt_stops_soon_and_leaves_whole_evaluations_in_journal_and_cache() {
     assert!(lines < expected.lines().count(), "it ran on for {lines} lines");
     studies.study("other", BUDGET, &["--cache", &cache]).succeeds();
     studies.resume("stopped").succeeds();
-    assert_eq!(
-        (studies.journal("other"), studies.journal("stopped")),
-        (expected.clone(), expected)
-    );
+    assert_eq!(studies.journal("other"), expected);
+    assert_eq!(studies.journal("stopped"), expected);
 }
 
 #[test]
 fn a_folder_that_cannot_be_written_is_named() {
     let studies = Studies::new();
-    fs::write(studies.dir("file"), "").unwrap();
+    studies.file("file", "");
     studies.study("file/study", 4, &[]).fails(1, &["file/study", "cannot create the folder"]);
     studies.study("file", 4, &[]).fails(1, &["file: cannot create the folder"]);
     // A folder where a file belongs refuses writing even to root.
@@ -223,11 +218,10 @@ fn a_polish_follows_the_search_and_is_as_durable() {
     let lines = |text: &str| text.lines().skip(2).take(searched - 2).collect::<String>();
     assert_eq!(lines(&all), lines(&expected), "the search does not know of the polish");
     // Any beginning goes on to the same end.
-    let path = studies.dir("polished").join("journal.jsonl");
-    let whole = read(&path);
+    let whole = studies.read("polished/journal.jsonl");
     for kept in [2, 2 + 20, 2 + BUDGET as usize, 2 + BUDGET as usize + 1] {
         let beginning: String = whole.lines().take(kept).map(|line| format!("{line}\n")).collect();
-        fs::write(&path, beginning).unwrap();
+        studies.file("polished/journal.jsonl", beginning);
         studies.resume("polished").succeeds();
         assert_eq!(studies.journal("polished"), all, "{kept} lines kept");
     }
@@ -240,7 +234,7 @@ fn a_polish_follows_the_search_and_is_as_durable() {
 fn a_known_evaluation_leaves_the_journal_that_a_measured_one_does() {
     let studies = Studies::new();
     let expected = reference(&studies);
-    let dir = studies.dir("cache").to_str().unwrap().to_owned();
+    let dir = studies.word("cache");
     let cached = |name: &str, budget: u32, more: &[&str]| {
         let more = [&["--cache", &dir, "--json"][..], more].concat();
         studies.study(name, budget, &more).json()["cached"].clone()
@@ -263,19 +257,17 @@ fn best_of(json: &serde_json::Value) -> u64 {
 fn a_study_measured_with_other_settings_is_refused_unless_that_is_accepted() {
     let studies = Studies::new();
     let expected = reference(&studies);
-    let task = studies.dir("usb.toml");
     let usb = include_str!("../tasks/usb.toml");
-    fs::write(&task, usb).unwrap();
-    let own = ["--task", task.to_str().unwrap(), "--json"];
+    let own = ["--task", &studies.file("usb.toml", usb), "--json"];
     let before = studies.study("changed", 12, &own).json();
     assert!(studies.journal("changed").lines().count() == 2 + 12 && best_of(&before) < 12);
     // The file changes: neither the same command nor, of its copies, a newer program goes on.
-    fs::write(&task, format!("# another comment\n{usb}")).unwrap();
+    studies.file("usb.toml", format!("# another comment\n{usb}"));
     let journal = studies.journal("changed");
     let remedies = ["input_sha256.task_1", "--accept-changed", "--out"];
     studies.study("changed", BUDGET, &own).fails(2, &remedies);
     assert_eq!(studies.journal("changed"), journal, "nothing is written");
-    optimize(&["report", studies.dir("changed").to_str().unwrap()]).succeeds();
+    studies.report("changed").succeeds();
 
     let accepted = [&own[..], &["--accept-changed"]].concat();
     let after = studies.study("changed", BUDGET, &accepted).json();
@@ -288,7 +280,7 @@ fn a_study_measured_with_other_settings_is_refused_unless_that_is_accepted() {
         expected.lines().filter(|line| line.contains("\"op_code\":4")).collect::<Vec<_>>(),
         "a comment changes no value"
     );
-    let page = read(&studies.dir("changed").join("report.html"));
+    let page = studies.read("changed/report.html");
     assert!(page.contains("segment 2 (from evaluation 12)"), "the report shows it");
     // From now on it is measured with the changed file.
     studies.study("changed", BUDGET, &own).succeeds();
@@ -302,14 +294,11 @@ fn a_study_of_other_sources_is_not_resumed() {
     let studies = Studies::new();
     studies.study("s", 6, &[]).succeeds();
     // As another build of the program would have written it, from its first line on.
-    let config = read(&studies.dir("s").join("study.toml"));
+    let config = studies.read("s/study.toml");
     let hash = config.split("source_sha256 = \"").nth(1).expect("it is recorded")[..64].to_owned();
-    for file in ["study.toml", "journal.jsonl"] {
-        let path = studies.dir("s").join(file);
-        fs::write(&path, read(&path).replace(&hash, &"0".repeat(64))).unwrap();
-    }
-    let path = studies.dir("s").join("journal.jsonl");
-    fs::write(&path, common::sealed(&read(&path))).unwrap();
+    let other = |text: &str| text.replace(&hash, &"0".repeat(64));
+    studies.file("s/study.toml", other(&config));
+    studies.file("s/journal.jsonl", common::sealed(&other(&studies.read("s/journal.jsonl"))));
     let parts = ["source_sha256: the study has", "now has", "--accept-changed", "--out"];
     studies.resume("s").fails(2, &parts);
     studies.study("s", 6, &[]).fails(2, &parts);
@@ -327,16 +316,14 @@ fn the_best_designs_are_walked_beside_the_journal() {
     assert!(walked.iter().all(|row| firm(row) <= firm(&walked[0])), "best first");
     let recommended = &json["recommended"];
     assert_eq!(recommended["evaluation"], walked[0]["evaluation"]);
-    assert_eq!(
-        recommended["values"]["infill_density_percent"],
-        walked[0]["infill_density_percent"]
-    );
+    let density = &walked[0]["infill_density_percent"];
+    assert_eq!(&recommended["values"]["infill_density_percent"], density);
     for key in ["range_mm", "negative_mm", "positive_mm", "peak_force_n"] {
         assert_eq!(recommended[key], walked[0][key], "{key}");
     }
     let by_ribs = recommended["computed"]["tasks"][0]["range_mm"].as_f64().expect("both ranges");
     assert!(by_ribs > 0.0 && walked[0]["range_mm"].as_f64() != Some(by_ribs), "other springs");
-    let report = read(&studies.dir("s").join("report.html"));
+    let report = studies.read("s/report.html");
     assert!(report.contains("from its ribs") && report.contains(&format!("{by_ribs:.1} mm (")));
     // The lower end of the closed form moves with friction.
     assert!(firm(recommended) < recommended["range_mm"].as_f64().unwrap());
@@ -345,12 +332,11 @@ fn the_best_designs_are_walked_beside_the_journal() {
     );
     assert!(walked[0]["trials"].as_u64() > json["best"]["trials"].as_u64(), "step by step");
     assert_eq!(studies.journal("s").lines().count(), 2 + 8, "not counted in the budget");
-    let file = studies.dir("s").join("walk.json");
-    let kept = read(&file);
+    let kept = studies.read("s/walk.json");
     // It can be made again, and a damaged one is.
-    fs::write(&file, "{").unwrap();
+    studies.file("s/walk.json", "{");
     studies.resume("s").succeeds();
-    assert_eq!(read(&file), kept);
+    assert_eq!(studies.read("s/walk.json"), kept);
     let text = studies.study("s", 8, &["--verbose"]);
     assert!(text.succeeds().contains("walked        step by step"), "{}", text.stdout);
     assert!(text.stdout.contains(&format!("from its ribs {by_ribs:.1} mm (")), "{}", text.stdout);
@@ -360,11 +346,10 @@ fn the_best_designs_are_walked_beside_the_journal() {
     let designs = begun["designs"].as_array_mut().unwrap();
     designs.truncate(designs.len().div_ceil(2));
     designs[0].as_object_mut().unwrap().remove("walked");
-    fs::write(&file, begun.to_string()).unwrap();
-    let report = studies.dir("s").to_str().unwrap().to_owned();
-    optimize(&["report", &report]).succeeds();
+    studies.file("s/walk.json", begun.to_string());
+    studies.report("s").succeeds();
     studies.resume("s").succeeds();
-    assert_eq!(read(&file), kept);
+    assert_eq!(studies.read("s/walk.json"), kept);
     let forced = studies.study("force", 8, &["--objective", "peak-force", "--json"]).json();
     assert!(forced.get("walked").is_none(), "windows do not decide there");
 }
@@ -388,8 +373,7 @@ fn the_order_on_the_bench_says_whose_it_is() {
 fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
     let studies = Studies::new();
     studies.study("s", 200, &[]).succeeds();
-    let kept: serde_json::Value =
-        serde_json::from_str(&read(&studies.dir("s").join("walk.json"))).unwrap();
+    let kept: serde_json::Value = serde_json::from_str(&studies.read("s/walk.json")).unwrap();
     let mut trials = 0;
     for design in kept["designs"].as_array().expect("designs") {
         trials += design["firm"][0]["trials"].as_u64().unwrap();
@@ -399,7 +383,7 @@ fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
             trials += walked["computed"][0]["trials"].as_u64().unwrap();
         }
     }
-    let table = read(&studies.dir("s").join("evaluations.csv"));
+    let table = studies.read("s/evaluations.csv");
     let column =
         table.lines().next().unwrap().split(',').position(|name| name == "trials").unwrap();
     let spent = |line: &str| line.split(',').nth(column).unwrap().parse::<u64>().unwrap();
@@ -415,13 +399,11 @@ fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
 #[test]
 fn a_task_that_no_design_does_ends_with_what_went_wrong() {
     let studies = Studies::new();
-    let space = studies.dir("high.toml");
     // The closed form's window closes with the remote centre so far up.
     let infill = include_str!("../spaces/infill.toml");
     let centre = "[[parameter]]\nkey = \"finger.rcc_mm\"\nlow = 60.0\nhigh = 62.0\nstep = 1.0\n\
                   source = \"too high\"\n";
-    fs::write(&space, format!("{infill}\n{centre}")).unwrap();
-    let space = ["--space", space.to_str().unwrap()];
+    let space = ["--space", &studies.file("high.toml", format!("{infill}\n{centre}"))];
     let failed = studies.study("s", 8, &space);
     failed.fails(1, &["nominal start of usb", "plug missed (class 2)", "nominal.svg"]);
     assert!(failed.stdout.contains("No finger inserts on usb"), "{}", failed.stdout);

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Ran, optimize};
+use common::{Ran, Studies, optimize};
 use contact::direct::Direct;
 use finger_opt::connector::check::problems;
 use finger_opt::connector::draft::{Dimensions, Size, draft};
@@ -199,14 +199,13 @@ fn drafted_tasks_insert_at_their_nominal_start() {
 
 #[test]
 fn a_round_task_is_written_with_the_error_of_its_hole() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("peg.toml");
-    let out = path.to_str().unwrap();
+    let folder = Studies::new();
+    let out = &folder.word("peg.toml");
     let new = |more: &str| {
         said(&format!("task new peg --clearance 0.1 --engine fake {more} --out"), &[out])
     };
     new("--round 8x12 --body 12x12x20").succeeds();
-    let text = common::read(&path);
+    let text = folder.read("peg.toml");
     let made = "# Made by: optimize task new peg --round 8x12 --clearance 0.1";
     for part in [made, "64 flats, which keep its diameter within 0.0049 mm"] {
         assert!(text.contains(part), "{text}");
@@ -232,25 +231,23 @@ fn a_failed_nominal_start_is_explained() {
 
 #[test]
 fn a_task_is_made_shown_checked_and_used() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("c.toml");
-    let path = file.to_str().unwrap();
+    let folder = Studies::new();
+    let path: &str = &folder.word("c.toml");
     let new =
         "task new c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20 --engine fake --out";
     assert!(said(new, &[path]).succeeds().contains(path));
     said(new, &[path]).fails(2, &["exists", "--out"]);
     let check = |more: &[&str]| said("task check --engine fake --json", &[&[path], more].concat());
-    let svg = folder.path().join("c.svg");
-    let drawn = check(&["--svg", svg.to_str().unwrap()]).json();
+    let drawn = check(&["--svg", &folder.word("c.svg")]).json();
     assert_eq!(drawn["valid"], true);
     assert_eq!(drawn["problems"], serde_json::json!([]));
     assert_eq!(drawn["nominal"]["outcome"], "inserted");
-    let picture = common::read(&svg);
+    let picture = folder.read("c.svg");
     roxmltree::Document::parse(&picture).unwrap();
     assert!(picture.contains("clearance") && picture.contains("assembly"));
     // What was made has a body that a wider one would not let in.
-    let wrong = common::read(&file).replace("y_mm = [-4.125, 4.125]", "y_mm = [-4.6, 4.6]");
-    std::fs::write(&file, wrong).unwrap();
+    let made = folder.read("c.toml");
+    folder.file("c.toml", made.replace("y_mm = [-4.125, 4.125]", "y_mm = [-4.6, 4.6]"));
     let ran = check(&[]);
     ran.fails(2, &["problem"]);
     let found: Value = serde_json::from_str(&ran.stdout).unwrap();
@@ -262,11 +259,10 @@ fn a_task_is_made_shown_checked_and_used() {
 
 #[test]
 fn a_task_is_copied_like_another_and_shown_as_it_is() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("my-usb.toml");
-    let out = path.to_str().unwrap();
+    let folder = Studies::new();
+    let out = &folder.word("my-usb.toml");
     said("task new my-usb --like usb --engine fake --out", &[out]).succeeds();
-    let copy = Task::parse(&common::read(&path), out).unwrap();
+    let copy = Task::parse(&folder.read("my-usb.toml"), out).unwrap();
     let usb = Task::parse(shipped("usb"), "usb").unwrap();
     assert_eq!(copy.name, "my-usb");
     assert_eq!((copy.plug, copy.strategy), (usb.plug, usb.strategy));
@@ -281,15 +277,14 @@ fn a_task_is_copied_like_another_and_shown_as_it_is() {
 /// A file that cannot be read is a problem, too, with its key.
 #[test]
 fn a_check_says_what_a_reader_finds() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("bad.toml");
+    let folder = Studies::new();
     for (from, to, key) in [
         ("mass_g = 5.0", "mass_g = 0.0", "plug.mass_g"),
         ("mass_g = 5.0", "", "mass_g"),
         ("force_n", "force", "force"),
     ] {
-        std::fs::write(&file, shipped("usb").replace(from, to)).unwrap();
-        let ran = said("task check --json", &[file.to_str().unwrap()]);
+        let file = folder.file("bad.toml", shipped("usb").replace(from, to));
+        let ran = said("task check --json", &[&file]);
         ran.fails(2, &["1 problem"]);
         let found: Value = serde_json::from_str(&ran.stdout).unwrap();
         assert_eq!(found["problems"][0]["key"], key);

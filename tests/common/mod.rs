@@ -1,6 +1,7 @@
 //! Runs the real binary on the fake engine.
 #![allow(dead_code, reason = "each test file uses its own part of this")]
 
+pub mod memory;
 mod ran;
 
 pub use ran::{Ran, read, run};
@@ -43,6 +44,17 @@ pub fn end(child: Child) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
+/// What a study answers, without where it is and what it took from the cache.
+pub fn answer(ran: &Ran) -> serde_json::Value {
+    let mut json = ran.json();
+    let fields = json.as_object_mut().expect("an object");
+    fields.remove("study");
+    fields.remove("cached");
+    // It may name the study's folder.
+    fields["answer"].as_object_mut().expect("an object").remove("next");
+    json
+}
+
 /// Number of lines of a file; 0 if it is not there.
 pub fn lines(path: &Path) -> usize {
     std::fs::read_to_string(path).unwrap_or_default().lines().count()
@@ -60,6 +72,27 @@ impl Studies {
         self.0.path().join(name)
     }
 
+    /// The path of a study or a file as a word of a command line.
+    pub fn word(&self, name: &str) -> String {
+        self.dir(name).to_str().expect("a path in UTF-8").to_owned()
+    }
+
+    /// Writes a file; gives its path as a word of a command line.
+    pub fn file(&self, name: &str, text: impl AsRef<[u8]>) -> String {
+        std::fs::write(self.dir(name), text).expect("the file is written");
+        self.word(name)
+    }
+
+    /// A text file below the folder.
+    pub fn read(&self, name: &str) -> String {
+        read(&self.dir(name))
+    }
+
+    /// Makes a study's report anew.
+    pub fn report(&self, name: &str) -> Ran {
+        optimize(&["report", &self.word(name)])
+    }
+
     /// A quiet study on the fake engine, of usb unless `more` names a task, not yet started;
     /// `more` comes last.
     pub fn command(&self, name: &str, budget: u32, more: &[&str]) -> Command {
@@ -74,16 +107,16 @@ impl Studies {
 
     /// Starts a slow study and waits until its journal has so many lines.
     pub fn begun(&self, name: &str, budget: u32, more: &[&str], lines: usize) -> Child {
-        let child = start(&mut self.command(name, budget, more));
-        self.wait_for_lines(name, lines);
+        let mut child = start(&mut self.command(name, budget, more));
+        self.wait_for_lines(name, lines, &mut child);
         child
     }
 
-    /// Waits until a study's journal has so many lines, at most a minute.
-    pub fn wait_for_lines(&self, name: &str, least: usize) {
+    /// Waits until a study's journal has so many lines or it has ended, at most a minute.
+    pub fn wait_for_lines(&self, name: &str, least: usize, child: &mut Child) {
         let path = self.dir(name).join("journal.jsonl");
         let begun = Instant::now();
-        while lines(&path) < least {
+        while lines(&path) < least && child.try_wait().expect("it can be asked").is_none() {
             assert!(begun.elapsed() < Duration::from_secs(60), "no journal of {least} lines");
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -101,7 +134,7 @@ impl Studies {
 
     /// A study's journal without its times.
     pub fn journal(&self, name: &str) -> String {
-        finger_opt::study::strip_times(&read(&self.dir(name).join("journal.jsonl")))
+        finger_opt::study::strip_times(&self.read(&format!("{name}/journal.jsonl")))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The binary under limits: 10 s of processor time, 1 GB, an exit code that is documented.
 
+use super::common::Ran;
 use anyhow::{Result, bail};
 use std::io::Write;
 use std::path::Path;
@@ -18,13 +19,6 @@ const MEMORY_KIB: u32 = 1 << 20;
 /// Wall time after which a case hangs, whatever the machine is busy with, s.
 const HANGS_S: u32 = 120;
 
-/// Output of a process.
-pub struct Ended {
-    pub code: Option<i32>,
-    pub stdout: String,
-    pub stderr: String,
-}
-
 /// The binary of this build, or another: long runs outlast builds.
 fn program() -> String {
     let built = || env!("CARGO_BIN_EXE_optimize").to_owned();
@@ -38,7 +32,7 @@ pub fn folder() -> &'static Path {
 }
 
 /// Runs the binary; an error is what no input may lead to.
-pub fn run<S: AsRef<str>>(arguments: &[S], input: &[u8]) -> Result<Ended> {
+pub fn run<S: AsRef<str>>(arguments: &[S], input: &[u8]) -> Result<Ran> {
     let arguments: Vec<&str> = arguments.iter().map(AsRef::as_ref).collect();
     let cpu_s = match arguments.first() {
         Some(&"trial") => TRIAL_S,
@@ -62,7 +56,7 @@ pub fn run<S: AsRef<str>>(arguments: &[S], input: &[u8]) -> Result<Ended> {
         // More words than the system takes: it has refused them.
         Err(error) if error.kind() == std::io::ErrorKind::ArgumentListTooLong => {
             let (stdout, stderr) = (String::new(), error.to_string());
-            return Ok(Ended { code: Some(2), stdout, stderr });
+            return Ok(Ran { code: Some(2), stdout, stderr });
         }
         child => child?,
     };
@@ -72,8 +66,8 @@ pub fn run<S: AsRef<str>>(arguments: &[S], input: &[u8]) -> Result<Ended> {
     let output = child.wait_with_output()?;
     let [stdout, stderr] =
         [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-    let ended = Ended { code: output.status.code(), stdout, stderr };
-    if let Some(problem) = ended.problem() {
+    let ended = Ran { code: output.status.code(), stdout, stderr };
+    if let Some(problem) = problem(&ended) {
         let tail: String = ended.stderr.chars().take(2000).collect();
         bail!("{problem}: optimize {arguments:?}: {}\n{tail}", output.status);
     }
@@ -85,20 +79,15 @@ pub fn no_number(text: &str) -> bool {
     text.split(|c: char| !c.is_alphanumeric()).any(|word| word == "NaN" || word == "inf")
 }
 
-impl Ended {
-    fn problem(&self) -> Option<&'static str> {
-        let control = |text: &str| text.chars().any(|c| c.is_control() && !"\n\t".contains(c));
-        let panics = ["panicked", "RUST_BACKTRACE", "memory allocation"];
-        let problems = [
-            (
-                !matches!(self.code, Some(0..=2)),
-                "ended by a signal, a limit or an unknown exit code",
-            ),
-            (panics.iter().any(|word| self.stderr.contains(word)), "panicked"),
-            (control(&self.stdout) || control(&self.stderr), "prints control characters"),
-            (self.code != Some(0) && self.stderr.trim().is_empty(), "fails without a word"),
-            (self.code == Some(0) && no_number(&self.stdout), "succeeds with what is no number"),
-        ];
-        problems.into_iter().find_map(|(seen, problem)| seen.then_some(problem))
-    }
+fn problem(Ran { code, stdout, stderr }: &Ran) -> Option<&'static str> {
+    let control = |text: &str| text.chars().any(|c| c.is_control() && !"\n\t".contains(c));
+    let panics = ["panicked", "RUST_BACKTRACE", "memory allocation"];
+    let problems = [
+        (!matches!(code, Some(0..=2)), "ended by a signal, a limit or an unknown exit code"),
+        (panics.iter().any(|word| stderr.contains(word)), "panicked"),
+        (control(stdout) || control(stderr), "prints control characters"),
+        (*code != Some(0) && stderr.trim().is_empty(), "fails without a word"),
+        (*code == Some(0) && no_number(stdout), "succeeds with what is no number"),
+    ];
+    problems.into_iter().find_map(|(seen, problem)| seen.then_some(problem))
 }

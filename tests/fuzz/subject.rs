@@ -1,16 +1,18 @@
 //! What is mutated, and what is asked of the program about it.
 
-use super::common::sealed;
+use super::common::{Ran, sealed};
 use super::mutation::{Mutation, mutated};
-use super::process::{Ended, no_number, run};
+use super::process::{no_number, run};
 use anyhow::{Context, Result, bail, ensure};
 use ask_tell::OptimizerKind;
-use finger_opt::connector::mesh::read;
+use finger_opt::connector::mesh::{Surface, read};
 use finger_opt::session::{
     Failure, NotTaken, OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform,
 };
+use input::units::MM;
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
+use nalgebra::Point3;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -58,25 +60,14 @@ impl Base {
 fn obj(pair: &str, body: &str) -> String {
     let name = format!("{}/examples/meshes/{pair}-{body}.stl", env!("CARGO_MANIFEST_DIR"));
     let triangles = read(&fs::read(&name).unwrap(), &name).unwrap();
-    let (mut corners, mut faces): (Vec<String>, String) = Default::default();
-    for triangle in triangles {
-        faces.push('f');
-        for p in triangle {
-            let corner = format!("v {} {} {}\n", p.x, p.y, p.z);
-            let known = corners.iter().position(|other| *other == corner);
-            let at = known.unwrap_or(corners.len());
-            if known.is_none() {
-                corners.push(corner);
-            }
-            faces.push_str(&format!(" {}", at + 1));
-        }
-        faces.push('\n');
-    }
-    corners.concat() + &faces
+    let surface = Surface::new(&triangles, MM, &name).unwrap();
+    let corner = |p: &Point3<f64>| format!("v {} {} {}\n", p.x / MM, p.y / MM, p.z / MM);
+    let face = |[a, b, c]: &[usize; 3]| format!("f {} {} {}\n", a + 1, b + 1, c + 1);
+    surface.points.iter().map(corner).chain(surface.faces.iter().map(face)).collect()
 }
 
 /// Runs a command line without spaces in its words.
-fn at_once(line: &str) -> Result<Ended> {
+fn at_once(line: &str) -> Result<Ran> {
     run(&line.split_whitespace().collect::<Vec<_>>(), b"")
 }
 

@@ -232,13 +232,12 @@ fn a_failed_nominal_start_is_explained() {
 #[test]
 fn a_task_is_made_shown_checked_and_used() {
     let folder = Studies::new();
-    let path = &folder.word("c.toml");
+    let path: &str = &folder.word("c.toml");
     let new =
         "task new c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20 --engine fake --out";
     assert!(said(new, &[path]).succeeds().contains(path));
     said(new, &[path]).fails(2, &["exists", "--out"]);
-    let check =
-        |more: &[&str]| said("task check --engine fake --json", &[&[path.as_str()], more].concat());
+    let check = |more: &[&str]| said("task check --engine fake --json", &[&[path], more].concat());
     let drawn = check(&["--svg", &folder.word("c.svg")]).json();
     assert_eq!(drawn["valid"], true);
     assert_eq!(drawn["problems"], serde_json::json!([]));

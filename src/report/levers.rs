@@ -79,8 +79,8 @@ pub fn text(levers: &Levers) -> String {
 }
 
 /// Width of the diagram, left and right end of its scale, height of a row, first row; pixels.
-const WIDTH: f64 = 700.0;
-const SCALE: [f64; 2] = [285.0, 620.0];
+const WIDTH: f64 = 600.0;
+const SCALE: [f64; 2] = [260.0, 530.0];
 const ROW: f64 = 42.0;
 const TOP: f64 = 62.0;
 /// Height of a bar: a row has one for each end.

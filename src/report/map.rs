@@ -17,7 +17,7 @@ const COLOURS: [(Outcome, Colour); 6] = [
     (Outcome::Failed(FailureClass::ContactLossInInsertion), RED),
     (Outcome::Diverged, LINES),
 ];
-const SIZE: (u32, u32) = (640, 440);
+const SIZE: (u32, u32) = (600, 430);
 /// Height of title and legend, pixels.
 const HEAD: u32 = 66;
 

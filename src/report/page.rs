@@ -100,7 +100,10 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
         None => "Fingers as good",
         Some(_) => "As good by simulation alone",
     };
-    let drawn = |(caption, svg): &(String, String)| figure(svg, caption, caption);
+    // Their words are as wide as they are: on a phone they are moved, not shrunk.
+    let drawn = |(caption, svg): &(String, String)| {
+        html! { div.moved { (figure(svg, caption, caption)) } }
+    };
     let maps = (!beside.maps.is_empty())
         .then(|| html! { div.views { @for map in &beside.maps { (drawn(map)) } } });
     let sections = [

@@ -76,7 +76,8 @@ levers() {
     local folder="$reference/levers" task density direction
     mkdir -p "$folder"
     while read -r task density direction; do
-        "$optimize" levers --task "$task" --density "$density" --direction "$direction" \
+        /usr/bin/env time -f "$task: %e s wall, %U s processor" -a -o "$work/levers.txt" \
+            "$optimize" levers --task "$task" --density "$density" --direction "$direction" \
             --svg "$folder/$task.svg" --json > "$folder/$task.json"
     done << EOF
 usb 10 26
@@ -84,6 +85,7 @@ ket8 10 0
 ket12 10 0
 rj45 18 20
 EOF
+    mv "$work/levers.txt" "$folder/times.txt"
     record levers "$folder"/*
 }
 
@@ -145,7 +147,7 @@ studies() {
         /usr/bin/env time -f "%e s wall, %U s processor, %M KiB" -o "$reference/$task/time.txt" \
             "$optimize" --task "$task" --budget 200 --no-cache --out "$work/$task" --quiet \
             > "$kept/summary.txt"
-        sed -i '/^study /d' "$kept/summary.txt"
+        sed -i '/^study /,$d' "$kept/summary.txt"
         cp -r "$work/$task"/{study.toml,inputs,journal.jsonl,walk.json} "$kept/"
         "$optimize" report "$kept" > /dev/null
         rm "$kept/report.html"
@@ -174,7 +176,7 @@ objectives() {
         -e 's/name = "typical"/name = "few"/' uncertainties/typical.toml > "$few"
     study() {
         "$optimize" "${@:2}" --no-cache --out "$work/$1" --quiet > "$folder/$1.txt"
-        sed -i '/^study /d' "$folder/$1.txt"
+        sed -i '/^study /,$d' "$folder/$1.txt"
     }
     study front --task usb --objective range,peak-force --budget 60
     cp "$work/front/front.svg" "$folder/"

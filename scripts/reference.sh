@@ -176,7 +176,7 @@ objectives() {
         -e 's/name = "typical"/name = "few"/' uncertainties/typical.toml > "$few"
     study() {
         "$optimize" "${@:2}" --no-cache --out "$work/$1" --quiet > "$folder/$1.txt"
-        sed -i '/^study /,$d' "$folder/$1.txt"
+        sed -i -e "/^study /,\$d" -e "s,$work,results," "$folder/$1.txt"
     }
     study front --task usb --objective range,peak-force --budget 60
     cp "$work/front/front.svg" "$folder/"

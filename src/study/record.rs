@@ -178,12 +178,14 @@ impl StudyRecord {
         first_current(&self.segments)
     }
 
-    /// The [`best`] of the [`current`](Self::current) evaluations.
+    /// The best of the [`current`](Self::current) evaluations: of those that keep all constraints, none
+    /// of them raced, the one with the best first objective.
     pub fn best(&self) -> Option<&Recorded> {
         best(&self.config.goals(), self.current())
     }
 
-    /// The [`front`] of the [`current`](Self::current) evaluations.
+    /// The [`current`](Self::current) evaluations that keep all constraints and that no other such one
+    /// beats in all objectives, best in the first objective first.
     pub fn front(&self) -> Vec<&Recorded> {
         front(&self.config.goals(), self.current())
     }

@@ -2,6 +2,7 @@
 """The pictures of docs/: a report on a desktop and on a phone, and a film.
 
     scripts/pictures.py STUDY/report.html STUDY/replay/1-positive.html docs
+    scripts/pictures.py STUDY/report.html FILE.png    the first screen alone
 """
 import sys
 from pathlib import Path
@@ -10,6 +11,15 @@ from browser import Browser
 
 # Seconds into the film: the plug that will insert has fallen in, the other one jams.
 MOMENT = 1.17
+
+
+def first(report, file):
+    """The first screen of a page."""
+    with Browser() as browser:
+        page = browser.open(report, 1280, 900)
+        if page.js('document.querySelector("#film") !== null'):
+            page.wait('document.querySelector("#film").dataset.state')
+        page.picture(Path(file))
 
 
 def main(report, film, folder):
@@ -32,4 +42,4 @@ def main(report, film, folder):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    (first if len(sys.argv) == 3 else main)(*sys.argv[1:])

@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-parts="stiffness finger shapes bench levers check windows validation validation-ur5e trials studies pictures objectives instructions optimizers"
+parts="stiffness finger shapes bench levers check windows validation validation-ur5e trials studies pictures answers objectives instructions optimizers"
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 lab=${LAB:-target/release/lab}
@@ -166,6 +166,30 @@ pictures() {
         "$optimize" --task usb --budget 60 --no-cache --out "$work/usb" --quiet > /dev/null
     fi
     python3 scripts/pictures.py "$work"/usb/{report.html,replay/1-positive.html} docs
+}
+
+# What is said first of each kind of answer: terminal, JSON, first screen of the page.
+answers() {
+    local folder="$reference/answers" tilted="$work/tilted.toml" keyed="$work/keyed.toml"
+    mkdir -p "$folder"
+    # So far that the plug passes by its opening.
+    sed -e 's/^name = "usb"/name = "tilted"/' -e '0,/^tilt_deg = .*/s//tilt_deg = 25.0/' tasks/usb.toml > "$tilted"
+    "$optimize" task import --plug examples/meshes/keyed-plug.stl --socket examples/meshes/keyed-socket.stl \
+        --unit mm --insert-along -z --out "$keyed" > /dev/null 2>&1
+    # Its start near the edge of its window.
+    sed -i -E 's/^start_mm = \[([^,]*), [^,]*,/start_mm = [\1, 3.5,/' "$keyed"
+    answer() {
+        "$optimize" "${@:2}" --no-cache --out "$work/$1" --quiet > "$folder/$1.txt" || true
+        "$optimize" resume "$work/$1" --quiet --json > "$folder/$1.json" || true
+        sed -i "s,$work,results,g" "$folder/$1".{txt,json}
+        python3 scripts/pictures.py "$work/$1/report.html" "$folder/$1.png"
+    }
+    answer usb --task usb
+    answer rj45 --task rj45
+    answer nothing-inserts --task "$tilted" --budget 12
+    answer own-connector --task "$keyed" --budget 24
+    answer ket8-measured --task ket8 --measurements published
+    record studies "$folder"/*
 }
 
 # Objectives, constraints and tasks of docs/guide/objectives.md.

@@ -68,7 +68,7 @@ def test_the_command_reaches_a_scheduler(cluster, command, tmp_path, fake):
              "--no-cache", "--no-confirm", "--out", str(tmp_path / "s"), "--executor"]
     code, out, errors = command(*words, cluster.scheduler_address.replace("tcp://", "dask://"))
     assert code == 0, errors
-    assert "best design" in out
+    assert "next          optimize next" in out
     code, _, errors = command(*words, "dask://127.0.0.1:9")
     assert code == 1 and "no scheduler answers" in errors
 

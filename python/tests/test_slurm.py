@@ -135,7 +135,7 @@ def test_the_command_hands_a_study_to_slurm(slurm, command, tmp_path, fake):
         "--quiet", "--out", "s", "--executor", "slurm:2", cwd=tmp_path,
     )
     assert code == 0, errors
-    assert "best design" in out
+    assert "next          optimize next" in out
     assert fo.load_study(tmp_path / "s").config["batch"] == 2
 
 

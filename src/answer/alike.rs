@@ -14,6 +14,9 @@ pub struct AsGood<'a> {
     pub designs: Vec<(&'a Recorded, f64)>,
     /// Smallest and largest value of each parameter that the space leaves free.
     pub spread: Vec<Spread<'a>>,
+    /// Share of the space that lies nearest to one of them, 0 to 1: their number says little, since a
+    /// search looks most where it is best.
+    pub share: f64,
     /// Which to take for other reasons: the reason, the design, what is least or most of it and the
     /// unit of that; none if there is no other.
     pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
@@ -95,8 +98,42 @@ impl<'a> AsGood<'a> {
             force_n: force(design),
             loss: (10.0 * loss.max(0.0)).round() / 10.0,
         });
-        AsGood { spread: spread(record, &designs), alternatives: known.collect(), safe, designs }
+        let (spread, share) = (spread(record, &designs), share(record, &designs));
+        AsGood { spread, share, alternatives: known.collect(), safe, designs }
     }
+}
+
+/// Points of the space that are asked which design they lie nearest to.
+const ASKED: u32 = 500;
+
+/// Share of evenly spread points whose nearest design, parameters over their spans, is in the set.
+fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
+    let space = &record.config.space;
+    let unit = |design: &Recorded| -> Vec<f64> {
+        let shares = space.point(&design.design).0.into_iter().zip(space.levels());
+        shares.map(|(level, levels)| f64::from(level) / f64::from(levels.max(2) - 1)).collect()
+    };
+    let designs: Vec<(Vec<f64>, bool)> = record
+        .current()
+        .iter()
+        .map(|found| (unit(found), set.iter().any(|(member, _)| member.index == found.index)))
+        .collect();
+    // Roberts' sequence: the root of x^(d + 1) = x + 1 fills d dimensions evenly.
+    let dimension = space.parameters.len() as u32;
+    let root = (0..60).fold(1.5_f64, |x, _| libm::pow(1.0 + x, 1.0 / f64::from(dimension + 1)));
+    let within = |&number: &u32| {
+        let powers = std::iter::successors(Some(1.0 / root), |power| Some(power / root));
+        let at: Vec<f64> = powers
+            .take(space.parameters.len())
+            .map(|power| (0.5 + f64::from(number) * power).fract())
+            .collect();
+        let from = |design: &[f64]| -> f64 {
+            design.iter().zip(&at).map(|(value, at)| (value - at) * (value - at)).sum()
+        };
+        let nearest = designs.iter().min_by(|a, b| from(&a.0).total_cmp(&from(&b.0)));
+        nearest.is_some_and(|(_, member)| *member)
+    };
+    f64::from((0..ASKED).filter(within).count() as u32) / f64::from(ASKED)
 }
 
 fn spread<'a>(record: &'a StudyRecord, designs: &[(&Recorded, f64)]) -> Vec<Spread<'a>> {
@@ -109,4 +146,40 @@ fn spread<'a>(record: &'a StudyRecord, designs: &[(&Recorded, f64)]) -> Vec<Spre
         Spread { key, values: [low, high] }
     };
     free.map(|parameter| of(&parameter.key)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::answer::{Answer, Verdict};
+    use crate::study::StudyRecord;
+
+    fn fixture() -> StudyRecord {
+        StudyRecord::load("tests/fixtures/study".as_ref()).unwrap()
+    }
+
+    #[test]
+    fn what_is_said_follows_from_what_differs_too_little() {
+        let mut record = fixture();
+        record.config.indifference_mm = 0.1;
+        let answer = Answer::of(&record);
+        let found = answer.recommended.as_ref().and_then(|found| found.as_good.as_ref()).unwrap();
+        assert!(found.share < 0.5 && matches!(answer.verdict, Verdict::Print(_)), "{found:?}");
+        let named = answer.named().unwrap().index;
+        assert!(found.designs.iter().any(|(member, loss)| member.index == named && *loss == 0.0));
+        // Nothing differs by so much.
+        record.config.indifference_mm = 10.0;
+        let answer = Answer::of(&record);
+        let found = answer.recommended.as_ref().and_then(|found| found.as_good.as_ref()).unwrap();
+        assert!(found.share > 0.5);
+        assert_eq!(found.designs.len(), answer.feasible);
+        assert!(matches!(answer.verdict, Verdict::Any { .. }));
+        // One that a robot measured, else the gentlest, is the safe one.
+        let safe = found.safe.as_ref().unwrap();
+        let gentlest = found.designs.iter().filter_map(|(member, _)| {
+            Some(member.tasks.first()?.peak_force_n).filter(|force| force.is_finite())
+        });
+        let gentlest = gentlest.fold(f64::INFINITY, f64::min);
+        assert!(safe.measured_mm.is_some() || safe.force_n == Some(gentlest));
+        assert_eq!(answer.verdict.finger(), Some(&safe.design.design));
+    }
 }

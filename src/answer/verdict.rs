@@ -8,8 +8,8 @@ use insertion::evaluation::objective::Measure;
 use insertion::outcome::Outcome;
 use insertion::space::Design;
 
-/// Share of the designs from which on it is said that the finger hardly matters.
-const MANY: f64 = 0.25;
+/// Share of the space from which on it is said that the finger hardly matters.
+const MANY: f64 = 0.5;
 
 /// What to do.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,9 +73,7 @@ impl<'a> Verdict<'a> {
         let Some(as_good) = &found.as_good else { return Verdict::Print(first) };
         let of = as_good.designs.len();
         match &as_good.safe {
-            Some(safe) if of as f64 >= MANY * answer.designs as f64 => {
-                Verdict::Any { safe: &safe.design.design, of }
-            }
+            Some(safe) if as_good.share >= MANY => Verdict::Any { safe: &safe.design.design, of },
             _ => Verdict::Print(first),
         }
     }

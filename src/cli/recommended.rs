@@ -83,6 +83,7 @@ fn set(answer: &Answer, as_good: &AsGood) -> Value {
         "within_mm": answer.record.config.indifference_mm,
         "designs": as_good.designs.len(),
         "of": answer.designs,
+        "share_of_space": as_good.share,
         "evaluations": as_good.designs.iter().map(|(found, _)| found.index).collect::<Vec<_>>(),
         "spread": spread.collect::<serde_json::Map<_, _>>(),
         "safe": as_good.safe.as_ref().map(|safe| json!({

@@ -67,6 +67,20 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     let number = |cell: &str| cell.parse::<f64>().expect("a number");
     let first = rows.max_by(|a, b| number(a[3]).total_cmp(&number(b[3]))).expect("a line");
     assert!((number(first[3]) - best["bench"]["range_mm"].as_f64().unwrap()).abs() < 1e-3);
+    // Printed and measured before, it is not to be printed again.
+    assert_eq!(
+        (&found["answer"]["verdict"], &found["answer"]["finger"]),
+        (&"print".into(), &best["values"])
+    );
+    let kept = folder.read("a/bench.json");
+    let mut known: serde_json::Value = serde_json::from_str(&kept).expect("JSON");
+    known["ranges"] = serde_json::json!([[best["values"], 9.9]]);
+    folder.file("a/bench.json", known.to_string());
+    let before = folder.study("a", 12, &json).json();
+    assert_eq!(before["answer"]["verdict"], "measured_before", "{before}");
+    let headline = before["answer"]["headline"].as_str().expect("words");
+    assert!(headline.ends_with("you measured 9.9 mm"), "{headline}");
+    folder.file("a/bench.json", kept);
     // The search did not know of it.
     let plain = folder.study("b", 12, &["--task", "ket8", "--json"]).json();
     assert_eq!(found["recommended_by_simulation"], plain["recommended"]);

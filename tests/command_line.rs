@@ -96,6 +96,7 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
         ("--budget 5", &["--task"][..]),
         ("", &["--task"]),
         ("--task usb --budget 0", &["--budget", "1.."]),
+        ("--task usb --indifference-mm 0", &["--indifference-mm 0", "between 0.1 and 10"]),
         ("--task usb --budget 5 --batch 0", &["--batch"]),
         ("--task usb --budget 5 --threads 0", &["--threads"]),
         ("--task usb --budget 5 --seed -1", &["--seed"]),

@@ -59,9 +59,10 @@ fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
     let file = folder.file("bench.csv", format!("{HEAD}ket8,10,0,7.6\nket8,20,0,5.7\n"));
     let kills = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(KILLS);
     let with_bench = [&FEW[..], &["--measurements", &file]].concat();
-    let flags: [&[&str]; 15] = [
+    let flags: [&[&str]; 16] = [
         &with_bench,
         &["--no-confirm"],
+        &["--indifference-mm", "1"],
         &["--optimizer", "cma-es"],
         &["--polish", "6"],
         &["--objective", "centred-range"],

@@ -145,3 +145,28 @@ fn nearest(mut all: Vec<(Measured, Measurement)>, finger: &Recorded) -> Vec<Meas
     all.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     all.into_iter().take(NAMED).map(|(measured, _)| measured).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_measured_finger_vouches_for_itself_and_others_of_its_stiffness_for_the_rest() {
+        let record = StudyRecord::load("tests/fixtures/study".as_ref()).unwrap();
+        let mut finger = record.best().unwrap().clone();
+        let all = || published("usb");
+        finger.design = Design::infill(20.0, 20.0);
+        assert_eq!(
+            nearest(all(), &finger).iter().map(|one| one.range_mm).collect::<Vec<_>>(),
+            [4.1]
+        );
+        // Nobody printed this one; of its stiffness are designs 8 and 11.
+        finger.design = Design::infill(27.0, 39.0);
+        finger.stiffness = insertion::surrogate::Prediction::exact(3.65e3, 31e3);
+        assert_eq!(
+            nearest(all(), &finger).iter().map(|one| one.range_mm).collect::<Vec<_>>(),
+            [5.0, 5.6]
+        );
+        assert!(published("mine").is_empty());
+    }
+}

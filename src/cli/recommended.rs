@@ -78,6 +78,7 @@ fn trust(trust: &Trust) -> Value {
 }
 
 fn set(answer: &Answer, as_good: &AsGood) -> Value {
+    let in_mm = answer.record.config.objective.first().unit() == "mm";
     let spread = as_good.spread.iter().map(|spread| (spread.key.to_owned(), json!(spread.values)));
     json!({
         "within_mm": answer.record.config.indifference_mm,
@@ -91,7 +92,8 @@ fn set(answer: &Answer, as_good: &AsGood) -> Value {
             "evaluation": safe.design.index,
             "measured_range_mm": safe.measured_mm,
             "peak_force_n": safe.force_n,
-            "loss": safe.loss,
+            // What is not in mm is as good only where it loses nothing.
+            "loss_mm": in_mm.then_some(safe.loss),
         })),
     })
 }

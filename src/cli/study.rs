@@ -2,7 +2,7 @@
 
 use super::progress::Progress;
 use super::{Failure, print, say, summary};
-use crate::session::{OpenStudy, ResumeRequest, StudyRequest};
+use crate::session::{Around, OpenStudy, ResumeRequest, StudyRequest};
 use clap::Args;
 use std::path::Path;
 use std::sync::Arc;
@@ -49,8 +49,13 @@ pub fn to_its_end(open: OpenStudy, shown: Shown) -> Result<(), Failure> {
     drop(progress);
     ended.record.remarks().iter().for_each(|remark| say(&format!("warning: {remark}")));
     if shown.json {
-        let around = ended.around(&stop)?;
+        // The answer stands without them.
+        let (around, failed) = match ended.around(&stop) {
+            Ok(around) => (around, None),
+            Err(failure) => (Around::default(), Some(failure)),
+        };
         print(&summary::json(&ended, &around))?;
+        failed.map_or(Ok(()), Err)?;
     } else {
         print(&summary::text(&ended, shown))?;
         print(&summary::around(&ended.around(&stop)?))?;

@@ -34,6 +34,7 @@ mod task;
 #[cfg(test)]
 mod tests;
 mod trial;
+mod tune;
 mod unusable;
 
 pub use around::Around;
@@ -60,6 +61,7 @@ pub use standing::Standing;
 pub use study::{AnyStudy, POLISH, ResumeRequest, StudyRequest};
 pub use task::{TaskCheck, TaskFile, read_space, read_task};
 pub use trial::{Insertion, SceneRequest, TrialDone, TrialRequest};
+pub use tune::{TuneDone, TuneRequest, begun};
 
 use crate::study::Recorded;
 use std::sync::Mutex;

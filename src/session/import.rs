@@ -1,12 +1,13 @@
 //! A task from meshes of a plug and its socket.
 
 use super::failure::not_stopped;
-use super::{DEFAULT_ROBOT, Failure, TaskCheck, TaskFile, read_task};
+use super::{DEFAULT_ROBOT, Failure, TaskCheck, TaskFile, begun, read_task};
 use crate::connector::draft::DENSITY;
 use crate::connector::mesh::import::{Along, COARSEST, Imported, Mesh, Request, Unit, import};
 use crate::connector::mesh::{Surface, read};
 use crate::connector::write::{self, Notes};
 use crate::study::write_file;
+use crate::tune::Tuned;
 use clap::ValueEnum;
 use input::shipped::Source;
 use insertion::trial::engine::EngineKind;
@@ -53,6 +54,8 @@ pub struct ImportedTask {
     pub imported: Imported,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],
+    /// The strategies that were tried; none if the file has problems.
+    pub tuned: Option<Tuned>,
     /// What is wrong with the file that was written, and whether its nominal start inserts.
     pub checked: TaskCheck,
 }
@@ -65,16 +68,18 @@ impl ImportRequest {
             let file = out.display();
             return Err(Failure::usage(format!("{file} exists; name another file with --out")));
         }
-        let (imported, inward) = self.imported(say)?;
+        let (mut imported, inward) = self.imported(say)?;
         not_stopped(stop)?;
-        // All is known of the shapes here, and nothing is written.
+        let (task, tuned) = begun(imported.task, self.engine)?;
+        imported.task = task;
+        not_stopped(stop)?;
         let written = TaskFile::parse(Source {
             file: out.display().to_string(),
             text: write::task(&imported.task, &self.notes(&imported)),
         })?;
         write_file(out, &written.source.text)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine)?;
-        Ok(ImportedTask { imported, inward, checked })
+        Ok(ImportedTask { imported, inward, tuned, checked })
     }
 
     fn imported(&self, say: &dyn Fn(&str)) -> Result<(Imported, [bool; 2]), Failure> {

@@ -2,11 +2,14 @@
 
 use super::Failure;
 use super::files::{find, robot};
+use super::tune::mended;
 use crate::calibration::published::three;
 use crate::connector::check::{Problem, problems};
 use crate::connector::nominal;
+use crate::tune::{Stage, Tuned};
 use input::shipped::{SPACES, STIFFNESS, Source, TASKS};
 use insertion::finger::Finger;
+use insertion::outcome::Outcome;
 use insertion::space::Space;
 use insertion::stiffness;
 use insertion::task::Task;
@@ -89,6 +92,20 @@ impl TaskCheck {
             false => None,
         };
         Ok(TaskCheck { source, task: Some(task), problems, nominal })
+    }
+}
+
+impl TaskCheck {
+    /// Stages of `task tune` until one mends a nominal start that fails; `None` if it inserts, or if
+    /// problems come first.
+    pub fn mend(&self, robot_name: &str, engine: EngineKind) -> Result<Option<Tuned>, Failure> {
+        let fails = |(_, trial, _): &(Finger, Trial, String)| trial.outcome != Outcome::Inserted;
+        match (&self.task, &self.nominal) {
+            (Some(task), Some(nominal)) if fails(nominal) => {
+                mended(task, robot_name, engine, Stage::Search).map(Some)
+            }
+            _ => Ok(None),
+        }
     }
 }
 

@@ -11,7 +11,6 @@ use crate::study::INDIFFERENCE_MM;
 use ask_tell::{Grid, Observation, OptimizerKind};
 use input::InputError;
 use input::units::{DEG, MM};
-use insertion::evaluation::Window;
 use insertion::evaluation::template::Impossible;
 use insertion::task::Task;
 use insertion::trial::Conditions;
@@ -107,13 +106,15 @@ pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
             Stage::AsItIs => {}
             Stage::Start => {
                 let tried = bench.taught(own)?;
-                tuned.add(Step { stage, what: "start taught".into(), tried }, effort);
+                let by = (tried.strategy.start[1] - own.start[1]) / MM;
+                let what = format!("start taught, {by:+.1} mm in y");
+                tuned.add(Step { stage, what, tried }, effort);
             }
             Stage::Families => tuned.families(bench, effort),
             Stage::Search => tuned.search(bench, effort)?,
         }
     }
-    if effort.last == Stage::Search && tuned.best().tried.inserts() {
+    if effort.last == Stage::Search && tuned.inserts() {
         tuned.check(bench)?;
     }
     Ok(tuned)
@@ -123,6 +124,11 @@ impl Tuned {
     /// The recommended step.
     pub fn best(&self) -> &Step {
         &self.steps[self.best]
+    }
+
+    /// Whether the recommended strategy inserts with all three fingers.
+    pub fn inserts(&self) -> bool {
+        self.best().tried.inserts()
     }
 
     /// A later step must be better by what matters; of two that fail, at all.
@@ -219,9 +225,10 @@ impl Tuned {
         Ok(())
     }
 
-    /// Where the nearest of the starts that failed came to its end, if nothing inserts.
+    /// Where the start that failed least clearly came to its end, of strategies without any that inserts.
     pub fn nearest(&self, task: &Task) -> Option<Stopped> {
-        let trial = self.best().tried.nearest.as_ref()?;
+        let failed = self.steps.iter().filter_map(|step| step.tried.nearest.as_ref());
+        let trial = failed.max_by(|a, b| a.margin.total_cmp(&b.margin))?;
         let phase = trial.phases.last()?;
         let strongest =
             phase.contacts.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()));
@@ -261,9 +268,4 @@ pub struct Stopped {
     /// The parts of plug and socket between which the largest force acts.
     #[serde(rename = "plug_and_socket_part")]
     pub met: Option<[String; 2]>,
-}
-
-/// Ranges of windows, mm.
-pub fn ranges_mm(windows: &[Window]) -> Vec<f64> {
-    windows.iter().map(Window::range_mm).collect()
 }

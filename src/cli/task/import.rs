@@ -1,7 +1,8 @@
 //! `optimize task import`: a task from meshes of plug and socket.
 
+use super::super::words::wrapped;
 use super::super::{Failure, print, print_json, say};
-use super::check;
+use super::{check, tune};
 use crate::connector::mesh::import::{ALLOWED, MOST_PARTS};
 use crate::session::{ImportRequest, ImportedTask};
 use clap::Args;
@@ -31,7 +32,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn report(request: &ImportRequest, as_json: bool, found: &ImportedTask) -> Result<(), Failure> {
-    let ImportedTask { imported, inward, checked } = found;
+    let ImportedTask { imported, inward, tuned, checked } = found;
     let [plug, socket] = imported.parts();
     let (depth, at, of) = match imported.intrusion {
         Some((depth, at, of)) => (depth / MM, at.coords / MM, of),
@@ -46,7 +47,7 @@ fn report(request: &ImportRequest, as_json: bool, found: &ImportedTask) -> Resul
         )
     });
     if as_json {
-        return print_json(&json!({
+        print_json(&json!({
             "parts": plug + socket,
             "plug_parts": plug,
             "socket_parts": socket,
@@ -63,8 +64,10 @@ fn report(request: &ImportRequest, as_json: bool, found: &ImportedTask) -> Resul
             "socket_was_inward": inward[1],
             "warning": warning,
             "out": request.out.display().to_string(),
+            "tuned": tuned.as_ref().map(tune::brief_json),
             "check": check::json(checked),
-        }));
+        }))?;
+        return check::ended(checked, tuned.as_ref());
     }
     let how = |exact: bool| if exact { "exact" } else { "approximated by hulls" };
     let mut text = format!(
@@ -85,7 +88,9 @@ fn report(request: &ImportRequest, as_json: bool, found: &ImportedTask) -> Resul
         }
     }
     text.extend(warning.map(|warning| format!("warning       {warning}\n")));
-    print(&(text + &check::text(checked)))
+    text.extend(tuned.iter().map(|tuned| tune::brief("strategy", tuned)));
+    print(&wrapped(&(text + &check::text(checked))))?;
+    check::ended(checked, tuned.as_ref())
 }
 
 /// Remedy where hulls reach into the clearance. Two voxels across a tenth of it would be more than

@@ -66,6 +66,7 @@ fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
     let end = match ending {
         Ending::SpaceExhausted => ": every design of the space",
         Ending::Converged => ": the polish has converged",
+        Ending::NothingInserts => ": none of them inserts",
         Ending::BudgetSpent | Ending::Interrupted | Ending::Settled => "",
     };
     let (task, method) = (config.task_name(), config.method());
@@ -145,6 +146,7 @@ fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
         Ending::Converged => "converged",
         Ending::Interrupted => "interrupted",
         Ending::Settled => "settled",
+        Ending::NothingInserts => "nothing_inserts",
     };
     let best = record.best().filter(|_| answer.front.is_none());
     let mut fields = json!({

@@ -2,15 +2,21 @@
 
 use super::guided::Guided;
 use super::how::RunRequest;
+use super::task::nominal_start;
 use super::{COSTS, Event, Failure, Part, Setup, Watch, tell};
 use super::{film, on_bench, optimizer, printable, report, unusable};
+use crate::answer::command;
+use crate::answer::words::outcome;
 use crate::study::{
     Cache, Confirmed, Confirmer, Ending, Kept, Recorded, Runner, Simulated, Study, StudyConfig,
     StudyError, StudyRecord,
 };
 use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::Search;
+use insertion::outcome::Outcome;
 use insertion::space::label;
+use insertion::task::StartRule;
 use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -57,6 +63,32 @@ impl OpenStudy {
     /// The study as it stands.
     pub fn study(&self) -> &Study {
         &self.study
+    }
+
+    /// What is to be known before it starts, a line for each task whose nominal start, given, fails
+    /// with the middle one of the measured fingers; nothing of a study that has begun.
+    ///
+    /// # Errors
+    /// If that cannot be simulated.
+    pub fn warnings(&self) -> Result<Vec<String>, Failure> {
+        let (mut warnings, record) = (Vec::new(), self.study.record());
+        let Setup { evaluator, .. } = &self.setup;
+        for (place, Template { task, .. }) in evaluator.templates.iter().enumerate() {
+            if !record.evaluations.is_empty() || task.strategy.rule == StartRule::Taught {
+                continue;
+            }
+            let (_, trial) = nominal_start(task, &evaluator.robot, evaluator.engine)?;
+            if trial.outcome != Outcome::Inserted {
+                let (command, why) = command::mend(&record, self.study.dir(), place);
+                warnings.push(format!(
+                    "{}: with the middle one of the measured fingers the nominal start ends with {}; \
+                     {command} {why}",
+                    task.name,
+                    outcome(trial.outcome)
+                ));
+            }
+        }
+        Ok(warnings)
     }
 
     /// Leaves the measuring to the caller.

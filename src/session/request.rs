@@ -36,6 +36,14 @@ impl TaskSource {
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }
 
+    /// The path of a file of one's own as it was given; empty if it is none.
+    fn own_file(&self) -> String {
+        match self {
+            TaskSource::Named(name) if Path::new(name).is_file() => name.clone(),
+            _ => String::new(),
+        }
+    }
+
     /// Its file, unchecked.
     pub fn read(&self) -> Result<Source, Failure> {
         match self {
@@ -55,7 +63,7 @@ pub struct SetupRequest {
     /// Search space: infill, codesign, finger, or the path of a space file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]
     pub space: String,
-    /// Robot: see `optimize tasks`, or the path of a robot file
+    /// Robot: see `optimize robots`, or the path of a robot file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     pub robot: String,
     /// Your own stiffness measurements in place of the shipped ones
@@ -118,7 +126,11 @@ impl SetupRequest {
         let fingers = Fingers::parse(self.finger_model.file(Some(&parsed))?)?;
         let stiffness =
             stiffness_data(self.stiffness_data.as_deref(), &fingers.measured_finger()?)?;
-        Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, self.engine)
+        let others = [&robot, &stiffness];
+        let mut setup = Setup::new(&tasks, (&space, parsed), others, fingers, self.engine)?;
+        let files: Vec<String> = self.tasks.iter().map(TaskSource::own_file).collect();
+        setup.task_files = if files.concat().is_empty() { Vec::new() } else { files };
+        Ok(setup)
     }
 }
 

@@ -94,6 +94,10 @@ pub struct Conclusion {
     /// The measurement file, as it was given; unknown in folders up to version 0.4.0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measurements: Option<String>,
+    /// The task files, as they were given, in the order of the tasks; empty of shipped tasks and of
+    /// texts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub task_files: Vec<String>,
 }
 
 impl StudyConfig {

@@ -4,7 +4,7 @@
 mod common;
 
 use ask_tell::stream::stream;
-use common::{Studies, answer, command, read, run, start};
+use common::{Ran, Studies, answer, command, read, run, start};
 use rand::RngExt;
 use serde_json::Value;
 use std::process::{Child, Command};
@@ -18,6 +18,90 @@ fn settling(folder: &Studies, name: &str, more: &[&str]) -> Command {
     let mut command = command(&["--engine", "fake", "--quiet", "--json", "--task", "usb"]);
     command.arg("--out").arg(folder.dir(name)).args(more);
     command
+}
+
+/// A file of usb whose plug is held so far from the remote centre that only stiff fingers insert.
+fn far(folder: &Studies, name: &str, rcc_mm: f64) -> String {
+    let finger = format!("[finger]\nrcc_mm = {rcc_mm}\n[friction]");
+    folder.file(name, include_str!("../tasks/usb.toml").replace("[friction]", &finger))
+}
+
+/// Evaluations and ending of a study that failed because nothing inserts.
+fn in_vain(ran: &Ran) -> (Value, Value) {
+    ran.fails(1, &["no design of the study inserts"]);
+    let found: Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    assert_eq!(found["answer"]["verdict"], "nothing_inserts");
+    (found["evaluations"].clone(), found["ending"].clone())
+}
+
+#[test]
+fn a_study_of_which_nothing_inserts_ends_after_twelve_evaluations() {
+    let folder = Studies::new();
+    let task = far(&folder, "never.toml", 60.0);
+    let ended = (Value::from(12), Value::from("nothing_inserts"));
+    let never = |name: &str, budget: u32, more: &[&str]| {
+        folder.study(name, budget, &[&["--task", &task, "--json"], more].concat())
+    };
+    for (name, more) in [
+        ("batch", &[][..]),
+        ("within", &["--batch", "5"]),
+        ("wide", &["--batch", "32"]),
+        ("generations", &["--optimizer", "cma-es", "--batch", "7"]),
+        ("polished", &["--optimizer", "random", "--polish"]),
+        ("async", &["--async", "--batch", "9", "--threads", "4"]),
+    ] {
+        let ran = never(name, 40, more);
+        assert_eq!(in_vain(&ran), ended, "{name}");
+        let tune = format!("optimize task tune {task}");
+        assert!(ran.stderr.lines().next().is_some_and(|line| line.contains(&tune)), "{name}");
+        let found: Value = serde_json::from_str(&ran.stdout).expect("JSON");
+        assert_eq!(found["answer"]["next"]["command"], tune);
+        // Nor does it go on.
+        let journal = folder.journal(name);
+        let resumed = run(command(&["resume", "--quiet", "--json"]).arg(folder.dir(name)));
+        assert_eq!(in_vain(&resumed), ended, "{name}");
+        assert!(!resumed.stderr.contains("warning"), "it has begun: {}", resumed.stderr);
+        assert_eq!(folder.journal(name), journal);
+    }
+    assert_eq!(in_vain(&never("batch", 400, &[])), ended);
+    let unlimited = run(command(&["--engine", "fake", "--quiet", "--json", "--task", &task])
+        .arg("--out")
+        .arg(folder.dir("settles")));
+    assert_eq!(in_vain(&unlimited), ended);
+    assert_eq!(in_vain(&never("short", 8, &[])), (8.into(), "budget_spent".into()));
+    // On another task they do.
+    let both = folder.study("both", 16, &["--json", "--task", &format!("{task},rj45")]);
+    assert_eq!(in_vain(&both), (16.into(), "budget_spent".into()));
+}
+
+#[test]
+fn a_study_goes_on_once_a_design_has_inserted() {
+    let folder = Studies::new();
+    let random = ["--optimizer", "random", "--batch", "16", "--json", "--task"];
+    let never = far(&folder, "never.toml", 60.0);
+    in_vain(&folder.study("never", 40, &[&random[..], &[&never]].concat()));
+    // The closed form inserts from 31 mm and a fifth of the assembly stiffness, N/mm, on.
+    let journal = folder.journal("never");
+    let stiffness = |line: &str| {
+        let line: Value = serde_json::from_str(line).expect("JSON");
+        line["user_attrs"]["stiffness"]["assembly"]["mean"].as_f64().map(|mean| mean / 1e3)
+    };
+    let all: Vec<f64> = journal.lines().filter_map(stiffness).collect();
+    let before = |at: usize| all[..at].iter().copied().fold(0.0, f64::max);
+    let first = (4..12).find(|&at| all[at] > before(at)).expect("a stiffer one");
+    let task = far(&folder, "far.toml", 31.0 + (all[first] + before(first)) / 10.0);
+    let whole = folder.study("whole", 40, &[&random[..], &[&task]].concat()).json();
+    assert_eq!((&whole["evaluations"], &whole["ending"]), (&40.into(), &"budget_spent".into()));
+    let inserts = |line: &str| line.contains("\"nominal\":\"inserted\"");
+    let place = folder.journal("whole").lines().skip(2).position(inserts);
+    assert_eq!(place, Some(first), "{all:?}");
+    // The batch that waited for it is the same, however often it is interrupted.
+    for budget in [3, first as u32 + 1, 14, 40] {
+        folder.study("parts", budget, &[&random[..], &[&task]].concat());
+    }
+    assert_eq!(folder.journal("parts"), folder.journal("whole"));
+    let more = ["--async", "--batch", "16", "--optimizer", "random", "--json", "--task", &task];
+    assert_eq!(folder.study("async", 40, &more).json()["evaluations"], 40);
 }
 
 /// Confirmations, without the provenance.

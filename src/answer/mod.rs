@@ -5,6 +5,7 @@ mod alike;
 pub mod command;
 pub mod lines;
 mod recommended;
+mod robots;
 mod start;
 mod trust;
 mod verdict;
@@ -19,6 +20,7 @@ use insertion::space::Design;
 
 pub use alike::{AsGood, Safe, Spread};
 pub use recommended::{OnTask, Recommended};
+pub use robots::UnderRobot;
 pub use start::Start;
 pub use trust::{Measured, Trust};
 pub use verdict::{Verdict, expectation};

@@ -5,7 +5,7 @@ use super::terminal::merge;
 use super::{recommended, words};
 use crate::answer::lines;
 use crate::answer::words::{evaluated, volume_unit};
-use crate::answer::{Answer, Front, command, expectation};
+use crate::answer::{Answer, Front, UnderRobot, command, expectation};
 use crate::map::CaptureMap;
 use crate::report::levers;
 use crate::session::{Around, Ended};
@@ -29,6 +29,7 @@ pub fn json(ended: &Ended, around: &Around) -> String {
         })
     };
     fields["maps"] = around.maps.iter().map(of_map).collect();
+    fields["robots"] = json!(around.robots);
     fields["study"] = json!(dir);
     format!("{fields}\n")
 }
@@ -55,7 +56,10 @@ fn told(answer: &Answer, dir: &Path, verbose: &str) -> String {
 pub fn around(around: &Around) -> String {
     let levers =
         around.levers.iter().map(|levers| format!("levers        {}\n", levers.sentence()));
-    words::wrapped(&levers.collect::<String>())
+    let robots: Vec<String> = around.robots.iter().map(UnderRobot::words).collect();
+    let robots = robots.join("; under ");
+    let robots = if robots.is_empty() { robots } else { format!("robots        under {robots}\n") };
+    words::wrapped(&(levers.collect::<String>() + &robots))
 }
 
 /// All numbers behind the answer.

@@ -3,9 +3,8 @@
 use super::{Failure, print, print_json};
 use clap::Args;
 use input::InputError;
-use input::shipped::{ROBOTS, SPACES, Shipped, TASKS, UNCERTAINTIES};
+use input::shipped::{SPACES, Shipped, TASKS, UNCERTAINTIES};
 use insertion::evaluation::uncertainty::Uncertainty;
-use insertion::robot::Robot;
 use insertion::space::Space;
 use insertion::task::Task;
 use serde_json::json;
@@ -24,7 +23,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let lists_of = [
         ("tasks", described(TASKS, |file| Ok(Task::parse(file.text, file.file)?.description))),
         ("spaces", described(SPACES, |file| Ok(Space::parse(file.text, file.file)?.description))),
-        ("robots", described(ROBOTS, |file| Ok(Robot::parse(file.text, file.file)?.description))),
         (
             "uncertainties",
             described(UNCERTAINTIES, |file| {

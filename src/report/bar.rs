@@ -2,7 +2,7 @@
 //! how much of it is firm, what its ribs give, and what a robot measured.
 
 use crate::answer::words::{end, ends_mm, infill, interval, mm, span};
-use crate::answer::{Answer, Measured, OnTask, Recommended, Trust, Verdict, lines};
+use crate::answer::{Answer, Measured, OnTask, Recommended, Trust, UnderRobot, Verdict, lines};
 use crate::study::{ByRibs, OnBench};
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
@@ -47,6 +47,19 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
             (bars(&found.on(task), &rows(answer, found, (at, task))))
         }
     })
+}
+
+/// Bars of the same finger under several robots.
+pub(super) fn robots(robots: &[UnderRobot]) -> Markup {
+    let row = |found: &UnderRobot| {
+        let window = &found.measured.window;
+        let inserts = window.nominal == Outcome::Inserted;
+        let parts = inserts.then(|| ("light", ends_mm(window))).into_iter().collect();
+        let name = format!("under {}", found.words());
+        Row { name, parts, ends: [window.end_negative, window.end_positive] }
+    };
+    let rows: Vec<Row> = robots.iter().map(row).collect();
+    html! { @if !rows.is_empty() { (bars(" under two robots, the study's first", &rows)) } }
 }
 
 fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Row> {

@@ -35,6 +35,7 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
             @else if let Some((_, tasks)) = answer.shown() { (films(answer, &tasks, beside)) }
             div {
                 (bar::section(answer).unwrap_or_default())
+                (bar::robots(&beside.robots))
                 (drawn(answer).unwrap_or_default())
                 (files(answer, beside).unwrap_or_default())
             }

@@ -1,22 +1,34 @@
-//! Levers and capture maps of the finger that a study names, kept in its folder beside the journal.
+//! Levers, capture maps and another robot of the finger that a study names, kept in its folder beside
+//! the journal.
 
+use super::failure::not_stopped;
+use super::files::robot;
 use super::levers::levers;
 use super::map::map_of;
 use super::open::Ended;
+use super::robots::Felt;
 use super::{Failure, Setup, report};
-use crate::answer::Answer;
+use crate::answer::command::own_task;
+use crate::answer::{Answer, UnderRobot};
 use crate::levers::Levers;
 use crate::map::{Axes, CaptureMap};
 use crate::study::{Provenance, StudyRecord, write_own_file};
 use input::files::{self, LARGEST_OWN};
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::tolerance::Search;
+use insertion::finger::model::FingerSource;
+use insertion::robot::Robot;
 use insertion::space::Design;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 const LEVERS: &str = "levers.json";
 const MAPS: &str = "maps.json";
+const ROBOTS: &str = "robots.json";
 /// Errors that are mapped beside that along y.
 const MAPPED: [Axes; 2] = [Axes::YX, Axes::YYaw];
 
@@ -27,6 +39,8 @@ pub struct Around {
     pub levers: Option<Levers>,
     /// How insertions end over two errors of the start.
     pub maps: Vec<CaptureMap>,
+    /// Its window under the robot of the study and under one as different, if the task is one's own.
+    pub robots: Vec<UnderRobot>,
 }
 
 /// A file, and what it is of.
@@ -50,12 +64,13 @@ impl Around {
                 ..found
             }),
             maps: read(&dir.join(MAPS), (&provenance, &design)).unwrap_or_default(),
+            robots: read(&dir.join(ROBOTS), (&provenance, &design)).unwrap_or_default(),
         }
     }
 }
 
 impl Ended {
-    /// Measures what is not known yet of levers and maps of the named finger, keeps it and shows it
+    /// Measures what is not known yet of levers, maps and robots of the named finger, keeps it and shows it
     /// on the page; nothing of several tasks, and where no finger is named.
     ///
     /// # Errors
@@ -68,7 +83,8 @@ impl Ended {
             found.maps.is_empty() && !self.how.no_map,
         );
         let Some((provenance, design)) = subject(record) else { return Ok(found) };
-        if !levers_wanted && !maps_wanted {
+        let robots_wanted = found.robots.is_empty() && own_task(record);
+        if !levers_wanted && !maps_wanted && !robots_wanted {
             return Ok(found);
         }
         let engine = &provenance.engine.name;
@@ -83,6 +99,10 @@ impl Ended {
             if maps_wanted {
                 found.maps = maps(&setup, &design, stop)?;
                 write(&dir.join(MAPS), (&provenance, &design), &found.maps)?;
+            }
+            if robots_wanted {
+                found.robots = robots(&setup, record, &design, stop)?;
+                write(&dir.join(ROBOTS), (&provenance, &design), &found.robots)?;
             }
             Ok::<_, Failure>(())
         })?;
@@ -106,6 +126,39 @@ fn maps(setup: &Setup, design: &Design, stop: &AtomicBool) -> Result<Vec<Capture
     let taught = evaluator.taught(&specimen, stop).map_err(Failure::input)?;
     let map = |axes| map_of(setup, (&specimen, design), taught, axes, stop);
     MAPPED.into_iter().map(map).collect()
+}
+
+/// The window that the study names, and that under a robot as different as can be.
+fn robots(
+    setup: &Setup,
+    record: &StudyRecord,
+    design: &Design,
+    stop: &AtomicBool,
+) -> Result<Vec<UnderRobot>, Failure> {
+    let (template, own) = (setup.only_task()?, &setup.evaluator);
+    let answer = Answer::of(record);
+    let Some(known) = answer.shown().and_then(|(_, tasks)| tasks.first().copied()) else {
+        return Ok(Vec::new());
+    };
+    let stiffness = own.predict(design).map_err(Failure::input)?;
+    let specimen = own.specimen(template, design, stiffness).map_err(Failure::input)?;
+    let start = [specimen.task.turn, specimen.task.strategy.tilt];
+    let under = |robot: &Robot, measured| {
+        let stiffness_n_per_mm = Felt::of(robot, start)?.stiffness_n_per_mm;
+        Ok::<_, Failure>(UnderRobot { robot: robot.name.clone(), stiffness_n_per_mm, measured })
+    };
+    let other = Evaluator {
+        robot: robot(Felt::of(&own.robot, start)?.contrast())?,
+        surrogate: Arc::clone(&own.surrogate),
+        // The specimen has its finger and its task already.
+        fingers: FingerSource::Paper,
+        templates: Vec::new(),
+        engine: own.engine,
+    };
+    let found = other.measure_or_teach(&specimen, Search::Walk, &Plan::WINDOW, stop);
+    let found = found.map_err(Failure::input)?;
+    not_stopped(stop)?;
+    Ok(vec![under(&own.robot, known.clone())?, under(&other.robot, found)?])
 }
 
 /// What a file holds; `None` where it is missing, damaged or of something else.

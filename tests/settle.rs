@@ -39,23 +39,18 @@ fn a_study_of_which_nothing_inserts_ends_after_twelve_evaluations() {
     let folder = Studies::new();
     let task = far(&folder, "never.toml", 60.0);
     let ended = (Value::from(12), Value::from("nothing_inserts"));
-    let never = |name: &str, budget: u32, more: &[&str]| {
-        folder.study(name, budget, &[&["--task", &task, "--json"], more].concat())
-    };
     for (name, more) in [
         ("batch", &[][..]),
         ("within", &["--batch", "5"]),
-        ("wide", &["--batch", "32"]),
         ("generations", &["--optimizer", "cma-es", "--batch", "7"]),
-        ("polished", &["--optimizer", "random", "--polish"]),
+        ("polished", &["--optimizer", "random", "--polish", "--batch", "32"]),
         ("async", &["--async", "--batch", "9", "--threads", "4"]),
     ] {
-        let ran = never(name, 40, more);
+        let ran = folder.study(name, 40, &[&["--task", &task, "--json"], more].concat());
         assert_eq!(in_vain(&ran), ended, "{name}");
         let tune = format!("optimize task tune {task}");
         assert!(ran.stderr.lines().next().is_some_and(|line| line.contains(&tune)), "{name}");
-        let found: Value = serde_json::from_str(&ran.stdout).expect("JSON");
-        assert_eq!(found["answer"]["next"]["command"], tune);
+        assert!(ran.stdout.contains(&tune), "{name}");
         // Nor does it go on.
         let journal = folder.journal(name);
         let resumed = run(command(&["resume", "--quiet", "--json"]).arg(folder.dir(name)));
@@ -63,12 +58,8 @@ fn a_study_of_which_nothing_inserts_ends_after_twelve_evaluations() {
         assert!(!resumed.stderr.contains("warning"), "it has begun: {}", resumed.stderr);
         assert_eq!(folder.journal(name), journal);
     }
-    assert_eq!(in_vain(&never("batch", 400, &[])), ended);
-    let unlimited = run(command(&["--engine", "fake", "--quiet", "--json", "--task", &task])
-        .arg("--out")
-        .arg(folder.dir("settles")));
-    assert_eq!(in_vain(&unlimited), ended);
-    assert_eq!(in_vain(&never("short", 8, &[])), (8.into(), "budget_spent".into()));
+    let short = folder.study("short", 8, &["--task", &task, "--json"]);
+    assert_eq!(in_vain(&short), (8.into(), "budget_spent".into()));
     // On another task they do.
     let both = folder.study("both", 16, &["--json", "--task", &format!("{task},rj45")]);
     assert_eq!(in_vain(&both), (16.into(), "budget_spent".into()));
@@ -81,10 +72,10 @@ fn a_study_goes_on_once_a_design_has_inserted() {
     let never = far(&folder, "never.toml", 60.0);
     in_vain(&folder.study("never", 40, &[&random[..], &[&never]].concat()));
     // The closed form inserts from 31 mm and a fifth of the assembly stiffness, N/mm, on.
-    let journal = folder.journal("never");
+    let journal = folder.read("never/journal.jsonl");
     let stiffness = |line: &str| {
         let line: Value = serde_json::from_str(line).expect("JSON");
-        line["user_attrs"]["stiffness"]["assembly"]["mean"].as_f64().map(|mean| mean / 1e3)
+        line["user_attrs"]["stiffness"]["assembly_n_per_mm"].as_f64()
     };
     let all: Vec<f64> = journal.lines().filter_map(stiffness).collect();
     let before = |at: usize| all[..at].iter().copied().fold(0.0, f64::max);
@@ -95,13 +86,13 @@ fn a_study_goes_on_once_a_design_has_inserted() {
     let inserts = |line: &str| line.contains("\"nominal\":\"inserted\"");
     let place = folder.journal("whole").lines().skip(2).position(inserts);
     assert_eq!(place, Some(first), "{all:?}");
-    // The batch that waited for it is the same, however often it is interrupted.
+    // The batch that waited for it is the same, wherever it was interrupted.
     for budget in [3, first as u32 + 1, 14, 40] {
         folder.study("parts", budget, &[&random[..], &[&task]].concat());
     }
     assert_eq!(folder.journal("parts"), folder.journal("whole"));
-    let more = ["--async", "--batch", "16", "--optimizer", "random", "--json", "--task", &task];
-    assert_eq!(folder.study("async", 40, &more).json()["evaluations"], 40);
+    let asynchronous = folder.study("async", 40, &[&random[..], &[&task, "--async"]].concat());
+    assert_eq!(asynchronous.json()["evaluations"], 40);
 }
 
 /// Confirmations, without the provenance.

@@ -133,11 +133,7 @@ impl Asked {
 
     /// Begins it or goes on with it.
     fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<Guided> {
-        let open = || {
-            let open = self.0.study.open(workers)?;
-            call::warn(&open)?;
-            open.guided()
-        };
+        let open = || self.0.study.open(workers).and_then(|open| call::warned(open)?.guided());
         let opened = released(py, open)?.map_err(raise)?;
         Ok(Guided { open: Mutex::new(Some(opened)), shown: self.0.shown })
     }

@@ -46,10 +46,7 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     let tasks = named.tasks();
     let several = answer.record.config.several_tasks();
     match (&answer.verdict, &answer.trust) {
-        (Verdict::NothingInserts { task, .. }, _) => {
-            let place = answer.record.config.tasks().position(|name| name == *task);
-            mend(answer.record, dir, place.unwrap_or(0))
-        }
+        (Verdict::NothingInserts { place, .. }, _) => mend(answer.record, dir, *place),
         (Verdict::NoneFeasible, _) => {
             (format!("optimize report {}", dir.display()), "shows how far each design is off")
         }
@@ -68,17 +65,17 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     }
 }
 
-/// What to do about a task, by its place, whose nominal start fails, and why; a file of one's own is
-/// tuned where it is, never its copy in the study's folder.
+/// What to do about a task, by its place, whose nominal start fails, and why: a file of one's own is
+/// tuned where it is.
 pub fn mend(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
     let (named, role) = (Named { record, dir }, format!("task_{}", place + 1));
     if let Some(shipped) = name(named.provenance(), &role, TASKS) {
         return (format!("optimize task check {shipped}"), "says what stops it");
     }
-    let given = record.config.conclusion.task_files.get(place).filter(|file| !file.is_empty());
-    let file = given.cloned().unwrap_or_else(|| {
-        let task = record.config.tasks().nth(place).unwrap_or_default();
-        format!("{} --out {task}.toml", named.input(&role, TASKS))
+    let given = record.config.conclusion.task_files.get(place);
+    // A text of Python's is no file.
+    let file = given.filter(|file| file.ends_with(".toml")).cloned().unwrap_or_else(|| {
+        format!("{} --out {}.toml", named.input(&role, TASKS), record.config.tasks[place])
     });
     (format!("optimize task tune {file}"), "looks for a start and a strategy by which it inserts")
 }

@@ -1,8 +1,7 @@
 //! The finger that is named under another robot.
 
-use super::words::{ends_mm, outcome, span};
+use super::lines;
 use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 
 /// What a finger tolerates under a robot.
@@ -20,17 +19,11 @@ pub struct UnderRobot {
 impl UnderRobot {
     /// Robot and window: `ur5e_position (39 N/mm along y): -2.1 to +3.0 mm`.
     pub fn words(&self) -> String {
-        let gives = self
-            .stiffness_n_per_mm
-            .map_or("gives nothing".to_owned(), |[_, y, _]| format!("{y:.0} N/mm along y"));
-        let window = match (self.measured.window.nominal, self.measured.taught) {
-            (Outcome::Inserted, taught) => {
-                let taught = taught
-                    .map_or(String::new(), |by| format!(", start taught {:+.1} mm", grid_mm(by)));
-                format!("{} mm{taught}", span(ends_mm(&self.measured.window)))
-            }
-            (nominal, _) => format!("none, its nominal start ends with {}", outcome(nominal)),
-        };
-        format!("{} ({gives}): {window}", self.robot)
+        let gives = self.stiffness_n_per_mm.map(|[_, y, _]| format!("{y:.0} N/mm along y"));
+        let gives = gives.unwrap_or("gives nothing".to_owned());
+        let (_, window) = &lines::window(&self.measured)[0];
+        let taught =
+            self.measured.taught.map(|by| format!(", start taught {:+.1} mm", grid_mm(by)));
+        format!("{} ({gives}): {window}{}", self.robot, taught.unwrap_or_default())
     }
 }

@@ -5,7 +5,7 @@ use super::terminal::merge;
 use super::{recommended, words};
 use crate::answer::lines;
 use crate::answer::words::{evaluated, volume_unit};
-use crate::answer::{Answer, Front, UnderRobot, command, expectation};
+use crate::answer::{Answer, Front, command, expectation};
 use crate::map::CaptureMap;
 use crate::report::levers;
 use crate::session::{Around, Ended};
@@ -56,10 +56,8 @@ fn told(answer: &Answer, dir: &Path, verbose: &str) -> String {
 pub fn around(around: &Around) -> String {
     let levers =
         around.levers.iter().map(|levers| format!("levers        {}\n", levers.sentence()));
-    let robots: Vec<String> = around.robots.iter().map(UnderRobot::words).collect();
-    let robots = robots.join("; under ");
-    let robots = if robots.is_empty() { robots } else { format!("robots        under {robots}\n") };
-    words::wrapped(&(levers.collect::<String>() + &robots))
+    let robots = around.robots.iter().map(|found| format!("robot         {}\n", found.words()));
+    words::wrapped(&levers.chain(robots).collect::<String>())
 }
 
 /// All numbers behind the answer.
@@ -86,35 +84,16 @@ fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
         text += &words::lines(lines::on_bench(bench));
         text += "by simulation alone:\n";
     }
-    text += &match (&answer.nothing_inserts, &answer.recommended, &answer.front) {
-        (Some(nothing), ..) => unusable(nothing),
-        (None, Some(_), Some(front)) => front_text(record, front),
-        (None, Some(found), None) => words::lines(lines::recommended(answer, found)),
-        (None, None, _) => none(answer),
-    };
+    // Where none is recommended, what stands first says why.
+    let found = answer.recommended.as_ref().filter(|_| answer.named().is_some());
+    text += &found.map_or(String::new(), |found| match &answer.front {
+        Some(front) => front_text(record, front),
+        None => words::lines(lines::recommended(answer, found)),
+    });
     if known > 0 {
         text += &format!("cache         {known} evaluations were known from other studies\n");
     }
     text
-}
-
-fn unusable((task, nearest): &(&str, &Recorded)) -> String {
-    format!(
-        "no design inserts at the nominal start of {task}, so none is recommended\n\
-         nearest       {}\n",
-        evaluated(nearest)
-    )
-}
-
-fn none(answer: &Answer) -> String {
-    let Some((design, constraints)) = &answer.nearest else {
-        return "no evaluation gave a value\n".to_owned();
-    };
-    format!(
-        "no design keeps all constraints, so none is recommended\nnearest       {}: {}\n",
-        evaluated(design),
-        constraints.join("; ")
-    )
 }
 
 fn front_text(record: &StudyRecord, Front { designs, volume }: &Front) -> String {

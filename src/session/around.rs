@@ -6,7 +6,7 @@ use super::files::robot;
 use super::levers::levers;
 use super::map::map_of;
 use super::open::Ended;
-use super::robots::Felt;
+use super::robots::felt;
 use super::{Failure, Setup, report};
 use crate::answer::command::own_task;
 use crate::answer::{Answer, UnderRobot};
@@ -14,16 +14,14 @@ use crate::levers::Levers;
 use crate::map::{Axes, CaptureMap};
 use crate::study::{Provenance, StudyRecord, write_own_file};
 use input::files::{self, LARGEST_OWN};
-use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::Evaluation;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::tolerance::Search;
-use insertion::finger::model::FingerSource;
 use insertion::robot::Robot;
 use insertion::space::Design;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 const LEVERS: &str = "levers.json";
@@ -70,7 +68,7 @@ impl Around {
 }
 
 impl Ended {
-    /// Measures what is not known yet of levers, maps and robots of the named finger, keeps it and shows it
+    /// Measures what is not known yet of levers, maps and robots of the named finger, keeps and shows it
     /// on the page; nothing of several tasks, and where no finger is named.
     ///
     /// # Errors
@@ -88,7 +86,7 @@ impl Ended {
             return Ok(found);
         }
         let engine = &provenance.engine.name;
-        let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
+        let mut setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         self.how.pool()?.install(|| {
             if levers_wanted {
                 let known =
@@ -101,7 +99,7 @@ impl Ended {
                 write(&dir.join(MAPS), (&provenance, &design), &found.maps)?;
             }
             if robots_wanted {
-                found.robots = robots(&setup, record, &design, stop)?;
+                found.robots = robots(&mut setup, record, &design, stop)?;
                 write(&dir.join(ROBOTS), (&provenance, &design), &found.robots)?;
             }
             Ok::<_, Failure>(())
@@ -128,37 +126,35 @@ fn maps(setup: &Setup, design: &Design, stop: &AtomicBool) -> Result<Vec<Capture
     MAPPED.into_iter().map(map).collect()
 }
 
-/// The window that the study names, and that under a robot as different as can be.
+/// Stiffness along y below which a robot counts as compliant: above `servo`, below `ur5e_position`.
+const COMPLIANT_N_PER_MM: f64 = 20.0;
+
+/// The window that the study names, and that under a robot as different as can be: of a compliant one
+/// the position-controlled arm, of others the compliant flange, which the setup is left with.
 fn robots(
-    setup: &Setup,
+    setup: &mut Setup,
     record: &StudyRecord,
     design: &Design,
     stop: &AtomicBool,
 ) -> Result<Vec<UnderRobot>, Failure> {
-    let (template, own) = (setup.only_task()?, &setup.evaluator);
-    let answer = Answer::of(record);
-    let Some(known) = answer.shown().and_then(|(_, tasks)| tasks.first().copied()) else {
-        return Ok(Vec::new());
-    };
-    let stiffness = own.predict(design).map_err(Failure::input)?;
-    let specimen = own.specimen(template, design, stiffness).map_err(Failure::input)?;
+    let (template, evaluator) = (setup.only_task()?, &setup.evaluator);
+    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
+    let specimen = evaluator.specimen(template, design, stiffness).map_err(Failure::input)?;
     let start = [specimen.task.turn, specimen.task.strategy.tilt];
-    let under = |robot: &Robot, measured| {
-        let stiffness_n_per_mm = Felt::of(robot, start)?.stiffness_n_per_mm;
+    let under = |robot: &Robot, measured: Evaluation| {
+        let (stiffness_n_per_mm, _) = felt(robot, start)?;
         Ok::<_, Failure>(UnderRobot { robot: robot.name.clone(), stiffness_n_per_mm, measured })
     };
-    let other = Evaluator {
-        robot: robot(Felt::of(&own.robot, start)?.contrast())?,
-        surrogate: Arc::clone(&own.surrogate),
-        // The specimen has its finger and its task already.
-        fingers: FingerSource::Paper,
-        templates: Vec::new(),
-        engine: own.engine,
-    };
-    let found = other.measure_or_teach(&specimen, Search::Walk, &Plan::WINDOW, stop);
+    let known = Answer::of(record).shown().and_then(|(_, tasks)| tasks.first().copied().cloned());
+    let Some(known) = known else { return Ok(Vec::new()) };
+    let own = under(&evaluator.robot, known)?;
+    let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
+    setup.evaluator.robot = robot(if compliant { "ur5e_position" } else { "servo" })?;
+    let (evaluator, plan) = (&setup.evaluator, &Plan::WINDOW);
+    let found = evaluator.measure_or_teach(&specimen, Search::Walk, plan, stop);
     let found = found.map_err(Failure::input)?;
     not_stopped(stop)?;
-    Ok(vec![under(&own.robot, known.clone())?, under(&other.robot, found)?])
+    Ok(vec![own, under(&evaluator.robot, found)?])
 }
 
 /// What a file holds; `None` where it is missing, damaged or of something else.

@@ -11,6 +11,7 @@ use crate::study::{
     Cache, Confirmed, Confirmer, Ending, Kept, Recorded, Runner, Simulated, Study, StudyConfig,
     StudyError, StudyRecord,
 };
+use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::Search;
@@ -65,26 +66,25 @@ impl OpenStudy {
         &self.study
     }
 
-    /// What is to be known before it starts, a line for each task whose nominal start, given, fails
-    /// with the middle one of the measured fingers; nothing of a study that has begun.
+    /// A line for each task whose nominal start, not taught, fails with the middle one of the measured
+    /// fingers; nothing of a study that has begun.
     ///
     /// # Errors
     /// If that cannot be simulated.
     pub fn warnings(&self) -> Result<Vec<String>, Failure> {
         let (mut warnings, record) = (Vec::new(), self.study.record());
-        let Setup { evaluator, .. } = &self.setup;
-        for (place, Template { task, .. }) in evaluator.templates.iter().enumerate() {
-            if !record.evaluations.is_empty() || task.strategy.rule == StartRule::Taught {
-                continue;
-            }
-            let (_, trial) = nominal_start(task, &evaluator.robot, evaluator.engine)?;
-            if trial.outcome != Outcome::Inserted {
+        let Evaluator { templates, robot, engine, .. } = &self.setup.evaluator;
+        for (place, Template { task, .. }) in templates.iter().enumerate() {
+            let given = task.strategy.rule == StartRule::Given;
+            if given
+                && record.evaluations.is_empty()
+                && let (_, trial) = nominal_start(task, robot, *engine)?
+                && trial.outcome != Outcome::Inserted
+            {
+                let (name, ends) = (&task.name, outcome(trial.outcome));
                 let (command, why) = command::mend(&record, self.study.dir(), place);
                 warnings.push(format!(
-                    "{}: with the middle one of the measured fingers the nominal start ends with {}; \
-                     {command} {why}",
-                    task.name,
-                    outcome(trial.outcome)
+                    "{name}: with the middle finger the nominal start ends with {ends}; {command} {why}"
                 ));
             }
         }

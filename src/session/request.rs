@@ -36,14 +36,6 @@ impl TaskSource {
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }
 
-    /// The path of a file of one's own as it was given; empty if it is none.
-    fn own_file(&self) -> String {
-        match self {
-            TaskSource::Named(name) if Path::new(name).is_file() => name.clone(),
-            _ => String::new(),
-        }
-    }
-
     /// Its file, unchecked.
     pub fn read(&self) -> Result<Source, Failure> {
         match self {
@@ -126,11 +118,7 @@ impl SetupRequest {
         let fingers = Fingers::parse(self.finger_model.file(Some(&parsed))?)?;
         let stiffness =
             stiffness_data(self.stiffness_data.as_deref(), &fingers.measured_finger()?)?;
-        let others = [&robot, &stiffness];
-        let mut setup = Setup::new(&tasks, (&space, parsed), others, fingers, self.engine)?;
-        let files: Vec<String> = self.tasks.iter().map(TaskSource::own_file).collect();
-        setup.task_files = if files.concat().is_empty() { Vec::new() } else { files };
-        Ok(setup)
+        Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, self.engine)
     }
 }
 

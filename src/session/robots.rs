@@ -2,101 +2,62 @@
 
 use super::Failure;
 use super::files::robot;
-use input::shipped::ROBOTS;
 use input::units::N_PER_MM;
 use insertion::robot::{Flange, Robot};
+use serde::{Deserialize, Serialize};
 
-/// A robot, and the cell that it stands for.
-#[derive(Debug, Clone)]
+/// A shipped robot and the cell that it stands for; in the file only what the robot's own does not say.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ForCell {
     /// The cell, in words of whoever has it.
-    pub cell: &'static str,
-    /// The robot.
-    pub robot: Robot,
-    /// What it feels like.
-    pub felt: Felt,
-    /// Where its numbers come from; its file says it in full.
-    pub source: &'static str,
-}
-
-/// What is felt of a robot at the start of a task whose frame is its base's.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Felt {
-    /// Force at the TCP over what it gives along x, y and z, N/mm; `None` of one that does not give.
+    pub cell: String,
+    /// Name of the robot.
+    pub name: String,
+    /// Its description.
+    #[serde(default)]
+    pub description: String,
+    /// What it gives at the TCP along x, y and z, upright, N/mm; `None` of one that does not give.
     pub stiffness_n_per_mm: Option<[f64; 3]>,
     /// By how much it trails a command of constant speed, s.
+    #[serde(default)]
     pub lag_s: f64,
+    /// Contact force at which it stops, N.
+    #[serde(default)]
+    pub stop_force_n: f64,
+    /// Where its numbers come from; its own file says it in full.
+    pub source: String,
 }
 
-/// Robot, cell and source, the likeliest cell first.
-const CELLS: [(&str, &str, &str); 4] = [
-    (
-        "ur5e_position",
-        "arm under position control, as a UR5e comes",
-        "gears from Harmonic Drive's data, their sizes guessed; lag from the controller's manual; no arm \
-         was measured",
-    ),
-    (
-        "servo",
-        "compliant wrist, or an arm under impedance or force control",
-        "chosen between `rigid` and `ur5e`: put in your own stiffness",
-    ),
-    (
-        "ur5e",
-        "arm whose joints are soft springs, as in the publication's simulation",
-        "joint gains of the publication, arm of the MuJoCo Menagerie",
-    ),
-    (
-        "rigid",
-        "axes that give far less than the finger: gantry, SCARA, press",
-        "ideal; the stop force is the highest of a collaborative arm",
-    ),
-];
-
-/// The shipped robots; one without a cell comes last, with none.
+/// The shipped robots, that of the likeliest cell first.
 ///
 /// # Errors
 /// If a shipped file is damaged.
 pub fn robots() -> Result<Vec<ForCell>, Failure> {
-    let one = |(name, cell, source): (&str, _, _)| {
-        let robot = robot(name)?;
-        Ok(ForCell { cell, felt: Felt::of(&robot, [0.0; 2])?, robot, source })
-    };
-    let others = ROBOTS.iter().filter(|file| CELLS.iter().all(|(name, ..)| *name != file.name));
-    CELLS.into_iter().chain(others.map(|file| (file.name, "", ""))).map(one).collect()
+    let mut cells: std::collections::BTreeMap<String, Vec<ForCell>> =
+        input::read(include_str!("cells.toml"), "cells.toml").map_err(Failure::input)?;
+    let mut robots = cells.remove("robot").unwrap_or_default();
+    for found in &mut robots {
+        let robot = robot(&found.name)?;
+        (found.stiffness_n_per_mm, found.lag_s) = felt(&robot, [0.0; 2])?;
+        (found.description, found.stop_force_n) = (robot.description, robot.stop_force);
+    }
+    Ok(robots)
 }
 
-impl Felt {
-    /// Of a robot at a task whose frame is turned about the base's z, the TCP tilted about its x, rad.
-    ///
-    /// # Errors
-    /// If an arm does not reach the start.
-    pub fn of(robot: &Robot, [turn, tilt]: [f64; 2]) -> Result<Self, Failure> {
-        let mount = |error| Failure::usage(format!("robot `{}`: {error}", robot.name));
-        let in_n_per_mm = |stiffness: [f64; 3]| Some(stiffness.map(|k| k / N_PER_MM));
-        Ok(match robot.mount(turn, tilt).map_err(mount)?.flange {
-            Flange::Ideal => Felt { stiffness_n_per_mm: None, lag_s: 0.0 },
-            // Its damper acts on the rate of the error.
-            Flange::Servo(servo) => {
-                Felt { stiffness_n_per_mm: in_n_per_mm(servo.stiffness), lag_s: 0.0 }
-            }
-            Flange::Arm(arm) => Felt {
-                stiffness_n_per_mm: in_n_per_mm([0, 1, 2].map(|i| 1.0 / arm.compliance[(i, i)])),
-                lag_s: if arm.feed_forward { 0.0 } else { arm.time_constant },
-            },
-        })
-    }
-
-    /// The name of a shipped robot that is as different: of a compliant one the position-controlled
-    /// arm, of others the compliant flange.
-    pub(super) fn contrast(&self) -> &'static str {
-        match self.stiffness_n_per_mm {
-            Some([_, y, _]) if y < COMPLIANT_N_PER_MM => "ur5e_position",
-            _ => "servo",
+/// Stiffness along x, y and z, N/mm, if it gives, and lag, s, of a robot at a task whose frame is turned
+/// about the base's z, the TCP tilted about its x, rad.
+pub(super) fn felt(
+    robot: &Robot,
+    [turn, tilt]: [f64; 2],
+) -> Result<(Option<[f64; 3]>, f64), Failure> {
+    let (stiffness, lag_s) = match robot.mount(turn, tilt).map_err(Failure::input)?.flange {
+        Flange::Ideal => return Ok((None, 0.0)),
+        // Its damper acts on the rate of the error.
+        Flange::Servo(servo) => (servo.stiffness, 0.0),
+        Flange::Arm(arm) => {
+            let lag_s = if arm.feed_forward { 0.0 } else { arm.time_constant };
+            ([0, 1, 2].map(|i| 1.0 / arm.compliance[(i, i)]), lag_s)
         }
-    }
+    };
+    Ok((Some(stiffness.map(|k| k / N_PER_MM)), lag_s))
 }
-
-/// Stiffness along y below which a robot counts as compliant: between that of `servo` and the 40 N/mm
-/// of `ur5e_position`.
-const COMPLIANT_N_PER_MM: f64 = 20.0;

@@ -32,7 +32,7 @@ pub struct Setup {
     pub measured: Option<Measured>,
     /// The texts all this was read from.
     pub inputs: Inputs,
-    /// The task files as they were given, an empty word for what is none; none at all if nothing is.
+    /// What messages call the task files: their paths, as they were given.
     pub task_files: Vec<String>,
 }
 
@@ -93,8 +93,8 @@ impl Setup {
         let surrogate = Arc::new(surrogate(stiffness_source, &fingers.measured_finger()?)?);
         let evaluator = Evaluator { surrogate, fingers: fingers.made(), templates, robot, engine };
         fit_together(&evaluator, &space, &space_source.file)?;
-        let (uncertainty, measured, task_files) = Default::default();
-        Ok(Setup { inputs, evaluator, uncertainty, measured, space, task_files })
+        let task_files = tasks.iter().map(|task| task.file.clone()).collect();
+        Ok(Setup { inputs, evaluator, uncertainty: None, measured: None, space, task_files })
     }
 
     /// The evaluator with springs computed from the ribs of the shipped finger, if its own are the

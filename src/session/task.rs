@@ -10,6 +10,7 @@ use crate::tune::{Stage, Tuned};
 use input::shipped::{SPACES, STIFFNESS, Source, TASKS};
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
+use insertion::robot::Robot;
 use insertion::space::Space;
 use insertion::stiffness;
 use insertion::task::Task;
@@ -82,10 +83,7 @@ impl TaskCheck {
         let problems = problems(&task);
         let nominal = match problems.is_empty() {
             true => {
-                let finger = middling()?;
-                let (shaped, robot) = (finger.shaped(&task.finger, 0.0), robot(robot_name)?);
-                let rig = engine.rig(&task, &robot, &shaped, 1.0).map_err(Failure::input)?;
-                let trial = rig.grasp(&shaped).trial(0.0);
+                let (finger, trial) = nominal_start(&task, &robot(robot_name)?, engine)?;
                 let explanation = nominal::explain(&task, &trial);
                 Some((finger, trial, explanation))
             }
@@ -107,6 +105,18 @@ impl TaskCheck {
             _ => Ok(None),
         }
     }
+}
+
+/// The middle one of the measured fingers, and its trial at the nominal start.
+pub(super) fn nominal_start(
+    task: &Task,
+    robot: &Robot,
+    engine: EngineKind,
+) -> Result<(Finger, Trial), Failure> {
+    let finger = middling()?;
+    let shaped = finger.shaped(&task.finger, 0.0);
+    let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
+    Ok((finger, rig.grasp(&shaped).trial(0.0)))
 }
 
 /// The shipped measured finger of middling compliance stiffness.

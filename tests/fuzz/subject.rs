@@ -341,6 +341,7 @@ fn command_line(mutations: &[Mutation], number: usize, dir: &Path) -> How {
         "trial --task \"ket12\" --engine \"fake\" --density 10 --direction 0 --repeat 3",
         "finger --density 20 --direction 20 --phase-mm 0.5 --json",
         "tasks --json",
+        "robots --json",
         "export \"mjcf\" --task \"usb\" --density 20 --direction 10 --out \"scene.xml\"",
     ];
     let line = LINES[number % LINES.len()];

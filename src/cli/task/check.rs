@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Draw plug, socket, clearances, fingertips and search path
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
-    /// Robot: see `optimize tasks`, or the path of a robot file
+    /// Robot: see `optimize robots`, or the path of a robot file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     robot: String,
     /// Contact engine

@@ -7,16 +7,18 @@ import os
 import tempfile
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Union
 
 from . import _native, _step
 from ._measure import Record
 from ._native import InputError
+from ._step import Body
 
-_Path = str | os.PathLike[str]
+_Path = Union[str, "os.PathLike[str]"]
 
 
 class Imported(Record):
-    """A task that was imported: ``out`` (its file), ``plug_parts``, ``socket_parts``, ``clearance_mm``,
+    """A task from parts: ``out`` (its file), ``plug_parts``, ``socket_parts``, ``clearance_mm``, ``warning``,
     ``check`` (what is wrong with it, and how its nominal start ends), as ``optimize task import --json``."""
 
 
@@ -29,52 +31,68 @@ def import_parts(
     insert_along: str | None = None,
     jaws: str | None = None,
     plug_body: str | None = None,
-    leave_out: Iterable[str] = (),
+    leave_out: str | Iterable[str] = (),
     like: _Path | None = None,
     tolerance_mm: float = 0.01,
-    resolution: int | None = None,
     engine: str | None = None,
 ) -> Imported:
     """Writes a task file, ``out``, from STL, OBJ or STEP files of a plug and its socket.
 
-    Works as ``optimize task import``, whose words these are: ``unit`` (``"mm"``, ``"in"``, ``"m"``),
-    ``insert_along`` (``"-z"``), ``jaws`` (``"y"``), ``like`` (another task), ``resolution`` (voxels).
-    One file with both needs ``plug_body``: the plug's name, that of a body, a part or an assembly.
+    ``unit`` (``"mm"``, ``"in"``, ``"m"``), ``insert_along`` (``"-z"``), ``jaws`` (``"y"``) and ``like`` (a task)
+    are the words of ``optimize task import``. If ``plug`` holds both, ``plug_body`` names the plug: a body, a
+    part or an assembly of parts; all else is the socket.
 
-    STEP (``.step``, ``.stp``) needs Open Cascade: ``pip install 'finger_opt[step]'``. Its unit and the
-    places of its parts are those of the file; facets keep within ``tolerance_mm`` of the surface; bodies
-    that are called as in ``leave_out`` are left out, a thread for example.
+    STEP (``.step``, ``.stp``) needs Open Cascade: ``pip install 'finger_opt[step]'``. Units and the places of
+    parts are those of the file. Facets keep within ``tolerance_mm`` of the surface. What is called as in
+    ``leave_out`` is left out: pins, a thread.
     """
-    files = [Path(plug)] if socket is None else [Path(plug), Path(socket)]
-    if socket is not None and plug_body is not None:
-        raise InputError("plug_body: goes with one file that holds both plug and socket")
-    unneeded = [leave_out] if isinstance(leave_out, str) else list(leave_out)
+    files = [Path(file) for file in (plug, socket) if file is not None]
     steps = [file for file in files if _step.is_step(file)]
-    if steps and unit not in (None, "mm"):
-        raise InputError(f"unit: {steps[0]} says its unit itself, and is read in mm")
+    names = [str(file) for file in files]
+    unneeded = [leave_out] if isinstance(leave_out, str) else list(leave_out)
+    if plug_body is not None and socket is not None:
+        raise InputError("plug_body: goes with one file of both plug and socket")
     if unneeded and len(steps) < len(files):
         raise InputError("leave_out: goes with STEP files")
-    names: tuple[str, str] | None = None
+    if steps:
+        if unit not in (None, "mm"):
+            raise InputError(f"unit: {steps[0]} is STEP, which names its unit, and is taken in mm")
+        unit = "mm"
+    sides = [_bodies(file, tolerance_mm, unneeded) if file in steps else file for file in files]
+    if isinstance(sides[0], list) and socket is None:
+        sides = list(_apart(files[0], sides[0], plug_body))
+        names = [f"{plug} ({plug_body})", f"{plug} (without {plug_body})"]
+        plug_body = None
     with tempfile.TemporaryDirectory() as folder:
-        if steps:
-            unit = "mm"
-            names = (str(files[0]), str(files[-1]))
-            bodies = {file: _bodies(file, tolerance_mm, unneeded) for file in steps}
-            if socket is None:
-                plug_bodies, socket_bodies = _parted(files[0], bodies[files[0]], plug_body)
-                sides = [plug_bodies, socket_bodies]
-                plug_body = None
-            else:
-                sides = [bodies.get(file) for file in files]
-            meshes = [Path(folder, name) for name in ("plug.obj", "socket.obj")]
-            for side, (found, mesh) in enumerate(zip(sides, meshes)):
-                if found is None:
-                    meshes[side] = files[side]
-                else:
-                    _step.write(found, mesh)
-            files = meshes
-        found = _native.import_parts(
-            *map(str, files), out=out, unit=unit, insert_along=insert_along, jaws=jaws, plug_body=plug_body,
-            like=like, resolution=resolution, engine=engine, names=names,
-        )
+        meshes = [
+            _step.write(side, Path(folder, f"{place}.obj")) if isinstance(side, list) else side
+            for place, side in enumerate(sides)
+        ]
+        settings = {
+            "unit": unit, "insert_along": insert_along, "jaws": jaws, "plug_body": plug_body, "like": like,
+            "engine": engine,
+        }
+        given = {name: value for name, value in settings.items() if value is not None}
+        found = _native.import_parts(meshes[0], meshes[1] if len(meshes) > 1 else None, out, names=names, **given)
     return Imported(json.loads(found))
+
+
+def _bodies(file: Path, tolerance_mm: float, unneeded: list[str]) -> list[Body]:
+    """The bodies of a STEP file, without those that are not needed."""
+    bodies = _step.read(file, tolerance_mm)
+    for name in unneeded:
+        if not any(name in body.names for body in bodies):
+            raise InputError(f"leave_out: {file} has no `{name}`; it has {_step.listed(bodies)}")
+    return [body for body in bodies if body.names.isdisjoint(unneeded)]
+
+
+def _apart(file: Path, bodies: list[Body], plug_body: str | None) -> tuple[list[Body], list[Body]]:
+    """The bodies of the plug, and all others."""
+    sides = [[body for body in bodies if (plug_body in body.names) == is_plug] for is_plug in (True, False)]
+    if not all(sides):
+        wrong = "is missing" if plug_body is None else f"`{plug_body}` is none or all of it"
+        raise InputError(
+            f"plug_body: {wrong}; with one file it names the plug, and all else is the socket. {file} has "
+            f"{_step.listed(bodies)}"
+        )
+    return sides[0], sides[1]

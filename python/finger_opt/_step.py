@@ -97,7 +97,7 @@ def read(path: str | os.PathLike[str], tolerance_mm: float) -> list[Body]:
                 )
         if len(products) == len(found):
             break
-    if not products:
+    else:
         raise InputError(
             f"{path}: is not meshed within {LIMIT_S:g} s; leave threads, knurls and text out of the model, or "
             "export STL"
@@ -106,11 +106,6 @@ def read(path: str | os.PathLike[str], tolerance_mm: float) -> list[Body]:
     if not bodies:
         raise InputError(f"{path}: holds no solid; export the bodies as solids, not as curves")
     return _numbered(bodies)
-
-
-def chosen(bodies: list[Body], name: str) -> list[Body]:
-    """The bodies that are called so, or that are in the assembly that is."""
-    return [body for body in bodies if name in body.names]
 
 
 def listed(bodies: list[Body]) -> str:
@@ -123,8 +118,8 @@ def listed(bodies: list[Body]) -> str:
     return ", ".join(named) + (f" and {more} more" if more else "")
 
 
-def write(bodies: list[Body], path: Path) -> None:
-    """Writes an OBJ in mm with an object for each body, called as the body."""
+def write(bodies: list[Body], path: Path) -> Path:
+    """Writes an OBJ in mm with an object for each body, called as the body; gives its path."""
     with open(path, "w", encoding="utf-8") as file:
         count = 0
         for body in bodies:
@@ -133,6 +128,7 @@ def write(bodies: list[Body], path: Path) -> None:
             file.writelines("v {:.6f} {:.6f} {:.6f}\n".format(*point) for point in points)
             file.writelines("f {} {} {}\n".format(*face) for face in corners.reshape(-1, 3) + 1 + count)
             count += len(points)
+    return path
 
 
 def _mesh(path: str | os.PathLike[str], tolerance_mm: float, limit_s: float) -> bytes | None:

@@ -36,7 +36,7 @@ pub struct ImportRequest {
     #[arg(long, value_name = "T")]
     pub like: Option<String>,
     /// Voxels along the longest side, where a mesh is approximated
-    #[arg(long, value_name = "N", default_value_t = 64,
+    #[arg(long, value_name = "N", default_value_t = RESOLUTION,
           value_parser = clap::value_parser!(u32).range(i64::from(COARSEST)..=i64::from(FINEST)))]
     pub resolution: u32,
     /// File to write
@@ -45,6 +45,9 @@ pub struct ImportRequest {
     /// Contact engine that tries the nominal start
     #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
+    /// What to call plug and socket in messages and in the task's file, if not by their paths
+    #[arg(skip)]
+    pub names: Option<[String; 2]>,
 }
 
 /// A task that was imported and written.
@@ -57,7 +60,25 @@ pub struct ImportedTask {
     pub checked: TaskCheck,
 }
 
+/// Voxels unless said otherwise.
+const RESOLUTION: u32 = 64;
+
 impl ImportRequest {
+    /// Import of two meshes into a file, all else as usual.
+    pub fn new(plug: PathBuf, socket: PathBuf, out: PathBuf) -> Self {
+        ImportRequest {
+            plug,
+            socket,
+            unit: Unit::Mm,
+            insert_along: Along::MinusZ,
+            like: None,
+            resolution: RESOLUTION,
+            out,
+            engine: EngineKind::default(),
+            names: None,
+        }
+    }
+
     /// Imports the meshes, writes the task's file and checks it; `say` gets progress messages.
     pub fn run(&self, say: &dyn Fn(&str), stop: &AtomicBool) -> Result<ImportedTask, Failure> {
         let out = &self.out;
@@ -79,7 +100,9 @@ impl ImportRequest {
 
     fn imported(&self, say: &dyn Fn(&str)) -> Result<(Imported, [bool; 2]), Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
-        let [plug, socket] = [mesh(&self.plug, self.unit)?, mesh(&self.socket, self.unit)?];
+        let [plug_name, socket_name] = self.called();
+        let plug = mesh(&self.plug, plug_name, self.unit)?;
+        let socket = mesh(&self.socket, socket_name, self.unit)?;
         let inward = [&plug, &socket].map(|mesh| mesh.surface.was_inward);
         let stem = self.out.file_stem();
         let name = stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
@@ -93,26 +116,30 @@ impl ImportRequest {
         Ok((import(plug, socket, &request).map_err(Failure::input)?, inward))
     }
 
+    /// What messages call plug and socket.
+    fn called(&self) -> [String; 2] {
+        let paths = || [&self.plug, &self.socket].map(|path| path.display().to_string());
+        self.names.clone().unwrap_or_else(paths)
+    }
+
     fn notes(&self, imported: &Imported) -> Notes {
         let how = |exact: bool| if exact { "exact" } else { "approximated" };
         let [plug, socket] = imported.exact.map(how);
+        let [plug_name, socket_name] = self.called();
         let along = self.insert_along.to_possible_value();
         let mass = match &self.like {
             Some(like) => format!("As in {like}."),
             None => format!("Assumed: {DENSITY} kg/m3. Weigh yours."),
         };
         let head = format!(
-            "Imported from {} ({plug}) and {} ({socket}), inserted along {}.",
-            self.plug.display(),
-            self.socket.display(),
+            "Imported from {plug_name} ({plug}) and {socket_name} ({socket}), inserted along {}.",
             along.as_ref().map_or("", |value| value.get_name()),
         );
         Notes { head: vec![head.replace(['\n', '\r'], " ")], mass }
     }
 }
 
-fn mesh(path: &Path, unit: Unit) -> Result<Mesh, Failure> {
-    let file = path.display().to_string();
+fn mesh(path: &Path, file: String, unit: Unit) -> Result<Mesh, Failure> {
     let unreadable =
         |error: std::io::Error| Failure::usage(format!("{file}: cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;

@@ -2,12 +2,13 @@
 
 use super::super::{Failure, print, print_json, say};
 use super::check;
-use crate::connector::mesh::import::{ALLOWED, MOST_PARTS};
+use crate::connector::mesh::import::{ALLOWED, Imported, MOST_PARTS};
 use crate::session::{ImportRequest, ImportedTask};
 use clap::Args;
 use input::units::MM;
 use insertion::trial::NEVER;
-use serde_json::json;
+use nalgebra::Vector3;
+use serde_json::{Value, json};
 
 /// Write a task from meshes of a plug and its socket (STL or OBJ)
 ///
@@ -26,46 +27,65 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { request, json } = arguments;
-    report(request, *json, &request.run(&|what| say(what), &NEVER)?)
+    let request = &arguments.request;
+    let found = request.run(&|what| say(what), &NEVER)?;
+    match arguments.json {
+        true => print_json(&json(request, &found)),
+        false => print(&text(request, &found)),
+    }
 }
 
-fn report(request: &ImportRequest, as_json: bool, found: &ImportedTask) -> Result<(), Failure> {
-    let ImportedTask { imported, inward, checked } = found;
-    let [plug, socket] = imported.parts();
-    let (depth, at, of) = match imported.intrusion {
+/// The largest intrusion, mm, its point, mm, and its body.
+fn intrusion(imported: &Imported) -> (f64, Vector3<f64>, &'static str) {
+    match imported.intrusion {
         Some((depth, at, of)) => (depth / MM, at.coords / MM, of),
-        None => (0.0, nalgebra::Vector3::zeros(), "plug"),
-    };
+        None => (0.0, Vector3::zeros(), "plug"),
+    }
+}
+
+fn warning(imported: &Imported) -> Option<String> {
+    let (depth, _, of) = intrusion(imported);
     let clearance_mm = imported.clearance / MM;
     let exact = imported.exact[usize::from(of == "socket")];
-    let warning = (depth > ALLOWED * clearance_mm).then(|| {
+    (depth > ALLOWED * clearance_mm).then(|| {
         let remedy = if exact { String::new() } else { bridged() };
         format!(
             "parts reach {depth:.3} mm into the clearance of {clearance_mm:.3} mm, more than a tenth{remedy}"
         )
-    });
-    if as_json {
-        return print_json(&json!({
-            "parts": plug + socket,
-            "plug_parts": plug,
-            "socket_parts": socket,
-            "plug_exact": imported.exact[0],
-            "socket_exact": imported.exact[1],
-            "largest_intrusion_mm": depth,
-            "intrusion_of": of,
-            "intrusion_at_mm": [at.x, at.y, at.z],
-            "clearance_mm": clearance_mm,
-            "resolution": request.resolution,
-            // None is known to do: see `bridged`.
-            "resolution_needed": null,
-            "plug_was_inward": inward[0],
-            "socket_was_inward": inward[1],
-            "warning": warning,
-            "out": request.out.display().to_string(),
-            "check": check::json(checked),
-        }));
-    }
+    })
+}
+
+/// What `--json` prints, and `fo.import_parts` gives.
+pub fn json(request: &ImportRequest, found: &ImportedTask) -> Value {
+    let ImportedTask { imported, inward, checked } = found;
+    let [plug, socket] = imported.parts();
+    let (depth, at, of) = intrusion(imported);
+    json!({
+        "parts": plug + socket,
+        "plug_parts": plug,
+        "socket_parts": socket,
+        "plug_exact": imported.exact[0],
+        "socket_exact": imported.exact[1],
+        "largest_intrusion_mm": depth,
+        "intrusion_of": of,
+        "intrusion_at_mm": [at.x, at.y, at.z],
+        "clearance_mm": imported.clearance / MM,
+        "resolution": request.resolution,
+        // None is known to do: see `bridged`.
+        "resolution_needed": null,
+        "plug_was_inward": inward[0],
+        "socket_was_inward": inward[1],
+        "warning": warning(imported),
+        "out": request.out.display().to_string(),
+        "check": check::json(checked),
+    })
+}
+
+fn text(request: &ImportRequest, found: &ImportedTask) -> String {
+    let ImportedTask { imported, inward, checked } = found;
+    let [plug, socket] = imported.parts();
+    let (depth, at, of) = intrusion(imported);
+    let clearance_mm = imported.clearance / MM;
     let how = |exact: bool| if exact { "exact" } else { "approximated by hulls" };
     let mut text = format!(
         "written       {}\nplug          {plug} convex parts, {}\nsocket        {socket} convex parts, {}\n\
@@ -84,8 +104,8 @@ fn report(request: &ImportRequest, as_json: bool, found: &ImportedTask) -> Resul
             text.push_str(&format!("normals       of the {name} pointed inward; turned\n"));
         }
     }
-    text.extend(warning.map(|warning| format!("warning       {warning}\n")));
-    print(&(text + &check::text(checked)))
+    text.extend(warning(imported).map(|warning| format!("warning       {warning}\n")));
+    text + &check::text(checked)
 }
 
 /// Remedy where hulls reach into the clearance. Two voxels across a tenth of it would be more than

@@ -58,9 +58,17 @@ def import_parts(
         if unit not in (None, "mm"):
             raise InputError(f"unit: {steps[0]} is STEP, which names its unit, and is taken in mm")
         unit = "mm"
-    sides = [_bodies(file, tolerance_mm, unneeded) if file in steps else file for file in files]
-    if isinstance(sides[0], list) and socket is None:
-        sides = list(_apart(files[0], sides[0], plug_body))
+    bodies = {file: _step.read(file, tolerance_mm) for file in steps}
+    for name in unneeded:
+        if not any(name in body.names for found in bodies.values() for body in found):
+            raise InputError(f"leave_out: no body is called `{name}`; there are {_step.listed(sum(bodies.values(), []))}")
+    for file, found in bodies.items():
+        bodies[file] = [body for body in found if body.names.isdisjoint(unneeded)]
+        if not bodies[file]:
+            raise InputError(f"leave_out: leaves nothing of {file}, which has {_step.listed(found)}")
+    sides: list[list[Body] | Path] = [bodies.get(file, file) for file in files]
+    if steps and socket is None:
+        sides = [*_apart(files[0], bodies[files[0]], plug_body)]
         names = [f"{plug} ({plug_body})", f"{plug} (without {plug_body})"]
         plug_body = None
     with tempfile.TemporaryDirectory() as folder:
@@ -73,17 +81,8 @@ def import_parts(
             "engine": engine,
         }
         given = {name: value for name, value in settings.items() if value is not None}
-        found = _native.import_parts(meshes[0], meshes[1] if len(meshes) > 1 else None, out, names=names, **given)
-    return Imported(json.loads(found))
-
-
-def _bodies(file: Path, tolerance_mm: float, unneeded: list[str]) -> list[Body]:
-    """The bodies of a STEP file, without those that are not needed."""
-    bodies = _step.read(file, tolerance_mm)
-    for name in unneeded:
-        if not any(name in body.names for body in bodies):
-            raise InputError(f"leave_out: {file} has no `{name}`; it has {_step.listed(bodies)}")
-    return [body for body in bodies if body.names.isdisjoint(unneeded)]
+        measured = _native.import_parts(meshes[0], meshes[1] if len(meshes) > 1 else None, out, names=names, **given)
+    return Imported(json.loads(measured))
 
 
 def _apart(file: Path, bodies: list[Body], plug_body: str | None) -> tuple[list[Body], list[Body]]:

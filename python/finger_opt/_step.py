@@ -93,7 +93,7 @@ def read(path: str | os.PathLike[str], tolerance_mm: float) -> list[Body]:
                 warnings.warn(
                     f"{path}: `{product.name}` is meshed within {scale * tolerance_mm:g} mm, {count} triangles: "
                     "threads, knurls or text make too many else; better leave them out of the model",
-                    stacklevel=4,
+                    stacklevel=3,
                 )
         if len(products) == len(found):
             break

@@ -71,8 +71,10 @@ def test_what_names_no_plug_is_told_the_bodies(occ, parts, fake, tmp_path):
     for name in (None, "pulg", "assembly"):
         with pytest.raises(fo.InputError, match=r"`plug` \(8.0 x 12.0 x 26.0 mm\), `socket`"):
             imported(fake, tmp_path, both, plug_body=name)
-    with pytest.raises(fo.InputError, match="has no `pins`; it has `plug`"):
+    with pytest.raises(fo.InputError, match="called `pins`; there are `plug`"):
         imported(fake, tmp_path, both, plug_body="plug", leave_out="pins")
+    with pytest.raises(fo.InputError, match="leaves nothing of"):
+        imported(fake, tmp_path, both, plug_body="plug", leave_out="assembly")
     with pytest.raises(fo.InputError, match="names its unit"):
         imported(fake, tmp_path, both, plug_body="plug", unit="in")
 

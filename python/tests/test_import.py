@@ -77,6 +77,8 @@ def test_what_names_no_plug_is_told_the_bodies(occ, parts, fake, tmp_path):
         imported(fake, tmp_path, both, plug_body="plug", leave_out="assembly")
     with pytest.raises(fo.InputError, match="names its unit"):
         imported(fake, tmp_path, both, plug_body="plug", unit="in")
+    found, _ = imported(fake, tmp_path, both, socket_body="socket")
+    assert found.plug_exact and found.socket_exact
 
 
 def test_bodies_can_be_left_out(occ, parts, fake, tmp_path):

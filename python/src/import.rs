@@ -15,15 +15,18 @@ use std::path::PathBuf;
 pub fn import_parts<'py>(
     py: Python<'py>,
     plug: PathBuf,
-    socket: PathBuf,
+    socket: Option<PathBuf>,
     out: PathBuf,
     settings: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<String> {
     let words = Keywords::new(py, settings)?;
     let usual = ImportRequest::new(plug, socket, out);
     let request = ImportRequest {
-        unit: words.choice("unit")?.unwrap_or(usual.unit),
-        insert_along: words.choice("insert_along")?.unwrap_or(usual.insert_along),
+        plug_body: words.take("plug_body")?,
+        socket_body: words.take("socket_body")?,
+        unit: words.choice("unit")?,
+        insert_along: words.choice("insert_along")?,
+        jaws: words.choice("jaws")?,
         like: words.text("like")?,
         engine: words.choice("engine")?.unwrap_or(usual.engine),
         names: words.take("names")?,

@@ -30,7 +30,7 @@ pub enum Arguments {
     #[command(after_help = "Example: optimize task check usb-c.toml --svg usb-c.svg")]
     Check(check::Arguments),
     #[command(after_help = "Example: optimize task import --plug plug.stl --socket socket.stl \
-                            --unit mm --out mine.toml")]
+                            --out mine.toml")]
     Import(import::Arguments),
 }
 

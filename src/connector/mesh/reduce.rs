@@ -32,7 +32,7 @@ pub fn reduced(surface: Surface) -> Surface {
         face.iter().for_each(|&corner| about[corner].push(number));
     }
     let count = surface.points.len();
-    let Surface { points, faces, was_inward } = surface;
+    let Surface { points, faces, was_inward, mended } = surface;
     let mut mesh =
         Collapsing { points, faces, about, error: vec![0.0; count], version: vec![0; count] };
     let mut queue = BinaryHeap::new();
@@ -49,7 +49,8 @@ pub fn reduced(surface: Surface) -> Surface {
             mesh.queue(corner, &mut queue);
         }
     }
-    mesh.surface(was_inward)
+    let (points, faces) = mesh.left();
+    Surface { points, faces, was_inward, mended }
 }
 
 /// A collapse: its error, pm, the corner that goes and the one it goes to, and their versions.
@@ -122,7 +123,7 @@ impl Collapsing {
         }
     }
 
-    fn surface(&self, was_inward: bool) -> Surface {
+    fn left(&self) -> (Vec<Point3<f64>>, Vec<[usize; 3]>) {
         let mut points = Vec::new();
         let mut number = vec![usize::MAX; self.points.len()];
         for (corner, about) in self.about.iter().enumerate() {
@@ -134,7 +135,7 @@ impl Collapsing {
         }
         let left: BTreeSet<usize> = self.about.iter().flatten().copied().collect();
         let faces = left.iter().map(|&face| self.faces[face].map(|corner| number[corner]));
-        Surface { points, faces: faces.collect(), was_inward }
+        (points, faces.collect())
     }
 }
 

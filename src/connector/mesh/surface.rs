@@ -1,7 +1,7 @@
 //! A closed surface of triangles that look outward.
 
-use super::MeshError;
 use super::read::Triangle;
+use super::{MeshError, mend};
 use crate::connector::body::longest_side;
 use input::units::MM;
 use insertion::task::geometry::surface_moments;
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Grid on which corners are welded, m: files have 32-bit numbers.
 const GRID: f64 = 1e-4 * MM;
 /// Least and largest size of a connector, m.
-const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
+pub const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
 
 /// Closed triangle mesh, m.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,8 @@ pub struct Surface {
     pub faces: Vec<[usize; 3]>,
     /// Whether the file had all triangles clockwise.
     pub was_inward: bool,
+    /// How many corners of the file missed one another, and by how much at most, m.
+    pub mended: (usize, f64),
 }
 
 impl Surface {
@@ -33,7 +35,12 @@ impl Surface {
     pub fn new(triangles: &[Triangle], unit: f64, file: &str) -> Result<Self, MeshError> {
         let (points, mut faces) = weld(triangles, unit);
         let fail = |fault: String| MeshError::File(file.to_owned(), fault);
-        size(&points).and_then(|()| closed(&points, &faces)).map_err(fail)?;
+        size(&points).map_err(fail)?;
+        let mended = mend::mend(&points, &mut faces);
+        if mended.0 > 0 {
+            faces = without_films(faces);
+        }
+        closed(&points, &faces).map_err(fail)?;
         let volume = surface_moments(&points, &faces).0;
         if volume.abs() < GRID * GRID * GRID {
             return Err(fail("holds no volume".to_owned()));
@@ -42,7 +49,7 @@ impl Surface {
         if was_inward {
             faces.iter_mut().for_each(|face| face.swap(1, 2));
         }
-        Ok(Surface { points, faces, was_inward })
+        Ok(Surface { points, faces, was_inward, mended })
     }
 
     /// The surface turned and shifted.

@@ -31,6 +31,7 @@ mod words;
 
 use crate::session::Failure;
 pub use manual::reference;
+pub use task::import::json as imported_json;
 use terminal::{print, print_json, say};
 
 use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand};

@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 const FINEST: u32 = 1000;
+/// Voxels unless said otherwise.
+const RESOLUTION: u32 = 64;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;
 
@@ -50,7 +52,7 @@ pub struct ImportRequest {
     #[arg(long, value_name = "T")]
     pub like: Option<String>,
     /// Voxels along the longest side, where a mesh is approximated
-    #[arg(long, value_name = "N", default_value_t = 64,
+    #[arg(long, value_name = "N", default_value_t = RESOLUTION,
           value_parser = clap::value_parser!(u32).range(i64::from(COARSEST)..=i64::from(FINEST)))]
     pub resolution: u32,
     /// File to write
@@ -59,6 +61,9 @@ pub struct ImportRequest {
     /// Contact engine that tries the nominal start
     #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
+    /// What to call plug and socket in messages and in the task's file, if not by their paths
+    #[arg(skip)]
+    pub names: Option<[String; 2]>,
 }
 
 /// A task that was imported and written.
@@ -89,6 +94,30 @@ struct Found {
 }
 
 impl ImportRequest {
+    /// Import into a file, all else as usual.
+    pub fn new(plug: PathBuf, socket: Option<PathBuf>, out: PathBuf) -> Self {
+        ImportRequest {
+            plug,
+            socket,
+            plug_body: None,
+            socket_body: None,
+            unit: None,
+            insert_along: None,
+            jaws: None,
+            like: None,
+            resolution: RESOLUTION,
+            out,
+            engine: EngineKind::default(),
+            names: None,
+        }
+    }
+
+    /// What messages call plug and socket.
+    fn called(&self) -> [String; 2] {
+        let paths = || [&self.plug, self.socket()].map(|path| path.display().to_string());
+        self.names.clone().unwrap_or_else(paths)
+    }
+
     /// Imports the meshes, writes the task's file and checks it; `say` gets progress messages.
     pub fn run(&self, say: &dyn Fn(&str), stop: &AtomicBool) -> Result<ImportedTask, Failure> {
         let out = &self.out;
@@ -113,7 +142,7 @@ impl ImportRequest {
 
     fn found(&self, say: &dyn Fn(&str)) -> Result<Found, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
-        let files = [&self.plug, self.socket()].map(|path| path.display().to_string());
+        let files = self.called();
         let [plug, socket] = self.bodies([&files[0], &files[1]])?;
         let named = [&*files[0], &*files[1]];
         let placed = placed([&plug, &socket], named, self.unit, self.insert_along, say);
@@ -192,6 +221,7 @@ impl ImportRequest {
     }
 
     fn notes(&self, Found { imported, unit, along, .. }: &Found) -> Notes {
+        let files = self.called();
         let how = |exact: bool| if exact { "exact" } else { "approximated" };
         let [plug, socket] = imported.exact.map(how);
         let mass = match &self.like {
@@ -200,8 +230,8 @@ impl ImportRequest {
         };
         let head = format!(
             "Imported from {} ({plug}) and {} ({socket}), in {}, inserted along {}, jaws along {}.",
-            self.plug.display(),
-            self.socket().display(),
+            files[0],
+            files[1],
             value(*unit),
             value(*along),
             value(imported.jaws),

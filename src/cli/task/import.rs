@@ -9,7 +9,7 @@ use crate::session::{ImportRequest, ImportedTask};
 use clap::Args;
 use input::units::MM;
 use insertion::trial::NEVER;
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// Write a task from meshes of a plug and its socket (STL or OBJ)
 ///
@@ -28,11 +28,24 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { request, json } = arguments;
-    report(request, *json, &request.run(&|what| say(what), &NEVER)?)
+    let request = &arguments.request;
+    let found = request.run(&|what| say(what), &NEVER)?;
+    let (json, text) = report(request, &found);
+    if arguments.json {
+        print_json(&json)?
+    } else {
+        print(&text)?
+    }
+    check::ended(&found.checked, found.tuned.as_ref())
 }
 
-fn report(request: &ImportRequest, as_json: bool, found: &ImportedTask) -> Result<(), Failure> {
+/// What `--json` prints, and `fo.import_parts` gives.
+pub fn json(request: &ImportRequest, found: &ImportedTask) -> Value {
+    report(request, found).0
+}
+
+/// The JSON and the text.
+fn report(request: &ImportRequest, found: &ImportedTask) -> (Value, String) {
     let ImportedTask { imported, unit, along, said, inward, tuned, checked } = found;
     let [plug, socket] = imported.parts();
     let (depth, at, of) = match imported.intrusion {
@@ -49,39 +62,36 @@ fn report(request: &ImportRequest, as_json: bool, found: &ImportedTask) -> Resul
             "parts reach {depth:.3} mm into the clearance of {clearance_mm:.3} mm, more than a tenth{remedy}"
         )
     });
-    if as_json {
-        print_json(&json!({
-            "parts": plug + socket,
-            "plug_parts": plug,
-            "socket_parts": socket,
-            "plug_exact": imported.exact[0],
-            "socket_exact": imported.exact[1],
-            "largest_intrusion_mm": depth,
-            "intrusion_of": of,
-            "intrusion_at_mm": [at.x, at.y, at.z],
-            "unit": value(*unit),
-            "insert_along": value(*along),
-            "jaws": value(imported.jaws),
-            "found": said.iter().map(|(what, why)| format!("{what} {why}")).collect::<Vec<_>>(),
-            "clearance_mm": clearance_mm,
-            "clearance_x_mm": play[0],
-            "clearance_y_mm": play[1],
-            "chamfer_x_mm": chamfer[0],
-            "chamfer_y_mm": chamfer[1],
-            "chamfer_depth_mm": chamfer[2],
-            "body_mm": body,
-            "resolution": request.resolution,
-            // None is known to do: see `bridged`.
-            "resolution_needed": null,
-            "plug_was_inward": inward[0],
-            "socket_was_inward": inward[1],
-            "warning": warning,
-            "out": request.out.display().to_string(),
-            "tuned": tuned.as_ref().map(tune::brief_json),
-            "check": check::json(checked),
-        }))?;
-        return check::ended(checked, tuned.as_ref());
-    }
+    let json = json!({
+        "parts": plug + socket,
+        "plug_parts": plug,
+        "socket_parts": socket,
+        "plug_exact": imported.exact[0],
+        "socket_exact": imported.exact[1],
+        "largest_intrusion_mm": depth,
+        "intrusion_of": of,
+        "intrusion_at_mm": [at.x, at.y, at.z],
+        "unit": value(*unit),
+        "insert_along": value(*along),
+        "jaws": value(imported.jaws),
+        "found": said.iter().map(|(what, why)| format!("{what} {why}")).collect::<Vec<_>>(),
+        "clearance_mm": clearance_mm,
+        "clearance_x_mm": play[0],
+        "clearance_y_mm": play[1],
+        "chamfer_x_mm": chamfer[0],
+        "chamfer_y_mm": chamfer[1],
+        "chamfer_depth_mm": chamfer[2],
+        "body_mm": body,
+        "resolution": request.resolution,
+        // None is known to do: see `bridged`.
+        "resolution_needed": null,
+        "plug_was_inward": inward[0],
+        "socket_was_inward": inward[1],
+        "warning": warning,
+        "out": request.out.display().to_string(),
+        "tuned": tuned.as_ref().map(tune::brief_json),
+        "check": check::json(checked),
+    });
     let how = |exact: bool| if exact { "exact" } else { "approximated by hulls" };
     let mut text = format!(
         "written       {}\nplug          {plug} convex parts, {}\nsocket        {socket} convex parts, {}\n\
@@ -111,8 +121,7 @@ fn report(request: &ImportRequest, as_json: bool, found: &ImportedTask) -> Resul
     }
     text.extend(warning.map(|warning| format!("warning       {warning}\n")));
     text.extend(tuned.iter().map(|tuned| tune::brief("strategy", tuned)));
-    print(&wrapped(&(text + &check::text(checked))))?;
-    check::ended(checked, tuned.as_ref())
+    (json, wrapped(&(text + &check::text(checked))))
 }
 
 /// Chamfer of the opening: its widths in x and in y and its depth, mm.

@@ -1,7 +1,7 @@
 //! `optimize task`: one's own connector.
 
 mod check;
-mod import;
+pub mod import;
 mod new;
 mod tune;
 

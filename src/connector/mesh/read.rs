@@ -3,6 +3,8 @@
 use super::MeshError;
 use nalgebra::Point3;
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::path::Path;
 
 /// Corners of a triangle, in the unit of the file.
 pub type Triangle = [Point3<f64>; 3];
@@ -20,13 +22,21 @@ pub struct Body {
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
+/// What reads a STEP file.
+const STEP: &str = "is a STEP file, which Python reads: `pip install 'finger_opt[step]'`, then \
+                    `fo.import_parts(...)` (docs/guide/python.md); or export STL";
+
 /// Bodies of a file; the content decides on the format, `file` is named in errors.
 ///
 /// # Errors
 /// If the bytes are neither STL nor OBJ, or name no finite triangles.
 pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, MeshError> {
+    let named = Path::new(file).extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+    let step = bytes.trim_ascii_start().starts_with(b"ISO-10303-21")
+        || named.is_some_and(|named| ["step", "stp"].contains(&named.as_str()));
     let fail = |problem: &str| {
-        MeshError::File(file.to_owned(), format!("is neither an STL nor an OBJ file: {problem}"))
+        let neither = || format!("is neither an STL nor an OBJ file: {problem}");
+        MeshError::File(file.to_owned(), if step { STEP.to_owned() } else { neither() })
     };
     // A binary STL may begin with "solid", too: its length tells.
     let bodies = match binary_count(bytes) {

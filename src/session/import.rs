@@ -179,7 +179,7 @@ impl ImportRequest {
         let imported = import(plug, socket, &request).map_err(Failure::input)?;
         if self.jaws.is_none() {
             let why = format!(
-                "{}: across it two faces, {:.2} mm apart",
+                "{}: across it the plug has two faces {:.2} mm apart",
                 value(imported.jaws),
                 imported.body[0] / MM
             );

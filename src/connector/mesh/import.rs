@@ -4,7 +4,7 @@ use super::cut::Mouth;
 pub use super::decompose::{COARSEST, MOST_PARTS};
 use super::decompose::{decompose, intrusion};
 use super::place::value;
-use super::reduce::{TOLERANCE, reduced};
+use super::reduce::{MANY_FACES, TOLERANCE, reduced};
 use super::surface::Surface;
 use super::{MeshError, cut};
 use crate::connector::body::{ConvexBody, clipped, extent, width};
@@ -23,10 +23,10 @@ const TIP: f64 = 1.0 * MM;
 const LEAST_COVER: f64 = 2.0 * MM;
 /// Margin about the opening and below the seated tip within which intrusion counts, m.
 const ABOUT: f64 = 0.5 * MM;
-/// Faces from which on a mesh is reduced.
-const MANY_FACES: usize = 2000;
 /// Most faces that are cut into convex parts: more take minutes.
 const MOST_FACES: usize = 8000;
+/// Least play of a plug that goes in, m.
+const LEAST_PLAY: f64 = 3e-3 * MM;
 /// Largest share of the clearance that intrusion may fill.
 pub const ALLOWED: f64 = 0.1;
 
@@ -242,6 +242,14 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     let seat = seating.deepest();
     let depth = task.success.depth.min(seat.depth);
     let play = [0, 1].map(|axis| seating.play(depth, seat.at, axis));
+    if let (None, Some(axis)) = (like, (0..2).find(|&axis| play[axis] < LEAST_PLAY)) {
+        let (name, wide) = (["x", "y"][axis], mouth.throat[axis] / MM);
+        let fault = format!(
+            "has no play in {name} (of the task), where the opening is {wide:.3} mm wide: make the opening \
+             wider or the plug smaller"
+        );
+        return Err(MeshError::File(socket.file, fault));
+    }
     let [x, y] = [0, 1].map(|axis| (mouth.rim[axis] - mouth.throat[axis]) / 2.0);
     let pads = hold::pad_z(task.grip.shoulder_z);
     let between = task.plug.parts.iter().flat_map(|part| clipped(&part.solid.corners(), 2, pads));
@@ -271,12 +279,15 @@ fn grasped(
         let turned = plug.surface.clone().moved(&request.along.turn(jaws), Vector3::zeros());
         let surface = stand(turned, middle);
         let (parts, exact) = convex(&surface, &plug.file, "plug", request)?;
-        found.push(Standing { jaws, surface, parts, exact });
-        let last = &found[found.len() - 1];
-        let grasp =
-            last.grasp(true).or(request.like.map(|like| (like.grip.shoulder_z, like.grip.faces_y)));
-        if let (Some(grasp), Some(last)) = (grasp, found.pop()) {
-            return Ok((last, grasp));
+        let way = Standing { jaws, surface, parts, exact };
+        let taken = request.like.map(|like| (like.grip.shoulder_z, like.grip.faces_y));
+        if let Some(grasp) = taken.or_else(|| way.grasp(true)) {
+            return Ok((way, grasp));
+        }
+        found.push(way);
+        // Hulls take seconds, and their faces are no better from the side.
+        if !exact {
+            break;
         }
     }
     let any = found.into_iter().find_map(|way| way.grasp(false).map(|grasp| (way, grasp)));

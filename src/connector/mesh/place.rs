@@ -79,15 +79,17 @@ pub fn placed(
         )));
     }
     let (mut fits, mut misses) = (Vec::new(), Vec::new());
+    let mut by_unit = Vec::new();
     for &candidate in &units {
         let meshes = meshes(candidate)?;
         for &direction in &directions {
             let here = format!("{} along {}", value(candidate), value(direction));
             match fit(&meshes, direction, unit.is_none()) {
-                Ok(fit) => fits.push((candidate, direction, fit, here)),
+                Ok(fit) => fits.push((by_unit.len(), direction, fit, here)),
                 Err(why) => misses.push(format!("{here}: {why}")),
             }
         }
+        by_unit.push(meshes);
     }
     if let [_, _, ..] = fits[..] {
         let several: Vec<_> =
@@ -97,7 +99,7 @@ pub fn placed(
             several.join("; ")
         )));
     }
-    let Some((found, direction, fit, _)) = fits.pop() else {
+    let Some((number, direction, fit, _)) = fits.pop() else {
         misses.sort_by_key(|why| why.contains(NO_HOLE));
         return Err(fail(format!(
             "no unit and direction found in which the plug goes in: {}; give --unit and --insert-along, \
@@ -105,24 +107,24 @@ pub fn placed(
             misses.join("; ")
         )));
     };
-    let [low, high] = FACES_MM;
-    let others = Unit::value_variants().iter().filter(|other| **other != found).map(|other| {
-        let times = other.metres() / found.metres();
-        format!("in {} {:.4} mm", value(*other), fit.body * times / MM)
-    });
-    let others = others.collect::<Vec<_>>().join(", ");
-    let body = fit.body / MM;
+    let ([low, high], found) = (FACES_MM, units[number]);
+    let wide = |unit: &Unit| {
+        let times = unit.metres() / found.metres();
+        format!("{:.3} mm wide if in {}", fit.body * times / MM, value(*unit))
+    };
+    let others = Unit::value_variants().iter().filter(|other| **other != found).map(wide);
+    let why_unit = format!(
+        "the plug is {:.2} mm wide, which jaws hold ({low} to {high} mm), and the clearance that of a \
+         connector; it would be {}",
+        fit.body / MM,
+        others.collect::<Vec<_>>().join(", ")
+    );
     Ok(Placed {
-        meshes: meshes(found)?,
+        meshes: by_unit.swap_remove(number),
         unit: found,
         along: direction,
-        why_unit: unit.is_none().then(|| {
-            format!(
-                "the plug is {body:.2} mm wide ({others}); jaws hold {low} to {high} mm; {}",
-                fit.text()
-            )
-        }),
-        why_along: along.is_none().then(|| format!("the only way in: {}", fit.text())),
+        why_unit: unit.is_none().then_some(why_unit),
+        why_along: along.is_none().then(|| fit.text()),
     })
 }
 
@@ -175,7 +177,7 @@ impl Fit {
     fn text(&self) -> String {
         let [[a, b], [c, d]] = [self.throat, self.end].map(|size| size.map(|v| v / MM));
         format!(
-            "a hole of {a:.2} x {b:.2} mm takes the plug's end of {c:.2} x {d:.2} mm with {:.2} mm",
+            "a hole of {a:.2} x {b:.2} mm takes the plug's end of {c:.2} x {d:.2} mm, which leaves {:.2} mm",
             self.clearance / MM
         )
     }

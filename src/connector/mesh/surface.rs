@@ -7,7 +7,7 @@ use input::units::MM;
 use insertion::task::geometry::surface_moments;
 use nalgebra::{Matrix3, Point3, Vector3};
 use rapier3d_f64::parry::math::Vector;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Grid on which corners are welded, m: files have 32-bit numbers.
 const GRID: f64 = 1e-4 * MM;
@@ -65,6 +65,42 @@ impl Surface {
         let points = self.points.iter().map(|p| (p.coords / MM).into());
         let faces = self.faces.iter().map(|face| face.map(|corner| corner as u32));
         (points.collect(), faces.collect())
+    }
+
+    /// Its pieces that meet along no edge of two faces.
+    pub fn shells(&self) -> Vec<Surface> {
+        let mut about: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
+        for (number, face) in self.faces.iter().enumerate() {
+            for i in 0..3 {
+                let (a, b) = (face[i], face[(i + 1) % 3]);
+                about.entry([a.min(b), a.max(b)]).or_default().push(number);
+            }
+        }
+        let mut next = vec![Vec::new(); self.faces.len()];
+        for pair in about.values() {
+            if let [a, b] = pair[..] {
+                next[a].push(b);
+                next[b].push(a);
+            }
+        }
+        let (mut seen, mut shells) = (vec![false; self.faces.len()], Vec::new());
+        for first in 0..self.faces.len() {
+            let (mut faces, mut todo) = (Vec::new(), vec![first]);
+            while let Some(face) = todo.pop() {
+                if !std::mem::replace(&mut seen[face], true) {
+                    faces.push(self.faces[face]);
+                    todo.extend(&next[face]);
+                }
+            }
+            if !faces.is_empty() {
+                let corners: BTreeSet<usize> = faces.iter().flatten().copied().collect();
+                let number: BTreeMap<usize, usize> = corners.iter().copied().zip(0..).collect();
+                let points = corners.iter().map(|&corner| self.points[corner]).collect();
+                let faces = faces.iter().map(|face| face.map(|corner| number[&corner])).collect();
+                shells.push(Surface { points, faces, ..*self });
+            }
+        }
+        shells
     }
 
     /// Surface area, m2.

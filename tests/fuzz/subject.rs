@@ -327,7 +327,7 @@ fn talk(mutations: &[Mutation], number: usize) -> How {
 
 /// Command lines of known words with values that may mean nothing.
 fn command_line(mutations: &[Mutation], number: usize, dir: &Path) -> How {
-    const LINES: [&str; 14] = [
+    const LINES: [&str; 15] = [
         "--task \"usb\" --engine \"fake\" --budget 3 --batch 2 --seed 1 --threads 2 --no-cache",
         "--task \"usb,rj45\" --engine \"fake\" --budget 2 --aggregate \"weighted\" --weights \"1,2\" --no-cache",
         "--task \"usb\" --engine \"fake\" --budget 3 --objective \"range,peak-force\" --constraint \"slip<=1\" --no-cache",

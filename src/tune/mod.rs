@@ -131,13 +131,15 @@ impl Tuned {
         self.best().tried.inserts()
     }
 
-    /// A later step must be better by what matters; of two that fail, at all.
+    /// A step of a later stage must be better by what matters; of the same stage, or of two that fail, at
+    /// all.
     fn add(&mut self, step: Step, effort: &Effort) {
         self.windows += step.tried.cost;
         (effort.tell)(&step.what, step.tried.cost, self.windows, MOST_WINDOWS);
         self.steps.push(step);
         let [best, last] = [self.best, self.steps.len() - 1].map(|i| &self.steps[i].tried);
-        let margin = if best.inserts() { INDIFFERENCE_MM } else { 0.0 };
+        let own = self.steps[self.best].stage == self.steps[self.steps.len() - 1].stage;
+        let margin = if best.inserts() && !own { INDIFFERENCE_MM } else { 0.0 };
         // A middle is worth more than a start near the end of as wide a window.
         let centred = self.steps.len() == 2
             && last.side_mm() >= best.side_mm() + INDIFFERENCE_MM

@@ -33,8 +33,8 @@ pub(super) fn walls(case: &Case) -> Vec<Problem> {
     sides.filter_map(|(axis, end)| side(case, axis, end)).collect()
 }
 
-/// Fault of one side of the opening, which is somewhere along solid just outside and free just inside.
-/// What it should be is read halfway along.
+/// Fault of one side of the opening, which is solid just outside halfway along, and somewhere along it
+/// free just inside. What it should be is read halfway along.
 fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
     let opening = case.task.opening;
     let stated = opening[axis][end];
@@ -51,11 +51,11 @@ fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
         let solid = |beyond: f64| part_at(stated + outward * beyond, share).is_some();
         solid(AGREE) && !solid(-AGREE)
     };
-    if (0..ALONG).any(begins) {
-        return None;
-    }
     let part = |at: f64| part_at(at, 0.5);
     let solid = |beyond: f64| part(stated + outward * beyond).is_some();
+    if solid(AGREE) && (0..ALONG).any(begins) {
+        return None;
+    }
     let name = ["x", "y"][axis];
     let steps = (FAR / STEP) as usize;
     // The face: solid beyond it, free before it.

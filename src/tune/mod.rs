@@ -16,6 +16,7 @@ use insertion::finger::Finger;
 use insertion::task::{Strategy, Task};
 use insertion::trial::Conditions;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Most windows that are measured.
 pub const MOST_WINDOWS: usize = 150;
@@ -24,12 +25,13 @@ const BATCH: usize = 4;
 /// Windows of a candidate.
 const EACH: usize = 3;
 /// Turn of the socket that is checked, degrees, and factors on its friction.
-const YAW_DEG: f64 = 1.0;
+pub const YAW_DEG: f64 = 1.0;
 const FRICTION: [f64; 2] = [0.8, 1.2];
-/// Changes that are checked, no change among them.
+/// Changes that are checked, no change among them, and those of them that turn the socket.
 const CHANGES: usize = 5;
-/// Strategies that are checked with one finger.
-const FINALISTS: usize = 4;
+const TURNED: Range<usize> = 1..3;
+/// Most strategies that are checked with a turned socket and one finger.
+const FINALISTS: usize = 12;
 
 /// How far to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -54,6 +56,14 @@ pub struct Step {
     pub what: String,
     /// What came of it.
     pub tried: Tried,
+    /// Least range of another finger with the socket turned either way, mm, if that was checked.
+    pub turned_mm: Option<f64>,
+}
+
+impl Step {
+    fn new(stage: Stage, what: impl Into<String>, tried: Tried) -> Self {
+        Step { stage, what: what.into(), tried, turned_mm: None }
+    }
 }
 
 /// What the recommended strategy keeps under a change: least range of three other fingers, mm; 0
@@ -97,7 +107,7 @@ pub struct Effort<'a> {
 /// If the task cannot be simulated as it is.
 pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
     let own = &bench.task.strategy;
-    let first = Step { stage: Stage::AsItIs, what: "as it is".into(), tried: bench.given(own)? };
+    let first = Step::new(Stage::AsItIs, "as it is", bench.given(own)?);
     let mut tuned = Tuned { steps: Vec::new(), best: 0, kept: Vec::new(), windows: 0 };
     tuned.add(first, effort);
     for stage in [Stage::Start, Stage::Families, Stage::Search] {
@@ -113,7 +123,7 @@ pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
                 let tried = bench.taught(own)?;
                 let by = (tried.strategy.start[1] - own.start[1]) / MM;
                 let what = format!("start taught, {by:+.1} mm in y");
-                tuned.add(Step { stage, what, tried }, effort);
+                tuned.add(Step::new(stage, what, tried), effort);
             }
             Stage::Families => tuned.families(bench, effort),
             Stage::Search => tuned.search(bench, effort)?,
@@ -161,7 +171,7 @@ impl Tuned {
             .map(|family| Some((family.name(), bench.taught(&family.of(bench.task)?).ok()?)))
             .collect();
         for (what, tried) in tried.into_iter().flatten() {
-            self.add(Step { stage: Stage::Families, what, tried }, effort);
+            self.add(Step::new(Stage::Families, what, tried), effort);
         }
     }
 
@@ -195,45 +205,43 @@ impl Tuned {
             optimizer.tell(&told);
             for (what, tried) in tried {
                 let Some(tried) = tried else { continue };
-                self.add(Step { stage: Stage::Search, what, tried }, effort);
+                self.add(Step::new(Stage::Search, what, tried), effort);
             }
         }
         Ok(())
     }
 
     /// Windows of the check.
-    const CHECKS: usize = CHANGES * (FINALISTS + EACH);
+    const CHECKS: usize = CHANGES * EACH + TURNED.end * FINALISTS - TURNED.start * FINALISTS;
 
-    /// Of the best strategies the one that keeps most under changes, with one other finger; then what
-    /// that one keeps with three.
+    /// Recommends what keeps most where the socket is turned, and says what that keeps under all changes.
     fn check(&mut self, bench: &Bench) -> Result<(), Impossible> {
-        let [_, one, _] = bench.others;
-        let mut worst = Vec::new();
-        for place in self.finalists() {
-            let kept = self.kept(bench, &self.steps[place].tried.strategy, &[one])?;
+        let inserts = |place: &usize| self.steps[*place].tried.inserts();
+        let mut order: Vec<_> = (0..self.steps.len()).filter(inserts).collect();
+        let score: Vec<_> = self.steps.iter().map(|step| step.tried.score).collect();
+        order.sort_by(|&a, &b| score[b].total_cmp(&score[a]));
+        // First the best that was not searched for: what is no wider when turned does not replace it.
+        let plain = order.iter().position(|&place| self.steps[place].stage < Stage::Search);
+        plain.iter().for_each(|&at| order[..=at].rotate_right(1));
+        let mut most = (self.best, f64::NEG_INFINITY);
+        for place in order.into_iter().take(FINALISTS) {
+            if score[place] <= most.1 + INDIFFERENCE_MM {
+                continue;
+            }
+            let strategy = &self.steps[place].tried.strategy;
+            let kept = self.kept(bench, strategy, &bench.others[1..2], TURNED)?;
             self.windows += kept.len();
-            let least = kept.iter().map(|kept| kept.least_range_mm).fold(f64::INFINITY, f64::min);
-            worst.push((place, least));
+            let turned = kept.iter().map(|kept| kept.least_range_mm).fold(f64::INFINITY, f64::min);
+            self.steps[place].turned_mm = Some(turned);
+            let least = turned.min(score[place]);
+            if least > most.1 + INDIFFERENCE_MM {
+                most = (place, least);
+            }
         }
-        let most = worst.iter().map(|(_, least)| *least).fold(0.0, f64::max);
-        // The first of those that are as good.
-        let found = worst.iter().find(|(_, least)| *least >= most - INDIFFERENCE_MM);
-        self.best = found.map_or(self.best, |(place, _)| *place);
-        self.kept = self.kept(bench, &self.steps[self.best].tried.strategy, &bench.others)?;
+        self.best = most.0;
+        self.kept = self.kept(bench, &self.best().tried.strategy, &bench.others, 0..CHANGES)?;
         self.windows += self.kept.len() * bench.others.len();
         Ok(())
-    }
-
-    /// The recommended strategy, then the best others, with their least ranges in falling order.
-    fn finalists(&self) -> Vec<usize> {
-        let inserts = |place: &usize| *place != self.best && self.steps[*place].tried.inserts();
-        let mut others: Vec<_> = (0..self.steps.len()).filter(inserts).collect();
-        let score = |place: &usize| self.steps[*place].tried.score;
-        others.sort_by(|a, b| score(b).total_cmp(&score(a)));
-        // The best that was not searched for is one of them.
-        let plain = others.iter().copied().find(|&place| self.steps[place].stage < Stage::Search);
-        let first = others.into_iter().filter(|&place| Some(place) != plain).take(FINALISTS - 2);
-        std::iter::once(self.best).chain(first).chain(plain).collect()
     }
 
     /// What a strategy keeps with some fingers, with a turned socket and with other friction.
@@ -242,6 +250,7 @@ impl Tuned {
         bench: &Bench,
         strategy: &Strategy,
         fingers: &[Finger],
+        which: Range<usize>,
     ) -> Result<Vec<Kept>, Impossible> {
         let nominal = Conditions::NOMINAL;
         let yaw = |degrees: f64| Conditions { yaw: degrees * DEG, ..nominal };
@@ -254,13 +263,13 @@ impl Tuned {
             (format!("friction plug-socket times {less}"), friction(less)),
             (format!("friction plug-socket times {more}"), friction(more)),
         ];
-        let under = |(change, conditions)| {
-            let windows = bench.windows(strategy, fingers, conditions)?;
+        let under = |(change, conditions): &(String, Conditions)| {
+            let windows = bench.windows(strategy, fingers, *conditions)?;
             let ranges = windows.iter().map(|(window, _)| window.range_mm());
             let least_range_mm = ranges.fold(f64::INFINITY, f64::min);
-            Ok(Kept { change, least_range_mm })
+            Ok(Kept { change: change.clone(), least_range_mm })
         };
-        changes.into_par_iter().map(under).collect()
+        changes[which].par_iter().map(under).collect()
     }
 
     /// Where the start that failed least clearly came to its end, of strategies without any that inserts.

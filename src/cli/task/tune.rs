@@ -4,7 +4,7 @@ use super::super::progress::Progress;
 use super::super::words::{lines, wrapped};
 use super::super::{Failure, print, print_json};
 use crate::session::{TuneDone, TuneRequest};
-use crate::tune::{MOST_WINDOWS, Stage, Step, Tuned};
+use crate::tune::{MOST_WINDOWS, Stage, Step, Tuned, YAW_DEG};
 use clap::Args;
 use input::units::{DEG, MM, N_PER_MM};
 use insertion::evaluation::Window;
@@ -68,12 +68,13 @@ pub fn brief_json(tuned: &Tuned) -> Value {
     }
 }
 
-fn step_json(Step { stage, what, tried }: &Step) -> Value {
+fn step_json(Step { stage, what, tried, turned_mm }: &Step) -> Value {
     json!({
         "stage": stage,
         "what": what,
         "least_range_mm": tried.inserts().then_some(tried.score),
         "range_mm": tried.windows.iter().map(Window::range_mm).collect::<Vec<_>>(),
+        "turned_least_range_mm": turned_mm,
     })
 }
 
@@ -181,9 +182,12 @@ fn steps(tuned: &Tuned) -> Vec<(String, String)> {
 const NAMES: [&str; 4] = ["before", "start", "families", "search"];
 
 fn outcome(step: &Step) -> String {
+    let turned = step.turned_mm.map_or(String::new(), |least_mm| {
+        format!(", with the socket turned by {YAW_DEG}° at least {least_mm:.1} mm")
+    });
     match step.tried.windows.is_empty() {
         true => "inserts from no start".to_owned(),
-        false => ranges(&step.tried.windows),
+        false => ranges(&step.tried.windows) + &turned,
     }
 }
 

@@ -38,6 +38,7 @@ impl Geometry {
         let check = Check { file: &finger.file };
         check_outline(check, &finger.outline)?;
         check_ribs(check, finger, design, lines.pitch)?;
+        finger.holes.iter().try_for_each(|holes| holes.check(check, finger))?;
         let outer = without_repeats(&ring(&finger.outline, 0.0, finger.outline.length), 1e-9);
         let ribbed = finger.outline.length - finger.outline.solid;
         let inside = ring(&finger.outline, finger.skin, ribbed);
@@ -48,20 +49,30 @@ impl Geometry {
         Ok(Geometry { finger: finger.clone(), design: *design, lines, outer, voids, ribs })
     }
 
-    /// Outline and openings, mm: the solid lies left of every ring.
+    /// Outline, openings and holes through the base, mm: the solid lies left of every ring.
     pub fn rings_mm(&self) -> Vec<Vec<[f64; 2]>> {
         let mm = |ring: &Ring| ring.iter().map(|p| [p.x / MM, p.y / MM]).collect();
-        std::iter::once(&self.outer).chain(&self.voids).map(mm).collect()
+        std::iter::once(&self.outer).chain(&self.voids).chain(&self.holes()).map(mm).collect()
+    }
+
+    /// Holes through the held base, clockwise, m; they are no openings of the mechanics.
+    pub fn holes(&self) -> Vec<Ring> {
+        let holes = self.finger.holes.as_ref().filter(|holes| holes.block.is_none());
+        holes.map_or_else(Vec::new, |holes| holes.rings(&self.finger.outline))
     }
 
     /// Area of the solid profile, m2.
     pub fn area(&self) -> f64 {
-        polygon::area(&self.outer) + self.voids.iter().map(|v| polygon::area(v)).sum::<f64>()
+        let openings =
+            self.voids.iter().chain(&self.holes()).map(|v| polygon::area(v)).sum::<f64>();
+        polygon::area(&self.outer) + openings
     }
 
     /// Mass of the printed finger, kg.
     pub fn mass(&self) -> f64 {
-        self.area() * self.finger.outline.depth * self.finger.material.density
+        let PrintedFinger { outline, holes, material, .. } = &self.finger;
+        let block = holes.as_ref().map_or(0.0, |holes| holes.added(outline));
+        (self.area() * outline.depth + block) * material.density
     }
 }
 

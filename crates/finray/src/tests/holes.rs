@@ -1,0 +1,95 @@
+//! Holes: where they lie, what they leave unchanged, and which do not fit.
+
+use super::{finray9, infill};
+use crate::export::prism::Prism;
+use crate::geometry::Geometry;
+use crate::infill::Design;
+use crate::mechanics::compute;
+use crate::polygon;
+use crate::printed::PrintedFinger;
+use input::units::MM;
+
+const THROUGH: &str = "[holes]\naxis = \"depth\"\nrow = \"width\"\ncount = 2\nspacing_mm = 8.0\n\
+                       diameter_mm = 3.2\noffset_mm = [0.5, 1.0]\n";
+const ALONG: &str = "[holes]\naxis = \"length\"\nrow = \"width\"\ncount = 2\nspacing_mm = 22.0\n\
+                     diameter_mm = 3.2\noffset_mm = [0.0, 0.0]\n\
+                     [holes.block]\nlength_mm = 5.0\nwidth_mm = 30.0\noverlap_mm = 1.0\n";
+
+fn geometry(holes: &str) -> Result<Geometry, String> {
+    let text = include_str!("../../../../fingers/finray9.toml").to_owned() + holes;
+    let finger = PrintedFinger::parse(&text, "f.toml").map_err(|error| error.to_string())?;
+    let design = Design { density_percent: 20.0, direction_deg: 20.0, phase_mm: None };
+    Geometry::new(&finger, &design).map_err(|error| error.to_string())
+}
+
+#[test]
+fn holes_are_round_and_change_no_stiffness() {
+    let (plain, holed) = (infill(20.0, 20.0), geometry(THROUGH).unwrap());
+    assert_eq!(compute(&plain), compute(&holed));
+    assert_eq!(compute(&plain), compute(&geometry(ALONG).unwrap()));
+    let rings = holed.holes();
+    let middle = |x: f64, y: f64| nalgebra::Point2::new(x * MM, y * MM);
+    for (ring, centre) in rings.iter().zip([middle(48.85, -11.3), middle(48.85, -3.3)]) {
+        assert!(polygon::area(ring) < 0.0);
+        for (a, b) in polygon::edges(ring) {
+            assert!(((a - centre).norm() - 1.6 * MM).abs() < 1e-9);
+            assert!((nalgebra::center(&a, &b) - centre).norm() > 1.59 * MM);
+        }
+    }
+    let lost = 2.0 * std::f64::consts::PI * (1.6 * MM).powi(2);
+    assert!(((plain.area() - holed.area()) / lost - 1.0).abs() < 0.01);
+    assert_eq!(holed.rings_mm().len(), plain.rings_mm().len() + 2);
+}
+
+#[test]
+fn a_block_weighs_what_it_adds() {
+    let density = finray9().material.density * 1e-9;
+    let added =
+        |holes: &str| (geometry(holes).unwrap().mass() - infill(20.0, 20.0).mass()) / density;
+    let hole = std::f64::consts::PI * 1.6 * 1.6;
+    // Beside the finger a hole passes the overlap, too; behind it, it ends there.
+    let wings = 5.0 * 30.0 * 12.0 + 14.4 * 12.0;
+    assert!((added(ALONG) / (wings - 2.0 * hole * 6.0) - 1.0).abs() < 1e-3);
+    let behind = ALONG.replace("spacing_mm = 22.0", "spacing_mm = 6.0");
+    assert!((added(&behind) / (wings - 2.0 * hole * 5.0) - 1.0).abs() < 1e-3);
+}
+
+/// A hole's wall seen from the solid: the surface turns its outside to the hole's middle.
+#[test]
+fn a_hole_along_the_width_is_in_the_surface_where_it_should_be() {
+    let across =
+        ALONG.replace("axis = \"length\"\nrow = \"width\"", "axis = \"width\"\nrow = \"depth\"");
+    let across = across.replace("22.0", "5.0").replace("length_mm = 5.0", "length_mm = 10.0");
+    let across = across.replace("offset_mm = [0.0, 0.0]", "offset_mm = [0.0, 1.0]");
+    let prism = Prism::finger(&geometry(&across).unwrap()).unwrap();
+    let on_hole = |p: &&[f32; 3]| {
+        let [x, y, z] = p.map(f64::from);
+        let radius = (x - 58.8).hypot(z - 3.5);
+        (radius - 1.6).abs() < 1e-3 && ((y - 22.8).abs() < 1e-4 || (y + 7.2).abs() < 1e-4)
+    };
+    assert_eq!(prism.corners.iter().filter(on_hole).count(), 2 * 32);
+}
+
+#[test]
+fn holes_that_do_not_fit_are_refused_by_their_key() {
+    let sole = THROUGH.replace("depth", "width");
+    let cases = [
+        (THROUGH, "spacing_mm = 8.0", "spacing_mm = 4.0", ["holes.spacing_mm", "at least 4.4"]),
+        (THROUGH, "spacing_mm = 8.0", "spacing_mm = 12.0", ["f.toml: holes", "wall of -0.3 mm"]),
+        (THROUGH, "[0.5, 1.0]", "[0.5, 2.5]", ["f.toml: holes", "0.85 mm in the held base, 9.9"]),
+        (THROUGH, "[0.5, 1.0]", "[0.5, nan]", ["holes.offset_mm", "number"]),
+        (THROUGH, "count = 2", "count = 0", ["holes.count", "from 1 to 20"]),
+        (THROUGH, "diameter_mm = 3.2", "diameter_mm = 0.5", ["holes.diameter_mm", "at least 1"]),
+        (THROUGH, "\"depth\"", "\"up\"", ["up", "length"]),
+        (THROUGH, "\"width\"", "\"depth\"", ["holes.row", "\"length\" or \"width\""]),
+        (&sole, "row = \"width\"", "row = \"length\"", ["holes.block", "overlap_mm"]),
+        (ALONG, "overlap_mm = 1.0", "overlap_mm = 10.0", ["holes.block.overlap_mm", "9.9"]),
+        (ALONG, "overlap_mm = 1.0", "overlap_mm = 0.0", ["holes.block.overlap_mm", "above 0"]),
+        (ALONG, "spacing_mm = 22.0", "spacing_mm = 15.0", ["holes.offset_mm", "beside it"]),
+    ];
+    for (holes, from, to, parts) in cases {
+        assert!(holes.contains(from), "{from}");
+        let error = geometry(&holes.replace(from, to)).unwrap_err();
+        assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+    }
+}

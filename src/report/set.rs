@@ -33,7 +33,14 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
             robot.map_or(String::new(), |robot| mm(robot.range_mm)),
         ]
     };
-    let head = ["finger", "", "expected less", "largest force", "stiffness across", "on a robot"];
+    let head = [
+        "finger",
+        "",
+        "expected less",
+        "largest force",
+        "stiffness across, measured model",
+        "on a robot",
+    ];
     let rows: Vec<_> = designs.iter().take(LISTED).map(row).collect();
     Some(html! {
         p { (lines::within(answer, found).1) "." }

@@ -2,6 +2,7 @@
 
 use super::{mm, profile, title};
 use crate::geometry::Geometry;
+use crate::holes::{Direction, Holes};
 use crate::mechanics::FingerStiffness;
 use crate::printed::{Outline, PrintedFinger};
 use input::units::{DEG, GRAM, MM, N_PER_MM};
@@ -15,8 +16,17 @@ const ROOM: [f64; 2] = [215.0, 80.0];
 /// Left and upper edge of the drawing, mm on paper.
 const CORNER: [f64; 2] = [38.0, 58.0];
 
+/// Stiffness of a finger at its pad, across and along it.
+#[derive(Debug, Clone, Copy)]
+pub struct AtPad<'a> {
+    /// Computed from its ribs.
+    pub ribs: &'a FingerStiffness,
+    /// Mean and standard deviation by the model of measured fingers, N/m; `None` without any.
+    pub measured: Option<[[f64; 2]; 2]>,
+}
+
 /// Print sheet as a page of HTML that prints on one sheet of paper.
-pub fn html(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
+pub fn html(geometry: &Geometry, stiffness: &AtPad) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -32,12 +42,14 @@ pub fn html(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
 }
 
 /// Print sheet as an SVG of an A4 page.
-pub fn svg(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
+pub fn svg(geometry: &Geometry, stiffness: &AtPad) -> String {
     let [width, height] = PAPER;
-    let outline = &geometry.finger.outline;
-    let fits = (ROOM[0] / (outline.length / MM)).min(ROOM[1] / (outline.width / MM));
+    let [beyond, wing] = block(geometry);
+    let size = geometry.finger.outline;
+    let [long, wide] = [size.length / MM + beyond, size.width / MM + 2.0 * wing];
+    let fits = (ROOM[0] / long).min(ROOM[1] / wide);
     let scale = if fits >= 1.0 { fits.floor() } else { 1.0 / (1.0 / fits).ceil() };
-    let view = View { origin: Point2::from(CORNER), scale };
+    let view = View { origin: Point2::new(CORNER[0], CORNER[1] + wing * scale), scale };
     let words = if scale >= 1.0 { format!("{scale} : 1") } else { format!("1 : {}", 1.0 / scale) };
     let svg = html! {
         svg xmlns="http://www.w3.org/2000/svg" width={ (width) "mm" } height={ (height) "mm" }
@@ -49,7 +61,7 @@ pub fn svg(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
             }
             text x="282" y="17" text-anchor="end" fill="#444" { "lengths in mm, drawn " (words) }
             (drawing(geometry, view))
-            (lengths(outline, view))
+            (lengths(geometry, view))
             (direction(geometry, view))
             (column(15.0, "Finger", &finger(geometry)))
             (column(108.0, "Print", &print(geometry)))
@@ -62,19 +74,62 @@ pub fn svg(geometry: &Geometry, stiffness: &FingerStiffness) -> String {
 /// The finger as the sheet draws it, with its lengths (in a group of class `lengths`) and infill
 /// directions, as an SVG of its own.
 pub fn part(geometry: &Geometry) -> String {
-    let outline = &geometry.finger.outline;
-    let (length, width) = (outline.length / MM, outline.width / MM);
-    let view = View { origin: Point2::new(22.0, 26.0), scale: ROOM[0] / length };
-    let size = [ROOM[0] + 44.0, width * view.scale + 50.0];
+    let ([beyond, wing], outline) = (block(geometry), &geometry.finger.outline);
+    let scale = ROOM[0] / (outline.length / MM + beyond);
+    let view = View { origin: Point2::new(22.0, 26.0 + wing * scale), scale };
+    let size = [ROOM[0] + 44.0, (outline.width / MM + 2.0 * wing) * scale + 50.0];
     let svg = html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (size[0]) " " (size[1].ceil()) }
             font-family="sans-serif" font-size="3.6" {
             (drawing(geometry, view))
-            (lengths(outline, view))
+            (lengths(geometry, view))
             (direction(geometry, view))
         }
     };
     svg.into_string()
+}
+
+/// Length of the block beyond a finger and its width beside it, on either side, mm.
+fn block(geometry: &Geometry) -> [f64; 2] {
+    let block = geometry.finger.holes.as_ref().and_then(|holes| holes.block);
+    let wing = |width: f64| ((width - geometry.finger.outline.width) / 2.0).max(0.0);
+    block.map_or([0.0; 2], |block| [block.length / MM, wing(block.width) / MM])
+}
+
+/// The block, and its holes: round along the depth, else hidden lines.
+fn holes(holes: &Holes, outline: &Outline, view: View) -> Markup {
+    let Some(block) = holes.block else { return html! {} };
+    let [[_, right], [low, high], _] = holes.carrier(outline).map(|ends| ends.map(|end| end / MM));
+    let left = (outline.length - block.overlap) / MM;
+    let (at, radius) = (view.place(Point2::new(left, high)), holes.diameter / 2.0 / MM);
+    let hidden = |[x, y, _]: [f64; 3]| {
+        let (x, y) = (x / MM, y / MM);
+        let ends = |by: f64| match holes.axis {
+            Direction::Length => [
+                Point2::new(
+                    left.max(right - holes.length(outline, &[0.0, y * MM, 0.0]) / MM),
+                    y + by,
+                ),
+                Point2::new(right, y + by),
+            ],
+            _ => [Point2::new(x + by, low), Point2::new(x + by, high)],
+        };
+        [-radius, radius].map(|by| ends(by).map(|end| view.place(end)))
+    };
+    let middles = holes.middles(outline);
+    html! {
+        g fill="none" stroke="#223" stroke-width="0.3" {
+            rect x=(at.x) y=(at.y) width=((right - left) * view.scale) height=((high - low) * view.scale) {}
+            @for middle in &middles {
+                @if holes.axis == Direction::Depth {
+                    @let at = view.place(Point2::new(middle[0], middle[1]) / MM);
+                    circle cx=(at.x) cy=(at.y) r=(radius * view.scale) {}
+                } @else {
+                    g stroke-dasharray="2 1" { @for [a, b] in hidden(*middle) { (line(a, b)) } }
+                }
+            }
+        }
+    }
 }
 
 /// Profile, and the part of it that the gripper holds.
@@ -88,9 +143,10 @@ fn drawing(geometry: &Geometry, view: View) -> Markup {
             fill-rule="evenodd" {}
         rect x=(at.x) y=(at.y) width=(width) height=(height) fill="none" stroke="#a33"
             stroke-width="0.4" stroke-dasharray="2 1" {}
-        text x=(at.x + width / 2.0) y=(at.y + height / 2.0) text-anchor="middle" fill="#a33" {
+        text x=(at.x + width / 2.0) y=(at.y + height - 2.0) text-anchor="middle" fill="#a33" {
             "held by the gripper"
         }
+        @if let Some(found) = &geometry.finger.holes { (holes(found, outline, view)) }
     }
 }
 
@@ -99,8 +155,10 @@ fn degrees(angle: f64) -> f64 {
     (angle / DEG * 100.0).round() / 100.0
 }
 
-/// Dimension lines of the outline.
-fn lengths(outline: &Outline, view: View) -> Markup {
+/// Dimension lines of the outline, and of the holes.
+fn lengths(geometry: &Geometry, view: View) -> Markup {
+    let outline = &geometry.finger.outline;
+    let [beyond, wing] = block(geometry).map(|length| length * view.scale);
     let at = |x: f64, y: f64| Point2::new(x, y) / MM;
     let Outline { length, width, tip, solid, clamped, .. } = *outline;
     let arc = outline.arc_end();
@@ -109,18 +167,46 @@ fn lengths(outline: &Outline, view: View) -> Markup {
     let middle = view.place(at(arc / 2.0, -width));
     html! {
         g class="lengths" font-size="3.2" fill="#222" {
-            (view.length(at(0.0, -width), at(length, -width), -16.0, &mm(length)))
-            (view.length(at(arc, -width), at(length, -width), -8.0, &mm(length - arc)))
-            (view.length(at(length, -width), at(length, 0.0), -8.0, &mm(width)))
-            (view.length(at(length - solid, 0.0), at(length, 0.0), 7.0, &format!("solid {}", mm(solid))))
-            (view.length(at(length - clamped, 0.0), at(length, 0.0), 14.0, &format!("held {}", mm(clamped))))
+            (view.length(at(0.0, -width), at(length, -width), -16.0 - wing, &mm(length)))
+            (view.length(at(arc, -width), at(length, -width), -8.0 - wing, &mm(length - arc)))
+            (view.length(at(length, -width), at(length, 0.0), -8.0 - beyond, &mm(width)))
+            (view.length(at(length - solid, 0.0), at(length, 0.0), 7.0 + wing, &format!("solid {}", mm(solid))))
+            (view.length(at(length - clamped, 0.0), at(length, 0.0), 14.0 + wing, &format!("held {}", mm(clamped))))
             (view.length(at(0.0, -tip), at(0.0, 0.0), 12.0, &mm(tip)))
             (view.length(outline.tip_point() / MM, outline.corner() / MM, 5.0, &pad))
             text x=(middle.x - 12.0) y=(middle.y - 1.0) text-anchor="middle" {
                 "R " (mm(outline.back_radius))
             }
+            @if let Some(holes) = &geometry.finger.holes {
+                @for (a, b, distance) in chains(holes, outline) {
+                    @let by = if a.x == b.x { -beyond } else { wing };
+                    (view.length(a / MM, b / MM, distance + by, &mm((b - a).norm())))
+                }
+            }
         }
     }
+}
+
+/// Dimensions from end and front of what carries the holes to their middles, and on from one to the
+/// next: both ends, m, and the distance of the line, mm on paper.
+fn chains(holes: &Holes, outline: &Outline) -> Vec<(Point2<f64>, Point2<f64>, f64)> {
+    let [[_, end], [_, front], _] = holes.carrier(outline);
+    let mut middles = holes.middles(outline);
+    middles.reverse();
+    let places = |direction: Direction, from: f64| {
+        let mut places = vec![from];
+        let seen = direction != holes.axis;
+        places.extend(middles.iter().filter(|_| seen).map(|middle| middle[direction as usize]));
+        places.dedup();
+        places
+    };
+    let along = places(Direction::Length, end);
+    let across = places(Direction::Width, front);
+    let along = along.windows(2).map(|x| (Point2::new(x[1], 0.0), Point2::new(x[0], 0.0), 21.0));
+    let across = across
+        .windows(2)
+        .map(|y| (Point2::new(outline.length, y[1]), Point2::new(outline.length, y[0]), -16.0));
+    along.chain(across).collect()
 }
 
 /// Infill directions: 0 degrees, and the design's.
@@ -166,7 +252,7 @@ fn finger(geometry: &Geometry) -> Vec<(&'static str, String)> {
     let PrintedFinger { material, outline, skin, ribs, .. } = &geometry.finger;
     let (design, lines) = (&geometry.design, &geometry.lines);
     let [x, y] = [ribs.origin.x, ribs.origin.y].map(mm);
-    vec![
+    let mut rows = vec![
         ("material", format!("{}, {} GPa", material.name, material.modulus / 1e9)),
         ("infill", format!("{} %, {}°", design.density_percent, design.direction_deg)),
         ("ribs", format!("{} of {}, {} apart", geometry.ribs, mm(ribs.thickness), mm(lines.pitch))),
@@ -174,7 +260,22 @@ fn finger(geometry: &Geometry) -> Vec<(&'static str, String)> {
         ("skin", mm(*skin)),
         ("depth", mm(outline.depth)),
         ("mount", format!("{}° to the assembly", degrees(geometry.finger.tilt))),
-    ]
+    ];
+    let Some(holes) = &geometry.finger.holes else { return rows };
+    let (axis, row) = (holes.axis.word(), holes.row.word());
+    let [depth, spacing, diameter] = [outline.depth, holes.spacing, holes.diameter].map(mm);
+    rows.push((
+        "holes",
+        format!("{} × ⌀{diameter} along the {axis}, {spacing} apart in {row}", holes.count),
+    ));
+    if let Some(block) = holes.block {
+        let middle = holes.middles(outline)[0];
+        let [length, width, overlap] = [block.length, block.width, block.overlap].map(mm);
+        let deep = mm(holes.length(outline, &middle));
+        rows.push(("", format!("{deep} deep, the first at {} of the depth", mm(middle[2]))));
+        rows.push(("block", format!("{length} × {width} × {depth}, {overlap} more in the finger")));
+    }
+    rows
 }
 
 fn print(geometry: &Geometry) -> Vec<(&'static str, String)> {
@@ -190,15 +291,41 @@ fn print(geometry: &Geometry) -> Vec<(&'static str, String)> {
     ]
 }
 
-fn check(geometry: &Geometry, stiffness: &FingerStiffness) -> Vec<(&'static str, String)> {
-    let computed = |value: f64| format!("{:.2} N/mm, computed", value / N_PER_MM);
+/// Share by which a measured finger may differ from its ribs: two standard deviations of the eleven
+/// shipped ones.
+const SCATTER: f64 = 0.35;
+
+fn check(geometry: &Geometry, AtPad { ribs, measured }: &AtPad) -> Vec<(&'static str, String)> {
+    let ribs = [ribs.pad.in_compliance(), ribs.pad_and_roof.in_assembly()];
+    let [across, along] = ribs.map(|value| format!("{:.2} N/mm, from the ribs", value / N_PER_MM));
+    let of = |stiffness: [f64; 2]| {
+        let [mean, sd] = stiffness.map(|value| value / N_PER_MM);
+        // As many digits as pages and terminal show.
+        let digits = if mean >= 10.0 { 1 } else { 2 };
+        format!("{mean:.digits$} ± {sd:.digits$} N/mm, measured model")
+    };
+    let none = || "no finger of this file was measured".to_owned();
+    let [model_across, model_along] = measured.map_or([none(), none()], |found| found.map(of));
+    let modulus = geometry.finger.material.modulus / 1e9;
+    // What the trials were simulated with is what a print is to be.
+    let (least, most) = match measured {
+        Some([[mean, sd], _]) => ((mean - 2.0 * sd).max(0.0), mean + 2.0 * sd),
+        None => (ribs[0] * (1.0 - SCATTER), ribs[0] * (1.0 + SCATTER)),
+    };
+    let by = match measured {
+        Some(_) => "measured model, 2 sd".to_owned(),
+        None => format!("from the ribs, {:.0} %", SCATTER * 100.0),
+    };
     vec![
         ("mass", format!("{:.2} g", geometry.mass() / GRAM)),
         ("profile", format!("{:.1} mm2", geometry.area() / (MM * MM))),
-        ("across pad", computed(stiffness.pad.in_compliance())),
-        ("along pad", computed(stiffness.pad.in_assembly())),
-        ("", "force on the pad's middle, free to turn;".to_owned()),
-        ("", format!("from {} GPa: measure yours", geometry.finger.material.modulus / 1e9)),
+        ("across pad", model_across),
+        ("", format!("{across} at {modulus} GPa")),
+        ("along pad", model_along),
+        ("", format!("{along}, pad and roof held")),
+        ("check", "hold the base, push the pad's middle across".to_owned()),
+        ("", "it by 1 mm, free to turn; the force is to be".to_owned()),
+        ("", format!("{:.2} to {:.2} N: {by}", least * MM, most * MM)),
     ]
 }
 

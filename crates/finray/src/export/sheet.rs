@@ -266,7 +266,7 @@ fn finger(geometry: &Geometry) -> Vec<(&'static str, String)> {
     let [depth, spacing, diameter] = [outline.depth, holes.spacing, holes.diameter].map(mm);
     rows.push((
         "holes",
-        format!("{} × ⌀{diameter} along the {axis}, {spacing} apart in {row}", holes.count),
+        format!("{} × ⌀{diameter} along {axis}, {spacing} apart in {row}", holes.count),
     ));
     if let Some(block) = holes.block {
         let middle = holes.middles(outline)[0];
@@ -313,7 +313,7 @@ fn check(geometry: &Geometry, AtPad { ribs, measured }: &AtPad) -> Vec<(&'static
         None => (ribs[0] * (1.0 - SCATTER), ribs[0] * (1.0 + SCATTER)),
     };
     let by = match measured {
-        Some(_) => "measured model, 2 sd".to_owned(),
+        Some(_) => "measured model 2 sd".to_owned(),
         None => format!("from the ribs, {:.0} %", SCATTER * 100.0),
     };
     vec![
@@ -322,10 +322,10 @@ fn check(geometry: &Geometry, AtPad { ribs, measured }: &AtPad) -> Vec<(&'static
         ("across pad", model_across),
         ("", format!("{across} at {modulus} GPa")),
         ("along pad", model_along),
-        ("", format!("{along}, pad and roof held")),
-        ("check", "hold the base, push the pad's middle across".to_owned()),
-        ("", "it by 1 mm, free to turn; the force is to be".to_owned()),
-        ("", format!("{:.2} to {:.2} N: {by}", least * MM, most * MM)),
+        ("", format!("{along}, roof too")),
+        ("check", "hold the base, push the pad's middle".to_owned()),
+        ("", "1 mm across, free to turn: this takes".to_owned()),
+        ("", format!("{:.2} to {:.2} N, {by}", least * MM, most * MM)),
     ]
 }
 

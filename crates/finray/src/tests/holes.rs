@@ -1,7 +1,6 @@
 //! Holes: where they lie, what they leave unchanged, and which do not fit.
 
 use super::{finray9, infill};
-use crate::export::prism::Prism;
 use crate::geometry::Geometry;
 use crate::infill::Design;
 use crate::mechanics::compute;
@@ -52,22 +51,6 @@ fn a_block_weighs_what_it_adds() {
     assert!((added(ALONG) / (wings - 2.0 * hole * 6.0) - 1.0).abs() < 1e-3);
     let behind = ALONG.replace("spacing_mm = 22.0", "spacing_mm = 6.0");
     assert!((added(&behind) / (wings - 2.0 * hole * 5.0) - 1.0).abs() < 1e-3);
-}
-
-/// A hole's wall seen from the solid: the surface turns its outside to the hole's middle.
-#[test]
-fn a_hole_along_the_width_is_in_the_surface_where_it_should_be() {
-    let across =
-        ALONG.replace("axis = \"length\"\nrow = \"width\"", "axis = \"width\"\nrow = \"depth\"");
-    let across = across.replace("22.0", "5.0").replace("length_mm = 5.0", "length_mm = 10.0");
-    let across = across.replace("offset_mm = [0.0, 0.0]", "offset_mm = [0.0, 1.0]");
-    let prism = Prism::finger(&geometry(&across).unwrap()).unwrap();
-    let on_hole = |p: &&[f32; 3]| {
-        let [x, y, z] = p.map(f64::from);
-        let radius = (x - 58.8).hypot(z - 3.5);
-        (radius - 1.6).abs() < 1e-3 && ((y - 22.8).abs() < 1e-4 || (y + 7.2).abs() < 1e-4)
-    };
-    assert_eq!(prism.corners.iter().filter(on_hole).count(), 2 * 32);
 }
 
 #[test]

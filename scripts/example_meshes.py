@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 """Makes the meshes in examples/meshes/ again, each one closed surface as a CAD program exports it.
 
+With a folder as argument: the parts on which the import is tried, into it.
 Needs `pip install trimesh==5.2.0 manifold3d numpy`. Lengths in mm.
 """
 
+import random
+import sys
 from pathlib import Path
 
 import manifold3d as m
@@ -23,10 +26,10 @@ def extruded(outline, z, scale=(1.0, 1.0)):
     return section.extrude(z[1] - z[0], scale_top=scale).translate([0, 0, z[0]])
 
 
-def write(name, solid):
-    mesh = solid.to_mesh()
+def write(name, solid, folder=FOLDER, unit=1.0, turn=(0, 0, 0)):
+    mesh = solid.rotate(turn).scale([1.0 / unit] * 3).to_mesh()
     points, faces = np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts)
-    trimesh.Trimesh(points, faces, process=False).export(FOLDER / name)
+    trimesh.Trimesh(points, faces, process=False).export(folder / name)
 
 
 def usb():
@@ -66,6 +69,75 @@ def example():
     write("keyed-socket.stl", box((-8, 9), (-10, 10), (-11, 0)) - pocket - lead)
 
 
-FOLDER.mkdir(parents=True, exist_ok=True)
-usb()
-example()
+def rectangle(x, y):
+    return m.CrossSection.square((x, y), True)
+
+
+def d_shape():
+    """A circle of 9 mm with a flat at -x."""
+    return m.CrossSection.circle(4.5, 32) - rectangle(4, 20).translate((-5.2, 0))
+
+
+def peg_with_key():
+    """A peg of 8 mm with a key of 2 mm that stands out by 1 mm at +x."""
+    return m.CrossSection.circle(4, 32) + rectangle(2, 2).translate((4, 0))
+
+
+def oval():
+    """Two half circles of 4 mm, 10 mm long in y."""
+    return m.CrossSection.batch_hull([m.CrossSection.circle(2, 32).translate((0, y)) for y in (-3, 3)])
+
+
+def keyed_square():
+    return rectangle(7, 7) + rectangle(1.6, 2).translate((3.5, 1.5))
+
+
+def trapezoid():
+    """As of a D-sub connector: 9 and 8 mm wide in y, 5 mm high in x."""
+    return m.CrossSection([[(-2.5, -4.0), (2.5, -4.5), (2.5, 4.5), (-2.5, 4.0)]])
+
+
+def pair(folder, name, section, clearance, chamfer, depth=8.0, body=(8, 12, 18), flange=0.0, **form):
+    """A plug of this section under a body, x y z; a socket about it with a chamfer in three steps."""
+    x, y, length = body
+    plug = section.extrude(depth) + box((-x / 2, x / 2), (-y / 2, y / 2), (depth, depth + length))
+    if flange:
+        x, y = x + 4, y + 4
+        plug += box((-x / 2, x / 2), (-y / 2, y / 2), (depth, depth + flange))
+    # Offset as a mitre keeps the corners: the clearance is the same on all sides.
+    grown = lambda by: section.offset(by, m.JoinType.Miter, 2.0)
+    left, low, right, high = section.bounds()
+    block = box((left - 5, right + 5), (low - 5, high + 5), (-depth - 3, 0))
+    hole = grown(clearance / 2).extrude(depth + 2).translate([0, 0, -depth - 0.5])
+    if chamfer:
+        rim = lambda by, z: grown(by).extrude(0.001).translate([0, 0, z])
+        hole += m.Manifold.batch_hull([rim(clearance / 2, -chamfer), rim(clearance / 2 + chamfer, 0)])
+    write(f"{name}-plug.stl", plug, folder, **form)
+    write(f"{name}-socket.stl", block - hole, folder, **form)
+
+
+def parts(folder):
+    """The parts on which the import is tried."""
+    pair(folder, "d-shape", d_shape(), 0.1, 0.5, body=(10, 12, 18), flange=1.5)
+    pair(folder, "peg-key", peg_with_key(), 0.15, 0.5, body=(12, 12, 18))
+    pair(folder, "peg-key-inch", peg_with_key(), 0.15, 0.5, body=(12, 12, 18), unit=25.4, turn=(0, -90, 0))
+    pair(folder, "oval", oval(), 0.1, 0.4, body=(8, 14, 18))
+    pair(folder, "keyed-square", keyed_square(), 0.15, 0.4, body=(11, 11, 16))
+    pair(folder, "d-sub", trapezoid(), 0.12, 0.3, body=(9, 13, 18))
+    draw = random.Random(28)
+    for number in range(1, 13):
+        x, y, depth = draw.uniform(2.5, 9), draw.uniform(5, 14), draw.uniform(5, 12)
+        size = [rectangle(x, y), m.CrossSection.circle(y / 2, 32)][number % 4 == 0]
+        clearance, chamfer = draw.uniform(0.05, 0.3), draw.choice([0, draw.uniform(0.2, 0.8)])
+        wide = max(x, y) if number % 4 == 0 else x
+        body = (wide + draw.uniform(2, 6), y + draw.uniform(2, 6), draw.uniform(12, 22))
+        pair(folder, f"random-{number:02}", size, clearance, chamfer, depth, body)
+
+
+if len(sys.argv) > 1:
+    Path(sys.argv[1]).mkdir(parents=True, exist_ok=True)
+    parts(Path(sys.argv[1]))
+else:
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    usb()
+    example()

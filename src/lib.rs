@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! input, contact, finray, ask_tell -> insertion
-//!       -> connector, sensitivity, map, study, calibration -> levers -> answer -> report -> session -> cli
+//!       -> connector, sensitivity, map, study, calibration -> levers, tune -> answer -> report -> session -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -26,3 +26,4 @@ pub mod report;
 pub mod sensitivity;
 pub mod session;
 pub mod study;
+pub mod tune;

@@ -48,6 +48,11 @@ impl Progress {
         Progress::of(count as f64 * COSTS[2], !quiet)
     }
 
+    /// Of a search for a strategy that measures so many windows.
+    pub fn of_windows(count: usize, quiet: bool) -> Self {
+        Progress::of(count as f64, !quiet)
+    }
+
     fn of(left: f64, shown: bool) -> Self {
         let bar = (shown && stderr().is_terminal()).then(|| bar(left));
         let now = Instant::now();

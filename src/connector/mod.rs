@@ -8,5 +8,6 @@ pub mod mesh;
 pub mod nominal;
 pub(crate) mod picture;
 pub(crate) mod plan;
+pub(crate) mod rewrite;
 pub(crate) mod seat;
 pub(crate) mod write;

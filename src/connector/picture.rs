@@ -29,6 +29,21 @@ const VIEWS: [(&str, [usize; 2]); 3] = [
     ("from above: y to the right, x up", [1, 0]),
 ];
 
+/// The task before a change of its strategy and after it, one below the other.
+pub fn both(before: &Task, after: &Task) -> String {
+    let (width, height) = (VIEWS.len() as f64 * PANEL, PANEL + 130.0);
+    let titled = |(row, title, task): (f64, &str, &Task)| {
+        let task = Task { description: format!("{title}: {}", task.description), ..task.clone() };
+        let nested = format!("<svg y=\"{}\" height=\"{height}\"", row * height);
+        svg(&task).replacen("<svg", &nested, 1)
+    };
+    let rows: String = [(0.0, "before", before), (1.0, "after", after)].map(titled).concat();
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {:.0}\">\n{rows}</svg>\n",
+        2.0 * height
+    )
+}
+
 struct Drawing<'a> {
     task: &'a Task,
     way: Vec<Waypoint>,

@@ -9,9 +9,12 @@
 use super::body::{ConvexBody, extent, width};
 use super::hold::held;
 use super::seat::{self, Seat, Seating, section};
+use input::shipped::TASKS;
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
-use insertion::task::{Ending, Part, Phase, Sensed, Solid, Stage, Success, Task};
+use insertion::task::{
+    Ending, Part, Phase, Sensed, Solid, Stage, StartRule, Strategy, Success, Task,
+};
 
 /// Distance of the TCP below the shoulder, m, as in the shipped tasks.
 const BELOW_SHOULDER: f64 = 3.5 * MM;
@@ -31,8 +34,8 @@ const ACROSS: [f64; 2] = [0.8 * MM, 0.45 * MM];
 const ROUND_ACROSS: f64 = 0.5 * MM;
 /// Share of a round opening's half that the tip's lowest point starts beyond its middle.
 const ROUND_AHEAD: f64 = 0.7;
-/// Command of the push beyond the seat, m.
-const PRESS: f64 = 4.0 * MM;
+/// Command of the push beyond the seat, m, and its speed, m/s.
+const PUSH: [f64; 2] = [4.0 * MM, 100.0 * MM];
 /// Tilt that counts as upright beyond what the play allows, degrees.
 const UPRIGHT_DEG: f64 = 2.0;
 /// Least tilt that counts as upright, degrees.
@@ -66,30 +69,93 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
         let names = (plug_parts[by].name.clone(), socket_parts[on].name.clone());
         return Err(PlanError::NoEntry(seat.depth / MM, names.0, names.1));
     }
-    let [bottom, _] = plug.extent(2);
-    let tip = section(&plug, bottom + LEAST_DEPTH);
     let held = held(&plug, task.grip.shoulder_z, Some(task.grip.faces_y));
     let cover = held.cover[0].min(held.cover[1]);
     task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
     task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
     let play = Seating::new(&task, &plug, &socket).play(WITHIN * seat.depth, seat.at, 1);
     success(&mut task, &plug, &seat, play);
-    let rise = (RISE / width(tip[1])).min(1.0);
-    let [least, most] = TILT_DEG;
-    task.strategy.tilt = round(libm::asin(rise) / DEG, 0.1).clamp(least, most) * DEG;
     let height = |part: &&Part| extent(part.solid.corners(), 2)[0];
     let lowest = plug_parts.iter().min_by(|a, b| height(a).total_cmp(&height(b)));
-    let search = match lowest.map(|part| &part.solid) {
-        Some(Solid::Cylinder { .. }) => Moves::of_point(&task, tip),
-        _ => Moves::of_edge(&task, tip),
+    let family = match lowest.map(|part| &part.solid) {
+        Some(Solid::Cylinder { .. }) => &Family::Peg,
+        _ => &Family::Key,
     };
-    task.strategy.start = [0.0; 3];
-    task.strategy.phases = Vec::new();
-    let edge = seat::waypoints(&task, &plug)[0].edge;
-    task.strategy.start =
-        [round_mm(search.x), round_mm(search.edge_y - edge.y), round_mm(AIR[0] - edge.z)];
-    task.strategy.phases = phases(&task, &search, seat.depth);
+    task.strategy = family.strategy(&task, &plug, seat.depth);
     Ok(task)
+}
+
+/// Connectors that a search is known to suit.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Family {
+    /// Its tip comes down with an edge.
+    Key,
+    /// Its tip comes down with a point.
+    Peg,
+    /// Those of a shipped task.
+    Like(Box<Task>),
+}
+
+impl Family {
+    /// All families.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let shipped = TASKS.iter().filter_map(|file| Task::parse(file.text, file.file).ok());
+        [Family::Key, Family::Peg].into_iter().chain(shipped.map(|task| Family::Like(task.into())))
+    }
+
+    /// Its name: `like a key`.
+    pub fn name(&self) -> String {
+        match self {
+            Family::Key => "like a key".to_owned(),
+            Family::Peg => "like a round peg".to_owned(),
+            Family::Like(task) => format!("like {}", task.name),
+        }
+    }
+
+    /// The family's strategy for the shapes of a task; `None` if its plug does not go in.
+    pub fn of(&self, task: &Task) -> Option<Strategy> {
+        let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
+        let seat = Seating::new(task, &plug, &socket).deepest();
+        (seat.depth >= LEAST_DEPTH).then(|| self.strategy(task, &plug, seat.depth))
+    }
+
+    /// The strategy for a plug that is stopped at this depth, m.
+    fn strategy(&self, task: &Task, plug: &ConvexBody, seat: f64) -> Strategy {
+        let tip = tip(plug);
+        let rise = (RISE / width(tip[1])).min(1.0);
+        let [least, most] = TILT_DEG;
+        let tilt = round(libm::asin(rise) / DEG, 0.1).clamp(least, most) * DEG;
+        let (search, tilt) = match self {
+            Family::Key => (Moves::of_edge(task, tip), tilt),
+            Family::Peg => (Moves::of_point(task, tip), tilt),
+            Family::Like(other) => (Moves::like(task, tip, other), other.strategy.tilt),
+        };
+        let rule = StartRule::Given;
+        let mut placed = task.clone();
+        placed.strategy = Strategy { tilt, start: [0.0; 3], rule, phases: Vec::new() };
+        let edge = seat::waypoints(&placed, plug)[0].edge;
+        placed.strategy.start =
+            [round_mm(search.x), round_mm(search.edge_y - edge.y), round_mm(AIR[0] - edge.z)];
+        placed.strategy.phases = phases(&placed, &search, seat);
+        placed.strategy
+    }
+}
+
+/// Intervals of the tip in x and in y, m.
+fn tip(plug: &ConvexBody) -> [[f64; 2]; 2] {
+    section(plug, plug.extent(2)[0] + LEAST_DEPTH)
+}
+
+/// A place with respect to an interval carried over to another: beyond an end as far beyond it, m,
+/// between them as a share.
+fn carried(place: f64, [low, high]: [f64; 2], to: [f64; 2]) -> f64 {
+    if place <= low || high <= low {
+        to[0] + (place - low)
+    } else if place >= high {
+        to[1] + (place - high)
+    } else {
+        to[0] + (place - low) / (high - low) * width(to)
+    }
 }
 
 struct Moves {
@@ -103,6 +169,8 @@ struct Moves {
     across: [f64; 3],
     down: f64,
     side: f64,
+    /// Command of the push beyond the seat, and its speed, m/s.
+    push: [f64; 2],
 }
 
 impl Moves {
@@ -119,7 +187,50 @@ impl Moves {
             across: [beside + play + ACROSS[0], -front, 0.0],
             down: 0.5 * MM,
             side: (high - low) / 2.0 + 1.0 * MM,
+            push: PUSH,
         }
+    }
+
+    /// The moves of another task, whose tip comes to the same places about this opening: beyond a
+    /// wall as far beyond it, between walls at the same share of the way.
+    fn like(task: &Task, tip: [[f64; 2]; 2], other: &Task) -> Self {
+        let plug = ConvexBody::plug(&other.plug);
+        let way = seat::waypoints(other, &plug);
+        let free = |task: &Task, tip: [[f64; 2]; 2]| {
+            [task.opening[0][0] - tip[0][0], task.opening[0][1] - tip[0][1]]
+        };
+        let (from, to) = (free(other, self::tip(&plug)), free(task, tip));
+        let search = way.iter().filter(|point| point.stage == Stage::Search);
+        let mut x = search.clone().map(|point| carried(point.tcp.x, from, to));
+        let mut y = search.map(|point| carried(point.edge.y, other.opening[1], task.opening[1]));
+        // Of a small tip less lies on the rim.
+        let quarter = width(tip[0]) / 4.0;
+        let touch = x.next().unwrap_or(0.0).clamp(to[0] - quarter, to[1].max(to[0]) + quarter);
+        let [back, front, aside] = [(); 3].map(|()| x.next().unwrap_or(touch));
+        let edge_y = y.next().unwrap_or(0.0);
+        let preload = other.strategy.phases.iter().find_map(|phase| match phase.ending {
+            Ending::Touch { preload, .. } => Some(preload),
+            _ => None,
+        });
+        let search = other.strategy.phases.iter().filter(|phase| phase.stage == Stage::Search);
+        let down = search.skip(1).map(|phase| -phase.displacement[2]).sum();
+        Moves {
+            x: touch,
+            edge_y,
+            preload: preload.unwrap_or(0.3 * MM),
+            across: [back - touch, front - back, aside - front],
+            down,
+            side: edge_y - y.last().unwrap_or(edge_y),
+            push: Self::push(other, &plug, way.last()),
+        }
+    }
+
+    /// How far beyond its seat a task's plug is commanded, m, and how fast, m/s.
+    fn push(task: &Task, plug: &ConvexBody, last: Option<&seat::Waypoint>) -> [f64; 2] {
+        let seat = Seating::new(task, plug, &ConvexBody::new(&task.socket)).deepest().depth;
+        // Keys that need not reach their floor are pushed less far than to it.
+        let beyond = last.map_or(0.0, |last| task.grip.tcp_z - last.tcp.z - seat).max(PUSH[0]);
+        [beyond, task.strategy.phases.last().map_or(PUSH[1], |phase| phase.speed)]
     }
 
     /// Moves of a round tip, whose lowest point is set down near the wall at -y.
@@ -133,6 +244,7 @@ impl Moves {
             across: [ROUND_ACROSS, -2.0 * ROUND_ACROSS, ROUND_ACROSS],
             down: 0.1 * MM,
             side: (1.0 - ROUND_AHEAD) * half + 0.5 * MM,
+            push: PUSH,
         }
     }
 }
@@ -152,9 +264,10 @@ fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
 }
 
 fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
-    let Moves { preload, across: [back, front, aside], down, side, .. } = *search;
+    let Moves { preload, across: [back, front, aside], down, side, push: [press, fast], .. } =
+        *search;
     let searched = task.strategy.start[2] - AIR[0] - preload - down;
-    let push = searched - (task.grip.tcp_z - seat - PRESS);
+    let push = searched - (task.grip.tcp_z - seat - press);
     let phase = |name: &str, stage, by: [f64; 3], speed: f64, ending| Phase {
         name: name.to_owned(),
         stage,
@@ -170,7 +283,7 @@ fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
         phase("back", Search, [back, 0.0, 0.0], 80.0, Duration(0.02)),
         phase("front", Search, [front, 0.0, -down], 80.0, Duration(0.03)),
         phase("side", Search, [aside, -side, 0.0], 100.0, Duration(0.03)),
-        phase("assembly", Assembly, [0.0, 0.0, -push], 100.0, Duration(0.03)),
+        phase("assembly", Assembly, [0.0, 0.0, -push], fast / MM, Duration(0.03)),
     ]
 }
 
@@ -183,4 +296,27 @@ fn round(value: f64, step: f64) -> f64 {
     // Dividing by the inverse keeps two decimals two decimals.
     let per = (1.0 / step).round();
     (value * per).round() / per
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strategy carried over to its own task is itself, in y and across x.
+    #[test]
+    fn a_strategy_carried_over_to_its_own_shapes_is_the_same() {
+        for family in Family::all() {
+            let Family::Like(task) = &family else { continue };
+            let carried = family.of(task).unwrap();
+            let plug = ConvexBody::plug(&task.plug);
+            let moved = Task { strategy: carried, ..(**task).clone() };
+            let [before, after] = [&**task, &moved].map(|task| seat::waypoints(task, &plug));
+            assert_eq!(before.len(), after.len(), "{}", task.name);
+            // From the touch to the push: the approach differs in what it does in the air.
+            for (before, after) in before.iter().zip(&after).skip(2) {
+                let off = (before.edge - after.edge).xy().norm();
+                assert!(off < 0.02 * MM, "{} {}: {before:?} {after:?}", task.name, before.name);
+            }
+        }
+    }
 }

@@ -115,6 +115,13 @@ fn grip(out: &mut String, task: &Task) {
     );
 }
 
+/// The part of the file that says how the task is searched.
+pub fn strategy_of(task: &Task) -> String {
+    let mut out = String::new();
+    strategy(&mut out, task);
+    out
+}
+
 fn strategy(out: &mut String, task: &Task) {
     let strategy = &task.strategy;
     let _ = write!(

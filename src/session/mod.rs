@@ -14,6 +14,7 @@ mod film;
 mod finger;
 mod guided;
 mod how;
+mod import;
 mod levers;
 mod map;
 mod measured;
@@ -34,6 +35,7 @@ mod task;
 #[cfg(test)]
 mod tests;
 mod trial;
+mod tune;
 mod unusable;
 
 pub use around::Around;
@@ -45,6 +47,7 @@ pub use film::FilmRequest;
 pub use finger::{Chosen, FingerRequest};
 pub use guided::{Guided, NotTaken, Order, perform};
 pub use how::{CacheRequest, EffortRequest, RunRequest};
+pub use import::{ImportRequest, ImportedTask};
 pub use levers::LeversRequest;
 pub use map::MapRequest;
 pub use measured::read as read_measurements;
@@ -60,6 +63,7 @@ pub use standing::Standing;
 pub use study::{AnyStudy, POLISH, ResumeRequest, StudyRequest};
 pub use task::{TaskCheck, TaskFile, read_space, read_task};
 pub use trial::{Insertion, SceneRequest, TrialDone, TrialRequest};
+pub use tune::{TuneDone, TuneRequest, begun};
 
 use crate::study::Recorded;
 use std::sync::Mutex;

@@ -3,6 +3,7 @@
 mod check;
 mod import;
 mod new;
+mod tune;
 
 use super::{Failure, print};
 use crate::session::TaskSource;
@@ -32,6 +33,8 @@ pub enum Arguments {
     #[command(after_help = "Example: optimize task import --plug plug.stl --socket socket.stl \
                             --unit mm --out mine.toml")]
     Import(import::Arguments),
+    #[command(after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
+    Tune(tune::Arguments),
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -40,5 +43,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Arguments::Show { name } => print(&TaskSource::Named(name.clone()).read()?.text),
         Arguments::Check(arguments) => check::run(arguments),
         Arguments::Import(arguments) => import::run(arguments),
+        Arguments::Tune(arguments) => tune::run(arguments),
     }
 }

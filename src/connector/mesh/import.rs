@@ -31,6 +31,28 @@ pub const ALLOWED: f64 = 0.1;
 const NO_GRIP: &str = "no place to hold the plug was found: two faces across y, with a shoulder above \
                        them for the fingers' roofs; give --like T, whose grip fits, or write [grip] by hand";
 
+/// Unit of length of a mesh file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Unit {
+    /// Millimetres
+    Mm,
+    /// Inches
+    In,
+    /// Metres
+    M,
+}
+
+impl Unit {
+    /// Its length, m.
+    pub fn metres(self) -> f64 {
+        match self {
+            Unit::Mm => MM,
+            Unit::In => 25.4 * MM,
+            Unit::M => 1.0,
+        }
+    }
+}
+
 /// Direction of insertion in the axes of the files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Along {

@@ -150,7 +150,7 @@ impl Evaluator {
             return Ok(None);
         }
         let rig = self.rig(specimen, None, 1.0)?;
-        Ok(Some(teach(&*rig, &specimen.finger, stop).unwrap_or(0)))
+        Ok(Some(teach(&*rig, &specimen.finger, stop).map_or(0, |taught| taught.by)))
     }
 
     /// Where trials of a specimen are run, from its taught start, at `step_factor` times the step.

@@ -4,8 +4,8 @@
 //! that inserts is looked for; then the window around it; the start is its middle. If the
 //! middle does not insert, since the window has a gap, the start stays where it was found.
 
-use super::OffsetStep;
 use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
+use super::{OffsetStep, Window};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::trial::{Grasp, Grasped, Recording, Rig, Sample, Trial};
@@ -17,18 +17,63 @@ const STRIDE: OffsetStep = 5;
 /// Farthest start that is tried, in grid steps: 10 mm.
 const FARTHEST: OffsetStep = 100;
 
-/// Shift of the start, in grid steps; `None` if none inserts. Worthless once `stop` is set.
-pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Option<OffsetStep> {
+/// A taught start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Taught {
+    /// Shift of the start, in grid steps.
+    pub by: OffsetStep,
+    /// The window about it.
+    pub window: Window,
+}
+
+/// Of starts that all fail the one that fails least clearly.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Nearest {
+    /// Shift of the start, in grid steps.
+    pub by: OffsetStep,
+    /// The trial from there.
+    pub trial: Trial,
+}
+
+/// Teaches the start; worthless once `stop` is set.
+///
+/// # Errors
+/// If no start inserts.
+pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught, Box<Nearest>> {
     let grasp = Grasp { stop, ..Grasp::of(finger) };
     let grasped = rig.hold(grasp);
-    let inserts = |step| grasped.trial(offset(step)).outcome == Outcome::Inserted;
-    let outward = (1..=FARTHEST / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
-    let found = std::iter::once(0).chain(outward).find(|&step| inserts(step))?;
-    let window = tolerance::evaluate_in(&Moved { rig, by: found }, grasp, Search::Strides).window;
+    let found = first(&*grasped)?;
+    let mut window =
+        tolerance::evaluate_in(&Moved { rig, by: found }, grasp, Search::Strides).window;
     let both = window.negative_steps + window.positive_steps;
     // Towards zero.
-    let middle = found + both.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
-    Some(if inserts(middle) { middle } else { found })
+    let middle = both.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
+    let by = found + middle;
+    if grasped.trial(offset(by)).outcome != Outcome::Inserted {
+        return Ok(Taught { by: found, window });
+    }
+    window.negative_steps -= middle;
+    window.positive_steps -= middle;
+    Ok(Taught { by, window })
+}
+
+/// The first start that inserts, outward from the task's own.
+fn first(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Nearest>> {
+    let outward = (1..=FARTHEST / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
+    let mut nearest = Nearest { by: 0, trial: grasped.trial(0.0) };
+    if nearest.trial.outcome == Outcome::Inserted {
+        return Ok(0);
+    }
+    for by in outward {
+        let trial = grasped.trial(offset(by));
+        if trial.outcome == Outcome::Inserted {
+            return Ok(by);
+        }
+        if trial.margin > nearest.trial.margin {
+            nearest = Nearest { by, trial };
+        }
+    }
+    Err(Box::new(nearest))
 }
 
 /// A rig, or a grasped part, whose start is moved.
@@ -69,14 +114,16 @@ mod tests {
         let fake = FakeRig::default();
         for (away, taught) in [(0, -9), (30, -39), (-50, 41)] {
             let moved = Moved { rig: &fake as &dyn Rig, by: away };
-            let found = teach(&moved, &finger, &NEVER).unwrap();
+            let Taught { by: found, window: said } = teach(&moved, &finger, &NEVER).unwrap();
             assert!((found - taught).abs() <= 1, "{away}: {found}");
             let middled = Moved { rig: &moved as &dyn Rig, by: found };
             let window = tolerance::evaluate(&middled, &finger, Search::Walk).window;
             assert_eq!(window.range_mm(), 4.7);
+            assert_eq!(said, window);
             assert!((window.negative_steps + window.positive_steps).abs() <= 2, "{window:?}");
         }
         let far = Moved { rig: &fake as &dyn Rig, by: 200 };
-        assert_eq!(teach(&far, &finger, &NEVER), None);
+        let nearest = teach(&far, &finger, &NEVER).unwrap_err();
+        assert!(nearest.trial.margin < 0.0 && nearest.by.abs() <= FARTHEST, "{nearest:?}");
     }
 }

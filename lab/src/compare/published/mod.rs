@@ -185,9 +185,9 @@ pub fn windows(
         let rig = engine.rig(task, robot, &finger, 1.0)?;
         let taught = match task.strategy.rule {
             StartRule::Given => None,
-            StartRule::Taught => teach(&*rig, &finger, &NEVER),
+            StartRule::Taught => teach(&*rig, &finger, &NEVER).ok(),
         };
-        let moved = Moved { rig: &*rig, by: taught.unwrap_or(0) };
+        let moved = Moved { rig: &*rig, by: taught.map_or(0, |taught| taught.by) };
         Ok(tolerance::evaluate(&moved, &finger, search).window)
     };
     let pairs = tasks.iter().flat_map(|task| designs.iter().map(move |design| (task, design)));

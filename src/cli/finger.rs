@@ -72,10 +72,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             },
         }));
     }
-    let model = match &measured {
-        Some(prediction) => lines::stiffness(prediction)[0].1.clone(),
-        None => "none: no finger of this file was measured".to_owned(),
-    };
+    let model = measured.as_ref().map(|prediction| lines::stiffness(prediction)[0].1.clone());
+    let model = model.unwrap_or_else(|| "no measured model of it".to_owned());
     print(&format!(
         "finger        {}, {} %, {}°, first rib at {phase_mm} mm\n\
          material      {}, {} GPa ({})\n\

@@ -50,9 +50,9 @@ impl RibsRequest {
         let infill = Design::infill(self.density, self.direction).printed(self.phase_mm);
         let geometry = Geometry::new(&finger, &infill).map_err(Failure::input)?;
         let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
-        let plain = self.set.is_empty();
-        let measured = measured_model(&file.finger, self.density, self.direction);
-        Ok((geometry, computed, measured.filter(|_| plain)))
+        let mut design = Design::infill(self.density, self.direction);
+        design.0.extend(set.0);
+        Ok((geometry, computed, measured_model(&file.finger, &design)?))
     }
 }
 
@@ -95,31 +95,26 @@ impl PrintRequest {
     /// As of [`PrintRequest::geometry`].
     pub fn measured_model(&self) -> Result<Option<Prediction>, Failure> {
         let (design, file, of_study) = self.chosen()?;
-        let infill = [DENSITY_KEY, DIRECTION_KEY].map(|key| design.get(key).unwrap_or(f64::NAN));
-        let plain = !design.0.keys().any(|key| is_shape(key));
-        let by_file = || measured_model(&file.finger, infill[0], infill[1]).filter(|_| plain);
-        Ok(of_study.or_else(by_file))
+        of_study.map_or_else(|| measured_model(&file.finger, &design), |found| Ok(Some(found)))
     }
 
     /// The design, the file of its finger, and the stiffness that a study predicted of both.
     fn chosen(&self) -> Result<(Design, FingerFile, Option<Prediction>), Failure> {
-        let (design, of_study) = match (&self.dir, self.density, self.direction) {
-            (Some(dir), ..) => {
-                let (design, file, stiffness) = best(dir)?;
-                (design, Some((file, stiffness)))
+        let (design, file, stiffness) = match (&self.dir, self.density, self.direction) {
+            (Some(dir), ..) => best(dir)?,
+            (None, Some(density), Some(direction)) => {
+                (Design::infill(density, direction), None, None)
             }
-            (None, Some(density), Some(direction)) => (Design::infill(density, direction), None),
             _ => {
                 let problem = "give the folder of a study, or --density and --direction";
                 return Err(Failure::usage(problem));
             }
         };
-        let shipped = || finger_file(DEFAULT_FINGER);
-        Ok(match (&self.finger, of_study) {
-            (None, Some((file, stiffness))) => (design, file.map_or_else(shipped, Ok)?, stiffness),
-            (Some(named), _) => (design, finger_file(named)?, None),
-            (None, None) => (design, shipped()?, None),
-        })
+        let file = match (&self.finger, file) {
+            (None, Some(file)) => file,
+            (named, _) => finger_file(named.as_deref().unwrap_or(DEFAULT_FINGER))?,
+        };
+        Ok((design, file, stiffness.filter(|_| self.finger.is_none())))
     }
 }
 
@@ -129,10 +124,16 @@ fn finger_file(name: &str) -> Result<FingerFile, Failure> {
 }
 
 /// Stiffness by the model that is fitted to the table of measured fingers which a finger file names;
-/// `None` without a table, or of an infill that it cannot predict.
-fn measured_model(finger: &PrintedFinger, density: f64, direction: f64) -> Option<Prediction> {
-    let data = stiffness_data(None, finger).ok()?;
-    surrogate(&data, finger).ok()?.predict(density, direction).ok()
+/// `None` without a table, of an infill that it cannot predict, or of another shape than measured.
+fn measured_model(finger: &PrintedFinger, design: &Design) -> Result<Option<Prediction>, Failure> {
+    let infill = [DENSITY_KEY, DIRECTION_KEY].map(|key| design.get(key));
+    let ([Some(density), Some(direction)], Some(_), false) =
+        (infill, &finger.measured, design.0.keys().any(|key| is_shape(key)))
+    else {
+        return Ok(None);
+    };
+    let model = surrogate(&stiffness_data(None, finger)?, finger)?;
+    Ok(model.predict(density, direction).ok())
 }
 
 /// The design that a study recommends, the finger file of its fingers, and their stiffness, if the

@@ -3,6 +3,7 @@
 use super::FingerError;
 use super::infill::{Design, NARROWEST_VOID, RibLines};
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
+use crate::holes::{Block, Holes};
 use crate::printed::{Outline, PrintedFinger};
 use input::units::{DEG, MM, PERCENT};
 use input::{Check, InputError};
@@ -63,16 +64,21 @@ impl Geometry {
 
     /// Area of the solid profile, m2.
     pub fn area(&self) -> f64 {
-        let openings =
-            self.voids.iter().chain(&self.holes()).map(|v| polygon::area(v)).sum::<f64>();
-        polygon::area(&self.outer) + openings
+        std::iter::once(&self.outer)
+            .chain(&self.voids)
+            .chain(&self.holes())
+            .map(|ring| polygon::area(ring))
+            .sum()
     }
 
-    /// Mass of the printed finger, kg.
+    /// The holes and the block that has them, if they do not run through the held base.
+    pub fn block(&self) -> Option<(&Holes, Block)> {
+        self.finger.holes.as_ref().and_then(|holes| Some((holes, holes.block?)))
+    }
+
+    /// Mass of the printed finger without a block for its holes, kg.
     pub fn mass(&self) -> f64 {
-        let PrintedFinger { outline, holes, material, .. } = &self.finger;
-        let block = holes.as_ref().map_or(0.0, |holes| holes.added(outline));
-        (self.area() * outline.depth + block) * material.density
+        self.area() * self.finger.outline.depth * self.finger.material.density
     }
 }
 

@@ -1,7 +1,8 @@
 //! Holes for the screws that hold a finger, and the block beyond its end that has those which do not
 //! run through its depth. The gripper holds all of it rigidly: mechanics know nothing of it.
 
-use super::polygon::{self, Ring};
+use super::polygon::Ring;
+use crate::export::mm;
 use crate::printed::{Outline, PrintedFinger};
 use input::units::MM;
 use input::{Check, InputError};
@@ -95,16 +96,22 @@ impl Holes {
         let middle = |i: u32| {
             let mut middle = centre;
             middle[self.row as usize] += first + self.spacing * f64::from(i);
-            middle[self.beside() as usize] += self.offset[1];
+            middle[self.beside()] += self.offset[1];
             middle
         };
         (0..self.count).map(middle).collect()
     }
 
-    /// Direction across holes and row.
-    pub fn beside(&self) -> Direction {
-        let [one, other] = self.axis.across();
-        if one == self.row { other } else { one }
+    /// Low and high ends of each hole along each direction, m; along the holes those of what
+    /// carries them.
+    pub fn boxes(&self, outline: &Outline) -> Vec<[[f64; 2]; 3]> {
+        let radius = self.diameter / 2.0;
+        let boxed = |middle: [f64; 3]| {
+            let mut ends = middle.map(|at| [at - radius, at + radius]);
+            ends[self.axis as usize] = self.carrier(outline)[self.axis as usize];
+            ends
+        };
+        self.middles(outline).into_iter().map(boxed).collect()
     }
 
     /// The holes, clockwise in the plane of [`Direction::across`], m.
@@ -122,76 +129,52 @@ impl Holes {
         self.middles(outline).into_iter().map(ring).collect()
     }
 
-    /// Length of a hole, m: one along the length ends at the finger unless it passes beside it.
-    pub fn length(&self, outline: &Outline, middle: &[f64; 3]) -> f64 {
-        let [low, high] = self.carrier(outline)[self.axis as usize];
-        let behind = (-outline.width..=0.0).contains(&middle[1]);
-        let overlap = self.block.filter(|_| self.axis == Direction::Length && !behind);
-        high - low + overlap.map_or(0.0, |block| block.overlap)
-    }
-
-    /// Volume that a block with its holes adds to a finger, m3.
-    pub fn added(&self, outline: &Outline) -> f64 {
-        let Some(block) = self.block else { return 0.0 };
-        let wings = block.overlap * (block.width - outline.width).max(0.0);
-        let rings = self.rings(outline);
-        let of = |(ring, middle): (&Ring, _)| polygon::area(ring) * self.length(outline, middle);
-        let holes: f64 = rings.iter().zip(&self.middles(outline)).map(of).sum();
-        (block.length * block.width + wings) * outline.depth + holes
+    /// Place of the coordinate across holes and row.
+    fn beside(&self) -> usize {
+        3 - self.axis as usize - self.row as usize
     }
 
     /// Checks that the holes fit.
     pub(super) fn check(&self, check: Check<'_>, finger: &PrintedFinger) -> Result<(), InputError> {
-        let PrintedFinger { outline, line_width, .. } = finger;
-        let Holes { axis, row, diameter, spacing, .. } = *self;
-        let (wall, mm) = (WALL_LINES * line_width, crate::export::mm);
-        let least = format!("{} mm, {WALL_LINES} printed lines", mm(wall));
-        if row == axis {
-            let [one, other] = axis.across().map(Direction::word);
+        let outline = &finger.outline;
+        if self.row == self.axis {
+            let [one, other] = self.axis.across().map(Direction::word);
             let problem = format!("is that of the holes; it must be \"{one}\" or \"{other}\"");
             return check.fail("holes.row", problem);
         }
-        match self.block {
-            None if axis != Direction::Depth => {
-                let problem = "is missing; holes along the length or the width are in a block \
-                               beyond the finger's end: length_mm, width_mm, overlap_mm";
-                return check.fail("holes.block", problem);
-            }
-            Some(Block { overlap, .. }) if overlap > outline.clamped + EPSILON => {
-                let (overlap, held) = (mm(overlap), mm(outline.clamped));
-                let problem = format!("is {overlap}; it must be at most base.clamped_mm, {held}");
-                return check.fail("holes.block.overlap_mm", problem);
-            }
-            _ => {}
+        if self.block.is_none() && self.axis != Direction::Depth {
+            let problem = "is missing; holes along the length or the width are in a block \
+                           beyond the finger's end: length_mm, width_mm, overlap_mm";
+            return check.fail("holes.block", problem);
         }
-        let apart = diameter + wall;
-        if self.count > 1 && spacing < apart - EPSILON {
+        if let Some(Block { overlap, .. }) = self.block {
+            let held = format!("be at most base.clamped_mm, {}", mm(outline.clamped));
+            let fits = overlap <= outline.clamped + EPSILON;
+            check.require("holes.block.overlap_mm", overlap / MM, fits, &held)?;
+        }
+        self.check_walls(check, outline, WALL_LINES * finger.line_width)
+    }
+
+    fn check_walls(&self, check: Check, outline: &Outline, least: f64) -> Result<(), InputError> {
+        let Holes { axis, row, diameter, spacing, count, .. } = *self;
+        let left = |direction: usize, span: f64, offset: f64| {
+            let [low, high] = self.carrier(outline)[direction];
+            (high - low - span - diameter) / 2.0 - offset.abs()
+        };
+        let span = spacing * f64::from(count - 1);
+        let walls = [
+            ("between them", if count > 1 { spacing - diameter } else { f64::INFINITY }),
+            ("at the ends of their row", left(row as usize, span, self.offset[0])),
+            ("beside their row", left(self.beside(), 0.0, self.offset[1])),
+        ];
+        if let Some((place, wall)) = walls.into_iter().find(|(_, wall)| *wall < least - EPSILON) {
             let problem = format!(
-                "is {}; it must be at least {}, so that a wall of {least}, is left between holes",
-                mm(spacing),
-                mm(apart)
+                "leave a wall of {} mm {place}; it must be at least {} mm, {WALL_LINES} printed \
+                 lines: by another diameter_mm, spacing_mm, offset_mm or count, or more room",
+                mm(wall),
+                mm(least)
             );
-            return check.fail("holes.spacing_mm", problem);
-        }
-        let span = spacing * f64::from(self.count - 1);
-        for (direction, span, offset) in [(row, span, 0), (self.beside(), 0.0, 1)] {
-            let [low, high] = self.carrier(outline)[direction as usize];
-            let left = (high - low - span - diameter) / 2.0 - self.offset[offset].abs();
-            if left < wall - EPSILON {
-                let carrier = match self.block {
-                    Some(_) => "[holes.block]",
-                    None => "the held base",
-                };
-                let problem = format!(
-                    "are too wide along the {}: they leave a wall of {} mm in {carrier}, {} mm \
-                     there; at least {least}: a smaller diameter_mm, spacing_mm or offset_mm, \
-                     fewer holes, or more room",
-                    direction.word(),
-                    mm(left),
-                    mm(high - low),
-                );
-                return check.fail("holes", problem);
-            }
+            return check.fail("holes", problem);
         }
         let covered = |middle: &[f64; 3]| {
             [0.0, -outline.width].iter().any(|side| (middle[1] - side).abs() < diameter / 2.0)

@@ -78,26 +78,21 @@ impl Prism {
     /// overlaps the finger's. What lies in either is solid (3MF Core Specification 1.3, 4.1: the
     /// positive fill rule), and slicers read STL files so, too.
     fn with_block(mut self, geometry: &Geometry) -> Result<Self, PrismError> {
+        let Some((holes, block)) = geometry.block() else { return Ok(self) };
         let outline = &geometry.finger.outline;
-        let Some((holes, block)) =
-            geometry.finger.holes.as_ref().and_then(|h| h.block.map(|b| (h, b)))
-        else {
-            return Ok(self);
-        };
         let [u, v] = holes.axis.across().map(|direction| direction as usize);
         let axis = holes.axis as usize;
         let origin = [0.0, outline.width / MM, 0.0];
-        let mut ends = holes.carrier(outline).map(|ends| ends.map(|end| end / MM));
-        ends[0][0] -= block.overlap / MM;
-        let moved = |[x, y]: [f64; 2]| Point2::new(x + origin[u], y + origin[v]);
+        let mut ends = holes.carrier(outline);
+        ends[0][0] -= block.overlap;
+        let placed = |x: f64, y: f64| Point2::new(x / MM + origin[u], y / MM + origin[v]);
         let [[left, right], [low, high]] = [ends[u], ends[v]];
-        let outer = [[left, low], [right, low], [right, high], [left, high]].map(moved).to_vec();
+        let outer = [[left, low], [right, low], [right, high], [left, high]];
         let rings = holes.rings(outline).into_iter();
-        let rings: Vec<Ring> = rings
-            .map(|ring| ring.into_iter().map(|p| moved([p.x / MM, p.y / MM])).collect())
-            .collect();
-        let [start, end] = ends[axis].map(|end| end + origin[axis]);
-        let block = Prism::new(&outer, &rings, end - start)?;
+        let rings: Vec<Ring> =
+            rings.map(|ring| ring.iter().map(|p| placed(p.x, p.y)).collect()).collect();
+        let [start, end] = ends[axis].map(|end| end / MM + origin[axis]);
+        let block = Prism::new(&outer.map(|[x, y]| placed(x, y)).to_vec(), &rings, end - start)?;
         let first = self.corners.len() as u32;
         self.corners.extend(block.corners.iter().map(|&[x, y, z]| {
             let mut corner = [0.0; 3];

@@ -2,7 +2,7 @@
 
 use super::{mm, profile, title};
 use crate::geometry::Geometry;
-use crate::holes::{Direction, Holes};
+use crate::holes::{Block, Direction};
 use crate::mechanics::FingerStiffness;
 use crate::printed::{Outline, PrintedFinger};
 use input::units::{DEG, GRAM, MM, N_PER_MM};
@@ -91,62 +91,39 @@ pub fn part(geometry: &Geometry) -> String {
 
 /// Length of the block beyond a finger and its width beside it, on either side, mm.
 fn block(geometry: &Geometry) -> [f64; 2] {
-    let block = geometry.finger.holes.as_ref().and_then(|holes| holes.block);
     let wing = |width: f64| ((width - geometry.finger.outline.width) / 2.0).max(0.0);
-    block.map_or([0.0; 2], |block| [block.length / MM, wing(block.width) / MM])
+    geometry.block().map_or([0.0; 2], |(_, block)| [block.length / MM, wing(block.width) / MM])
 }
 
-/// The block, and its holes: round along the depth, else hidden lines.
-fn holes(holes: &Holes, outline: &Outline, view: View) -> Markup {
-    let Some(block) = holes.block else { return html! {} };
-    let [[_, right], [low, high], _] = holes.carrier(outline).map(|ends| ends.map(|end| end / MM));
-    let left = (outline.length - block.overlap) / MM;
-    let (at, radius) = (view.place(Point2::new(left, high)), holes.diameter / 2.0 / MM);
-    let hidden = |[x, y, _]: [f64; 3]| {
-        let (x, y) = (x / MM, y / MM);
-        let ends = |by: f64| match holes.axis {
-            Direction::Length => [
-                Point2::new(
-                    left.max(right - holes.length(outline, &[0.0, y * MM, 0.0]) / MM),
-                    y + by,
-                ),
-                Point2::new(right, y + by),
-            ],
-            _ => [Point2::new(x + by, low), Point2::new(x + by, high)],
-        };
-        [-radius, radius].map(|by| ends(by).map(|end| view.place(end)))
-    };
-    let middles = holes.middles(outline);
-    html! {
-        g fill="none" stroke="#223" stroke-width="0.3" {
-            rect x=(at.x) y=(at.y) width=((right - left) * view.scale) height=((high - low) * view.scale) {}
-            @for middle in &middles {
-                @if holes.axis == Direction::Depth {
-                    @let at = view.place(Point2::new(middle[0], middle[1]) / MM);
-                    circle cx=(at.x) cy=(at.y) r=(radius * view.scale) {}
-                } @else {
-                    g stroke-dasharray="2 1" { @for [a, b] in hidden(*middle) { (line(a, b)) } }
-                }
-            }
-        }
-    }
-}
+/// What is written on the held part.
+const HELD: &str = "held by the gripper";
 
-/// Profile, and the part of it that the gripper holds.
+/// Profile, the part of it that the gripper holds, and the block of its holes, these hidden.
 fn drawing(geometry: &Geometry, view: View) -> Markup {
     let outline = &geometry.finger.outline;
     let place = |[x, y]: [f64; 2]| view.place(Point2::new(x, y)).into();
-    let at = view.place(Point2::new((outline.length - outline.clamped) / MM, 0.0));
-    let [width, height] = [outline.clamped, outline.width].map(|value| value / MM * view.scale);
+    let held = [outline.length - outline.clamped, outline.length];
+    let words = view.place(Point2::new((held[0] + held[1]) / 2.0, -outline.width) / MM);
     html! {
         path d=(profile::path(geometry, place)) fill="#aab7c9" stroke="#223" stroke-width="0.15"
             fill-rule="evenodd" {}
-        rect x=(at.x) y=(at.y) width=(width) height=(height) fill="none" stroke="#a33"
-            stroke-width="0.4" stroke-dasharray="2 1" {}
-        text x=(at.x + width / 2.0) y=(at.y + height - 2.0) text-anchor="middle" fill="#a33" {
-            "held by the gripper"
+        g fill="none" stroke="#223" stroke-width="0.3" {
+            @if let Some((holes, block)) = geometry.block() {
+                @let [[_, end], across, _] = holes.carrier(outline);
+                (view.rectangle([outline.length - block.overlap, end], across, 0.0))
+                g stroke-dasharray="2 1" {
+                    @for [along, across, _] in holes.boxes(outline) {
+                        @let round = if holes.axis == Direction::Depth { holes.diameter } else { 0.0 };
+                        (view.rectangle(along, across, round / 2.0))
+                    }
+                }
+            }
         }
-        @if let Some(found) = &geometry.finger.holes { (holes(found, outline, view)) }
+        g fill="none" stroke="#a33" stroke-width="0.4" stroke-dasharray="2 1" {
+            (view.rectangle(held, [-outline.width, 0.0], 0.0))
+        }
+        text x=(words.x) y=(words.y - 2.0) text-anchor="middle" fill="#a33"
+            font-size=(fitting(outline.clamped / MM * view.scale, HELD)) { (HELD) }
     }
 }
 
@@ -155,7 +132,7 @@ fn degrees(angle: f64) -> f64 {
     (angle / DEG * 100.0).round() / 100.0
 }
 
-/// Dimension lines of the outline, and of the holes.
+/// Dimension lines of the outline.
 fn lengths(geometry: &Geometry, view: View) -> Markup {
     let outline = &geometry.finger.outline;
     let [beyond, wing] = block(geometry).map(|length| length * view.scale);
@@ -177,36 +154,8 @@ fn lengths(geometry: &Geometry, view: View) -> Markup {
             text x=(middle.x - 12.0) y=(middle.y - 1.0) text-anchor="middle" {
                 "R " (mm(outline.back_radius))
             }
-            @if let Some(holes) = &geometry.finger.holes {
-                @for (a, b, distance) in chains(holes, outline) {
-                    @let by = if a.x == b.x { -beyond } else { wing };
-                    (view.length(a / MM, b / MM, distance + by, &mm((b - a).norm())))
-                }
-            }
         }
     }
-}
-
-/// Dimensions from end and front of what carries the holes to their middles, and on from one to the
-/// next: both ends, m, and the distance of the line, mm on paper.
-fn chains(holes: &Holes, outline: &Outline) -> Vec<(Point2<f64>, Point2<f64>, f64)> {
-    let [[_, end], [_, front], _] = holes.carrier(outline);
-    let mut middles = holes.middles(outline);
-    middles.reverse();
-    let places = |direction: Direction, from: f64| {
-        let mut places = vec![from];
-        let seen = direction != holes.axis;
-        places.extend(middles.iter().filter(|_| seen).map(|middle| middle[direction as usize]));
-        places.dedup();
-        places
-    };
-    let along = places(Direction::Length, end);
-    let across = places(Direction::Width, front);
-    let along = along.windows(2).map(|x| (Point2::new(x[1], 0.0), Point2::new(x[0], 0.0), 21.0));
-    let across = across
-        .windows(2)
-        .map(|y| (Point2::new(outline.length, y[1]), Point2::new(outline.length, y[0]), -16.0));
-    along.chain(across).collect()
 }
 
 /// Infill directions: 0 degrees, and the design's.
@@ -262,18 +211,14 @@ fn finger(geometry: &Geometry) -> Vec<(&'static str, String)> {
         ("mount", format!("{}° to the assembly", degrees(geometry.finger.tilt))),
     ];
     let Some(holes) = &geometry.finger.holes else { return rows };
-    let (axis, row) = (holes.axis.word(), holes.row.word());
-    let [depth, spacing, diameter] = [outline.depth, holes.spacing, holes.diameter].map(mm);
-    rows.push((
-        "holes",
-        format!("{} × ⌀{diameter} along {axis}, {spacing} apart in {row}", holes.count),
-    ));
-    if let Some(block) = holes.block {
-        let middle = holes.middles(outline)[0];
-        let [length, width, overlap] = [block.length, block.width, block.overlap].map(mm);
-        let deep = mm(holes.length(outline, &middle));
-        rows.push(("", format!("{deep} deep, the first at {} of the depth", mm(middle[2]))));
-        rows.push(("block", format!("{length} × {width} × {depth}, {overlap} more in the finger")));
+    let [spacing, diameter] = [holes.spacing, holes.diameter].map(mm);
+    let [row, beside] = holes.offset.map(mm);
+    let words = [holes.axis, holes.row].map(Direction::word);
+    rows.push(("holes", format!("{} × ⌀{diameter} along {}", holes.count, words[0])));
+    rows.push(("", format!("{spacing} apart in {}, offset {row}, {beside}", words[1])));
+    if let Some(Block { length, width, overlap }) = holes.block {
+        let [length, width, overlap] = [length, width, overlap].map(mm);
+        rows.push(("block", format!("{length} × {width}, {overlap} into the finger")));
     }
     rows
 }
@@ -291,9 +236,8 @@ fn print(geometry: &Geometry) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Share by which a measured finger may differ from its ribs: two standard deviations of the eleven
-/// shipped ones.
-const SCATTER: f64 = 0.35;
+/// Standard deviation of the eleven shipped fingers from what their ribs say, as a share.
+const SCATTER: f64 = 0.175;
 
 fn check(geometry: &Geometry, AtPad { ribs, measured }: &AtPad) -> Vec<(&'static str, String)> {
     let ribs = [ribs.pad.in_compliance(), ribs.pad_and_roof.in_assembly()];
@@ -304,20 +248,18 @@ fn check(geometry: &Geometry, AtPad { ribs, measured }: &AtPad) -> Vec<(&'static
         let digits = if mean >= 10.0 { 1 } else { 2 };
         format!("{mean:.digits$} ± {sd:.digits$} N/mm, measured model")
     };
-    let none = || "no finger of this file was measured".to_owned();
+    let none = || "no measured model of it".to_owned();
     let [model_across, model_along] = measured.map_or([none(), none()], |found| found.map(of));
+    let without = if geometry.block().is_some() { " without the block" } else { "" };
     let modulus = geometry.finger.material.modulus / 1e9;
     // What the trials were simulated with is what a print is to be.
-    let (least, most) = match measured {
-        Some([[mean, sd], _]) => ((mean - 2.0 * sd).max(0.0), mean + 2.0 * sd),
-        None => (ribs[0] * (1.0 - SCATTER), ribs[0] * (1.0 + SCATTER)),
+    let (mean, sd, by) = match *measured {
+        Some([[mean, sd], _]) => (mean, sd, "measured model"),
+        None => (ribs[0], SCATTER * ribs[0], "from the ribs"),
     };
-    let by = match measured {
-        Some(_) => "measured model 2 sd".to_owned(),
-        None => format!("from the ribs, {:.0} %", SCATTER * 100.0),
-    };
+    let [least, most] = [-2.0, 2.0].map(|by| (mean + by * sd).max(0.0) * MM);
     vec![
-        ("mass", format!("{:.2} g", geometry.mass() / GRAM)),
+        ("mass", format!("{:.2} g{without}", geometry.mass() / GRAM)),
         ("profile", format!("{:.1} mm2", geometry.area() / (MM * MM))),
         ("across pad", model_across),
         ("", format!("{across} at {modulus} GPa")),
@@ -325,7 +267,7 @@ fn check(geometry: &Geometry, AtPad { ribs, measured }: &AtPad) -> Vec<(&'static
         ("", format!("{along}, roof too")),
         ("check", "hold the base, push the pad's middle".to_owned()),
         ("", "1 mm across, free to turn: this takes".to_owned()),
-        ("", format!("{:.2} to {:.2} N, {by}", least * MM, most * MM)),
+        ("", format!("{least:.2} to {most:.2} N, {by} ± 2 sd")),
     ]
 }
 
@@ -349,6 +291,14 @@ impl View {
         self.origin + self.scale * Vector2::new(point.x, -point.y)
     }
 
+    /// Rectangle between ends along X and Y, with corners of a radius, m of the part.
+    fn rectangle(&self, [left, right]: [f64; 2], [low, high]: [f64; 2], radius: f64) -> Markup {
+        let at = self.place(Point2::new(left, high) / MM);
+        let [width, height, radius] =
+            [right - left, high - low, radius].map(|value| value / MM * self.scale);
+        html! { rect x=(at.x) y=(at.y) width=(width) height=(height) rx=(radius) {} }
+    }
+
     /// Dimension line from `a` to `b` at a distance (mm on paper) to their left.
     fn length(&self, a: Point2<f64>, b: Point2<f64>, distance: f64, text: &str) -> Markup {
         let ends = [self.place(a), self.place(b)];
@@ -364,7 +314,7 @@ impl View {
                 }
                 (line(shown[0], shown[1]))
             }
-            (beside(nalgebra::center(&shown[0], &shown[1]), along, text))
+            (beside(shown, text))
         }
     }
 }
@@ -375,10 +325,17 @@ fn line(a: Point2<f64>, b: Point2<f64>) -> Markup {
     html! { line x1=(x1) y1=(y1) x2=(x2) y2=(y2) {} }
 }
 
-/// Text whose middle stands above a point on paper, along a direction and never upside down.
-fn beside(at: Point2<f64>, along: Vector2<f64>, text: &str) -> Markup {
+/// Text that stands above the middle of a line on paper, never upside down.
+fn beside([a, b]: [Point2<f64>; 2], text: &str) -> Markup {
+    let (at, along) = (nalgebra::center(&a, &b), b - a);
     let along = if along.x < -1e-9 || (along.x < 1e-9 && along.y > 0.0) { -along } else { along };
     let degrees = along.y.atan2(along.x).to_degrees();
     let turn = format!("translate({:.2},{:.2}) rotate({degrees:.2})", at.x, at.y);
-    html! { g transform=(turn) { text y="-1.2" text-anchor="middle" { (text) } } }
+    let size = fitting(along.norm(), text);
+    html! { g transform=(turn) { text y="-1.2" text-anchor="middle" font-size=(size) { (text) } } }
+}
+
+/// Size of a text that fits a width, if one can be read, mm on paper.
+fn fitting(width: f64, text: &str) -> String {
+    format!("{:.2}", (width / (0.52 * text.chars().count() as f64)).clamp(2.0, 3.2))
 }

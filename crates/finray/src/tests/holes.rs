@@ -1,6 +1,6 @@
 //! Holes: where they lie, what they leave unchanged, and which do not fit.
 
-use super::{finray9, infill};
+use super::infill;
 use crate::geometry::Geometry;
 use crate::infill::Design;
 use crate::mechanics::compute;
@@ -41,25 +41,12 @@ fn holes_are_round_and_change_no_stiffness() {
 }
 
 #[test]
-fn a_block_weighs_what_it_adds() {
-    let density = finray9().material.density * 1e-9;
-    let added =
-        |holes: &str| (geometry(holes).unwrap().mass() - infill(20.0, 20.0).mass()) / density;
-    let hole = std::f64::consts::PI * 1.6 * 1.6;
-    // Beside the finger a hole passes the overlap, too; behind it, it ends there.
-    let wings = 5.0 * 30.0 * 12.0 + 14.4 * 12.0;
-    assert!((added(ALONG) / (wings - 2.0 * hole * 6.0) - 1.0).abs() < 1e-3);
-    let behind = ALONG.replace("spacing_mm = 22.0", "spacing_mm = 6.0");
-    assert!((added(&behind) / (wings - 2.0 * hole * 5.0) - 1.0).abs() < 1e-3);
-}
-
-#[test]
 fn holes_that_do_not_fit_are_refused_by_their_key() {
     let sole = THROUGH.replace("depth", "width");
     let cases = [
-        (THROUGH, "spacing_mm = 8.0", "spacing_mm = 4.0", ["holes.spacing_mm", "at least 4.4"]),
-        (THROUGH, "spacing_mm = 8.0", "spacing_mm = 12.0", ["f.toml: holes", "wall of -0.3 mm"]),
-        (THROUGH, "[0.5, 1.0]", "[0.5, 2.5]", ["f.toml: holes", "0.85 mm in the held base, 9.9"]),
+        (THROUGH, "spacing_mm = 8.0", "spacing_mm = 4.0", ["of 0.8 mm between", "at least 1.2"]),
+        (THROUGH, "spacing_mm = 8.0", "spacing_mm = 12.0", ["-0.3 mm at the ends", "1.2"]),
+        (THROUGH, "[0.5, 1.0]", "[0.5, 2.5]", ["f.toml: holes", "0.85 mm beside"]),
         (THROUGH, "[0.5, 1.0]", "[0.5, nan]", ["holes.offset_mm", "number"]),
         (THROUGH, "count = 2", "count = 0", ["holes.count", "from 1 to 20"]),
         (THROUGH, "diameter_mm = 3.2", "diameter_mm = 0.5", ["holes.diameter_mm", "at least 1"]),

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 /// A room may use those before it (`docs/architecture.md`).
-const FLOW: [&str; 10] = [
+const FLOW: [&str; 11] = [
     "connector",
     "sensitivity",
     "map",
     "study",
     "calibration",
     "levers",
+    "tune",
     "answer",
     "report",
     "session",

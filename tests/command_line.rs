@@ -54,11 +54,52 @@ fn everything_prints_as_text_too() {
     ] {
         assert!(ran.succeeds().contains(part), "{}", ran.stdout);
     }
-    for name in ["ket8", "ket12", "rj45", "usb", "infill", "rigid", "ur5e", "\n  typical"] {
+    for name in ["ket8", "ket12", "rj45", "usb", "infill", "\n  typical"] {
         assert!(optimize_line("tasks").succeeds().contains(name), "{name}");
     }
+    assert!(!optimize_line("tasks").succeeds().contains("ur5e"), "one place lists robots");
     assert!(optimize_line("stiffness --json").json()["models"].is_array());
     assert!(!optimize_line("--help").succeeds().contains("fake"));
+}
+
+#[test]
+fn every_robot_stands_for_a_cell_and_ones_own_is_a_file_that_works() {
+    let robots = optimize_line("robots --json").json();
+    let list = robots["robots"].as_array().expect("a list");
+    assert_eq!(list.len(), input::shipped::ROBOTS.len());
+    let text = optimize_line("robots").succeeds().to_owned();
+    let of = |name: &str| list.iter().find(|robot| robot["name"] == name).expect("it is there");
+    // As the robot files say: 3.3, 4.2 and 3.8 N/mm, trailing by 0.2 s; 0.03 s.
+    for (name, said) in [
+        ("ur5e", "gives 3.3, 4.2, 3.8 N/mm along x, y, z at the TCP; lag 0.20 s;"),
+        ("ur5e_position", "lag 0.03 s;"),
+        ("servo", "gives 10.0, 10.0, 20.0 N/mm"),
+        ("rigid", "gives nothing; lag 0.00 s; stops at 250 N"),
+    ] {
+        assert!(text.contains(said) && text.contains(&format!("\n{name} ")), "{text}");
+        assert!(of(name)["stop_force_n"].as_f64() > Some(0.0) && of(name)["cell"].is_string());
+    }
+    let studies = Studies::new();
+    let mine = studies.file("mine.toml", robots["own_file"].as_str().expect("a text"));
+    fake(&format!("{TRIAL} --robot {mine}")).succeeds();
+}
+
+#[test]
+fn the_page_of_ones_own_task_shows_the_finger_under_two_robots() {
+    let studies = Studies::new();
+    let usb = include_str!("../tasks/usb.toml").replace("name = \"usb\"", "name = \"mine\"");
+    let task = studies.file("mine.toml", usb);
+    for (robot, other) in [("ur5e", "ur5e_position"), ("ur5e_position", "servo")] {
+        let more = ["--task", &task, "--robot", robot, "--no-levers", "--no-map", "--json"];
+        let found = studies.study(robot, 8, &more).json()["robots"].clone();
+        assert_eq!((&found[0]["robot"], &found[1]["robot"]), (&robot.into(), &other.into()));
+        assert!(found[1]["range_mm"].is_f64() && found[1]["negative_mm"].is_f64(), "{found}");
+        let page = studies.read(&format!("{robot}/report.html"));
+        assert!(page.contains(&format!("under {other} (")), "{robot}");
+        assert_eq!(studies.study(robot, 8, &more).json()["robots"], found, "kept");
+    }
+    let shipped = studies.study("shipped", 8, &["--no-levers", "--no-map", "--json"]).json();
+    assert_eq!(shipped["robots"], serde_json::json!([]));
 }
 
 #[test]

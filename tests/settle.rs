@@ -4,7 +4,7 @@
 mod common;
 
 use ask_tell::stream::stream;
-use common::{Studies, answer, command, read, run, start};
+use common::{Ran, Studies, answer, command, read, run, start};
 use rand::RngExt;
 use serde_json::Value;
 use std::process::{Child, Command};
@@ -18,6 +18,70 @@ fn settling(folder: &Studies, name: &str, more: &[&str]) -> Command {
     let mut command = command(&["--engine", "fake", "--quiet", "--json", "--task", "usb"]);
     command.arg("--out").arg(folder.dir(name)).args(more);
     command
+}
+
+/// A file of usb whose plug is held so far from the remote centre that only stiff fingers insert.
+fn far(folder: &Studies, name: &str, rcc_mm: f64) -> String {
+    let finger = format!("[finger]\nrcc_mm = {rcc_mm}\n[friction]");
+    folder.file(name, include_str!("../tasks/usb.toml").replace("[friction]", &finger))
+}
+
+/// Evaluations and ending of a study that failed because nothing inserts.
+fn in_vain(ran: &Ran) -> (Value, Value) {
+    ran.fails(1, &["no design of the study inserts"]);
+    let found: Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    assert_eq!(found["answer"]["verdict"], "nothing_inserts");
+    (found["evaluations"].clone(), found["ending"].clone())
+}
+
+#[test]
+fn a_study_of_which_nothing_inserts_ends_after_twelve_evaluations() {
+    let folder = Studies::new();
+    let task = far(&folder, "never.toml", 60.0);
+    let ended = (Value::from(12), Value::from("nothing_inserts"));
+    for (name, more) in [
+        ("batch", &[][..]),
+        ("within", &["--batch", "5"]),
+        ("generations", &["--optimizer", "cma-es", "--batch", "7"]),
+        ("polished", &["--optimizer", "random", "--polish", "--batch", "32"]),
+        ("async", &["--async", "--batch", "9", "--threads", "4"]),
+    ] {
+        let ran = folder.study(name, 40, &[&["--task", &task, "--json"], more].concat());
+        assert_eq!(in_vain(&ran), ended, "{name}");
+        let tune = format!("optimize task tune {task}");
+        assert!(ran.stderr.lines().next().is_some_and(|line| line.contains(&tune)), "{name}");
+        assert!(ran.stdout.contains(&tune), "{name}");
+        // Nor does it go on.
+        let journal = folder.journal(name);
+        let resumed = run(command(&["resume", "--quiet", "--json"]).arg(folder.dir(name)));
+        assert_eq!(in_vain(&resumed), ended, "{name}");
+        assert!(!resumed.stderr.contains("warning"), "it has begun: {}", resumed.stderr);
+        assert_eq!(folder.journal(name), journal);
+    }
+    let short = folder.study("short", 8, &["--task", &task, "--json"]);
+    assert_eq!(in_vain(&short), (8.into(), "budget_spent".into()));
+    // On another task they do.
+    let both = folder.study("both", 16, &["--json", "--task", &format!("{task},rj45")]);
+    assert_eq!(in_vain(&both), (16.into(), "budget_spent".into()));
+}
+
+#[test]
+fn a_study_goes_on_once_a_design_has_inserted() {
+    let folder = Studies::new();
+    // The closed form inserts from an assembly stiffness of 51.5 N/mm on: the fifth has 57.1.
+    let task = far(&folder, "far.toml", 41.3);
+    let more = ["--optimizer", "random", "--batch", "16", "--seed", "5", "--json", "--task", &task];
+    let whole = folder.study("whole", 40, &more).json();
+    assert_eq!((&whole["evaluations"], &whole["ending"]), (&40.into(), &"budget_spent".into()));
+    let inserts = |line: &str| line.contains("\"nominal\":\"inserted\"");
+    assert_eq!(folder.journal("whole").lines().skip(2).position(inserts), Some(4));
+    // The batch that waited for it is the same, wherever it was interrupted.
+    for budget in [3, 5, 14, 40] {
+        folder.study("parts", budget, &more);
+    }
+    assert_eq!(folder.journal("parts"), folder.journal("whole"));
+    let asynchronous = folder.study("async", 40, &[&more[..], &["--async"]].concat());
+    assert_eq!(asynchronous.json()["evaluations"], 40);
 }
 
 /// Confirmations, without the provenance.

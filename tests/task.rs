@@ -2,12 +2,14 @@
 
 mod common;
 
+use clap::ValueEnum;
 use common::{Ran, Studies, optimize};
 use contact::direct::Direct;
 use finger_opt::connector::check::problems;
 use finger_opt::connector::draft::{Dimensions, Size, draft};
-use finger_opt::connector::mesh::import::{Along, Imported, Mesh, Request, import};
-use finger_opt::connector::mesh::{Surface, read};
+use finger_opt::connector::mesh::import::{Along, Imported, Mesh, Request, Unit, import};
+use finger_opt::connector::mesh::place::placed;
+use finger_opt::connector::mesh::{Surface, pick, read};
 use finger_opt::connector::nominal::explain;
 use input::shipped::{ROBOTS, TASKS};
 use input::units::{MM, N_PER_MM};
@@ -294,7 +296,8 @@ fn a_check_says_what_a_reader_finds() {
 /// Triangles of an example mesh, mm.
 fn triangles(name: &str) -> Vec<[Point3<f64>; 3]> {
     let file = format!("{}/examples/meshes/{name}.stl", env!("CARGO_MANIFEST_DIR"));
-    read(&std::fs::read(file).unwrap(), name).unwrap()
+    let bodies = read(&std::fs::read(file).unwrap(), name).unwrap();
+    bodies.into_iter().flat_map(|body| body.triangles).collect()
 }
 
 fn mesh(name: &str) -> Mesh {
@@ -302,8 +305,14 @@ fn mesh(name: &str) -> Mesh {
 }
 
 fn imported(pair: &str, like: Option<&Task>) -> Imported {
-    let request =
-        Request { name: "mine", along: Along::MinusZ, resolution: 64, like, say: &|_| () };
+    let request = Request {
+        name: "mine",
+        along: Along::MinusZ,
+        jaws: None,
+        resolution: 64,
+        like,
+        say: &|_| (),
+    };
     import(mesh(&format!("{pair}-plug")), mesh(&format!("{pair}-socket")), &request).unwrap()
 }
 
@@ -313,8 +322,83 @@ fn an_extruded_pair_is_imported_exactly() {
     let found = imported("keyed", None);
     assert_eq!(found.exact, [true; 2], "{:?} parts", found.parts());
     assert!(found.intrusion.unwrap().0 < 2e-3 * MM, "{:?}", found.intrusion);
-    assert!((found.clearance - 0.2 * MM).abs() < 0.005 * MM, "{}", found.clearance);
+    let [chamfer @ .., depth] = found.chamfer;
+    let measured = [&found.play[..], &chamfer[1..], &[depth], &found.body].concat();
+    let drawn = [0.2, 0.2, 0.45, 0.4, 12.0, 8.0, 18.0];
+    let off = measured.iter().zip(drawn).map(|(is, mm)| (is - mm * MM).abs());
+    assert!(off.fold(0.0, f64::max) < 0.03 * MM, "{measured:?}");
     assert_eq!(problems(&found.task), []);
+}
+
+/// In inches and in each of the six directions the same task comes of it, with nothing said of either.
+#[test]
+fn unit_and_direction_are_found() {
+    let plain = imported("keyed", None);
+    for along in Along::value_variants() {
+        let back = along.turn(along.across()[0]).transpose();
+        let turned = ["keyed-plug", "keyed-socket"].map(|name| {
+            let corner = |p: Point3<f64>| Point3::from(back * p.coords / 25.4);
+            triangles(name).into_iter().map(|face| face.map(corner)).collect::<Vec<_>>()
+        });
+        let found = placed([&turned[0], &turned[1]], ["p", "s"], None, None, &|_| ()).unwrap();
+        assert_eq!((found.unit, found.along), (Unit::In, *along));
+        let [plug, socket] = found.meshes;
+        let request = Request {
+            name: "mine",
+            along: *along,
+            jaws: None,
+            resolution: 64,
+            like: None,
+            say: &|_| (),
+        };
+        let task = import(plug, socket, &request).unwrap().task;
+        assert_eq!(task.strategy, plain.task.strategy, "{along:?}");
+        assert_eq!((task.plug.parts.len(), task.socket.len()), plain.parts().into());
+    }
+}
+
+/// A plug that two units or directions would fit, or none, is refused with all of them.
+#[test]
+fn what_is_ambiguous_names_the_candidates() {
+    let [plug, socket] = ["keyed-plug", "keyed-socket"].map(triangles);
+    let refused = |plug: &[_], socket: &[_]| {
+        let found = placed([plug, socket], ["p", "s"], None, None, &|_| ());
+        found.err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    assert!(refused(&socket, &plug).contains("mm along -z: no closed hole goes in"));
+    // A ring about a peg is the same from both ends.
+    let ring = [[3.1, -3.0], [6.0, -3.0], [6.0, 3.0], [3.1, 3.0]];
+    let peg = [[0.0, 0.0], [3.0, 0.0], [3.0, 20.0], [0.0, 20.0]];
+    let [peg, ring] = [peg, ring].map(|outline| lathed(&outline, 16));
+    let error = refused(&peg, &ring);
+    assert!(error.contains("mm along z (") && error.contains("mm along -z ("), "{error}");
+}
+
+/// Corners that miss one another by less than 0.1 mm are joined, a corner on an edge is, too.
+#[test]
+fn small_gaps_are_mended() {
+    let mut torn = triangles("keyed-plug");
+    let whole = Surface::new(&torn, MM, "p.stl").unwrap();
+    torn[0][0].x += 0.04;
+    let [a, b, c] = torn.swap_remove(5);
+    let middle = nalgebra::center(&a, &b);
+    torn.extend([[a, middle, c], [middle, b, c]]);
+    let mended = Surface::new(&torn, MM, "p.stl").unwrap();
+    assert_eq!(mended.mended.0, 2);
+    assert!((mended.mended.1 - 0.04 * MM).abs() < 1e-9);
+    assert!((mended.volume() / whole.volume() - 1.0).abs() < 0.01);
+}
+
+/// A body of a file by its name or its number; what is left is the other.
+#[test]
+fn a_file_may_hold_both() {
+    let text =
+        "o Pin\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no Box\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 4 5 6";
+    let bodies = read(text.as_bytes(), "both.obj").unwrap();
+    let at =
+        |name: &str| pick(&bodies, name, "both.obj").map(|[of, rest]| [of[0][0].x, rest[0][0].x]);
+    assert_eq!((at("Box"), at("1")), (Ok([5.0, 0.0]), Ok([0.0, 5.0])));
+    assert!(at("Lid").unwrap_err().to_string().contains("`Pin`, `Box`, and 2 shells"));
 }
 
 /// The usb task's pair of meshes gives the parts of the hand-written file, but for the boss, which
@@ -347,6 +431,11 @@ fn the_usb_meshes_are_the_usb_task() {
 
 /// Closed outlines of radius and height, mm, counter-clockwise, turned about z in so many flats.
 fn turned(outline: &[[f64; 2]], flats: usize) -> Surface {
+    // On the axis triangles shrink to lines, which hold nothing.
+    Surface::new(&lathed(outline, flats), MM, "turned").unwrap()
+}
+
+fn lathed(outline: &[[f64; 2]], flats: usize) -> Vec<[Point3<f64>; 3]> {
     let at = |[radius, z]: [f64; 2], flat: usize| {
         let turn = (flat % flats) as f64 / flats as f64 * std::f64::consts::TAU;
         Point3::new(radius * turn.cos(), radius * turn.sin(), z)
@@ -360,8 +449,7 @@ fn turned(outline: &[[f64; 2]], flats: usize) -> Surface {
             triangles.extend([[a, b, d], [a, d, c]]);
         }
     }
-    // On the axis triangles shrink to lines, which hold nothing.
-    Surface::new(&triangles, MM, "turned").unwrap()
+    triangles
 }
 
 /// The keyed plug, which need not fit, over a socket.
@@ -369,6 +457,7 @@ fn over(surface: Surface, resolution: u32) -> Result<Imported, String> {
     let request = Request {
         name: "round",
         along: Along::MinusZ,
+        jaws: None,
         resolution,
         like: Some(&Task::parse(shipped("usb"), "usb").unwrap()),
         say: &|what| assert!(what.len() <= 80, "{what}"),
@@ -434,6 +523,9 @@ fn a_mesh_that_is_no_solid_is_refused_with_what_is_wrong() {
     let mended = Surface::new(&inward, MM, "p.stl").unwrap();
     assert!(mended.was_inward && mended.volume() > 0.0);
     assert!(read(b"hello", "p.stl").unwrap_err().to_string().contains("no faces"));
+    for (bytes, file) in [(&b"ISO-10303-21;\nHEADER;"[..], "p.obj"), (b"", "p.STP")] {
+        assert!(read(bytes, file).unwrap_err().to_string().contains("fo.import_parts"));
+    }
     // The same solid as OBJ.
     let mut obj = String::new();
     for point in whole.iter().flatten() {
@@ -442,7 +534,8 @@ fn a_mesh_that_is_no_solid_is_refused_with_what_is_wrong() {
     for i in 0..whole.len() {
         obj.push_str(&format!("f {} {}//1 {}/2\n", 3 * i + 1, 3 * i + 2, 3 * i + 3));
     }
-    let same = Surface::new(&read(obj.as_bytes(), "p.obj").unwrap(), MM, "p.obj").unwrap();
+    let same = &read(obj.as_bytes(), "p.obj").unwrap()[0].triangles;
+    let same = Surface::new(same, MM, "p.obj").unwrap();
     let volume = Surface::new(&whole, MM, "p.stl").unwrap().volume();
     assert!((same.volume() - volume).abs() < 1e-6 * volume);
 }

@@ -18,6 +18,7 @@ from ._measure import (
 )
 from ._native import InputError, RunError, __version__
 from ._optimizer import Optimizer, Point
+from ._parts import Imported, import_parts
 from ._run import perform
 from ._study import Study, load_study
 from ._task import Task
@@ -25,6 +26,7 @@ from ._task import Task
 __all__ = [
     "CaptureMap",
     "Evaluation",
+    "Imported",
     "InputError",
     "Levers",
     "Optimizer",
@@ -36,6 +38,7 @@ __all__ = [
     "__version__",
     "capture_map",
     "evaluate",
+    "import_parts",
     "levers",
     "load_study",
     "perform",

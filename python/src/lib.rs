@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod errors;
+mod import;
 mod insertion;
 mod keywords;
 mod measure;
@@ -36,6 +37,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(measure::stiffness, module)?)?;
     module.add_function(wrap_pyfunction!(measure::predict, module)?)?;
     module.add_function(wrap_pyfunction!(measure::space, module)?)?;
+    module.add_function(wrap_pyfunction!(import::import_parts, module)?)?;
     module.add_function(wrap_pyfunction!(measure::task, module)?)?;
     module.add_function(wrap_pyfunction!(measure::task_fields, module)?)?;
     module.add_function(wrap_pyfunction!(measure::task_text, module)?)?;

@@ -133,7 +133,8 @@ impl Asked {
 
     /// Begins it or goes on with it.
     fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<Guided> {
-        let opened = released(py, || self.0.study.open(workers)?.guided())?.map_err(raise)?;
+        let open = || self.0.study.open(workers).and_then(|open| call::warned(open)?.guided());
+        let opened = released(py, open)?.map_err(raise)?;
         Ok(Guided { open: Mutex::new(Some(opened)), shown: self.0.shown })
     }
 }
@@ -214,11 +215,12 @@ impl Guided {
     }
 }
 
-const ENDINGS: [(Ending, &str); 4] = [
+const ENDINGS: [(Ending, &str); 5] = [
     (Ending::BudgetSpent, "budget_spent"),
     (Ending::SpaceExhausted, "space_exhausted"),
     (Ending::Converged, "converged"),
     (Ending::Settled, "settled"),
+    (Ending::NothingInserts, "nothing_inserts"),
 ];
 
 #[pymethods]

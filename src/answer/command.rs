@@ -46,10 +46,7 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     let tasks = named.tasks();
     let several = answer.record.config.several_tasks();
     match (&answer.verdict, &answer.trust) {
-        (Verdict::NothingInserts { .. }, _) => {
-            let first = tasks.split(',').next().unwrap_or(&tasks);
-            (format!("optimize task check {first}"), "says what stops it")
-        }
+        (Verdict::NothingInserts { place, .. }, _) => mend(answer.record, dir, *place),
         (Verdict::NoneFeasible, _) => {
             (format!("optimize report {}", dir.display()), "shows how far each design is off")
         }
@@ -66,6 +63,27 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
         }
         _ => ("optimize measure add bench.csv".to_owned(), "asks for what your robot measured"),
     }
+}
+
+/// What to do about a task, by its place, whose nominal start fails, and why: a file of one's own is
+/// tuned where it is.
+pub fn mend(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
+    let (named, role) = (Named { record, dir }, format!("task_{}", place + 1));
+    if let Some(shipped) = name(named.provenance(), &role, TASKS) {
+        return (format!("optimize task check {shipped}"), "says what stops it");
+    }
+    let given = record.config.conclusion.task_files.get(place);
+    // A text of Python's is no file.
+    let file = given.filter(|file| file.ends_with(".toml")).cloned().unwrap_or_else(|| {
+        format!("{} --out {}.toml", named.input(&role, TASKS), record.config.tasks[place])
+    });
+    (format!("optimize task tune {file}"), "looks for a start and a strategy by which it inserts")
+}
+
+/// Whether the one task of a study is no shipped one.
+pub fn own_task(record: &StudyRecord) -> bool {
+    let named = Named { record, dir: Path::new("") };
+    name(named.provenance(), "task_1", TASKS).is_none()
 }
 
 /// The command that runs a study again, option by option, to be given in its folder.

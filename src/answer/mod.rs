@@ -5,6 +5,7 @@ mod alike;
 pub mod command;
 pub mod lines;
 mod recommended;
+mod robots;
 mod start;
 mod trust;
 mod verdict;
@@ -19,6 +20,7 @@ use insertion::space::Design;
 
 pub use alike::{AsGood, Safe, Spread};
 pub use recommended::{OnTask, Recommended};
+pub use robots::UnderRobot;
 pub use start::Start;
 pub use trust::{Measured, Trust};
 pub use verdict::{Verdict, expectation};
@@ -39,9 +41,6 @@ pub struct Answer<'a> {
     /// The recommended design, or of a front its first; `None` if none has a value and keeps all
     /// constraints.
     pub recommended: Option<Recommended<'a>>,
-    /// A task on which nothing inserts, so that the recommended design is of no use, and the design
-    /// that comes nearest to inserting there.
-    pub nothing_inserts: Option<(&'a str, &'a Recorded)>,
     /// The design that violates the constraints least, and each constraint with its value, in
     /// words; `None` if none has values.
     pub nearest: Option<(&'a Recorded, Vec<String>)>,
@@ -73,9 +72,6 @@ impl<'a> Answer<'a> {
     pub fn of(record: &'a StudyRecord) -> Self {
         let (config, current) = (&record.config, record.current());
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
-        let nothing_inserts = record
-            .unusable()
-            .map(|(task, nearest)| (config.tasks().nth(task).unwrap_or_default(), nearest));
         let walked = |walked: &'a Walked| {
             let firm: Vec<f64> = walked.firm.iter().map(Firm::range_mm).collect();
             (&walked.recorded, record.aggregated(Measure::Range, &firm))
@@ -90,7 +86,6 @@ impl<'a> Answer<'a> {
             designs: current.len(),
             feasible: current.iter().filter(|recorded| recorded.feasible().is_some()).count(),
             recommended,
-            nothing_inserts,
             nearest: nearest(current).map(|design| {
                 let words = config.constraints.iter().map(|c| c.words(&design.tasks()));
                 (design, words.collect())

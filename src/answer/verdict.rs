@@ -39,6 +39,8 @@ pub enum Verdict<'a> {
     },
     /// Nothing inserts on a task.
     NothingInserts {
+        /// Place of the task among the tasks.
+        place: usize,
         /// The task.
         task: &'a str,
         /// The design that comes nearest to inserting.
@@ -52,10 +54,10 @@ pub enum Verdict<'a> {
 
 impl<'a> Verdict<'a> {
     pub(super) fn of(answer: &Answer<'a>, measured: &[Measured]) -> Self {
-        if let Some((task, nearest)) = answer.nothing_inserts {
-            let at = answer.record.config.tasks().position(|name| name == task);
-            let fails = at.and_then(|at| nearest.on(at)).map(|found| found.window.nominal);
-            return Verdict::NothingInserts { task, nearest, fails };
+        if let Some((place, nearest)) = answer.record.unusable() {
+            let task = answer.record.config.tasks().nth(place).unwrap_or_default();
+            let fails = nearest.on(place).map(|found| found.window.nominal);
+            return Verdict::NothingInserts { place, task, nearest, fails };
         }
         if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
             let design = &best.design;

@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::ffi::OsString;
 use std::path::Path;
 
-pub use super::study::Shown;
+pub use super::study::{Shown, warned};
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]

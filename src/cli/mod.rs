@@ -18,6 +18,7 @@ mod progress;
 mod recommended;
 mod repeat;
 mod report;
+mod robots;
 mod sensitivity;
 mod stiffness;
 mod study;
@@ -30,6 +31,7 @@ mod words;
 
 use crate::session::Failure;
 pub use manual::reference;
+pub use task::import::json as imported_json;
 use terminal::{print, print_json, say};
 
 use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand};
@@ -158,7 +160,9 @@ enum Command {
         after_help = "Example: optimize ask-tell < session.jsonl; docs/guide/python.md has the lines"
     )]
     AskTell,
-    /// List tasks, spaces, robots and uncertainties
+    #[command(after_help = "Example: optimize robots --json")]
+    Robots(robots::Arguments),
+    /// List tasks, spaces and uncertainties
     #[command(after_help = "Example: optimize tasks --json")]
     Tasks(tasks::Arguments),
     #[command(
@@ -249,6 +253,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Measure(arguments)) => measure::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::AskTell) => ask_tell::run(),
+        Some(Command::Robots(arguments)) => robots::run(&arguments),
         Some(Command::Tasks(arguments)) => tasks::run(&arguments),
         Some(Command::Task(arguments)) => task::run(&arguments),
         Some(Command::Completions(arguments)) => manual::completions(&arguments),

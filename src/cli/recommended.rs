@@ -9,7 +9,7 @@ use std::path::Path;
 /// `recommended`, `equivalent_designs` and `spread_mm`.
 pub fn json(answer: &Answer) -> Value {
     let one = answer.recommended.as_ref().filter(|_| answer.front.is_none());
-    let simulated = one.filter(|_| answer.nothing_inserts.is_none());
+    let simulated = one.filter(|_| answer.verdict.key() != "nothing_inserts");
     let simulated = simulated.map(|found| recommended(answer.record, found));
     let mut fields = match &answer.record.on_bench {
         None => json!({ "recommended": simulated }),

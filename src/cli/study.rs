@@ -44,6 +44,7 @@ pub struct Shown {
 /// Runs an open study until its budget is spent, shows how far it is, and prints its result.
 pub fn to_its_end(open: OpenStudy, shown: Shown) -> Result<(), Failure> {
     let stop = stop_on_interrupt(open.study().dir())?;
+    let open = warned(open)?;
     let mut progress = Progress::new(open.study(), shown.quiet);
     let ended = open.run(&stop, &mut |event| progress.see(event))?;
     drop(progress);
@@ -61,6 +62,12 @@ pub fn to_its_end(open: OpenStudy, shown: Shown) -> Result<(), Failure> {
         print(&summary::around(&ended.around(&stop)?))?;
     }
     ended.unusable.map_or(Ok(()), Err)
+}
+
+/// The study, what is to be known before it starts said.
+pub fn warned(open: OpenStudy) -> Result<OpenStudy, Failure> {
+    open.warnings()?.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    Ok(open)
 }
 
 /// How long a study may take to end by itself once it is told to stop.

@@ -29,6 +29,7 @@ pub fn json(ended: &Ended, around: &Around) -> String {
         })
     };
     fields["maps"] = around.maps.iter().map(of_map).collect();
+    fields["robots"] = json!(around.robots);
     fields["study"] = json!(dir);
     format!("{fields}\n")
 }
@@ -55,7 +56,8 @@ fn told(answer: &Answer, dir: &Path, verbose: &str) -> String {
 pub fn around(around: &Around) -> String {
     let levers =
         around.levers.iter().map(|levers| format!("levers        {}\n", levers.sentence()));
-    words::wrapped(&levers.collect::<String>())
+    let robots = around.robots.iter().map(|found| format!("robot         {}\n", found.words()));
+    words::wrapped(&levers.chain(robots).collect::<String>())
 }
 
 /// All numbers behind the answer.
@@ -66,6 +68,7 @@ fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
     let end = match ending {
         Ending::SpaceExhausted => ": every design of the space",
         Ending::Converged => ": the polish has converged",
+        Ending::NothingInserts => ": none of them inserts",
         Ending::BudgetSpent | Ending::Interrupted | Ending::Settled => "",
     };
     let (task, method) = (config.task_name(), config.method());
@@ -81,35 +84,16 @@ fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
         text += &words::lines(lines::on_bench(bench));
         text += "by simulation alone:\n";
     }
-    text += &match (&answer.nothing_inserts, &answer.recommended, &answer.front) {
-        (Some(nothing), ..) => unusable(nothing),
-        (None, Some(_), Some(front)) => front_text(record, front),
-        (None, Some(found), None) => words::lines(lines::recommended(answer, found)),
-        (None, None, _) => none(answer),
-    };
+    // Where none is recommended, what stands first says why.
+    let found = answer.recommended.as_ref().filter(|_| answer.named().is_some());
+    text += &found.map_or(String::new(), |found| match &answer.front {
+        Some(front) => front_text(record, front),
+        None => words::lines(lines::recommended(answer, found)),
+    });
     if known > 0 {
         text += &format!("cache         {known} evaluations were known from other studies\n");
     }
     text
-}
-
-fn unusable((task, nearest): &(&str, &Recorded)) -> String {
-    format!(
-        "no design inserts at the nominal start of {task}, so none is recommended\n\
-         nearest       {}\n",
-        evaluated(nearest)
-    )
-}
-
-fn none(answer: &Answer) -> String {
-    let Some((design, constraints)) = &answer.nearest else {
-        return "no evaluation gave a value\n".to_owned();
-    };
-    format!(
-        "no design keeps all constraints, so none is recommended\nnearest       {}: {}\n",
-        evaluated(design),
-        constraints.join("; ")
-    )
 }
 
 fn front_text(record: &StudyRecord, Front { designs, volume }: &Front) -> String {
@@ -145,6 +129,7 @@ fn to_json(answer: &Answer, ending: Ending, known: u64) -> Value {
         Ending::Converged => "converged",
         Ending::Interrupted => "interrupted",
         Ending::Settled => "settled",
+        Ending::NothingInserts => "nothing_inserts",
     };
     let best = record.best().filter(|_| answer.front.is_none());
     let mut fields = json!({

@@ -2,12 +2,7 @@
 
 use super::{Failure, print, print_json};
 use clap::Args;
-use input::InputError;
-use input::shipped::{ROBOTS, SPACES, Shipped, TASKS, UNCERTAINTIES};
-use insertion::evaluation::uncertainty::Uncertainty;
-use insertion::robot::Robot;
-use insertion::space::Space;
-use insertion::task::Task;
+use input::shipped::{SPACES, TASKS, UNCERTAINTIES};
 use serde_json::json;
 
 /// List what is shipped.
@@ -21,32 +16,17 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut text = String::new();
     let mut lists = serde_json::Map::new();
-    let lists_of = [
-        ("tasks", described(TASKS, |file| Ok(Task::parse(file.text, file.file)?.description))),
-        ("spaces", described(SPACES, |file| Ok(Space::parse(file.text, file.file)?.description))),
-        ("robots", described(ROBOTS, |file| Ok(Robot::parse(file.text, file.file)?.description))),
-        (
-            "uncertainties",
-            described(UNCERTAINTIES, |file| {
-                Ok(Uncertainty::parse(file.text, file.file)?.description)
-            }),
-        ),
-    ];
-    for (kind, entries) in lists_of {
+    for (kind, files) in [("tasks", TASKS), ("spaces", SPACES), ("uncertainties", UNCERTAINTIES)] {
         text.push_str(&format!("{kind}\n"));
         let mut list = Vec::new();
-        for (name, description) in entries.map_err(Failure::input)? {
-            text.push_str(&format!("  {name:<10} {description}\n"));
-            list.push(json!({"name": name, "description": description}));
+        for file in files {
+            let fields: toml::Table = input::read(file.text, file.file).map_err(Failure::input)?;
+            let (name, description) = (file.name, fields.get("description"));
+            let words = description.and_then(toml::Value::as_str).unwrap_or_default();
+            text.push_str(&format!("  {name:<10} {words}\n"));
+            list.push(json!({"name": name, "description": words}));
         }
         lists.insert(kind.to_owned(), list.into());
     }
     if arguments.json { print_json(&lists.into()) } else { print(&text) }
-}
-
-fn described(
-    shipped: &'static [Shipped],
-    description: impl Fn(&Shipped) -> Result<String, InputError>,
-) -> Result<Vec<(&'static str, String)>, InputError> {
-    shipped.iter().map(|file| Ok((file.name, description(file)?))).collect()
 }

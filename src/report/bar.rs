@@ -2,7 +2,7 @@
 //! how much of it is firm, what its ribs give, and what a robot measured.
 
 use crate::answer::words::{end, ends_mm, infill, interval, mm, span};
-use crate::answer::{Answer, Measured, OnTask, Recommended, Trust, Verdict, lines};
+use crate::answer::{Answer, Measured, OnTask, Recommended, Trust, UnderRobot, Verdict, lines};
 use crate::study::{ByRibs, OnBench};
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
@@ -35,18 +35,32 @@ impl Row {
     }
 }
 
-/// The bars, task by task; nothing if no finger is named.
-pub(super) fn section(answer: &Answer) -> Option<Markup> {
+/// The bars, task by task, those under several robots below on the same scale; nothing if no finger is
+/// named.
+pub(super) fn section(answer: &Answer, robots: &[UnderRobot]) -> Option<Markup> {
     answer.verdict.finger()?;
+    let drawn = |on: &str, mut rows: Vec<Row>| {
+        rows.extend(robots.iter().map(under));
+        bars(on, &rows)
+    };
     if let Some(bench) = &answer.record.on_bench {
-        return Some(bars("", &on_bench(answer, bench)));
+        return Some(drawn("", on_bench(answer, bench)));
     }
     let found = answer.recommended.as_ref()?;
     Some(html! {
         @for (at, task) in found.tasks.iter().enumerate() {
-            (bars(&found.on(task), &rows(answer, found, (at, task))))
+            (drawn(&found.on(task), rows(answer, found, (at, task))))
         }
     })
+}
+
+/// The same finger under a robot.
+fn under(robot: &UnderRobot) -> Row {
+    let window = &robot.measured.window;
+    let inserts = window.nominal == Outcome::Inserted;
+    let parts = inserts.then(|| ("light", ends_mm(window))).into_iter().collect();
+    let name = format!("under {}", robot.words());
+    Row { name, parts, ends: [window.end_negative, window.end_positive] }
 }
 
 fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Row> {

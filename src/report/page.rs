@@ -4,7 +4,7 @@ use super::elements::{definitions, document, figure};
 use super::{
     ReportError, bench, convergence, explore, first, front, provenance, replay, set, shape,
 };
-use crate::answer::{Answer, expectation, lines};
+use crate::answer::{Answer, UnderRobot, expectation, lines};
 use crate::study::StudyRecord;
 use insertion::surrogate::Model;
 use maud::{Markup, html};
@@ -29,6 +29,8 @@ pub struct Beside {
     pub nominal: Option<String>,
     /// What moves the window: a sentence, and an SVG.
     pub levers: Option<(String, String)>,
+    /// The window under two robots.
+    pub robots: Vec<UnderRobot>,
     /// Maps of what the window is over two errors: captions and SVGs.
     pub maps: Vec<(String, String)>,
 }

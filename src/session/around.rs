@@ -1,14 +1,23 @@
-//! Levers and capture maps of the finger that a study names, kept in its folder beside the journal.
+//! Levers, capture maps and another robot of the finger that a study names, kept in its folder beside
+//! the journal.
 
+use super::failure::not_stopped;
+use super::files::robot;
 use super::levers::levers;
 use super::map::map_of;
 use super::open::Ended;
+use super::robots::felt;
 use super::{Failure, Setup, report};
-use crate::answer::Answer;
+use crate::answer::command::own_task;
+use crate::answer::{Answer, UnderRobot};
 use crate::levers::Levers;
 use crate::map::{Axes, CaptureMap};
 use crate::study::{Provenance, StudyRecord, write_own_file};
 use input::files::{self, LARGEST_OWN};
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::tolerance::Search;
+use insertion::robot::Robot;
 use insertion::space::Design;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -17,6 +26,7 @@ use std::sync::atomic::AtomicBool;
 
 const LEVERS: &str = "levers.json";
 const MAPS: &str = "maps.json";
+const ROBOTS: &str = "robots.json";
 /// Errors that are mapped beside that along y.
 const MAPPED: [Axes; 2] = [Axes::YX, Axes::YYaw];
 
@@ -27,6 +37,8 @@ pub struct Around {
     pub levers: Option<Levers>,
     /// How insertions end over two errors of the start.
     pub maps: Vec<CaptureMap>,
+    /// Its window under the robot of the study and under one as different, if the task is one's own.
+    pub robots: Vec<UnderRobot>,
 }
 
 /// A file, and what it is of.
@@ -50,12 +62,13 @@ impl Around {
                 ..found
             }),
             maps: read(&dir.join(MAPS), (&provenance, &design)).unwrap_or_default(),
+            robots: read(&dir.join(ROBOTS), (&provenance, &design)).unwrap_or_default(),
         }
     }
 }
 
 impl Ended {
-    /// Measures what is not known yet of levers and maps of the named finger, keeps it and shows it
+    /// Measures what is not known yet of levers, maps and robots of the named finger, keeps and shows it
     /// on the page; nothing of several tasks, and where no finger is named.
     ///
     /// # Errors
@@ -68,11 +81,12 @@ impl Ended {
             found.maps.is_empty() && !self.how.no_map,
         );
         let Some((provenance, design)) = subject(record) else { return Ok(found) };
-        if !levers_wanted && !maps_wanted {
+        let robots_wanted = found.robots.is_empty() && own_task(record);
+        if !levers_wanted && !maps_wanted && !robots_wanted {
             return Ok(found);
         }
         let engine = &provenance.engine.name;
-        let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
+        let mut setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         self.how.pool()?.install(|| {
             if levers_wanted {
                 let known =
@@ -83,6 +97,10 @@ impl Ended {
             if maps_wanted {
                 found.maps = maps(&setup, &design, stop)?;
                 write(&dir.join(MAPS), (&provenance, &design), &found.maps)?;
+            }
+            if robots_wanted {
+                found.robots = robots(&mut setup, record, &design, stop)?;
+                write(&dir.join(ROBOTS), (&provenance, &design), &found.robots)?;
             }
             Ok::<_, Failure>(())
         })?;
@@ -106,6 +124,37 @@ fn maps(setup: &Setup, design: &Design, stop: &AtomicBool) -> Result<Vec<Capture
     let taught = evaluator.taught(&specimen, stop).map_err(Failure::input)?;
     let map = |axes| map_of(setup, (&specimen, design), taught, axes, stop);
     MAPPED.into_iter().map(map).collect()
+}
+
+/// Stiffness along y below which a robot counts as compliant: above `servo`, below `ur5e_position`.
+const COMPLIANT_N_PER_MM: f64 = 20.0;
+
+/// The window that the study names, and that under a robot as different as can be: of a compliant one
+/// the position-controlled arm, of others the compliant flange, which the setup is left with.
+fn robots(
+    setup: &mut Setup,
+    record: &StudyRecord,
+    design: &Design,
+    stop: &AtomicBool,
+) -> Result<Vec<UnderRobot>, Failure> {
+    let (template, evaluator) = (setup.only_task()?, &setup.evaluator);
+    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
+    let specimen = evaluator.specimen(template, design, stiffness).map_err(Failure::input)?;
+    let start = [specimen.task.turn, specimen.task.strategy.tilt];
+    let under = |robot: &Robot, measured: Evaluation| {
+        let (stiffness_n_per_mm, _) = felt(robot, start)?;
+        Ok::<_, Failure>(UnderRobot { robot: robot.name.clone(), stiffness_n_per_mm, measured })
+    };
+    let known = Answer::of(record).shown().and_then(|(_, tasks)| tasks.first().copied().cloned());
+    let Some(known) = known else { return Ok(Vec::new()) };
+    let own = under(&evaluator.robot, known)?;
+    let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
+    setup.evaluator.robot = robot(if compliant { "ur5e_position" } else { "servo" })?;
+    let (evaluator, plan) = (&setup.evaluator, &Plan::WINDOW);
+    let found = evaluator.measure_or_teach(&specimen, Search::Walk, plan, stop);
+    let found = found.map_err(Failure::input)?;
+    not_stopped(stop)?;
+    Ok(vec![own, under(&evaluator.robot, found)?])
 }
 
 /// What a file holds; `None` where it is missing, damaged or of something else.

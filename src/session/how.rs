@@ -133,7 +133,8 @@ impl RunRequest {
     ) -> Result<Conclusion, Failure> {
         let bench = setup.measured.as_ref().map(|_| self.effort.or(known)).transpose()?;
         let measurements = setup.measured.as_ref().map(|measured| measured.file.clone());
-        Ok(Conclusion { no_confirm: self.no_confirm, bench, measurements })
+        let task_files = setup.task_files.clone();
+        Ok(Conclusion { no_confirm: self.no_confirm, bench, measurements, task_files })
     }
 
     /// How many threads measure; 0 for one per processor.

@@ -2,15 +2,22 @@
 
 use super::guided::Guided;
 use super::how::RunRequest;
+use super::task::nominal_start;
 use super::{COSTS, Event, Failure, Part, Setup, Watch, tell};
 use super::{film, on_bench, optimizer, printable, report, unusable};
+use crate::answer::command;
+use crate::answer::words::outcome;
 use crate::study::{
     Cache, Confirmed, Confirmer, Ending, Kept, Recorded, Runner, Simulated, Study, StudyConfig,
     StudyError, StudyRecord,
 };
+use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::Search;
+use insertion::outcome::Outcome;
 use insertion::space::label;
+use insertion::task::StartRule;
 use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -57,6 +64,31 @@ impl OpenStudy {
     /// The study as it stands.
     pub fn study(&self) -> &Study {
         &self.study
+    }
+
+    /// A line for each task whose nominal start, not taught, fails with the middle one of the measured
+    /// fingers; nothing of a study that has begun.
+    ///
+    /// # Errors
+    /// If that cannot be simulated.
+    pub fn warnings(&self) -> Result<Vec<String>, Failure> {
+        let (mut warnings, record) = (Vec::new(), self.study.record());
+        let Evaluator { templates, robot, engine, .. } = &self.setup.evaluator;
+        for (place, Template { task, .. }) in templates.iter().enumerate() {
+            let given = task.strategy.rule == StartRule::Given;
+            if given
+                && record.evaluations.is_empty()
+                && let (_, trial) = nominal_start(task, robot, *engine)?
+                && trial.outcome != Outcome::Inserted
+            {
+                let (name, ends) = (&task.name, outcome(trial.outcome));
+                let (command, why) = command::mend(&record, self.study.dir(), place);
+                warnings.push(format!(
+                    "{name}: with the middle finger the nominal start ends with {ends}; {command} {why}"
+                ));
+            }
+        }
+        Ok(warnings)
     }
 
     /// Leaves the measuring to the caller.

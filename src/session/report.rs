@@ -44,6 +44,7 @@ fn beside(dir: &Path, record: &StudyRecord) -> Result<Beside, Failure> {
         ..Beside::default()
     };
     let around = Around::read(dir, record);
+    beside.robots = around.robots;
     let levers = around.levers.iter();
     beside.levers = levers.map(|found| (found.sentence(), report::levers::svg(found))).next();
     for map in &around.maps {

@@ -55,7 +55,7 @@ pub struct SetupRequest {
     /// Search space: infill, codesign, finger, or the path of a space file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]
     pub space: String,
-    /// Robot: see `optimize tasks`, or the path of a robot file
+    /// Robot: see `optimize robots`, or the path of a robot file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     pub robot: String,
     /// Your own stiffness measurements in place of the shipped ones

@@ -32,6 +32,8 @@ pub struct Setup {
     pub measured: Option<Measured>,
     /// The texts all this was read from.
     pub inputs: Inputs,
+    /// What messages call the task files: their paths, as they were given.
+    pub task_files: Vec<String>,
 }
 
 /// Roles of the input files beside the tasks and the errors.
@@ -91,7 +93,8 @@ impl Setup {
         let surrogate = Arc::new(surrogate(stiffness_source, &fingers.measured_finger()?)?);
         let evaluator = Evaluator { surrogate, fingers: fingers.made(), templates, robot, engine };
         fit_together(&evaluator, &space, &space_source.file)?;
-        Ok(Setup { inputs, evaluator, uncertainty: None, measured: None, space })
+        let task_files = tasks.iter().map(|task| task.file.clone()).collect();
+        Ok(Setup { inputs, evaluator, uncertainty: None, measured: None, space, task_files })
     }
 
     /// The evaluator with springs computed from the ribs of the shipped finger, if its own are the

@@ -147,6 +147,7 @@ impl ResumeRequest {
         if let Some((measured, file)) = setup.measured.as_mut().zip(given) {
             measured.file = file;
         }
+        setup.task_files.clone_from(&study.config.conclusion.task_files);
         study.measure_with(&setup.provenance(), &inputs, self.run.if_changed())?;
         OpenStudy::new(study, setup, RunRequest { no_confirm, ..self.run.clone() })
     }

@@ -2,11 +2,15 @@
 
 use super::Failure;
 use super::files::{find, robot};
+use super::tune::mended;
 use crate::calibration::published::three;
 use crate::connector::check::{Problem, problems};
 use crate::connector::nominal;
+use crate::tune::{Stage, Tuned};
 use input::shipped::{SPACES, STIFFNESS, Source, TASKS};
 use insertion::finger::Finger;
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
 use insertion::space::Space;
 use insertion::stiffness;
 use insertion::task::Task;
@@ -79,10 +83,7 @@ impl TaskCheck {
         let problems = problems(&task);
         let nominal = match problems.is_empty() {
             true => {
-                let finger = middling()?;
-                let (shaped, robot) = (finger.shaped(&task.finger, 0.0), robot(robot_name)?);
-                let rig = engine.rig(&task, &robot, &shaped, 1.0).map_err(Failure::input)?;
-                let trial = rig.grasp(&shaped).trial(0.0);
+                let (finger, trial) = nominal_start(&task, &robot(robot_name)?, engine)?;
                 let explanation = nominal::explain(&task, &trial);
                 Some((finger, trial, explanation))
             }
@@ -90,6 +91,32 @@ impl TaskCheck {
         };
         Ok(TaskCheck { source, task: Some(task), problems, nominal })
     }
+}
+
+impl TaskCheck {
+    /// Stages of `task tune` until one mends a nominal start that fails; `None` if it inserts, or if
+    /// problems come first.
+    pub fn mend(&self, robot_name: &str, engine: EngineKind) -> Result<Option<Tuned>, Failure> {
+        let fails = |(_, trial, _): &(Finger, Trial, String)| trial.outcome != Outcome::Inserted;
+        match (&self.task, &self.nominal) {
+            (Some(task), Some(nominal)) if fails(nominal) => {
+                mended(task, robot_name, engine, Stage::Search).map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+}
+
+/// The middle one of the measured fingers, and its trial at the nominal start.
+pub(super) fn nominal_start(
+    task: &Task,
+    robot: &Robot,
+    engine: EngineKind,
+) -> Result<(Finger, Trial), Failure> {
+    let finger = middling()?;
+    let shaped = finger.shaped(&task.finger, 0.0);
+    let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
+    Ok((finger, rig.grasp(&shaped).trial(0.0)))
 }
 
 /// The shipped measured finger of middling compliance stiffness.

@@ -81,7 +81,7 @@ impl TuneRequest {
         let fingers = bench.fingers;
         let mut done =
             TuneDone { task: file.task.clone(), tuned, fingers, after: None, written: None };
-        if done.tuned.best().tried.inserts() {
+        if done.tuned.inserts() {
             done.after = Some(self.write(&file, &done, &robot, target)?);
             done.written = target.filter(|_| !self.dry_run).map(Path::to_path_buf);
         }
@@ -148,7 +148,7 @@ pub fn begun(task: Task, engine: EngineKind) -> Result<(Task, Option<Tuned>), Fa
     }
     let tuned = mended(&task, DEFAULT_ROBOT, engine, Stage::Families)?;
     let best = tuned.best();
-    let strategy = if best.tried.inserts() { best.tried.strategy.clone() } else { task.strategy };
+    let strategy = if tuned.inserts() { best.tried.strategy.clone() } else { task.strategy };
     Ok((Task { strategy, ..task }, Some(tuned)))
 }
 

@@ -17,11 +17,15 @@
 //! An asynchronous study has no batches: `batch` designs are proposed at first, and one more for each
 //! result, which is told at once. Its journal has the results in the order in which they arrived, each
 //! with the number of its proposal: it depends on who was fast, but repeats from that order alone.
+//!
+//! Until a design has inserted at its nominal start no more than [`FUTILE`] are measured, whatever the
+//! batch: where none of so many does, start or strategy are wrong, and no finger mends them. What is
+//! left of a batch then is measured once one has inserted.
 
 use super::error::StudyError;
 use super::fits;
 use super::folder::Study;
-use super::record::{Recorded, Timing};
+use super::record::{Recorded, Timing, first_current};
 use ask_tell::GridPoint;
 use ask_tell::{Observation, Optimizer, StopReason};
 use insertion::evaluation::evaluator::Measured;
@@ -41,9 +45,14 @@ pub enum Ending {
     Converged,
     /// No design is expected to gain what matters.
     Settled,
+    /// None of the first designs inserts on any task.
+    NothingInserts,
     /// It was told to stop.
     Interrupted,
 }
+
+/// Evaluations of the present model, none of which inserts, after which a study ends.
+const FUTILE: usize = 12;
 
 /// A design that is to be measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -244,8 +253,8 @@ impl Course {
     /// Tells the batch that was measured.
     fn tell_batch(&mut self, study: &Study, optimizer: &mut dyn Optimizer) {
         let end = self.told + self.open.len();
-        // A budget that ends within a batch tells nothing of it.
-        if end <= self.budget && !self.open.is_empty() {
+        // A limit within a batch tells nothing of it before the rest was measured, too.
+        if end <= study.evaluations.len() && !self.open.is_empty() {
             let points = std::mem::take(&mut self.open).into_values();
             let found = study.evaluations.iter().skip(self.told);
             let told: Vec<Observation> = points
@@ -263,14 +272,13 @@ impl Course {
         study: &Study,
         optimizer: &mut dyn Optimizer,
     ) -> Result<Vec<Wanted>, StudyError> {
-        if self.told + self.open.len() >= self.budget {
-            self.ended = Some(Ending::BudgetSpent);
-            return Ok(Vec::new());
-        }
-        self.propose(optimizer, self.batch);
-        if self.open.is_empty() {
-            self.ended = Some(exhausted(optimizer));
-            return Ok(Vec::new());
+        // What is left of a batch at a limit that has risen comes first.
+        if self.open.is_empty() && self.told < self.limit(study) {
+            self.propose(optimizer, self.batch);
+            if self.open.is_empty() {
+                self.ended = Some(exhausted(optimizer));
+                return Ok(Vec::new());
+            }
         }
         let mut wanted = self.wanted(study);
         for wanted in &wanted {
@@ -281,7 +289,11 @@ impl Course {
                 _ => {}
             }
         }
-        wanted.retain(|wanted| wanted.proposal >= study.evaluations.len() as u64);
+        let known = study.evaluations.len();
+        wanted.retain(|wanted| wanted.proposal >= known as u64);
+        if wanted.is_empty() && (self.open.is_empty() || self.told + self.open.len() > known) {
+            self.ended = Some(self.spent(study));
+        }
         Ok(wanted)
     }
 
@@ -309,8 +321,8 @@ impl Course {
         let mut wanted = self.wanted(study);
         wanted.retain(|wanted| !self.measuring.contains_key(&wanted.proposal));
         if wanted.is_empty() && self.measuring.is_empty() {
-            let spent = self.told >= self.budget;
-            self.ended = Some(if spent { Ending::BudgetSpent } else { exhausted(optimizer) });
+            let spent = self.told >= self.limit(study);
+            self.ended = Some(if spent { self.spent(study) } else { exhausted(optimizer) });
         }
         Ok(wanted)
     }
@@ -322,9 +334,25 @@ impl Course {
         }
     }
 
-    /// The designs that were proposed within the budget and are not told yet.
+    /// Evaluations after which nothing more is measured: the budget, or fewer as long as nothing
+    /// inserts.
+    fn limit(&self, study: &Study) -> usize {
+        let first = first_current(study.segments()) as usize;
+        match study.evaluations.iter().skip(first).any(Recorded::inserts) {
+            true => self.budget,
+            false => self.budget.min(first + FUTILE),
+        }
+    }
+
+    /// Why it ends at its limit.
+    fn spent(&self, study: &Study) -> Ending {
+        if self.limit(study) < self.budget { Ending::NothingInserts } else { Ending::BudgetSpent }
+    }
+
+    /// The designs that were proposed within the limit and are not told yet.
     fn wanted(&self, study: &Study) -> Vec<Wanted> {
-        let within = self.open.iter().filter(|(number, _)| **number < self.budget as u64);
+        let limit = self.limit(study) as u64;
+        let within = self.open.iter().filter(|(number, _)| **number < limit);
         let wanted = |(&proposal, (point, told)): (&u64, &(GridPoint, usize))| {
             let design = study.config.space.design(point);
             Wanted { proposal, design, race: study.race(*told) }

@@ -6,7 +6,6 @@ use super::walk::gain;
 use ask_tell::Grid;
 use ask_tell::gp::{Confirmed, Outlook};
 use insertion::evaluation::objective::Measure;
-use insertion::outcome::Outcome;
 
 impl StudyRecord {
     /// The recommended design of a study with one objective: the first by the rule of
@@ -99,12 +98,8 @@ impl StudyRecord {
     /// The task, by its place, on which no design inserts at the nominal start, and the design
     /// that comes nearest to it.
     pub fn unusable(&self) -> Option<(usize, &Recorded)> {
-        let inserts = |recorded: &Recorded, task: usize| {
-            recorded.on(task).is_some_and(|found| found.window.nominal == Outcome::Inserted)
-        };
-        let tasks = 0..self.config.tasks.len();
-        let task =
-            tasks.into_iter().find(|&task| !self.current().iter().any(|r| inserts(r, task)))?;
+        let mut tasks = 0..self.config.tasks.len();
+        let task = tasks.find(|&task| !self.current().iter().any(|r| r.inserts_on(task)))?;
         let margin =
             |recorded: &Recorded| recorded.on(task).map_or(-1.0, |found| found.end_shares[0]);
         // Of equals the first.

@@ -9,6 +9,7 @@ use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Goals, Measure, Score};
 use insertion::evaluation::robustness::firm::Firm;
 use insertion::finger::file::FingerFile;
+use insertion::outcome::Outcome;
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
@@ -146,6 +147,16 @@ impl Recorded {
     /// Measurements on a task, by its place among the tasks.
     pub fn on(&self, task: usize) -> Option<&Evaluation> {
         self.tasks.get(task)
+    }
+
+    /// Whether it inserts at the nominal start of a task, by its place among the tasks.
+    pub fn inserts_on(&self, task: usize) -> bool {
+        self.on(task).is_some_and(|found| found.window.nominal == Outcome::Inserted)
+    }
+
+    /// Whether it does on any task.
+    pub fn inserts(&self) -> bool {
+        (0..self.tasks.len()).any(|task| self.inserts_on(task))
     }
 
     /// Measurements on each task.

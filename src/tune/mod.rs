@@ -11,9 +11,9 @@ use crate::study::INDIFFERENCE_MM;
 use ask_tell::{Grid, Observation, OptimizerKind};
 use input::InputError;
 use input::units::{DEG, MM};
-use insertion::evaluation::Window;
 use insertion::evaluation::template::Impossible;
-use insertion::task::Task;
+use insertion::finger::Finger;
+use insertion::task::{Strategy, Task};
 use insertion::trial::Conditions;
 use rayon::prelude::*;
 
@@ -26,6 +26,10 @@ const EACH: usize = 3;
 /// Turn of the socket that is checked, degrees, and factors on its friction.
 const YAW_DEG: f64 = 1.0;
 const FRICTION: [f64; 2] = [0.8, 1.2];
+/// Changes that are checked, no change among them.
+const CHANGES: usize = 5;
+/// Strategies that are checked with one finger.
+const FINALISTS: usize = 4;
 
 /// How far to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -107,13 +111,15 @@ pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
             Stage::AsItIs => {}
             Stage::Start => {
                 let tried = bench.taught(own)?;
-                tuned.add(Step { stage, what: "start taught".into(), tried }, effort);
+                let by = (tried.strategy.start[1] - own.start[1]) / MM;
+                let what = format!("start taught, {by:+.1} mm in y");
+                tuned.add(Step { stage, what, tried }, effort);
             }
             Stage::Families => tuned.families(bench, effort),
             Stage::Search => tuned.search(bench, effort)?,
         }
     }
-    if effort.last == Stage::Search && tuned.best().tried.inserts() {
+    if effort.last == Stage::Search && tuned.inserts() {
         tuned.check(bench)?;
     }
     Ok(tuned)
@@ -125,13 +131,20 @@ impl Tuned {
         &self.steps[self.best]
     }
 
-    /// A later step must be better by what matters; of two that fail, at all.
+    /// Whether the recommended strategy inserts with all three fingers.
+    pub fn inserts(&self) -> bool {
+        self.best().tried.inserts()
+    }
+
+    /// A step of a later stage must be better by what matters; of the same stage, or of two that fail, at
+    /// all.
     fn add(&mut self, step: Step, effort: &Effort) {
         self.windows += step.tried.cost;
         (effort.tell)(&step.what, step.tried.cost, self.windows, MOST_WINDOWS);
         self.steps.push(step);
         let [best, last] = [self.best, self.steps.len() - 1].map(|i| &self.steps[i].tried);
-        let margin = if best.inserts() { INDIFFERENCE_MM } else { 0.0 };
+        let own = self.steps[self.best].stage == self.steps[self.steps.len() - 1].stage;
+        let margin = if best.inserts() && !own { INDIFFERENCE_MM } else { 0.0 };
         // A middle is worth more than a start near the end of as wide a window.
         let centred = self.steps.len() == 2
             && last.side_mm() >= best.side_mm() + INDIFFERENCE_MM
@@ -189,39 +202,71 @@ impl Tuned {
     }
 
     /// Windows of the check.
-    const CHECKS: usize = 15;
+    const CHECKS: usize = CHANGES * (FINALISTS + EACH);
 
-    /// What the best strategy keeps with other fingers, a turned socket and other friction.
+    /// Of the best strategies the one that keeps most under changes, with one other finger; then what
+    /// that one keeps with three.
     fn check(&mut self, bench: &Bench) -> Result<(), Impossible> {
+        let [_, one, _] = bench.others;
+        let mut worst = Vec::new();
+        for place in self.finalists() {
+            let kept = self.kept(bench, &self.steps[place].tried.strategy, &[one])?;
+            self.windows += kept.len();
+            let least = kept.iter().map(|kept| kept.least_range_mm).fold(f64::INFINITY, f64::min);
+            worst.push((place, least));
+        }
+        let most = worst.iter().map(|(_, least)| *least).fold(0.0, f64::max);
+        // The first of those that are as good.
+        let found = worst.iter().find(|(_, least)| *least >= most - INDIFFERENCE_MM);
+        self.best = found.map_or(self.best, |(place, _)| *place);
+        self.kept = self.kept(bench, &self.steps[self.best].tried.strategy, &bench.others)?;
+        self.windows += self.kept.len() * bench.others.len();
+        Ok(())
+    }
+
+    /// The recommended strategy, then the best others, with their least ranges in falling order.
+    fn finalists(&self) -> Vec<usize> {
+        let inserts = |place: &usize| *place != self.best && self.steps[*place].tried.inserts();
+        let mut others: Vec<_> = (0..self.steps.len()).filter(inserts).collect();
+        let score = |place: &usize| self.steps[*place].tried.score;
+        others.sort_by(|a, b| score(b).total_cmp(&score(a)));
+        // The best that was not searched for is one of them.
+        let plain = others.iter().copied().find(|&place| self.steps[place].stage < Stage::Search);
+        let first = others.into_iter().filter(|&place| Some(place) != plain).take(FINALISTS - 2);
+        std::iter::once(self.best).chain(first).chain(plain).collect()
+    }
+
+    /// What a strategy keeps with some fingers, with a turned socket and with other friction.
+    fn kept(
+        &self,
+        bench: &Bench,
+        strategy: &Strategy,
+        fingers: &[Finger],
+    ) -> Result<Vec<Kept>, Impossible> {
         let nominal = Conditions::NOMINAL;
         let yaw = |degrees: f64| Conditions { yaw: degrees * DEG, ..nominal };
         let friction = |factor| Conditions { friction_socket: factor, ..nominal };
         let [less, more] = FRICTION;
-        let changes = [
+        let changes: [_; CHANGES] = [
             ("none".to_owned(), nominal),
             (format!("socket turned by {YAW_DEG}°"), yaw(YAW_DEG)),
             (format!("socket turned by -{YAW_DEG}°"), yaw(-YAW_DEG)),
             (format!("friction plug-socket times {less}"), friction(less)),
             (format!("friction plug-socket times {more}"), friction(more)),
         ];
-        let strategy = self.best().tried.strategy.clone();
-        let found: Result<Vec<_>, _> = changes
-            .into_par_iter()
-            .map(|(change, conditions)| {
-                let windows = bench.windows(&strategy, &bench.others, conditions)?;
-                let ranges = windows.iter().map(|(window, _)| window.range_mm());
-                let least_range_mm = ranges.fold(f64::INFINITY, f64::min);
-                Ok::<_, Impossible>(Kept { change, least_range_mm })
-            })
-            .collect();
-        self.kept = found?;
-        self.windows += Self::CHECKS;
-        Ok(())
+        let under = |(change, conditions)| {
+            let windows = bench.windows(strategy, fingers, conditions)?;
+            let ranges = windows.iter().map(|(window, _)| window.range_mm());
+            let least_range_mm = ranges.fold(f64::INFINITY, f64::min);
+            Ok(Kept { change, least_range_mm })
+        };
+        changes.into_par_iter().map(under).collect()
     }
 
-    /// Where the nearest of the starts that failed came to its end, if nothing inserts.
+    /// Where the start that failed least clearly came to its end, of strategies without any that inserts.
     pub fn nearest(&self, task: &Task) -> Option<Stopped> {
-        let trial = self.best().tried.nearest.as_ref()?;
+        let failed = self.steps.iter().filter_map(|step| step.tried.nearest.as_ref());
+        let trial = failed.max_by(|a, b| a.margin.total_cmp(&b.margin))?;
         let phase = trial.phases.last()?;
         let strongest =
             phase.contacts.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()));
@@ -261,9 +306,4 @@ pub struct Stopped {
     /// The parts of plug and socket between which the largest force acts.
     #[serde(rename = "plug_and_socket_part")]
     pub met: Option<[String; 2]>,
-}
-
-/// Ranges of windows, mm.
-pub fn ranges_mm(windows: &[Window]) -> Vec<f64> {
-    windows.iter().map(Window::range_mm).collect()
 }

@@ -59,8 +59,8 @@ impl Base {
 /// An example mesh with each corner once.
 fn obj(pair: &str, body: &str) -> String {
     let name = format!("{}/examples/meshes/{pair}-{body}.stl", env!("CARGO_MANIFEST_DIR"));
-    let triangles = read(&fs::read(&name).unwrap(), &name).unwrap();
-    let surface = Surface::new(&triangles, MM, &name).unwrap();
+    let bodies = read(&fs::read(&name).unwrap(), &name).unwrap();
+    let surface = Surface::new(&bodies[0].triangles, MM, &name).unwrap();
     let corner = |p: &Point3<f64>| format!("v {} {} {}\n", p.x / MM, p.y / MM, p.z / MM);
     let face = |[a, b, c]: &[usize; 3]| format!("f {} {} {}\n", a + 1, b + 1, c + 1);
     surface.points.iter().map(corner).chain(surface.faces.iter().map(face)).collect()
@@ -161,7 +161,7 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
             paths[changed] = file(&bodies[changed], "changed.obj")?;
             let [plug, socket] = paths;
             ended(&format!(
-                "task import --engine fake --json --unit mm --resolution 32 --plug {plug} \
+                "task import --engine fake --json --resolution 32 --plug {plug} \
                  --socket {socket} --out {folder}/task.toml"
             ))
         }
@@ -327,7 +327,7 @@ fn talk(mutations: &[Mutation], number: usize) -> How {
 
 /// Command lines of known words with values that may mean nothing.
 fn command_line(mutations: &[Mutation], number: usize, dir: &Path) -> How {
-    const LINES: [&str; 14] = [
+    const LINES: [&str; 15] = [
         "--task \"usb\" --engine \"fake\" --budget 3 --batch 2 --seed 1 --threads 2 --no-cache",
         "--task \"usb,rj45\" --engine \"fake\" --budget 2 --aggregate \"weighted\" --weights \"1,2\" --no-cache",
         "--task \"usb\" --engine \"fake\" --budget 3 --objective \"range,peak-force\" --constraint \"slip<=1\" --no-cache",
@@ -341,6 +341,7 @@ fn command_line(mutations: &[Mutation], number: usize, dir: &Path) -> How {
         "trial --task \"ket12\" --engine \"fake\" --density 10 --direction 0 --repeat 3",
         "finger --density 20 --direction 20 --phase-mm 0.5 --json",
         "tasks --json",
+        "robots --json",
         "export \"mjcf\" --task \"usb\" --density 20 --direction 10 --out \"scene.xml\"",
     ];
     let line = LINES[number % LINES.len()];

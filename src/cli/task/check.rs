@@ -1,10 +1,13 @@
 //! `optimize task check`: what is wrong with a task file, and whether its nominal start inserts.
 
+use super::super::words::wrapped;
 use super::super::{Failure, print, print_json, trial};
+use super::tune;
 use crate::connector::check::Problem;
 use crate::connector::picture;
 use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskSource};
 use crate::study::write_file;
+use crate::tune::Tuned;
 use clap::Args;
 use input::units::N_PER_MM;
 use insertion::outcome::Outcome;
@@ -21,7 +24,7 @@ pub struct Arguments {
     /// Draw plug, socket, clearances, fingertips and search path
     #[arg(long, value_name = "FILE.svg")]
     svg: Option<PathBuf>,
-    /// Robot: see `optimize tasks`, or the path of a robot file
+    /// Robot: see `optimize robots`, or the path of a robot file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     robot: String,
     /// Contact engine
@@ -42,11 +45,38 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         _ => String::new(),
     };
-    match arguments.json {
-        true => print_json(&json(&checked))?,
-        false => print(&(text(&checked) + &drawn))?,
+    let mended = checked.mend(&arguments.robot, arguments.engine)?;
+    let file = &checked.source.file;
+    if arguments.json {
+        let mut fields = json(&checked);
+        fields["mended_by"] = json!(mended.as_ref().map(tune::brief_json));
+        print_json(&fields)?;
+    } else {
+        let remedy = mended.as_ref().map_or(String::new(), |tuned| match tuned.inserts() {
+            true => format!(
+                "{}next          optimize task tune {file}\n",
+                tune::brief("mended by", tuned)
+            ),
+            false => format!("mended by     nothing that was tried: {}\n", tune::tried(tuned)),
+        });
+        print(&wrapped(&(text(&checked) + &remedy + &drawn)))?;
     }
     verdict(&checked)
+}
+
+/// How a command ends that wrote a new task: well if its nominal start inserts.
+pub fn ended(checked: &TaskCheck, tuned: Option<&Tuned>) -> Result<(), Failure> {
+    match (verdict(checked), tuned) {
+        (Ok(()), _) => Ok(()),
+        (Err(_), Some(tuned)) => {
+            let file = &checked.source.file;
+            let tried = tune::tried(tuned);
+            Err(Failure::running(format!(
+                "{file}: does not insert; tried: {tried}; `optimize task tune {file}` looks further"
+            )))
+        }
+        (Err(problems), None) => Err(Failure::running(problems.to_string())),
+    }
 }
 
 /// `valid`, `problems` and `nominal`.

@@ -1,7 +1,7 @@
 //! `optimize task`: one's own connector.
 
 mod check;
-mod import;
+pub mod import;
 mod new;
 mod tune;
 
@@ -31,7 +31,7 @@ pub enum Arguments {
     #[command(after_help = "Example: optimize task check usb-c.toml --svg usb-c.svg")]
     Check(check::Arguments),
     #[command(after_help = "Example: optimize task import --plug plug.stl --socket socket.stl \
-                            --unit mm --out mine.toml")]
+                            --out mine.toml")]
     Import(import::Arguments),
     #[command(after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
     Tune(tune::Arguments),

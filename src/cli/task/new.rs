@@ -1,11 +1,13 @@
 //! `optimize task new`: a task file to begin with.
 
+use super::super::words::wrapped;
 use super::super::{Failure, print};
-use super::check;
+use super::{check, tune};
 use crate::connector::draft::{DENSITY, Dimensions, Hole, Size, draft};
 use crate::connector::write::{self, Notes};
-use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskFile, read_task};
+use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskFile, begun, read_task};
 use crate::study::write_file;
+use crate::tune::Tuned;
 use clap::Args;
 use input::shipped::Source;
 use input::units::MM;
@@ -50,8 +52,8 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let like = arguments.like.as_deref().map(read_task).transpose()?;
-    let text = match (&like, arguments.plug.or(arguments.round)) {
-        (Some(like), None) => copy(&arguments.name, like),
+    let (text, tuned) = match (&like, arguments.plug.or(arguments.round)) {
+        (Some(like), None) => (copy(&arguments.name, like), None),
         (like, _) => drafted(arguments, like.as_ref())?,
     };
     let out = arguments.out.clone().unwrap_or_else(|| format!("{}.toml", arguments.name).into());
@@ -63,14 +65,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     write_file(&out, &written.source.text)?;
     let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, arguments.engine)?;
-    print(&format!(
-        "written       {file}\n{}next          optimize task check {file} --svg {}.svg\n",
+    let strategy = tuned.iter().map(|tuned| tune::brief("strategy", tuned)).collect::<String>();
+    print(&wrapped(&format!(
+        "written       {file}\n{strategy}{}next          optimize task check {file} --svg {}.svg\n",
         check::text(&checked),
         arguments.name
-    ))
+    )))?;
+    check::ended(&checked, tuned.as_ref())
 }
 
-fn drafted(arguments: &Arguments, like: Option<&TaskFile>) -> Result<String, Failure> {
+fn drafted(
+    arguments: &Arguments,
+    like: Option<&TaskFile>,
+) -> Result<(String, Option<Tuned>), Failure> {
     let (size, example) = dimensions(arguments)?;
     let task =
         draft(&arguments.name, &size, like.map(|like| &like.task)).map_err(Failure::input)?;
@@ -94,7 +101,8 @@ fn drafted(arguments: &Arguments, like: Option<&TaskFile>) -> Result<String, Fai
         head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
     }
     let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
-    Ok(write::task(&task, &Notes { head, mass }))
+    let (task, tuned) = begun(task, arguments.engine)?;
+    Ok((write::task(&task, &Notes { head, mass }), tuned))
 }
 
 fn dimensions(arguments: &Arguments) -> Result<(Dimensions, bool), Failure> {

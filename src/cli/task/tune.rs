@@ -9,6 +9,7 @@ use clap::Args;
 use input::units::{DEG, MM, N_PER_MM};
 use insertion::evaluation::Window;
 use insertion::finger::Finger;
+use insertion::outcome::Outcome;
 use insertion::task::Strategy;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};
@@ -46,8 +47,34 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// That nothing inserts, and what was tried.
-pub fn nothing(file: &str, tuned: &Tuned) -> Failure {
+fn nothing(file: &str, tuned: &Tuned) -> Failure {
     Failure::running(format!("{file}: no strategy inserts; tried: {}", tried(tuned)))
+}
+
+/// A line on what was chosen.
+pub fn brief(name: &str, tuned: &Tuned) -> String {
+    let step = tuned.best();
+    let range = outcome(step);
+    let text = format!("{}: {range} with a soft, a middling and a stiff finger", step.what);
+    lines([(name.to_owned(), text)])
+}
+
+/// What was chosen: stage, what it changes, and ranges of a soft, a middling and a stiff finger; null
+/// where nothing inserts.
+pub fn brief_json(tuned: &Tuned) -> Value {
+    match tuned.inserts() {
+        true => step_json(tuned.best()),
+        false => Value::Null,
+    }
+}
+
+fn step_json(Step { stage, what, tried }: &Step) -> Value {
+    json!({
+        "stage": stage,
+        "what": what,
+        "least_range_mm": tried.inserts().then_some(tried.score),
+        "range_mm": tried.windows.iter().map(Window::range_mm).collect::<Vec<_>>(),
+    })
 }
 
 /// What was tried, the candidates of the search by their number.
@@ -63,14 +90,6 @@ pub fn tried(tuned: &Tuned) -> String {
 
 fn json(done: &TuneDone) -> Value {
     let TuneDone { task, tuned, fingers, after, written } = done;
-    let step = |Step { stage, what, tried }: &Step| {
-        json!({
-            "stage": stage,
-            "what": what,
-            "least_range_mm": tried.inserts().then_some(tried.score),
-            "range_mm": tried.windows.iter().map(Window::range_mm).collect::<Vec<_>>(),
-        })
-    };
     let best = &tuned.best().tried;
     json!({
         "schema_version": 1,
@@ -80,7 +99,7 @@ fn json(done: &TuneDone) -> Value {
         "before": state(&task.strategy, &tuned.steps[0].tried.windows, fingers),
         "after": after.as_ref().map(|after| state(&best.strategy, after, fingers)),
         "by": {"stage": tuned.best().stage, "what": tuned.best().what},
-        "steps": tuned.steps.iter().map(step).collect::<Vec<_>>(),
+        "steps": tuned.steps.iter().map(step_json).collect::<Vec<_>>(),
         "kept": tuned.kept,
         "nearest": tuned.nearest(task),
         "out": written.as_ref().map(|path| path.display().to_string()),
@@ -168,14 +187,17 @@ fn outcome(step: &Step) -> String {
     }
 }
 
-/// `3.1, 3.3 and 2.9 mm`; a dash where the nominal start fails.
+/// `3.1, 3.3, 2.9 mm`; how the nominal start fails where it does.
 fn ranges(windows: &[Window]) -> String {
-    let range = |window: &Window| match window.nominal {
-        insertion::outcome::Outcome::Inserted => format!("{:.1}", window.range_mm()),
-        failed => failed.short().to_owned(),
+    let inserts = |window: &Window| window.nominal == Outcome::Inserted;
+    let all = windows.iter().all(inserts);
+    let unit = if all { "" } else { " mm" };
+    let range = |window: &Window| match inserts(window) {
+        true => format!("{:.1}{unit}", window.range_mm()),
+        false => window.nominal.short().to_owned(),
     };
     let each: Vec<_> = windows.iter().map(range).collect();
-    format!("{} mm", each.join(", "))
+    format!("{}{}", each.join(", "), if all { " mm" } else { "" })
 }
 
 fn compliances(fingers: &[Finger]) -> String {

@@ -5,6 +5,8 @@ mod parts;
 mod socket;
 mod strategy;
 
+pub(crate) use parts::FACES_MM;
+
 use super::body::ConvexBody;
 use super::seat::Seating;
 use input::InputError;

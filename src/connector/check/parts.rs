@@ -121,6 +121,9 @@ fn mass(case: &Case) -> Option<Problem> {
     ))
 }
 
+/// Width between the jaws, mm: what grippers of assembly cells open to, generously.
+pub const FACES_MM: [f64; 2] = [1.0, 100.0];
+
 /// Units mistaken for millimetres, in mm.
 const UNITS: [(&str, f64); 4] =
     [("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)];
@@ -136,7 +139,7 @@ pub(super) fn lengths(case: &Case) -> Vec<Problem> {
         ("socket.opening_y_mm", width(task.opening[1]), [0.5, 100.0]),
         ("grip.tcp_z_mm", grip.tcp_z, [3.0, 300.0]),
         ("grip.shoulder_z_mm", grip.shoulder_z, [3.0, 300.0]),
-        ("grip.faces_y_mm", width(grip.faces_y), [1.0, 100.0]),
+        ("grip.faces_y_mm", width(grip.faces_y), FACES_MM),
         ("grip.slip_limit_mm", grip.slip_limit, [0.2, 30.0]),
         ("strategy.start_mm", Vector3::from(task.strategy.start).norm(), [3.0, 500.0]),
         ("success.depth_mm", task.success.depth, [0.5, 150.0]),

@@ -11,6 +11,8 @@ use nalgebra::Point3;
 const BELOW: f64 = 0.1 * MM;
 /// Tolerance between walls and opening, m: polygons for circles, small chamfers.
 const AGREE: f64 = 0.15 * MM;
+/// Places along a side at which its wall is looked for, halfway among them: walls are slanted and round.
+const ALONG: i32 = 41;
 /// Distance from the stated edge within which the wall is looked for, and its step, m.
 const FAR: f64 = 5.0 * MM;
 const STEP: f64 = 0.0025 * MM;
@@ -31,20 +33,27 @@ pub(super) fn walls(case: &Case) -> Vec<Problem> {
     sides.filter_map(|(axis, end)| side(case, axis, end)).collect()
 }
 
-/// Fault of one side of the opening, which is solid just outside and free just inside, halfway along.
+/// Fault of one side of the opening, which is solid just outside halfway along, and somewhere along it
+/// free just inside. What it should be is read halfway along.
 fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
     let opening = case.task.opening;
     let stated = opening[axis][end];
     let outward = [-1.0, 1.0][end];
     let other = 1 - axis;
-    let middle = (opening[other][0] + opening[other][1]) / 2.0;
-    let part = |at: f64| {
+    let part_at = |at: f64, share: f64| {
         let mut point = Point3::new(0.0, 0.0, -BELOW);
-        (point[axis], point[other]) = (at, middle);
+        let [from, to] = opening[other];
+        (point[axis], point[other]) = (at, from + share * (to - from));
         case.socket.part_at(&point)
     };
+    let begins = |i: i32| {
+        let share = f64::from(2 * i + 1) / f64::from(2 * ALONG);
+        let solid = |beyond: f64| part_at(stated + outward * beyond, share).is_some();
+        solid(AGREE) && !solid(-AGREE)
+    };
+    let part = |at: f64| part_at(at, 0.5);
     let solid = |beyond: f64| part(stated + outward * beyond).is_some();
-    if solid(AGREE) && !solid(-AGREE) {
+    if solid(AGREE) && (0..ALONG).any(begins) {
         return None;
     }
     let name = ["x", "y"][axis];

@@ -2,7 +2,7 @@
 //! corners there is no corner, so every side is flat and the outline keeps its corners.
 
 use super::surface::Surface;
-use crate::connector::body::span;
+use crate::connector::body::{span, width};
 use input::units::MM;
 use nalgebra::{Point2, Point3};
 use spade::{ConstrainedDelaunayTriangulation, Point2 as Place, Triangulation};
@@ -16,6 +16,8 @@ const MOST_LAYERS: usize = 120;
 const MOST_PIECES: usize = 600;
 /// Most levels of y of an outline cut into strips; a curved one is cut into triangles.
 const MOST_STRIPS: usize = 24;
+/// Least narrowing of a chamfer, both sides together, over its depth.
+const SLANTED: f64 = 0.3;
 /// Largest area of a straight turn, m2.
 const STRAIGHT: f64 = 1e-4 * MM * MM;
 
@@ -58,15 +60,51 @@ pub fn pieces(surface: &Surface) -> Option<Vec<Piece>> {
     Some(found)
 }
 
-/// Bounding boxes in x and y of the highest layer's holes, `below` the top, m.
-pub fn openings(surface: &Surface, below: f64) -> Vec<[[f64; 2]; 2]> {
+/// Opening of a socket; bounding boxes in x and y, m.
+pub struct Mouth {
+    /// A little below the top.
+    pub opening: [[f64; 2]; 2],
+    /// Size on the top.
+    pub rim: [f64; 2],
+    /// Size where the walls are upright.
+    pub throat: [f64; 2],
+    /// Depth of that place, m.
+    pub depth: f64,
+}
+
+/// The largest hole in the surface's highest layer, its box taken `below` the top, m.
+pub fn mouth(surface: &Surface, below: f64) -> Option<Mouth> {
     let heights = levels(surface.points.iter().map(|p| p.z));
-    let Some(&[low, high]) = heights.last_chunk::<2>() else { return Vec::new() };
-    let Some(top) = layer(surface, [low, high]) else { return Vec::new() };
-    let share = (1.0 - below / (high - low)).max(0.0);
-    let holes = top.iter().filter(|outline| area(outline, share) < 0.0);
-    let along = |hole: &Outline, axis: usize| span(hole.iter().map(|riser| riser.at(share)[axis]));
-    holes.map(|hole| [0, 1].map(|axis| along(hole, axis))).collect()
+    let &[low, top] = heights.last_chunk::<2>()?;
+    let size = |hole: &Outline, share: f64| bounds(hole, share).map(width);
+    let holes = |pair: &[f64]| {
+        let layer = layer(surface, [pair[0], pair[1]]).unwrap_or_default();
+        layer.into_iter().filter(|outline| area(outline, 0.5) < 0.0).collect::<Vec<_>>()
+    };
+    let large = |hole: &Outline| size(hole, 0.5).iter().product::<f64>();
+    let first = holes(&[low, top]).into_iter().max_by(|a, b| large(a).total_cmp(&large(b)))?;
+    let opening = bounds(&first, (1.0 - below / (top - low)).max(0.0));
+    let middle = opening.map(|[low, high]| (low + high) / 2.0);
+    let about = |hole: &Outline| {
+        let inside = |axis: usize, [low, high]: [f64; 2]| low < middle[axis] && middle[axis] < high;
+        bounds(hole, 1.0).into_iter().enumerate().all(|(axis, range)| inside(axis, range))
+    };
+    let mut mouth =
+        Mouth { opening, rim: size(&first, 1.0), throat: size(&first, 1.0), depth: 0.0 };
+    for pair in heights.windows(2).rev() {
+        let Some(hole) = holes(pair).into_iter().find(about) else { break };
+        let [wide, narrow] = [1.0, 0.0].map(|share| size(&hole, share));
+        if (0..2).all(|axis| wide[axis] - narrow[axis] < SLANTED * (pair[1] - pair[0])) {
+            break;
+        }
+        (mouth.throat, mouth.depth) = (narrow, top - pair[0]);
+    }
+    Some(mouth)
+}
+
+/// Bounding box in x and y of an outline at a share of its height.
+fn bounds(outline: &Outline, share: f64) -> [[f64; 2]; 2] {
+    [0, 1].map(|axis| span(outline.iter().map(|riser| riser.at(share)[axis])))
 }
 
 /// Numbers in order, without those that are near to the one before.

@@ -41,10 +41,10 @@ pub fn decompose(
     say: &dyn Fn(&str),
 ) -> Result<(Vec<Solid>, bool), String> {
     say(&format!("cutting {} faces into convex pieces", surface.faces.len()));
-    let exact = (0..3).filter_map(|turns| cut_along(surface, turns));
-    let whole = exact.filter(|solids| is_whole(surface, solids));
-    // The cut of fewest parts; of equals the first, across z.
-    if let Some(solids) = whole.min_by_key(Vec::len) {
+    if let Some(solids) = exact(surface) {
+        return Ok((solids, true));
+    }
+    if let Some(solids) = by_shells(surface) {
         return Ok((solids, true));
     }
     let most = |finest: &u32| voxels(surface, *finest) * f64::from(*finest) <= MOST_WORK;
@@ -65,6 +65,23 @@ pub fn decompose(
         }
         _ => Ok((solids, false)),
     }
+}
+
+/// The exact cut of fewest parts; of equals the first, across z.
+fn exact(surface: &Surface) -> Option<Vec<Solid>> {
+    let cuts = (0..3).filter_map(|turns| cut_along(surface, turns));
+    cuts.filter(|solids| is_whole(surface, solids)).min_by_key(Vec::len)
+}
+
+/// Exact cuts of shells that touch or overlap, each by itself; none if one of them is a hollow.
+fn by_shells(surface: &Surface) -> Option<Vec<Solid>> {
+    let shells = surface.shells();
+    if !(2..=MOST_PARTS).contains(&shells.len()) {
+        return None;
+    }
+    let cut = |shell: &Surface| (shell.volume() > 0.0).then(|| exact(shell)).flatten();
+    let solids: Option<Vec<_>> = shells.iter().map(cut).collect();
+    solids.map(|solids| solids.concat()).filter(|solids| solids.len() <= MOST_PARTS)
 }
 
 /// Approximate number of voxels in a surface and on it.

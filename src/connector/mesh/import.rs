@@ -1,11 +1,14 @@
 //! Task from a mesh of a plug and one of its socket.
 
+use super::cut::Mouth;
 pub use super::decompose::{COARSEST, MOST_PARTS};
 use super::decompose::{decompose, intrusion};
-use super::reduce::{TOLERANCE, reduced};
+use super::place::value;
+use super::reduce::{MANY_FACES, TOLERANCE, reduced};
 use super::surface::Surface;
 use super::{MeshError, cut};
-use crate::connector::body::{ConvexBody, clipped, extent};
+use crate::connector::body::{ConvexBody, clipped, extent, width};
+use crate::connector::check::FACES_MM;
 use crate::connector::seat::{Seating, section};
 use crate::connector::{draft, hold, plan};
 use input::units::MM;
@@ -20,10 +23,10 @@ const TIP: f64 = 1.0 * MM;
 const LEAST_COVER: f64 = 2.0 * MM;
 /// Margin about the opening and below the seated tip within which intrusion counts, m.
 const ABOUT: f64 = 0.5 * MM;
-/// Faces from which on a mesh is reduced.
-const MANY_FACES: usize = 2000;
 /// Most faces that are cut into convex parts: more take minutes.
 const MOST_FACES: usize = 8000;
+/// Least play of a plug that goes in, m.
+const LEAST_PLAY: f64 = 3e-3 * MM;
 /// Largest share of the clearance that intrusion may fill.
 pub const ALLOWED: f64 = 0.1;
 
@@ -77,17 +80,51 @@ pub enum Along {
 }
 
 impl Along {
-    /// Rotation of this direction to -z. y stays y; if the plug goes in along y, x becomes y.
-    fn turn(self) -> Matrix3<f64> {
-        let rows = match self {
-            Along::MinusZ => [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-            Along::PlusZ => [[-1, 0, 0], [0, 1, 0], [0, 0, -1]],
-            Along::MinusX => [[0, 0, -1], [0, 1, 0], [1, 0, 0]],
-            Along::PlusX => [[0, 0, 1], [0, 1, 0], [-1, 0, 0]],
-            Along::MinusY => [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
-            Along::PlusY => [[0, 0, -1], [1, 0, 0], [0, -1, 0]],
-        };
-        Matrix3::from_fn(|i, j| f64::from(rows[i][j]))
+    fn vector(self) -> Vector3<f64> {
+        match self {
+            Along::PlusX => Vector3::x(),
+            Along::MinusX => -Vector3::x(),
+            Along::PlusY => Vector3::y(),
+            Along::MinusY => -Vector3::y(),
+            Along::PlusZ => Vector3::z(),
+            Along::MinusZ => -Vector3::z(),
+        }
+    }
+
+    /// Axes across this direction along which jaws can close, the preferred one first.
+    pub fn across(self) -> [Jaws; 2] {
+        match self {
+            Along::PlusX | Along::MinusX => [Jaws::Y, Jaws::Z],
+            Along::PlusY | Along::MinusY => [Jaws::X, Jaws::Z],
+            Along::PlusZ | Along::MinusZ => [Jaws::Y, Jaws::X],
+        }
+    }
+
+    /// Rotation of this direction to -z, and of the jaws' axis, which lies across it, to y.
+    pub fn turn(self, jaws: Jaws) -> Matrix3<f64> {
+        let (y, z) = (jaws.vector(), -self.vector());
+        Matrix3::from_rows(&[y.cross(&z), y, z].map(|row| row.transpose()))
+    }
+}
+
+/// Axis of the files along which the jaws close.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Jaws {
+    /// Along x
+    X,
+    /// Along y
+    Y,
+    /// Along z
+    Z,
+}
+
+impl Jaws {
+    fn vector(self) -> Vector3<f64> {
+        match self {
+            Jaws::X => Vector3::x(),
+            Jaws::Y => Vector3::y(),
+            Jaws::Z => Vector3::z(),
+        }
     }
 }
 
@@ -105,6 +142,8 @@ pub struct Request<'a> {
     pub name: &'a str,
     /// Direction of insertion.
     pub along: Along,
+    /// Axis along which the jaws close; otherwise the first across which the plug is held.
+    pub jaws: Option<Jaws>,
     /// Voxels along the longest side, where a mesh is approximated.
     pub resolution: u32,
     /// Task whose keys are taken, all but the shapes.
@@ -120,14 +159,20 @@ pub struct Imported {
     pub task: Task,
     /// Whether the parts of plug and of socket equal the meshes, not approximate them.
     pub exact: [bool; 2],
-    /// Play of the plug in its socket, the smaller of x and y, m.
-    pub clearance: f64,
+    /// Axis of the files along which the jaws close.
+    pub jaws: Jaws,
+    /// Play of the plug in its socket in x and in y, both ways together, m.
+    pub play: [f64; 2],
+    /// Width of the chamfer of the opening in x and in y, and its depth, m.
+    pub chamfer: [f64; 3],
+    /// What the fingers hold: width between the jaws, height in x, length above the seated socket, m.
+    pub body: [f64; 3],
     /// Largest intrusion of a part into the clearance, m, its point, m, and its body.
     pub intrusion: Option<(f64, Point3<f64>, &'static str)>,
 }
 
 /// The mesh with faces that can be cut, few enough to be cut in seconds.
-fn few_faces(mesh: Mesh, say: &dyn Fn(&str)) -> Result<Mesh, MeshError> {
+pub fn few_faces(mesh: Mesh, say: &dyn Fn(&str)) -> Result<Mesh, MeshError> {
     let Mesh { file, surface } = mesh;
     let before = surface.faces.len();
     if before <= MANY_FACES {
@@ -146,34 +191,40 @@ fn few_faces(mesh: Mesh, say: &dyn Fn(&str)) -> Result<Mesh, MeshError> {
     Ok(Mesh { file, surface })
 }
 
+/// Plug as the jaws of an axis hold it.
+struct Standing {
+    jaws: Jaws,
+    surface: Surface,
+    parts: Vec<Part>,
+    exact: bool,
+}
+
+impl Standing {
+    /// Shoulder and faces, m, by which pads hold it: flat ones, or any.
+    fn grasp(&self, flat: bool) -> Option<(f64, [f64; 2])> {
+        let found = hold::grasp(&ConvexBody::new(&self.parts), LEAST_COVER, flat)?;
+        (width(found.1) <= FACES_MM[1] * MM).then_some(found)
+    }
+}
+
 /// Imports a plug and its socket.
 ///
 /// # Errors
 /// If a mesh has no convex parts, the socket no opening, or the plug no grasp or strategy.
 pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, MeshError> {
-    let plug = few_faces(plug, request.say)?;
-    let socket = few_faces(socket, request.say)?;
-    let turn = request.along.turn();
-    let turned = |surface: Surface| surface.moved(&turn, Vector3::zeros());
-    let middles = request.like.map_or([[0.0; 2]; 2], middles);
-    let plug_surface = stand(turned(plug.surface), middles[0]);
-    let (socket_surface, opening) =
-        open(turned(socket.surface), middles[1], &socket.file, request.along)?;
-    let convex = |surface: &Surface, file: &str, body: &str| {
-        let say = |what: &str| (request.say)(&format!("{body}: {what}"));
-        let found = decompose(surface, request.resolution, &say);
-        let (solids, exact) = found.map_err(|fault| MeshError::File(file.to_owned(), fault))?;
-        let part = |(i, solid)| Part { name: format!("{body} {i}"), solid, friction: None };
-        Ok::<_, MeshError>(((1..).zip(solids).map(part).collect(), exact))
-    };
-    let (plug_parts, plug_exact) = convex(&plug_surface, &plug.file, "plug")?;
-    let (socket_parts, socket_exact) = convex(&socket_surface, &socket.file, "socket")?;
-    let mut task = draft::blank(request.name, request.like);
-    task.description = format!("from {} and {}", file_name(&plug.file), file_name(&socket.file));
-    task.plug.mass = draft::DENSITY * plug_surface.volume();
-    (task.plug.parts, task.socket) = (plug_parts, socket_parts);
-    task.opening = opening;
-    let task = match request.like {
+    let Request { along, like, .. } = *request;
+    let middles = like.map_or([[0.0; 2]; 2], middles);
+    let description = format!("from {} and {}", file_name(&plug.file), file_name(&socket.file));
+    let (plug, grasp) = grasped(&plug, middles[0], request)?;
+    let turned = socket.surface.moved(&along.turn(plug.jaws), Vector3::zeros());
+    let (socket_surface, mouth) = open(turned, middles[1], &socket.file, along)?;
+    let (socket_parts, socket_exact) = convex(&socket_surface, &socket.file, "socket", request)?;
+    let mut task = draft::blank(request.name, like);
+    task.description = description;
+    task.plug.mass = draft::DENSITY * plug.surface.volume();
+    (task.plug.parts, task.socket) = (plug.parts, socket_parts);
+    task.opening = mouth.opening;
+    let task = match like {
         Some(like) => Task {
             plug: Plug { mass: like.plug.mass, ..task.plug },
             grip: like.grip,
@@ -182,9 +233,7 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
             ..task
         },
         None => {
-            let found = hold::find(&ConvexBody::plug(&task.plug), LEAST_COVER);
-            let found = found.ok_or_else(|| MeshError::File(plug.file, NO_GRIP.to_owned()))?;
-            (task.grip.shoulder_z, task.grip.faces_y) = found;
+            (task.grip.shoulder_z, task.grip.faces_y) = grasp;
             plan::complete(task)?
         }
     };
@@ -192,10 +241,70 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     let seating = Seating::new(&task, &plug_body, &socket_body);
     let seat = seating.deepest();
     let depth = task.success.depth.min(seat.depth);
-    let play = |axis| seating.play(depth, seat.at, axis);
-    let clearance = play(0).min(play(1));
-    let intrusion = intrude(&task, [&plug_surface, &socket_surface]);
-    Ok(Imported { exact: [plug_exact, socket_exact], clearance, intrusion, task })
+    let play = [0, 1].map(|axis| seating.play(depth, seat.at, axis));
+    if let (None, Some(axis)) = (like, (0..2).find(|&axis| play[axis] < LEAST_PLAY)) {
+        let (name, wide) = (["x", "y"][axis], mouth.throat[axis] / MM);
+        let fault = format!(
+            "has no play in {name} (of the task), where the opening is {wide:.3} mm wide: make the opening \
+             wider or the plug smaller"
+        );
+        return Err(MeshError::File(socket.file, fault));
+    }
+    let [x, y] = [0, 1].map(|axis| (mouth.rim[axis] - mouth.throat[axis]) / 2.0);
+    let pads = hold::pad_z(task.grip.shoulder_z);
+    let between = task.plug.parts.iter().flat_map(|part| clipped(&part.solid.corners(), 2, pads));
+    let body =
+        [width(task.grip.faces_y), width(extent(between, 0)), task.grip.shoulder_z - seat.depth];
+    let intrusion = intrude(&task, [&plug.surface, &socket_surface]);
+    Ok(Imported {
+        exact: [plug.exact, socket_exact],
+        jaws: plug.jaws,
+        play,
+        chamfer: [x, y, mouth.depth],
+        body,
+        intrusion,
+        task,
+    })
+}
+
+/// The plug as the first axis has it across which pads hold flat faces, or else any; shoulder and
+/// faces, m. With a task whose grip is taken, the first axis.
+fn grasped(
+    plug: &Mesh,
+    middle: [f64; 2],
+    request: &Request,
+) -> Result<(Standing, (f64, [f64; 2])), MeshError> {
+    let mut found: Vec<Standing> = Vec::new();
+    for jaws in request.jaws.map_or(request.along.across().to_vec(), |jaws| vec![jaws]) {
+        let turned = plug.surface.clone().moved(&request.along.turn(jaws), Vector3::zeros());
+        let surface = stand(turned, middle);
+        let (parts, exact) = convex(&surface, &plug.file, "plug", request)?;
+        let way = Standing { jaws, surface, parts, exact };
+        let taken = request.like.map(|like| (like.grip.shoulder_z, like.grip.faces_y));
+        if let Some(grasp) = taken.or_else(|| way.grasp(true)) {
+            return Ok((way, grasp));
+        }
+        found.push(way);
+        // Hulls take seconds, and their faces are no better from the side.
+        if !exact {
+            break;
+        }
+    }
+    let any = found.into_iter().find_map(|way| way.grasp(false).map(|grasp| (way, grasp)));
+    any.ok_or_else(|| MeshError::File(plug.file.clone(), NO_GRIP.to_owned()))
+}
+
+fn convex(
+    surface: &Surface,
+    file: &str,
+    body: &str,
+    request: &Request,
+) -> Result<(Vec<Part>, bool), MeshError> {
+    let say = |what: &str| (request.say)(&format!("{body}: {what}"));
+    let found = decompose(surface, request.resolution, &say);
+    let (solids, exact) = found.map_err(|fault| MeshError::File(file.to_owned(), fault))?;
+    let part = |(i, solid)| Part { name: format!("{body} {i}"), solid, friction: None };
+    Ok(((1..).zip(solids).map(part).collect(), exact))
 }
 
 fn file_name(path: &str) -> String {
@@ -231,23 +340,19 @@ fn open(
     place: [f64; 2],
     file: &str,
     along: Along,
-) -> Result<(Surface, [[f64; 2]; 2]), MeshError> {
-    let size = |[x, y]: &[[f64; 2]; 2]| (x[1] - x[0]) * (y[1] - y[0]);
-    let holes = cut::openings(&surface, BELOW_TOP);
-    let largest = holes.into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
-    let Some(opening) = largest else {
-        let value = clap::ValueEnum::to_possible_value(&along);
-        let value = value.as_ref().map_or("", |value| value.get_name());
+) -> Result<(Surface, Mouth), MeshError> {
+    let Some(mouth) = cut::mouth(&surface, BELOW_TOP) else {
         let fault = format!(
-            "has no opening on its top (--insert-along {value}): no closed hole goes in from there"
+            "has no opening on its top (--insert-along {}): no closed hole goes in from there",
+            value(along)
         );
         return Err(MeshError::File(file.to_owned(), fault));
     };
     let [_, top] = extent(&surface.points, 2);
-    let middle = opening.map(middle);
+    let middle = mouth.opening.map(middle);
     let by = Vector3::new(place[0] - middle[0], place[1] - middle[1], -top);
-    let shifted = [0, 1].map(|axis| opening[axis].map(|v| v + by[axis]));
-    Ok((surface.moved(&Matrix3::identity(), by), shifted))
+    let opening = [0, 1].map(|axis| mouth.opening[axis].map(|v| v + by[axis]));
+    Ok((surface.moved(&Matrix3::identity(), by), Mouth { opening, ..mouth }))
 }
 
 /// Largest intrusion of plug or socket where they meet, and its body.
@@ -265,6 +370,11 @@ fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(f64, Point3<f64>, &'
 }
 
 impl Imported {
+    /// The smaller play of x and y, m.
+    pub fn clearance(&self) -> f64 {
+        self.play[0].min(self.play[1])
+    }
+
     /// Number of parts of plug and of socket.
     pub fn parts(&self) -> [usize; 2] {
         [self.task.plug.parts.len(), self.task.socket.len()]

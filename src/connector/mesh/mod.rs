@@ -3,14 +3,19 @@
 mod cut;
 mod decompose;
 pub mod import;
+mod mend;
 mod merge;
+pub mod place;
 mod read;
 mod reduce;
 mod surface;
 
 use super::plan::PlanError;
-pub use read::read;
+pub use read::{Body, Triangle, pick, read};
 pub use surface::Surface;
+
+/// Names of the files of plug and socket, for messages.
+pub type Files<'a> = [&'a str; 2];
 
 /// Error of an import.
 #[derive(Debug, thiserror::Error, PartialEq)]

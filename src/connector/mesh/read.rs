@@ -2,25 +2,47 @@
 
 use super::MeshError;
 use nalgebra::Point3;
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::path::Path;
 
 /// Corners of a triangle, in the unit of the file.
 pub type Triangle = [Point3<f64>; 3];
+
+/// A body of a file: `solid` of a text STL, `o` or `g` of an OBJ.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Its name in the file; may be empty.
+    pub name: String,
+    /// Its triangles.
+    pub triangles: Vec<Triangle>,
+}
 
 /// Bytes before the triangles of a binary STL, and of each triangle.
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// Triangles of a file; the content decides on the format, `file` is named in errors.
+/// What reads a STEP file.
+const STEP: &str = "is a STEP file, which Python reads: `pip install 'finger_opt[step]'`, then \
+                    `fo.import_parts(...)` (docs/guide/python.md); or export STL";
+
+/// Bodies of a file; the content decides on the format, `file` is named in errors.
 ///
 /// # Errors
 /// If the bytes are neither STL nor OBJ, or name no finite triangles.
-pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Triangle>, MeshError> {
+pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, MeshError> {
+    let named = Path::new(file).extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+    let step = bytes.trim_ascii_start().starts_with(b"ISO-10303-21")
+        || named.is_some_and(|named| ["step", "stp"].contains(&named.as_str()));
     let fail = |problem: &str| {
-        MeshError::File(file.to_owned(), format!("is neither an STL nor an OBJ file: {problem}"))
+        let neither = || format!("is neither an STL nor an OBJ file: {problem}");
+        MeshError::File(file.to_owned(), if step { STEP.to_owned() } else { neither() })
     };
     // A binary STL may begin with "solid", too: its length tells.
-    let triangles = match binary_count(bytes) {
-        Some(count) => binary(&bytes[HEADER..], count),
+    let bodies = match binary_count(bytes) {
+        Some(count) => {
+            vec![Body { name: String::new(), triangles: binary(&bytes[HEADER..], count) }]
+        }
         None => {
             let text = std::str::from_utf8(bytes);
             let text = text.map_err(|_| fail("a binary file of odd length"))?;
@@ -28,13 +50,14 @@ pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Triangle>, MeshError> {
             parsed(text, stl).map_err(|problem| fail(&problem))?
         }
     };
-    if triangles.is_empty() {
+    let mut corners = bodies.iter().flat_map(|body| body.triangles.iter().flatten()).peekable();
+    if corners.peek().is_none() {
         return Err(fail("no faces"));
     }
-    if triangles.iter().flatten().any(|p| !p.iter().all(|v| v.is_finite())) {
+    if corners.any(|p| !p.iter().all(|v| v.is_finite())) {
         return Err(fail("a coordinate is not a finite number"));
     }
-    Ok(triangles)
+    Ok(bodies)
 }
 
 fn binary_count(bytes: &[u8]) -> Option<usize> {
@@ -62,10 +85,20 @@ fn point<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<Po
     }
 }
 
-/// Triangles of a text file, an STL or else an OBJ.
-fn parsed(text: &str, stl: bool) -> Result<Vec<Triangle>, String> {
+/// Bodies of a text file, an STL or else an OBJ.
+fn parsed(text: &str, stl: bool) -> Result<Vec<Body>, String> {
     let mut points = Vec::new();
+    let mut bodies: Vec<Body> = Vec::new();
     let mut triangles = Vec::new();
+    let mut name = String::new();
+    let mut keep = |name: &str, triangles: Vec<Triangle>| match bodies
+        .iter_mut()
+        .find(|body| body.name == name)
+    {
+        Some(body) => body.triangles.extend(triangles),
+        None if triangles.is_empty() => {}
+        None => bodies.push(Body { name: name.to_owned(), triangles }),
+    };
     for (number, line) in (1..).zip(text.lines()) {
         let mut words = line.split_whitespace();
         match (stl, words.next()) {
@@ -82,10 +115,64 @@ fn parsed(text: &str, stl: bool) -> Result<Vec<Triangle>, String> {
                 // A polygon as a fan, as viewers do.
                 triangles.extend((2..face.len()).map(|i| [face[0], face[i - 1], face[i]]));
             }
+            (true, Some("solid")) | (false, Some("o" | "g")) => {
+                keep(&name, std::mem::take(&mut triangles));
+                name = words.collect::<Vec<_>>().join(" ");
+            }
             _ => {}
         }
     }
-    Ok(triangles)
+    keep(&name, triangles);
+    Ok(bodies)
+}
+
+/// Triangles of the body of that name, or of the shell of that number, counted from 1; and all others.
+///
+/// # Errors
+/// If the file has neither; the text names those that it has.
+pub fn pick(bodies: &[Body], name: &str, file: &str) -> Result<[Vec<Triangle>; 2], MeshError> {
+    let named = bodies.iter().position(|body| body.name == name);
+    let shells = || shells(bodies.iter().flat_map(|body| body.triangles.iter().copied()));
+    let (at, mut all) = match (named, name.parse::<usize>()) {
+        (Some(at), _) => (at, bodies.iter().map(|body| body.triangles.clone()).collect()),
+        (None, Ok(number)) => (number.wrapping_sub(1), shells()),
+        (None, Err(_)) => (usize::MAX, shells()),
+    };
+    if at >= all.len() {
+        let names: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
+        let problem = format!(
+            "has no body `{name}`: it has {}, and {} shells, which are named by their number from 1",
+            names.join(", "),
+            all.len()
+        );
+        return Err(MeshError::File(file.to_owned(), problem));
+    }
+    Ok([all.remove(at), all.concat()])
+}
+
+/// Sets of triangles that share corners, in the order of the file.
+fn shells(triangles: impl Iterator<Item = Triangle>) -> Vec<Vec<Triangle>> {
+    let triangles: Vec<_> = triangles.collect();
+    let mut at: BTreeMap<[u64; 3], usize> = BTreeMap::new();
+    let mut parent: Vec<usize> = (0..triangles.len()).collect();
+    fn root(parent: &mut [usize], mut i: usize) -> usize {
+        while parent[i] != i {
+            parent[i] = parent[parent[i]];
+            i = parent[i];
+        }
+        i
+    }
+    for (i, corner) in triangles.iter().enumerate().flat_map(|(i, t)| t.map(|p| (i, p))) {
+        let first =
+            *at.entry([corner.x, corner.y, corner.z].map(|v| (v + 0.0).to_bits())).or_insert(i);
+        let [a, b] = [first, i].map(|i| root(&mut parent, i));
+        parent[a.max(b)] = a.min(b);
+    }
+    let mut found: BTreeMap<usize, Vec<Triangle>> = BTreeMap::new();
+    for (i, triangle) in triangles.into_iter().enumerate() {
+        found.entry(root(&mut parent, i)).or_default().push(triangle);
+    }
+    found.into_values().collect()
 }
 
 /// Corner by its number, `7`, `7/1` or `7//3`, counted from 1, or from the end if negative.

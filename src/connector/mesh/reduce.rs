@@ -10,6 +10,10 @@ use std::collections::{BTreeSet, BinaryHeap};
 
 /// Largest distance of the surface from the corners of the file, m.
 pub const TOLERANCE: f64 = 0.01 * MM;
+/// Faces from which on a mesh is reduced.
+pub const MANY_FACES: usize = 2000;
+/// Error of a collapse on a flat side, pm: that of files with 32-bit numbers.
+const FLAT: u64 = 1_000_000;
 /// Most faces about a corner that goes: the pole of a fine dome has hundreds.
 const MOST_ABOUT: usize = 64;
 /// Least cosine between the normals of a face before and after.
@@ -32,16 +36,22 @@ pub fn reduced(surface: Surface) -> Surface {
         face.iter().for_each(|&corner| about[corner].push(number));
     }
     let count = surface.points.len();
-    let Surface { points, faces, was_inward } = surface;
+    let Surface { points, faces, was_inward, mended } = surface;
     let mut mesh =
         Collapsing { points, faces, about, error: vec![0.0; count], version: vec![0; count] };
     let mut queue = BinaryHeap::new();
     (0..count).for_each(|corner| mesh.queue(corner, &mut queue));
-    while let Some(Reverse((_, [from, to], versions))) = queue.pop() {
+    let mut left = mesh.faces.len();
+    while let Some(Reverse((cost, [from, to], versions))) = queue.pop() {
+        // What is flat costs nothing. More would bend faces that are few enough.
+        if left <= MANY_FACES && cost > FLAT {
+            break;
+        }
         if versions != [from, to].map(|corner| mesh.version[corner]) {
             continue;
         }
         mesh.collapse(from, to);
+        left -= 2;
         for corner in mesh.neighbours(to).into_iter().chain([to]) {
             mesh.version[corner] += 1;
         }
@@ -49,7 +59,8 @@ pub fn reduced(surface: Surface) -> Surface {
             mesh.queue(corner, &mut queue);
         }
     }
-    mesh.surface(was_inward)
+    let (points, faces) = mesh.left();
+    Surface { points, faces, was_inward, mended }
 }
 
 /// A collapse: its error, pm, the corner that goes and the one it goes to, and their versions.
@@ -122,7 +133,7 @@ impl Collapsing {
         }
     }
 
-    fn surface(&self, was_inward: bool) -> Surface {
+    fn left(&self) -> (Vec<Point3<f64>>, Vec<[usize; 3]>) {
         let mut points = Vec::new();
         let mut number = vec![usize::MAX; self.points.len()];
         for (corner, about) in self.about.iter().enumerate() {
@@ -134,7 +145,7 @@ impl Collapsing {
         }
         let left: BTreeSet<usize> = self.about.iter().flatten().copied().collect();
         let faces = left.iter().map(|&face| self.faces[face].map(|corner| number[corner]));
-        Surface { points, faces: faces.collect(), was_inward }
+        (points, faces.collect())
     }
 }
 

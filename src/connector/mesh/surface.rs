@@ -1,18 +1,18 @@
 //! A closed surface of triangles that look outward.
 
-use super::MeshError;
 use super::read::Triangle;
+use super::{MeshError, mend};
 use crate::connector::body::longest_side;
 use input::units::MM;
 use insertion::task::geometry::surface_moments;
 use nalgebra::{Matrix3, Point3, Vector3};
 use rapier3d_f64::parry::math::Vector;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Grid on which corners are welded, m: files have 32-bit numbers.
 const GRID: f64 = 1e-4 * MM;
 /// Least and largest size of a connector, m.
-const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
+pub const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
 
 /// Closed triangle mesh, m.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,8 @@ pub struct Surface {
     pub faces: Vec<[usize; 3]>,
     /// Whether the file had all triangles clockwise.
     pub was_inward: bool,
+    /// How many corners of the file missed one another, and by how much at most, m.
+    pub mended: (usize, f64),
 }
 
 impl Surface {
@@ -33,7 +35,12 @@ impl Surface {
     pub fn new(triangles: &[Triangle], unit: f64, file: &str) -> Result<Self, MeshError> {
         let (points, mut faces) = weld(triangles, unit);
         let fail = |fault: String| MeshError::File(file.to_owned(), fault);
-        size(&points).and_then(|()| closed(&points, &faces)).map_err(fail)?;
+        size(&points).map_err(fail)?;
+        let mended = mend::mend(&points, &mut faces);
+        if mended.0 > 0 {
+            faces = without_films(faces);
+        }
+        closed(&points, &faces).map_err(fail)?;
         let volume = surface_moments(&points, &faces).0;
         if volume.abs() < GRID * GRID * GRID {
             return Err(fail("holds no volume".to_owned()));
@@ -42,7 +49,7 @@ impl Surface {
         if was_inward {
             faces.iter_mut().for_each(|face| face.swap(1, 2));
         }
-        Ok(Surface { points, faces, was_inward })
+        Ok(Surface { points, faces, was_inward, mended })
     }
 
     /// The surface turned and shifted.
@@ -58,6 +65,42 @@ impl Surface {
         let points = self.points.iter().map(|p| (p.coords / MM).into());
         let faces = self.faces.iter().map(|face| face.map(|corner| corner as u32));
         (points.collect(), faces.collect())
+    }
+
+    /// Its pieces that meet along no edge of two faces.
+    pub fn shells(&self) -> Vec<Surface> {
+        let mut about: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
+        for (number, face) in self.faces.iter().enumerate() {
+            for i in 0..3 {
+                let (a, b) = (face[i], face[(i + 1) % 3]);
+                about.entry([a.min(b), a.max(b)]).or_default().push(number);
+            }
+        }
+        let mut next = vec![Vec::new(); self.faces.len()];
+        for pair in about.values() {
+            if let [a, b] = pair[..] {
+                next[a].push(b);
+                next[b].push(a);
+            }
+        }
+        let (mut seen, mut shells) = (vec![false; self.faces.len()], Vec::new());
+        for first in 0..self.faces.len() {
+            let (mut faces, mut todo) = (Vec::new(), vec![first]);
+            while let Some(face) = todo.pop() {
+                if !std::mem::replace(&mut seen[face], true) {
+                    faces.push(self.faces[face]);
+                    todo.extend(&next[face]);
+                }
+            }
+            if !faces.is_empty() {
+                let corners: BTreeSet<usize> = faces.iter().flatten().copied().collect();
+                let number: BTreeMap<usize, usize> = corners.iter().copied().zip(0..).collect();
+                let points = corners.iter().map(|&corner| self.points[corner]).collect();
+                let faces = faces.iter().map(|face| face.map(|corner| number[&corner])).collect();
+                shells.push(Surface { points, faces, ..*self });
+            }
+        }
+        shells
     }
 
     /// Surface area, m2.

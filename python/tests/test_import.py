@@ -1,0 +1,114 @@
+"""Tasks from one's own parts: STL and STEP."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+import step_files
+
+import finger_opt as fo
+
+MESHES = Path(__file__).parents[2] / "examples" / "meshes"
+
+
+@pytest.fixture
+def meshes():
+    return [MESHES / "keyed-plug.stl", MESHES / "keyed-socket.stl"]
+
+
+@pytest.fixture
+def occ():
+    pytest.importorskip("cascadio", reason="without the extra step")
+
+
+@pytest.fixture
+def parts(meshes):
+    """Plug above its socket, both off the origin."""
+    plug, socket = map(step_files.stl, meshes)
+    return {"plug": (plug, (5, 0, 30)), "socket": (socket, (5, 0, -2))}
+
+
+def imported(fake, folder, *files, **settings):
+    found = fo.import_parts(*files, out=folder / "mine.toml", **settings, **fake)
+    return found, fo.Task.from_toml(folder / "mine.toml")
+
+
+def shapes(task):
+    return task.to_toml().split("[plug]")[1].split("[grip]")[0]
+
+
+def test_meshes_are_imported_as_on_the_command_line(meshes, fake, tmp_path, command_json):
+    found, task = imported(fake, tmp_path, *meshes, unit="mm")
+    words = ["--plug", str(meshes[0]), "--socket", str(meshes[1]), "--unit", "mm", "--engine", "fake"]
+    same = command_json("task", "import", *words, "--out", str(tmp_path / "same.toml"))
+    assert {**found, "out": None} == {**same, "out": None}
+    assert found.plug_exact and Path(found.out).exists()
+    assert shapes(task) == shapes(fo.Task.from_toml(tmp_path / "same.toml"))
+
+
+@pytest.mark.parametrize(("unit", "schema"), [("mm", "AP214"), ("in", "AP242")])
+def test_step_gives_the_task_of_the_same_meshes(occ, parts, meshes, fake, tmp_path, unit, schema):
+    for folder in ("mesh", "one", "two"):
+        (tmp_path / folder).mkdir()
+    found, task = imported(fake, tmp_path / "mesh", *meshes, unit="mm")
+    both = step_files.write(tmp_path / "both.step", parts, unit, schema)
+    files = [step_files.write(tmp_path / f"{name}.stp", {name: parts[name]}, unit, schema) for name in parts]
+    for same, its_task in [
+        imported(fake, tmp_path / "one", both, plug_body="plug"),
+        imported(fake, tmp_path / "two", *files),
+    ]:
+        # The cuts follow the triangles, which are others; what they make up is the same.
+        assert same.plug_exact and same.socket_exact
+        assert same.clearance_mm == pytest.approx(found.clearance_mm, abs=1e-3)
+        assert its_task.plug.mass_g == pytest.approx(task.plug.mass_g, rel=1e-3)
+    assert "both.step" in (tmp_path / "one" / "mine.toml").read_text()
+
+
+def test_what_names_no_plug_is_told_the_bodies(occ, parts, fake, tmp_path):
+    both = step_files.write(tmp_path / "both.step", parts)
+    for name in (None, "pulg", "assembly"):
+        with pytest.raises(fo.InputError, match=r"`plug` \(8.0 x 12.0 x 26.0 mm\), `socket`"):
+            imported(fake, tmp_path, both, plug_body=name)
+    with pytest.raises(fo.InputError, match="called `pins`; there are `plug`"):
+        imported(fake, tmp_path, both, plug_body="plug", leave_out="pins")
+    with pytest.raises(fo.InputError, match="leaves nothing of"):
+        imported(fake, tmp_path, both, plug_body="plug", leave_out="assembly")
+    with pytest.raises(fo.InputError, match="names its unit"):
+        imported(fake, tmp_path, both, plug_body="plug", unit="in")
+    found, _ = imported(fake, tmp_path, both, socket_body="socket")
+    assert found.plug_exact and found.socket_exact
+
+
+def test_bodies_can_be_left_out(occ, parts, fake, tmp_path):
+    pin = (parts["plug"][0] / 2, (40, 0, 0))
+    both = step_files.write(tmp_path / "both.step", {**parts, "pin": pin})
+    found, _ = imported(fake, tmp_path, both, plug_body="plug", leave_out=["pin"])
+    assert found.plug_exact and found.socket_exact
+
+
+@pytest.mark.parametrize("wrong", ["half", "empty", "stl", "huge", "open"])
+def test_wrong_files_are_refused(occ, parts, meshes, fake, tmp_path, wrong):
+    file = step_files.write(tmp_path / "plug.step", {"plug": parts["plug"]})
+    if wrong == "huge":
+        step_files.write(file, {"plug": (parts["plug"][0] * 1000, (0, 0, 0))})
+    elif wrong == "open":
+        step_files.write(file, {"plug": (parts["plug"][0][:9], (0, 0, 0))})
+    else:
+        content = {"half": file.read_bytes()[:9000], "empty": b"", "stl": meshes[0].read_bytes()}
+        file.write_bytes(content[wrong])
+    with pytest.raises(fo.InputError, match="plug.step.*(whole STEP file|too large|watertight)"):
+        imported(fake, tmp_path, file, meshes[1])
+    assert not (tmp_path / "mine.toml").exists()
+
+
+def test_the_program_and_a_lack_of_open_cascade_name_the_extra(parts, meshes, fake, tmp_path, command, monkeypatch):
+    file = step_files.write(tmp_path / "plug.step", {"plug": parts["plug"]})
+    words = ["--plug", str(file), "--socket", str(meshes[1]), "--unit", "mm", "--out", str(tmp_path / "mine.toml")]
+    code, _, errors = command("task", "import", *words)
+    assert code == 2 and "pip install 'finger_opt[step]'" in errors and "fo.import_parts" in errors
+    (tmp_path / "cascadio.py").write_text("raise ModuleNotFoundError(\"No module named 'cascadio'\")")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(ImportError, match=r"pip install 'finger_opt\[step\]'"):
+        imported(fake, tmp_path, file, meshes[1])

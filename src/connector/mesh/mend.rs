@@ -1,0 +1,87 @@
+//! Gaps of a surface, closed: files have corners that miss one another by rounding, and corners in the
+//! middle of a neighbour's edge.
+
+use input::units::MM;
+use nalgebra::Point3;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Widest gap that is closed, m.
+pub const GAP: f64 = 0.1 * MM;
+/// Most corners on open edges: each is compared with each.
+const MOST: usize = 4000;
+/// Most rounds in which edges are split: an edge has so many corners in its middle.
+const ROUNDS: usize = 16;
+
+/// Joins corners of open edges that are near to one another, and splits open edges at corners near to
+/// them. Returns how many corners were moved and the farthest move, m.
+pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> (usize, f64) {
+    let mut done = (0, 0.0_f64);
+    let mut tell = |far: f64| done = (done.0 + 1, done.1.max(far));
+    let corners: BTreeSet<usize> = open(faces).into_keys().flatten().collect();
+    if corners.is_empty() || corners.len() > MOST {
+        return done;
+    }
+    let mut kept: Vec<usize> = Vec::new();
+    let mut joined = BTreeMap::new();
+    for &corner in &corners {
+        let away = |&other: &usize| (points[corner] - points[other]).norm();
+        match kept.iter().map(|other| (away(other), *other)).min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((far, other)) if far < GAP => {
+                tell(far);
+                joined.insert(corner, other);
+            }
+            _ => kept.push(corner),
+        }
+    }
+    for face in faces.iter_mut() {
+        *face = face.map(|corner| joined.get(&corner).copied().unwrap_or(corner));
+    }
+    let solid = |[a, b, c]: &[usize; 3]| a != b && b != c && c != a;
+    faces.retain(solid);
+    for _ in 0..ROUNDS {
+        let open = open(faces);
+        let corners: BTreeSet<usize> = open.keys().flatten().copied().collect();
+        let mut changed = BTreeSet::new();
+        for (edge, face) in open {
+            let near = corners.iter().filter_map(|&c| Some((beside(points, edge, c)?, c)));
+            let Some((far, corner)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            if changed.insert(face) {
+                tell(far);
+                let whole = faces[face];
+                let with = |end: usize| whole.map(|at| if at == end { corner } else { at });
+                faces[face] = with(edge[0]);
+                faces.push(with(edge[1]));
+            }
+        }
+        faces.retain(solid);
+        if changed.is_empty() {
+            break;
+        }
+    }
+    done
+}
+
+/// Edges with an odd number of faces, each with its last face.
+fn open(faces: &[[usize; 3]]) -> BTreeMap<[usize; 2], usize> {
+    let mut edges: BTreeMap<[usize; 2], (usize, usize)> = BTreeMap::new();
+    for (number, face) in faces.iter().enumerate() {
+        for i in 0..3 {
+            let (a, b) = (face[i], face[(i + 1) % 3]);
+            let edge = edges.entry([a.min(b), a.max(b)]).or_default();
+            *edge = (edge.0 + 1, number);
+        }
+    }
+    let odd = edges.into_iter().filter(|(_, (count, _))| count % 2 == 1);
+    odd.map(|(edge, (_, face))| (edge, face)).collect()
+}
+
+/// Distance of a corner from the inside of an edge, m, if it is near.
+fn beside(points: &[Point3<f64>], [a, b]: [usize; 2], corner: usize) -> Option<f64> {
+    if corner == a || corner == b {
+        return None;
+    }
+    let (along, to) = (points[b] - points[a], points[corner] - points[a]);
+    let share = to.dot(&along) / along.norm_squared();
+    let far = (to - along * share).norm();
+    (share > 0.0 && share < 1.0 && far < GAP).then_some(far)
+}

@@ -64,7 +64,7 @@ pub fn svg(geometry: &Geometry, stiffness: &AtPad) -> String {
             (lengths(geometry, view))
             (direction(geometry, view))
             (column(15.0, "Finger", &finger(geometry)))
-            (column(108.0, "Print", &print(geometry)))
+            (column(104.0, "Print", &print(geometry)))
             (column(205.0, "Check the print", &check(geometry, stiffness)))
         }
     };

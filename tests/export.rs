@@ -16,8 +16,13 @@ use std::process::Command;
 
 /// The shipped finger with an infill.
 fn finray9(density_percent: f64, direction_deg: f64) -> Geometry {
-    let text = include_str!("../fingers/finray9.toml");
-    let finger = PrintedFinger::parse(text, "finray9.toml").expect("the shipped finger");
+    holed(density_percent, direction_deg, "")
+}
+
+/// The same with what is added to its file.
+fn holed(density_percent: f64, direction_deg: f64, holes: &str) -> Geometry {
+    let text = include_str!("../fingers/finray9.toml").to_owned() + holes;
+    let finger = PrintedFinger::parse(&text, "finray9.toml").expect("the shipped finger");
     let design = Design { density_percent, direction_deg, phase_mm: None };
     Geometry::new(&finger, &design).expect("a finger that can be printed")
 }
@@ -34,8 +39,20 @@ fn triangles(bytes: &[u8]) -> Vec<[[f32; 3]; 3]> {
 /// Read back from the file by code of its own.
 #[test]
 fn a_solid_is_closed_and_has_area_times_depth() {
-    for (density, direction) in [(10.0, 0.0), (18.0, 20.0), (30.0, 40.0), (25.0, -30.0)] {
-        let geometry = finray9(density, direction);
+    let plain = [(10.0, 0.0), (18.0, 20.0), (30.0, 40.0), (25.0, -30.0)];
+    let block = "[holes.block]\nlength_mm = 12.0\nwidth_mm = 24.0\noverlap_mm = 1.5\n";
+    // The block with its holes, mm3: of polygons of 32 corners.
+    let hole = 16.0 * 1.6f64.powi(2) * (360f64 / 32.0).to_radians().sin();
+    let [across, along] = [24.0, 13.5].map(|deep| 13.5 * 24.0 * 12.0 - 2.0 * deep * hole);
+    let holes = [("depth", "width", "", 0.0), ("width", "length", block, across)];
+    let holes = holes.into_iter().chain([("length", "width", block, along)]);
+    let holed = holes.map(|(axis, row, block, more)| {
+        let of = format!("axis = '{axis}'\nrow = '{row}'\ncount = 2\ndiameter_mm = 3.2");
+        let holes = format!("[holes]\n{of}\nspacing_mm = 5.0\noffset_mm = [0.0, 0.0]\n{block}");
+        (holed(18.0, 20.0, &holes), more)
+    });
+    for (geometry, more) in plain.map(|(a, b)| (finray9(a, b), 0.0)).into_iter().chain(holed) {
+        let design = geometry.design;
         let triangles = triangles(&Prism::finger(&geometry).unwrap().stl("test"));
         let mut edges: BTreeMap<[[u32; 3]; 2], u32> = BTreeMap::new();
         let sixth =
@@ -47,9 +64,9 @@ fn a_solid_is_closed_and_has_area_times_depth() {
             }
         }
         for ([a, b], count) in &edges {
-            assert_eq!((*count, edges.get(&[*b, *a])), (1, Some(&1)), "{density}, {direction}");
+            assert_eq!((*count, edges.get(&[*b, *a])), (1, Some(&1)), "{design:?}");
         }
-        let expected = geometry.area() * 0.012 * 1e9;
+        let expected = geometry.area() * 0.012 * 1e9 + more;
         assert!((volume / expected - 1.0).abs() < 1e-3, "{volume} for {expected} mm3");
     }
 }
@@ -100,10 +117,21 @@ fn every_format_of_a_studys_best_finger_is_written() {
         assert!(text.contains(words), "{file}");
         if format == "sheet" {
             document(&text, "svg");
+            assert!(
+                ["N/mm, measured model", "N/mm, from the ribs"].iter().all(|w| text.contains(w))
+            );
         }
     }
     assert!(folder.join("f-outline.stl").is_file() && folder.join("f-base.stl").is_file());
     export("sheet", "sheet.pdf").fails(2, &["sheet.pdf", ".svg or .html"]);
+    let finger = include_str!("../fingers/finray9.toml").replace("data/measured", "none");
+    let finger = studies.file("finger.toml", &finger);
+    for command in
+        ["finger", &format!("export finger --format sheet --out {}/s.svg", folder.display())]
+    {
+        let line = format!("{command} --density 20 --direction 20 --finger {finger}");
+        optimize_line(&line).fails(2, &["none_stiffness.csv"]);
+    }
 }
 
 #[test]

@@ -4,7 +4,6 @@ use super::words::{self, ends_mm, evaluated, interval, mm, span};
 use super::{Answer, AsGood, Front, OnTask, Recommended, Spread};
 use crate::calibration::order::Order;
 use crate::study::{ByRibs, OnBench, Recorded, StudyRecord};
-use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
@@ -304,14 +303,13 @@ pub fn window(evaluation: &Evaluation) -> Vec<Line> {
 
 /// Predicted stiffness, its uncertainty, and whether it is an extrapolation.
 pub fn stiffness(prediction: &Prediction) -> [Line; 2] {
-    let [compliance, assembly] = [prediction.compliance, prediction.assembly].map(|estimate| {
-        format!("{:.2} ± {:.2} N/mm", estimate.mean / N_PER_MM, estimate.sd / N_PER_MM)
-    });
+    let [compliance, assembly] = [prediction.compliance, prediction.assembly].map(words::stiffness);
     let hull = match prediction.inside_hull() {
         true => "inside the measured designs".to_owned(),
         false => format!("{:.2} spans OUTSIDE the measured designs", prediction.hull_distance),
     };
-    [line("stiffness", format!("compliance {compliance}, assembly {assembly}")), line("", hull)]
+    let stiffness = format!("compliance {compliance}, assembly {assembly}, measured model");
+    [line("stiffness", stiffness), line("", hull)]
 }
 
 /// Success rate and robust range, as far as they were measured.

@@ -34,6 +34,9 @@ pub fn ends_mm(window: &Window) -> [f64; 2] {
     [window.negative_mm(), window.positive_mm()]
 }
 
+/// Heading of the stiffness across the pad that trials were simulated with.
+pub const ACROSS: &str = "stiffness across, measured model";
+
 /// A stiffness with its standard deviation, N/mm.
 pub fn stiffness(estimate: Estimate) -> String {
     let (mean, sd) = (estimate.mean / N_PER_MM, estimate.sd / N_PER_MM);

@@ -1,6 +1,7 @@
 //! `optimize finger`: what a finger's ribs say of its stiffness.
 
 use super::{Failure, print, print_json};
+use crate::answer::lines;
 use crate::session::RibsRequest;
 use crate::study::write_file;
 use clap::Args;
@@ -45,7 +46,7 @@ fn load(text: &str) -> Result<[f64; 2], String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (geometry, computed) = arguments.request.run()?;
+    let (geometry, computed, measured) = arguments.request.run()?;
     if let Some(file) = &arguments.svg {
         write_file(file, &picture::svg(&geometry, arguments.load_n).map_err(Failure::input)?)?;
     }
@@ -61,6 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "phase_mm": phase_mm,
             "area_mm2": area_mm2,
             "mass_g": mass_g,
+            "measured_model": measured,
             "pad": planar_json(&computed.pad),
             "pad_and_roof": planar_json(&computed.pad_and_roof),
             "across": {
@@ -70,10 +72,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             },
         }));
     }
+    let model = measured.as_ref().map(|prediction| lines::stiffness(prediction)[0].1.clone());
+    let model = model.unwrap_or_else(|| "no measured model of it".to_owned());
     print(&format!(
         "finger        {}, {} %, {}°, first rib at {phase_mm} mm\n\
          material      {}, {} GPa ({})\n\
-         area, mass    {area_mm2:.1} mm2, {mass_g:.2} g\n\n\
+         area, mass    {area_mm2:.1} mm2, {mass_g:.2} g\n\
+         stiffness     {model}\n\n\
+         from the ribs\n\
          the part      compliance assembly   tilting    centre    centre  coupling\n\
          touches           N/mm      N/mm    Nm/rad  below, mm front, mm       y-z\n{}{}\n\
          across        {depth:.1} N/mm in x, {:.2} Nm/rad about y, {:.2} about z\n",

@@ -220,7 +220,7 @@ impl Moves {
             preload: preload.unwrap_or(0.3 * MM),
             across: [back - touch, front - back, aside - front],
             down,
-            side: edge_y - y.last().unwrap_or(edge_y),
+            side: edge_y - y.next_back().unwrap_or(edge_y),
             push: Self::push(other, &plug, way.last()),
         }
     }

@@ -6,7 +6,7 @@ use super::drawn::{PLOTTED, drawn};
 use super::elements::{figure, table};
 use super::marks::{PointMark, line, points};
 use super::theme::{BLUE, MUTED, ORANGE};
-use crate::answer::words::{design, stiffness, volume_unit};
+use crate::answer::words::{ACROSS, design, stiffness, volume_unit};
 use crate::answer::{Answer, Front};
 use crate::study::{Recorded, StudyRecord};
 use maud::{Markup, html};
@@ -72,7 +72,7 @@ fn designs(answer: &Answer, Front { designs: front, volume: found }: &Front) -> 
     }
     let names = objectives.measures().iter().map(|measure| measure.name());
     let head: Vec<&str> =
-        ["evaluation", "design"].into_iter().chain(names).chain(["compliance stiffness"]).collect();
+        ["evaluation", "design"].into_iter().chain(names).chain([ACROSS]).collect();
     let row = |recorded: &&Recorded| {
         let values = recorded.feasible().unwrap_or_default();
         let mut row = vec![recorded.index.to_string(), design(&recorded.design)];

@@ -1,7 +1,7 @@
 //! The designs that are as good as the one that is named, and the reasons to take another.
 
 use super::elements::table;
-use crate::answer::words::{design, mm, stiffness};
+use crate::answer::words::{ACROSS, design, mm, stiffness};
 use crate::answer::{Answer, AsGood, lines};
 use crate::study::Recorded;
 use insertion::evaluation::objective::Measure;
@@ -33,7 +33,7 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
             robot.map_or(String::new(), |robot| mm(robot.range_mm)),
         ]
     };
-    let head = ["finger", "", "expected less", "largest force", "stiffness across", "on a robot"];
+    let head = ["finger", "", "expected less", "largest force", ACROSS, "on a robot"];
     let rows: Vec<_> = designs.iter().take(LISTED).map(row).collect();
     Some(html! {
         p { (lines::within(answer, found).1) "." }

@@ -164,7 +164,7 @@ impl OpenStudy {
         if !interrupted() {
             film::boundary(&dir, &record, setup, pool, stop)?;
         }
-        printable::write(&dir, &record)?;
+        printable::write(&dir, &record, &setup.evaluator)?;
         // Before the page, which shows its picture.
         let unusable = match interrupted() {
             true => None,

@@ -8,9 +8,10 @@ use crate::answer::Answer;
 use crate::study::StudyRecord;
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
+use finray::printed::PrintedFinger;
 use input::shipped::FINGERS;
 use insertion::finger::file::{FingerFile, is_shape};
-use insertion::space::Design;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::{Model, Prediction};
 use std::path::{Path, PathBuf};
 
@@ -35,19 +36,23 @@ pub struct RibsRequest {
 }
 
 impl RibsRequest {
-    /// The ribs, and the stiffness that they give.
-    pub fn run(&self) -> Result<(Geometry, FingerStiffness), Failure> {
+    /// The ribs, the stiffness that they give, and that of the model of measured fingers, if there is
+    /// one for this infill and `set` changes no shape.
+    pub fn run(&self) -> Result<(Geometry, FingerStiffness, Option<Prediction>), Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
                 "--set {key}: sets no number of a finger file, as finger.skin.thickness_mm does"
             )));
         }
         let set = Design(self.set.iter().cloned().collect());
-        let finger = finger_file(&self.finger)?.with(&set).map_err(Failure::input)?;
+        let file = finger_file(&self.finger)?;
+        let finger = file.with(&set).map_err(Failure::input)?;
         let infill = Design::infill(self.density, self.direction).printed(self.phase_mm);
         let geometry = Geometry::new(&finger, &infill).map_err(Failure::input)?;
         let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
-        Ok((geometry, computed))
+        let mut design = Design::infill(self.density, self.direction);
+        design.0.extend(set.0);
+        Ok((geometry, computed, measured_model(&file.finger, &design)?))
     }
 }
 
@@ -78,20 +83,38 @@ impl PrintRequest {
     /// # Errors
     /// If a file cannot be used, the study recommends nothing, or there is no such finger.
     pub fn geometry(&self) -> Result<Geometry, Failure> {
-        let (design, of_study) = match (&self.dir, self.density, self.direction) {
+        let (design, file, _) = self.chosen()?;
+        let finger = file.with(&design).map_err(Failure::input)?;
+        Geometry::new(&finger, &design.printed(self.phase_mm)).map_err(Failure::input)
+    }
+
+    /// Its stiffness by the model of measured fingers: as the study predicted it, else by the table
+    /// that the finger file names. `None` if there is none.
+    ///
+    /// # Errors
+    /// As of [`PrintRequest::geometry`].
+    pub fn measured_model(&self) -> Result<Option<Prediction>, Failure> {
+        let (design, file, of_study) = self.chosen()?;
+        of_study.map_or_else(|| measured_model(&file.finger, &design), |found| Ok(Some(found)))
+    }
+
+    /// The design, the file of its finger, and the stiffness that a study predicted of both.
+    fn chosen(&self) -> Result<(Design, FingerFile, Option<Prediction>), Failure> {
+        let (design, file, stiffness) = match (&self.dir, self.density, self.direction) {
             (Some(dir), ..) => best(dir)?,
-            (None, Some(density), Some(direction)) => (Design::infill(density, direction), None),
+            (None, Some(density), Some(direction)) => {
+                (Design::infill(density, direction), None, None)
+            }
             _ => {
                 let problem = "give the folder of a study, or --density and --direction";
                 return Err(Failure::usage(problem));
             }
         };
-        let file = match (&self.finger, of_study) {
+        let file = match (&self.finger, file) {
             (None, Some(file)) => file,
             (named, _) => finger_file(named.as_deref().unwrap_or(DEFAULT_FINGER))?,
         };
-        let finger = file.with(&design).map_err(Failure::input)?;
-        Geometry::new(&finger, &design.printed(self.phase_mm)).map_err(Failure::input)
+        Ok((design, file, stiffness.filter(|_| self.finger.is_none())))
     }
 }
 
@@ -100,8 +123,22 @@ fn finger_file(name: &str) -> Result<FingerFile, Failure> {
     FingerFile::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// The design that a study recommends, and the finger file of its fingers.
-fn best(dir: &Path) -> Result<(Design, Option<FingerFile>), Failure> {
+/// Stiffness by the model that is fitted to the table of measured fingers which a finger file names;
+/// `None` without a table, of an infill that it cannot predict, or of another shape than measured.
+fn measured_model(finger: &PrintedFinger, design: &Design) -> Result<Option<Prediction>, Failure> {
+    let infill = [DENSITY_KEY, DIRECTION_KEY].map(|key| design.get(key));
+    let ([Some(density), Some(direction)], Some(_), false) =
+        (infill, &finger.measured, design.0.keys().any(|key| is_shape(key)))
+    else {
+        return Ok(None);
+    };
+    let model = surrogate(&stiffness_data(None, finger)?, finger)?;
+    Ok(model.predict(density, direction).ok())
+}
+
+/// The design that a study recommends, the finger file of its fingers, and their stiffness, if the
+/// design was evaluated.
+fn best(dir: &Path) -> Result<(Design, Option<FingerFile>, Option<Prediction>), Failure> {
     let record = StudyRecord::load(dir)?;
     let Some(best) = Answer::of(&record).verdict.finger().cloned() else {
         return Err(Failure::usage(format!(
@@ -109,7 +146,8 @@ fn best(dir: &Path) -> Result<(Design, Option<FingerFile>), Failure> {
             dir.display()
         )));
     };
-    Ok((best, record.finger))
+    let found = record.current().iter().find(|recorded| recorded.design == best);
+    Ok((best.clone(), record.finger.clone(), found.map(|recorded| recorded.stiffness)))
 }
 
 /// Which measurements the model is fitted to.

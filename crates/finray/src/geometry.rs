@@ -3,6 +3,7 @@
 use super::FingerError;
 use super::infill::{Design, NARROWEST_VOID, RibLines};
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
+use crate::holes::{Block, Holes};
 use crate::printed::{Outline, PrintedFinger};
 use input::units::{DEG, MM, PERCENT};
 use input::{Check, InputError};
@@ -38,6 +39,7 @@ impl Geometry {
         let check = Check { file: &finger.file };
         check_outline(check, &finger.outline)?;
         check_ribs(check, finger, design, lines.pitch)?;
+        finger.holes.iter().try_for_each(|holes| holes.check(check, finger))?;
         let outer = without_repeats(&ring(&finger.outline, 0.0, finger.outline.length), 1e-9);
         let ribbed = finger.outline.length - finger.outline.solid;
         let inside = ring(&finger.outline, finger.skin, ribbed);
@@ -48,18 +50,33 @@ impl Geometry {
         Ok(Geometry { finger: finger.clone(), design: *design, lines, outer, voids, ribs })
     }
 
-    /// Outline and openings, mm: the solid lies left of every ring.
+    /// Outline, openings and holes through the base, mm: the solid lies left of every ring.
     pub fn rings_mm(&self) -> Vec<Vec<[f64; 2]>> {
         let mm = |ring: &Ring| ring.iter().map(|p| [p.x / MM, p.y / MM]).collect();
-        std::iter::once(&self.outer).chain(&self.voids).map(mm).collect()
+        std::iter::once(&self.outer).chain(&self.voids).chain(&self.holes()).map(mm).collect()
+    }
+
+    /// Holes through the held base, clockwise, m; they are no openings of the mechanics.
+    pub fn holes(&self) -> Vec<Ring> {
+        let holes = self.finger.holes.as_ref().filter(|holes| holes.block.is_none());
+        holes.map_or_else(Vec::new, |holes| holes.rings(&self.finger.outline))
     }
 
     /// Area of the solid profile, m2.
     pub fn area(&self) -> f64 {
-        polygon::area(&self.outer) + self.voids.iter().map(|v| polygon::area(v)).sum::<f64>()
+        std::iter::once(&self.outer)
+            .chain(&self.voids)
+            .chain(&self.holes())
+            .map(|ring| polygon::area(ring))
+            .sum()
     }
 
-    /// Mass of the printed finger, kg.
+    /// The holes and the block that has them, if they do not run through the held base.
+    pub fn block(&self) -> Option<(&Holes, Block)> {
+        self.finger.holes.as_ref().and_then(|holes| Some((holes, holes.block?)))
+    }
+
+    /// Mass of the printed finger without a block for its holes, kg.
     pub fn mass(&self) -> f64 {
         self.area() * self.finger.outline.depth * self.finger.material.density
     }

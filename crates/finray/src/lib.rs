@@ -15,6 +15,7 @@ pub mod export;
 mod frontal;
 pub mod geometry;
 mod halving;
+pub mod holes;
 pub mod infill;
 pub mod mechanics;
 pub mod mesh;

@@ -1,5 +1,6 @@
 //! Finger files: outline, skin, ribs and material of a printed finger.
 
+use crate::holes::{Holes, RawHoles};
 use input::units::{DEG, MM};
 use input::{Check, InputError, read, syntax};
 use nalgebra::Point2;
@@ -26,6 +27,8 @@ pub struct PrintedFinger {
     pub material: Material,
     /// Angle between the finger's axis and the assembly direction, rad.
     pub tilt: f64,
+    /// Holes for the screws that hold it.
+    pub holes: Option<Holes>,
     /// Width of a printed line, m.
     pub line_width: f64,
     /// Width of the narrowest gap between ribs that stays open, m.
@@ -105,6 +108,7 @@ tables! {
         ribs: RawRibs,
         base: RawBase,
         mount: RawMount,
+        holes: Option<RawHoles>,
         material: RawMaterial,
         print: RawPrint,
     }
@@ -172,6 +176,7 @@ impl PrintedFinger {
             },
             material: checked_material(check, material)?,
             tilt: angle(check, "mount.tilt_deg", mount.tilt_deg)?,
+            holes: raw.holes.map(|holes| holes.checked(check, length)).transpose()?,
             line_width: length("print.line_width_mm", print.line_width_mm)?,
             smallest_gap: length("print.smallest_gap_mm", print.smallest_gap_mm)?,
             name: raw.name,

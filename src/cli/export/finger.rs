@@ -5,6 +5,7 @@ use crate::session::PrintRequest;
 use crate::study::write_file;
 use clap::{Args, ValueEnum};
 use finray::export::prism::Prism;
+use finray::export::sheet::AtPad;
 use finray::export::{self, profile, sheet, slicer};
 use finray::geometry::Geometry;
 use finray::mechanics;
@@ -59,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Format::Svg => write_file(out, &profile::svg(&geometry, &title))?,
         Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
-        Format::Sheet => write_file(out, &page(&geometry, out)?)?,
+        Format::Sheet => write_file(out, &page(&arguments.request, &geometry, out)?)?,
         Format::Cura => return settings(out, &geometry, &slicer::cura(&geometry)),
         Format::Prusaslicer => return settings(out, &geometry, &slicer::prusaslicer(&geometry)),
     }
@@ -73,7 +74,7 @@ fn closed(
     prism.map_err(|error| Failure::usage(format!("{}: {error}", geometry.finger.file)))
 }
 
-fn page(geometry: &Geometry, out: &Path) -> Result<String, Failure> {
+fn page(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<String, Failure> {
     let ending = out.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
     let write = match ending.as_deref() {
         Some("svg") => sheet::svg,
@@ -83,8 +84,9 @@ fn page(geometry: &Geometry, out: &Path) -> Result<String, Failure> {
             return Err(Failure::usage(problem));
         }
     };
-    let stiffness = mechanics::compute(geometry).map_err(Failure::input)?;
-    Ok(write(geometry, &stiffness))
+    let ribs = mechanics::compute(geometry).map_err(Failure::input)?;
+    let measured = request.measured_model()?.map(|prediction| prediction.at_pad());
+    Ok(write(geometry, &AtPad { ribs: &ribs, measured }))
 }
 
 /// Writes settings for a slicer, and beside them what they are for.

@@ -20,7 +20,7 @@ pub fn title(geometry: &Geometry) -> String {
     format!("{name}, infill {} %, {}°", design.density_percent, design.direction_deg)
 }
 
-/// Outline (counter-clockwise), then openings (clockwise), in the frame of the files, mm.
+/// Outline (counter-clockwise), then openings and holes (clockwise), in the frame of the files, mm.
 fn rings(geometry: &Geometry) -> Vec<Ring> {
     let width = geometry.finger.outline.width / MM;
     let moved = |ring: Vec<[f64; 2]>| ring.into_iter().map(|[x, y]| Point2::new(x, y + width));
@@ -28,6 +28,6 @@ fn rings(geometry: &Geometry) -> Vec<Ring> {
 }
 
 /// A length in mm, to a micrometre.
-fn mm(length: f64) -> String {
+pub(crate) fn mm(length: f64) -> String {
     format!("{}", (length / MM * 1e3).round() / 1e3)
 }

@@ -49,7 +49,7 @@ impl Prism {
         let mut rings = rings(geometry);
         let voids = rings.split_off(1);
         let outer = rings.pop().unwrap_or_default();
-        Prism::new(&outer, &voids, geometry.finger.outline.depth / MM)
+        Prism::new(&outer, &voids, geometry.finger.outline.depth / MM)?.with_block(geometry)
     }
 
     /// Surface of the finger without openings, for slicers that fill it with their own infill.
@@ -57,8 +57,9 @@ impl Prism {
     /// # Errors
     /// As of [`Prism::finger`].
     pub fn outline(geometry: &Geometry) -> Result<Self, PrismError> {
-        let outer = rings(geometry).swap_remove(0);
-        Prism::new(&outer, &[], geometry.finger.outline.depth / MM)
+        let mut rings = rings(geometry);
+        let holes = rings.split_off(1 + geometry.voids.len());
+        Prism::new(&rings[0], &holes, geometry.finger.outline.depth / MM)?.with_block(geometry)
     }
 
     /// Surface of the solid base, where a slicer's infill has to be full.
@@ -70,7 +71,36 @@ impl Prism {
         let (start, end) = ((outline.length - outline.solid) / MM, outline.length / MM);
         let width = outline.width / MM;
         let block = [[start, 0.0], [end, 0.0], [end, width], [start, width]];
-        Prism::new(&block.map(Point2::from).to_vec(), &[], outline.depth / MM)
+        Prism::new(&block.map(Point2::from).to_vec(), &[], outline.depth / MM)?.with_block(geometry)
+    }
+
+    /// With the block that has the finger's holes, if there is one: a closed surface of its own that
+    /// overlaps the finger's. What lies in either is solid (3MF Core Specification 1.3, 4.1: the
+    /// positive fill rule), and slicers read STL files so, too.
+    fn with_block(mut self, geometry: &Geometry) -> Result<Self, PrismError> {
+        let Some((holes, block)) = geometry.block() else { return Ok(self) };
+        let outline = &geometry.finger.outline;
+        let [u, v] = holes.axis.across().map(|direction| direction as usize);
+        let axis = holes.axis as usize;
+        let origin = [0.0, outline.width / MM, 0.0];
+        let mut ends = holes.carrier(outline);
+        ends[0][0] -= block.overlap;
+        let placed = |x: f64, y: f64| Point2::new(x / MM + origin[u], y / MM + origin[v]);
+        let [[left, right], [low, high]] = [ends[u], ends[v]];
+        let outer = [[left, low], [right, low], [right, high], [left, high]];
+        let rings = holes.rings(outline).into_iter();
+        let rings: Vec<Ring> =
+            rings.map(|ring| ring.iter().map(|p| placed(p.x, p.y)).collect()).collect();
+        let [start, end] = ends[axis].map(|end| end / MM + origin[axis]);
+        let block = Prism::new(&outer.map(|[x, y]| placed(x, y)).to_vec(), &rings, end - start)?;
+        let first = self.corners.len() as u32;
+        self.corners.extend(block.corners.iter().map(|&[x, y, z]| {
+            let mut corner = [0.0; 3];
+            (corner[u], corner[v], corner[axis]) = (x, y, z + start as f32);
+            corner
+        }));
+        self.triangles.extend(block.triangles.iter().map(|t| t.map(|corner| corner + first)));
+        self.closed()
     }
 
     /// Ring less holes (clockwise) from 0 to `depth`, mm.
@@ -97,11 +127,7 @@ impl Prism {
         triangles.extend(rim.flat_map(|&[a, b]| [[a, b, b + 1], [a, b + 1, a + 1]]));
         let prism = Prism { corners, triangles };
         let area = polygon::area(outer) + holes.iter().map(|hole| polygon::area(hole)).sum::<f64>();
-        let open = prism.open_edges();
-        if open > 0 {
-            let problem = format!("{open} edges do not belong to exactly two triangles");
-            return Err(PrismError(problem));
-        }
+        let prism = prism.closed()?;
         let (found, expected) = (prism.volume(), area * depth);
         if (found - expected).abs() > VOLUME_TOLERANCE * expected {
             let problem =
@@ -109,6 +135,13 @@ impl Prism {
             return Err(PrismError(problem));
         }
         Ok(prism)
+    }
+
+    fn closed(self) -> Result<Self, PrismError> {
+        match self.open_edges() {
+            0 => Ok(self),
+            open => Err(PrismError(format!("{open} edges do not belong to exactly two triangles"))),
+        }
     }
 
     /// Number of edges that are not met exactly twice, once each way; corners are told apart by

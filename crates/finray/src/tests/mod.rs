@@ -1,6 +1,7 @@
 //! Mechanics against solids; the lab's `analytic::finger` has the exact solutions.
 
 mod geometry;
+mod holes;
 mod solid;
 
 use super::geometry::Geometry;

@@ -59,6 +59,11 @@ impl Prediction {
         Prediction { compliance: exact(compliance), assembly: exact(assembly), hull_distance: 0.0 }
     }
 
+    /// Mean and standard deviation across the pad and along it, N/m.
+    pub fn at_pad(&self) -> [[f64; 2]; 2] {
+        [self.compliance, self.assembly].map(|Estimate { mean, sd }| [mean, sd])
+    }
+
     /// Whether the design lies inside the hull of the measured designs.
     pub fn inside_hull(&self) -> bool {
         self.hull_distance == 0.0

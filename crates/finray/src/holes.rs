@@ -1,0 +1,242 @@
+//! Holes for the screws that hold a finger, and the block beyond its end that has those which do not
+//! run through its depth. The gripper holds all of it rigidly: mechanics know nothing of it.
+
+use super::polygon::Ring;
+use crate::export::mm;
+use crate::printed::{Outline, PrintedFinger};
+use input::units::MM;
+use input::{Check, InputError};
+use nalgebra::Point2;
+use serde::Deserialize;
+use std::f64::consts::{PI, TAU};
+
+/// Direction along which a finger is measured; as a number, the place of its coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Direction {
+    /// X, from the tip to the end.
+    Length,
+    /// Y, from the back to the front.
+    Width,
+    /// Z, from the first layer to the last.
+    Depth,
+}
+
+impl Direction {
+    const ALL: [Self; 3] = [Direction::Length, Direction::Width, Direction::Depth];
+
+    /// Both directions across it, which with it are right-handed.
+    pub fn across(self) -> [Self; 2] {
+        [1, 2].map(|next| Self::ALL[(self as usize + next) % 3])
+    }
+
+    /// Its word in finger files.
+    pub fn word(self) -> &'static str {
+        ["length", "width", "depth"][self as usize]
+    }
+}
+
+/// Row of equal holes, m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Holes {
+    /// Direction in which they run.
+    pub axis: Direction,
+    /// Direction of their row.
+    pub row: Direction,
+    /// Number of holes.
+    pub count: u32,
+    /// Distance from one middle to the next.
+    pub spacing: f64,
+    /// Diameter of a hole.
+    pub diameter: f64,
+    /// Middle of the row from the middle of what carries it, along the row and across it.
+    pub offset: [f64; 2],
+    /// Block that carries them; without one the held base does.
+    pub block: Option<Block>,
+}
+
+/// Block beyond the end of a finger, as deep as it and in the middle of its width, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Block {
+    /// Length beyond the end.
+    pub length: f64,
+    /// Width.
+    pub width: f64,
+    /// Length inside the finger, so that a slicer unites both.
+    pub overlap: f64,
+}
+
+/// Largest distance of a printed hole's flats from its circle, m.
+const FLAT: f64 = 0.01 * MM;
+/// Least wall beside a hole, printed lines.
+const WALL_LINES: f64 = 3.0;
+/// Smallest diameter that prints open, m.
+const SMALLEST: f64 = 1.0 * MM;
+/// Most holes of a row.
+const MOST: u32 = 20;
+/// Rounding of lengths, m.
+const EPSILON: f64 = 1e-9;
+
+impl Holes {
+    /// What carries the holes: its low and its high end along each direction, m; X from the tip, Y
+    /// from the front, Z from the first layer.
+    pub fn carrier(&self, outline: &Outline) -> [[f64; 2]; 3] {
+        let Outline { length, width, depth, clamped, .. } = *outline;
+        let (x, half, middle) = match self.block {
+            Some(block) => ([length, length + block.length], block.width / 2.0, -width / 2.0),
+            None => ([length - clamped, length], width / 2.0, -width / 2.0),
+        };
+        [x, [middle - half, middle + half], [0.0, depth]]
+    }
+
+    /// Middles of the holes, m; along the holes that of what carries them.
+    pub fn middles(&self, outline: &Outline) -> Vec<[f64; 3]> {
+        let centre = self.carrier(outline).map(|[low, high]| (low + high) / 2.0);
+        let first = self.offset[0] - self.spacing * f64::from(self.count - 1) / 2.0;
+        let middle = |i: u32| {
+            let mut middle = centre;
+            middle[self.row as usize] += first + self.spacing * f64::from(i);
+            middle[self.beside()] += self.offset[1];
+            middle
+        };
+        (0..self.count).map(middle).collect()
+    }
+
+    /// Low and high ends of each hole along each direction, m; along the holes those of what
+    /// carries them.
+    pub fn boxes(&self, outline: &Outline) -> Vec<[[f64; 2]; 3]> {
+        let radius = self.diameter / 2.0;
+        let boxed = |middle: [f64; 3]| {
+            let mut ends = middle.map(|at| [at - radius, at + radius]);
+            ends[self.axis as usize] = self.carrier(outline)[self.axis as usize];
+            ends
+        };
+        self.middles(outline).into_iter().map(boxed).collect()
+    }
+
+    /// The holes, clockwise in the plane of [`Direction::across`], m.
+    pub fn rings(&self, outline: &Outline) -> Vec<Ring> {
+        let radius = self.diameter / 2.0;
+        let [u, v] = self.axis.across().map(|direction| direction as usize);
+        // Of a multiple of four, so that calipers meet corners on either axis.
+        let flats = 4 * (PI / (1.0 - FLAT / radius).acos() / 4.0).ceil() as u32;
+        let angle = |i: u32| -TAU * f64::from(i) / f64::from(flats);
+        let ring = |middle: [f64; 3]| {
+            let corner =
+                |a: f64| Point2::new(middle[u] + radius * a.cos(), middle[v] + radius * a.sin());
+            (0..flats).map(|i| corner(angle(i))).collect()
+        };
+        self.middles(outline).into_iter().map(ring).collect()
+    }
+
+    /// Place of the coordinate across holes and row.
+    fn beside(&self) -> usize {
+        3 - self.axis as usize - self.row as usize
+    }
+
+    /// Checks that the holes fit.
+    pub(super) fn check(&self, check: Check<'_>, finger: &PrintedFinger) -> Result<(), InputError> {
+        let outline = &finger.outline;
+        if self.row == self.axis {
+            let [one, other] = self.axis.across().map(Direction::word);
+            let problem = format!("is that of the holes; it must be \"{one}\" or \"{other}\"");
+            return check.fail("holes.row", problem);
+        }
+        if self.block.is_none() && self.axis != Direction::Depth {
+            let problem = "is missing; holes along the length or the width are in a block \
+                           beyond the finger's end: length_mm, width_mm, overlap_mm";
+            return check.fail("holes.block", problem);
+        }
+        if let Some(Block { overlap, .. }) = self.block {
+            let held = format!("be at most base.clamped_mm, {}", mm(outline.clamped));
+            let fits = overlap <= outline.clamped + EPSILON;
+            check.require("holes.block.overlap_mm", overlap / MM, fits, &held)?;
+        }
+        self.check_walls(check, outline, WALL_LINES * finger.line_width)
+    }
+
+    fn check_walls(&self, check: Check, outline: &Outline, least: f64) -> Result<(), InputError> {
+        let Holes { axis, row, diameter, spacing, count, .. } = *self;
+        let left = |direction: usize, span: f64, offset: f64| {
+            let [low, high] = self.carrier(outline)[direction];
+            (high - low - span - diameter) / 2.0 - offset.abs()
+        };
+        let span = spacing * f64::from(count - 1);
+        let walls = [
+            ("between them", if count > 1 { spacing - diameter } else { f64::INFINITY }),
+            ("at the ends of their row", left(row as usize, span, self.offset[0])),
+            ("beside their row", left(self.beside(), 0.0, self.offset[1])),
+        ];
+        if let Some((place, wall)) = walls.into_iter().find(|(_, wall)| *wall < least - EPSILON) {
+            let problem = format!(
+                "leave a wall of {} mm {place}; it must be at least {} mm, {WALL_LINES} printed \
+                 lines: by another diameter_mm, spacing_mm, offset_mm or count, or more room",
+                mm(wall),
+                mm(least)
+            );
+            return check.fail("holes", problem);
+        }
+        let covered = |middle: &[f64; 3]| {
+            [0.0, -outline.width].iter().any(|side| (middle[1] - side).abs() < diameter / 2.0)
+        };
+        if axis == Direction::Length && self.middles(outline).iter().any(covered) {
+            let problem = "lets the finger's end cover a part of a hole; a hole lies behind the \
+                           finger, and ends there, or passes beside it";
+            return check.fail("holes.offset_mm", problem);
+        }
+        Ok(())
+    }
+}
+
+/// The table of a finger file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawHoles {
+    axis: Direction,
+    row: Direction,
+    count: u32,
+    spacing_mm: f64,
+    diameter_mm: f64,
+    offset_mm: [f64; 2],
+    block: Option<RawBlock>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawBlock {
+    length_mm: f64,
+    width_mm: f64,
+    overlap_mm: f64,
+}
+
+impl RawHoles {
+    /// The holes, each number checked by itself; `length` checks one.
+    pub fn checked(
+        self,
+        check: Check<'_>,
+        length: impl Fn(&'static str, f64) -> Result<f64, InputError>,
+    ) -> Result<Holes, InputError> {
+        let RawHoles { axis, row, count, .. } = self;
+        let (fits, must) = ((1..=MOST).contains(&count), format!("be from 1 to {MOST}"));
+        check.require("holes.count", f64::from(count), fits, &must)?;
+        let diameter = length("holes.diameter_mm", self.diameter_mm)?;
+        let must = format!("be at least {}: smaller holes close in print", SMALLEST / MM);
+        check.require("holes.diameter_mm", self.diameter_mm, diameter >= SMALLEST, &must)?;
+        let block = |RawBlock { length_mm, width_mm, overlap_mm }| {
+            Ok(Block {
+                length: length("holes.block.length_mm", length_mm)?,
+                width: length("holes.block.width_mm", width_mm)?,
+                overlap: length("holes.block.overlap_mm", overlap_mm)?,
+            })
+        };
+        Ok(Holes {
+            axis,
+            row,
+            count,
+            spacing: length("holes.spacing_mm", self.spacing_mm)?,
+            diameter,
+            offset: check.each("holes.offset_mm", self.offset_mm, Check::finite)?.map(|v| v * MM),
+            block: self.block.map(block).transpose()?,
+        })
+    }
+}

@@ -28,7 +28,7 @@ fn json(arguments: &[&str], code: i32) -> Value {
 #[test]
 fn a_strategy_is_found_written_with_what_it_was_and_inserts() {
     let folder = Studies::new();
-    let (own, svg) = (folder.file("own.toml", &off()), folder.word("own.svg"));
+    let (own, svg) = (folder.file("own.toml", off()), folder.word("own.svg"));
     let checked = json(&["check", &own], 2);
     assert!(checked["mended_by"]["least_range_mm"].as_f64().unwrap() > 0.0, "{checked}");
     let done = json(&["tune", &own, "--svg", &svg], 0);

@@ -324,7 +324,7 @@ fn an_extruded_pair_is_imported_exactly() {
     assert!(found.intrusion.unwrap().0 < 2e-3 * MM, "{:?}", found.intrusion);
     let [chamfer @ .., depth] = found.chamfer;
     let measured = [&found.play[..], &chamfer[1..], &[depth], &found.body].concat();
-    let drawn = [0.2, 0.2, 0.45, 0.4, 12.0, 8.0, 18.0];
+    let drawn = [0.2, 0.2, 0.4, 0.4, 12.0, 8.0, 18.0];
     let off = measured.iter().zip(drawn).map(|(is, mm)| (is - mm * MM).abs());
     assert!(off.fold(0.0, f64::max) < 0.03 * MM, "{measured:?}");
     assert_eq!(problems(&found.task), []);

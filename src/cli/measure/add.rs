@@ -1,11 +1,13 @@
 //! `optimize measure add`.
 
-use crate::calibration::experiments::{COLUMNS, NOT_MEASURABLE, appended, parse};
+use crate::calibration::experiments::{
+    COLUMNS, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
+};
 use crate::cli::{Failure, print, say};
-use crate::session::read_task;
+use crate::session::{TaskFile, read_task};
 use clap::Args;
 use input::files::{LARGEST_INPUT, Table};
-use input::shipped::MEASUREMENTS;
+use input::shipped::{MEASUREMENTS, TASKS};
 use std::io::{self, BufRead};
 use std::path::Path;
 
@@ -82,18 +84,34 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if cells.is_empty() {
         cells = asked(&mut io::stdin().lock())?;
     }
+    let mut own = None;
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
-        *name = read_task(name)?.task.name;
+        let TaskFile { source, task } = read_task(name)?;
+        let shipped = TASKS.iter().any(|shipped| shipped.text == source.text);
+        own = (!shipped).then(|| beside(file, name)).map(|path| (task.name.clone(), path));
+        *name = task.name;
     }
     // Read only now: others may have added lines meanwhile.
     let unusable = |error| Failure::usage(format!("{file}: cannot add to it: {error}"));
     let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
     let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
-    let new = appended(table.text(), &cells).map_err(Failure::input)?;
+    let new = |(name, path): &(String, String)| own_tasks(table.text()).get(&**name) != Some(&&**path);
+    let comment = own.filter(new).map_or(String::new(), |(name, path)| own_task(&name, &path));
+    let new = appended(table.text(), &comment, &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;
     table.replace(&new).map_err(full)?;
     print(&format!("{file}: {}\n", super::lines(&found)))
+}
+
+/// The path of a file as it is found from the folder of another: from its own folder on, if that is
+/// around it, else the whole.
+fn beside(other: &str, path: &str) -> String {
+    let folder = Path::new(other).parent().unwrap_or(Path::new(""));
+    let path = Path::new(path);
+    let whole = || std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let found = path.strip_prefix(folder).map_or_else(|_| whole(), Path::to_owned);
+    found.display().to_string()
 }
 
 impl Arguments {

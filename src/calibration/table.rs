@@ -346,11 +346,20 @@ pub fn on_bench(
         probability_best: prediction.best,
         failures: subject.failures(prediction.finger),
     };
+    let (mut ranges, mut bounds) = (Vec::new(), Vec::new());
+    for finger in subject.measured() {
+        let design = subject.designs[finger].clone();
+        match subject.extent(finger) {
+            Some((range_mm, false)) => ranges.push((design, range_mm)),
+            other => bounds.push((design, other.map(|(mm, _)| mm))),
+        }
+    }
     OnBench {
         provenance,
         effort,
         measured: subject.measured().len(),
-        ranges: Vec::new(),
+        ranges,
+        bounds,
         fingers: result.predictions.len(),
         trust: result.trust(subject.emulator.error_mm),
         warnings: warnings(subject, result),

@@ -1,11 +1,11 @@
 //! Bench measurements, and the bounds of what nobody measured, as files have them.
 
 use super::files::find;
-use super::{Failure, TaskSource, read_task};
+use super::{Failure, Setup, TaskSource, read_task};
 use crate::calibration::experiments::{self, Experiment};
 use crate::calibration::prior::Priors;
 use crate::calibration::subject::whole;
-use crate::study::{input_path, read_config};
+use crate::study::{BENCH_ROLES, StudyRecord, input_path, read_config};
 use input::files::{LARGEST_INPUT, read_named};
 use input::shipped::{MEASUREMENTS, Source, TASKS};
 use insertion::evaluation::template::Template;
@@ -149,4 +149,33 @@ pub fn check(
         whole(space, template, line).map_err(|error| Failure::usage(format!("{file}: {error}")))?;
     }
     Ok(())
+}
+
+/// How many lines of its task a study in `dir` has not seen, if nothing else differs from this setup
+/// but that lines follow on those that it has: they change no simulated value.
+pub fn more(dir: &Path, setup: &Setup) -> Option<usize> {
+    let text = setup.inputs.get(BENCH_ROLES[0])?;
+    let record = StudyRecord::load(dir).ok()?;
+    let (before, mut now) = (&record.segments.last()?.provenance, setup.provenance());
+    let inputs = record.inputs(dir).ok()?;
+    let known = inputs.get(BENCH_ROLES[0]);
+    // Without lines it had no bounds of what nobody measured either.
+    for role in BENCH_ROLES.iter().take(if known.is_some() { 1 } else { 2 }) {
+        now.input_sha256.remove(*role);
+        let hash = before.input_sha256.get_key_value(*role);
+        now.input_sha256.extend(hash.map(|(role, hash)| (role.clone(), hash.clone())));
+    }
+    let lines = |text: &str| {
+        let lines = experiments::parse(text, "").ok()?.into_iter();
+        // Comments and columns may have moved them.
+        let unnumbered = |mut line: Experiment| {
+            line.line = 0;
+            line
+        };
+        Some(lines.map(unnumbered).collect::<Vec<_>>())
+    };
+    let (known, found) = (lines(known.map_or("", String::as_str))?, lines(text)?);
+    let new = found.strip_prefix(&known[..]).filter(|new| !new.is_empty() && now == *before)?;
+    let tasks = setup.task_names();
+    Some(new.iter().filter(|line| tasks.contains(&&*line.task)).count())
 }

@@ -223,11 +223,7 @@ pub fn check_tasks(experiments: &[Experiment], known: &[&str], file: &str) -> Re
 /// The file's text with one line more, after a comment line if that is not empty; `cells` are the
 /// columns that are not empty. Columns that the file does not have yet are added at its end; a new
 /// file has all the documented ones.
-pub fn appended(
-    text: &str,
-    comment: &str,
-    cells: &[(&str, String)],
-) -> Result<String, csv::Error> {
+pub fn appended(text: &str, comment: &str, cells: &[(&str, String)]) -> Result<String, csv::Error> {
     let mut reader = reader().from_reader(text.as_bytes());
     let mut header: Vec<String> = match is_empty(text) {
         true => COLUMNS.map(str::to_owned).to_vec(),
@@ -245,8 +241,7 @@ pub fn appended(
     });
     let line = |cells: &mut dyn Iterator<Item = &str>| {
         // What begins with the mark of a comment is quoted.
-        let mut writer =
-            csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
+        let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
         writer.write_record(cells)?;
         let bytes = writer.into_inner().map_err(|error| error.into_error())?;
         Ok::<_, csv::Error>(String::from_utf8_lossy(&bytes).into_owned())

@@ -119,7 +119,8 @@ fn a_line_is_added_and_the_others_stay_as_they_were() {
 #[test]
 fn a_comment_line_keeps_the_file_of_a_task_and_is_no_line_of_the_table() {
     let cells = |range: &str, more: &[(&'static str, &str)]| -> Vec<(&'static str, String)> {
-        let all = [("task", "mine"), (DENSITY_KEY, "20"), (DIRECTION_KEY, "0"), ("range_mm", range)];
+        let all =
+            [("task", "mine"), (DENSITY_KEY, "20"), (DIRECTION_KEY, "0"), ("range_mm", range)];
         all.iter().chain(more).map(|&(column, cell)| (column, cell.to_owned())).collect()
     };
     let new = appended("", &own_task("mine", "my tasks/mine.toml"), &cells("7", &[])).unwrap();

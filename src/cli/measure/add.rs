@@ -96,7 +96,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
     let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
-    let new = |(name, path): &(String, String)| own_tasks(table.text()).get(&**name) != Some(&&**path);
+    let new =
+        |(name, path): &(String, String)| own_tasks(table.text()).get(&**name) != Some(&&**path);
     let comment = own.filter(new).map_or(String::new(), |(name, path)| own_task(&name, &path));
     let new = appended(table.text(), &comment, &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;

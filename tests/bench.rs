@@ -111,8 +111,13 @@ fn measurements_are_kept_with_a_study_and_new_ones_leave_its_evaluations() {
     let with = |more: &[&str]| {
         folder.study("a", 12, &[&FEW[..], &["--json", "--measurements", &file], more].concat())
     };
-    let before = with(&[]).json();
+    // A study without measurements takes its first ones, too.
+    folder.study("a", 12, &FEW).succeeds();
+    let first = with(&[]);
+    assert!(first.stderr.contains("2 new measurements\n"), "{}", first.stderr);
+    let before = first.json();
     assert_eq!(before["bench"]["measured"], 2);
+    folder.study("a", 12, &FEW).fails(2, &["input_sha256.measurements", "--accept-changed"]);
     std::fs::remove_file(&file).expect("the file is removed");
     folder.resume("a").succeeds();
     // Changed or removed lines ask.
@@ -128,7 +133,7 @@ fn measurements_are_kept_with_a_study_and_new_ones_leave_its_evaluations() {
     assert!(grown.stderr.contains("1 new measurement\n"), "{}", grown.stderr);
     let after = grown.json();
     assert_eq!(after["bench"]["measured"], 3);
-    assert_eq!(after["segments"][1]["first"], 12);
+    assert_eq!(after["segments"][2]["first"], 12);
     assert_eq!(after["recommended_by_simulation"], before["recommended_by_simulation"]);
     assert_ne!(after["recommended"]["bench"], before["recommended"]["bench"]);
     assert_eq!(after["evaluations"], 12);
@@ -163,17 +168,6 @@ fn measurements_that_a_study_cannot_use_are_refused_before_it_begins() {
     refused(line, &objective, &["centred-range is not known on the bench"]);
     let constraint = ["--task", "ket8", "--constraint", "peak-force<=30"];
     refused(line, &constraint, &["a --constraint is not known on the bench"]);
-}
-
-#[test]
-fn a_study_without_measurements_takes_its_first_ones() {
-    let folder = Studies::new();
-    folder.study("a", 12, &FEW).succeeds();
-    let file = folder.file("bench.csv", format!("{HEAD}ket8,10,0,7.6\nket8,20,0,5.7\n"));
-    let found = folder.study("a", 12, &[&FEW[..], &["--measurements", &file]].concat());
-    assert!(found.stderr.contains("2 new measurements\n"), "{}", found.stderr);
-    assert!(found.succeeds().contains("above is the widest expected"), "{}", found.stdout);
-    folder.study("a", 12, &FEW).fails(2, &["input_sha256.measurements", "--accept-changed"]);
 }
 
 #[test]

@@ -63,17 +63,18 @@ impl<'a> Verdict<'a> {
         }
         if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
             let design = &best.design;
-            let range = measured.iter().find(|measured| measured.design == *design);
-            let bounds = answer.record.on_bench.iter().flat_map(|found| &found.bounds);
-            let bound = bounds.clone().find(|(printed, _)| printed == design);
-            if range.is_none() && bound.is_none() {
-                return Verdict::Print(design);
-            }
-            let range_mm = range.map(|measured| measured.range_mm);
-            return Verdict::MeasuredBefore {
-                design,
-                range_mm,
-                at_least_mm: bound.and_then(|(_, mm)| *mm),
+            let own = || measured.iter().filter(|measured| measured.design == *design);
+            // A finger may be measured on several days.
+            let mean_mm = own().map(|one| one.range_mm).sum::<f64>() / own().count() as f64;
+            let mut bounds = answer.record.on_bench.iter().flat_map(|found| &found.bounds);
+            let bound = bounds.find(|(printed, _)| printed == design).map(|(_, mm)| *mm);
+            return match (mean_mm.is_nan(), bound) {
+                (true, None) => Verdict::Print(design),
+                (unknown, bound) => Verdict::MeasuredBefore {
+                    design,
+                    range_mm: (!unknown).then_some(mean_mm),
+                    at_least_mm: bound.flatten(),
+                },
             };
         }
         let Some(found) = &answer.recommended else { return Verdict::NoneFeasible };

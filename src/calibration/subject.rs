@@ -76,23 +76,6 @@ impl Subject {
         self.experiments.iter().map(|(number, _)| *number).collect()
     }
 
-    /// What was measured of a finger: its range, mm, over all lines of it, and whether it is this or
-    /// more; `None` if no line has one.
-    pub fn extent(&self, finger: usize) -> Option<(f64, bool)> {
-        let own = self.experiments.iter().filter(|(number, _)| *number == finger);
-        let known = |(_, line): &(usize, Experiment)| {
-            line.extent().map(|(mm, at_least)| (mm, at_least, f64::from(line.repeats)))
-        };
-        let known: Vec<_> = own.filter_map(known).collect();
-        let whole = || known.iter().filter(|(_, at_least, _)| !at_least);
-        let repeats: f64 = whole().map(|(.., repeats)| repeats).sum();
-        let sum: f64 = whole().map(|(mm, _, repeats)| mm * repeats).sum();
-        match repeats > 0.0 {
-            true => Some((sum / repeats, false)),
-            false => known.iter().map(|(mm, ..)| *mm).reduce(f64::max).map(|mm| (mm, true)),
-        }
-    }
-
     /// Its bench, with the coordinates of its parameters and hyperparameters.
     pub fn bench(&self, parameters: Vec<usize>, first: usize) -> Bench<'_> {
         let observation = |&(finger, ref line): &(usize, Experiment)| {

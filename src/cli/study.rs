@@ -66,10 +66,9 @@ pub fn to_its_end(open: OpenStudy, shown: Shown) -> Result<(), Failure> {
 
 /// The study, what is to be known before it starts said.
 pub fn warned(open: OpenStudy) -> Result<OpenStudy, Failure> {
-    match open.new_measurements {
-        0 => {}
-        1 => say("1 new measurement"),
-        count => say(&format!("{count} new measurements")),
+    if open.new_measurements > 0 {
+        let plural = if open.new_measurements == 1 { "" } else { "s" };
+        say(&format!("{} new measurement{plural}", open.new_measurements));
     }
     open.warnings()?.iter().for_each(|warning| say(&format!("warning: {warning}")));
     Ok(open)

@@ -156,26 +156,22 @@ pub fn check(
 pub fn more(dir: &Path, setup: &Setup) -> Option<usize> {
     let text = setup.inputs.get(BENCH_ROLES[0])?;
     let record = StudyRecord::load(dir).ok()?;
-    let (before, mut now) = (&record.segments.last()?.provenance, setup.provenance());
+    let (mut before, mut now) = (record.segments.last()?.provenance.clone(), setup.provenance());
     let inputs = record.inputs(dir).ok()?;
     let known = inputs.get(BENCH_ROLES[0]);
     // Without lines it had no bounds of what nobody measured either.
     for role in BENCH_ROLES.iter().take(if known.is_some() { 1 } else { 2 }) {
+        before.input_sha256.remove(*role);
         now.input_sha256.remove(*role);
-        let hash = before.input_sha256.get_key_value(*role);
-        now.input_sha256.extend(hash.map(|(role, hash)| (role.clone(), hash.clone())));
     }
     let lines = |text: &str| {
-        let lines = experiments::parse(text, "").ok()?.into_iter();
+        let mut lines = experiments::parse(text, "").ok()?;
         // Comments and columns may have moved them.
-        let unnumbered = |mut line: Experiment| {
-            line.line = 0;
-            line
-        };
-        Some(lines.map(unnumbered).collect::<Vec<_>>())
+        lines.iter_mut().for_each(|line| line.line = 0);
+        Some(lines)
     };
     let (known, found) = (lines(known.map_or("", String::as_str))?, lines(text)?);
-    let new = found.strip_prefix(&known[..]).filter(|new| !new.is_empty() && now == *before)?;
+    let new = found.strip_prefix(&known[..]).filter(|new| !new.is_empty() && now == before)?;
     let tasks = setup.task_names();
     Some(new.iter().filter(|line| tasks.contains(&&*line.task)).count())
 }

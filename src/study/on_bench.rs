@@ -20,7 +20,7 @@ pub struct OnBench {
     pub provenance: Provenance,
     pub effort: BenchEffort,
     pub measured: usize,
-    /// Those of them whose range was measured whole, and that range, mm, on average.
+    /// Those of them whose range was measured whole, and that range, mm.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ranges: Vec<(Design, f64)>,
     /// The others, and what they tolerate at the least, mm, if that is known.

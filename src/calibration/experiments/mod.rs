@@ -149,12 +149,13 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
     }
     let mut reader = reader().trim(csv::Trim::All).from_reader(text.as_bytes());
     let one = |problem: String| Problems::of(file, vec![problem]);
-    let header = reader.headers().map_err(|error| one(syntax(&error)))?.clone();
-    check_header(&header).map_err(one)?;
+    let wrong = |error: csv::Error| one(syntax(&text, &error));
+    let header = reader.headers().map_err(wrong)?.clone();
+    check_header(&header, line_at(&text, header.position())).map_err(one)?;
     let (mut found, mut problems) = (Vec::new(), Vec::new());
     for record in reader.records() {
-        let record = record.map_err(|error| one(syntax(&error)))?;
-        let at = record.position().map_or(0, csv::Position::line);
+        let record = record.map_err(wrong)?;
+        let at = line_at(&text, record.position());
         match line::experiment(&header, &record, at) {
             Ok(experiment) => {
                 problems.extend(line::twice(&experiment, &found));
@@ -166,18 +167,26 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
     if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
 }
 
-fn syntax(error: &csv::Error) -> String {
+/// The line of a record: the reader says that of the comments before it.
+fn line_at(text: &str, position: Option<&csv::Position>) -> u64 {
+    let Some(position) = position else { return 1 };
+    let rest = text.get(position.byte() as usize..).unwrap_or("");
+    let bare = |line: &&str| line.is_empty() || line.starts_with('#');
+    position.line() + rest.lines().take_while(bare).count() as u64
+}
+
+fn syntax(text: &str, error: &csv::Error) -> String {
     let words = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("has {len} cells where the header has {expected_len}")
         }
         _ => error.to_string(),
     };
-    problem(error.position().map_or(1, csv::Position::line), "", &words)
+    problem(line_at(text, error.position()), "", &words)
 }
 
 /// Checks that the columns are known, stand once, and say which finger was tried.
-fn check_header(header: &StringRecord) -> Result<(), String> {
+fn check_header(header: &StringRecord, at: u64) -> Result<(), String> {
     for (i, name) in header.iter().enumerate() {
         let of_space = name.starts_with("task.") || name.starts_with("finger.");
         if !of_space && !COLUMNS.contains(&name) {
@@ -186,17 +195,17 @@ fn check_header(header: &StringRecord) -> Result<(), String> {
                 hint(name, &COLUMNS),
                 COLUMNS.join(", ")
             );
-            return Err(problem(1, name, &words));
+            return Err(problem(at, name, &words));
         }
         if header.iter().take(i).any(|other| other == name) {
-            return Err(problem(1, name, "is given twice; each column may stand once"));
+            return Err(problem(at, name, "is given twice; each column may stand once"));
         }
     }
     match COLUMNS[..3].iter().find(|needed| header.iter().all(|name| name != **needed)) {
         None => Ok(()),
         Some(missing) => {
             let words = "is missing; a line says which finger was tried on which task";
-            Err(problem(1, missing, words))
+            Err(problem(at, missing, words))
         }
     }
 }

@@ -118,23 +118,21 @@ fn a_line_is_added_and_the_others_stay_as_they_were() {
 
 #[test]
 fn a_comment_line_keeps_the_file_of_a_task_and_is_no_line_of_the_table() {
-    let cells = |range: &str, more: &[(&'static str, &str)]| -> Vec<(&'static str, String)> {
-        let all =
-            [("task", "mine"), (DENSITY_KEY, "20"), (DIRECTION_KEY, "0"), ("range_mm", range)];
-        all.iter().chain(more).map(|&(column, cell)| (column, cell.to_owned())).collect()
+    let head = "task,infill_density_percent,infill_direction_deg,range_mm\nmine,20,0,7\n";
+    let cells = |key: &'static str, cell: &str| {
+        let all = [("task", "mine"), (DENSITY_KEY, "20"), (DIRECTION_KEY, "9"), (key, cell)];
+        all.map(|(column, cell)| (column, cell.to_owned()))
     };
-    let new = appended("", &own_task("mine", "my tasks/mine.toml"), &cells("7", &[])).unwrap();
-    assert!(new.starts_with("# task mine: my tasks/mine.toml\ntask,"), "{new}");
-    let day = [("date", "2026-03-01")];
-    let moved = appended(&new, &own_task("mine", "b.toml"), &cells("8", &day)).unwrap();
-    assert!(moved.starts_with(&new), "{moved}");
+    let old = own_task("mine", "my tasks/mine.toml") + head;
+    let moved = appended(&old, &own_task("mine", "b.toml"), &cells("range_mm", "8")).unwrap();
+    assert_eq!(moved, format!("{old}# task mine: b.toml\nmine,20,9,8\n"));
     assert_eq!(own_tasks(&moved)["mine"], "b.toml");
     assert_eq!(parse(&moved, "m.csv").unwrap().iter().map(|l| l.line).collect::<Vec<_>>(), [3, 5]);
-    // A column more: the comments stay; a note may begin like one.
-    let more = [("note", "#2"), ("finger.rcc_mm", "15"), ("date", "2026-03-02")];
-    let wider = appended(&moved, "", &cells("9", &more)).unwrap();
+    let error = parse(&moved.replace(",8", ",x"), "m.csv").unwrap_err().to_string();
+    assert!(error.starts_with("m.csv: line 5: range_mm: "), "{error}");
+    // A column more: the comments stay.
+    let wider = appended(&moved, "", &cells("failure_negative", "3")).unwrap();
     assert_eq!(own_tasks(&wider), own_tasks(&moved));
-    assert_eq!(parse(&wider, "m.csv").unwrap()[2].note, "#2");
     assert_eq!(own_tasks("\u{feff}# task a: a.toml,,,\r\n")["a"], "a.toml");
     assert_eq!(parse("# task a: a.toml\n\n", "m.csv"), Ok(vec![]));
 }

@@ -88,7 +88,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
         let TaskFile { source, task } = read_task(name)?;
         let shipped = TASKS.iter().any(|shipped| shipped.text == source.text);
-        own = (!shipped).then(|| beside(file, name)).map(|path| (task.name.clone(), path));
+        // From the folder of the measurements on, if that is around it, else the whole path.
+        let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+        let path = Path::new(name).strip_prefix(folder).map(Path::to_owned);
+        let path = path.or_else(|_| std::path::absolute(&*name)).map_err(Failure::input)?;
+        own = (!shipped).then(|| (task.name.clone(), path.display().to_string()));
         *name = task.name;
     }
     // Read only now: others may have added lines meanwhile.
@@ -103,16 +107,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = parse(&new, file).map_err(Failure::input)?;
     table.replace(&new).map_err(full)?;
     print(&format!("{file}: {}\n", super::lines(&found)))
-}
-
-/// The path of a file as it is found from the folder of another: from its own folder on, if that is
-/// around it, else the whole.
-fn beside(other: &str, path: &str) -> String {
-    let folder = Path::new(other).parent().unwrap_or(Path::new(""));
-    let path = Path::new(path);
-    let whole = || std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let found = path.strip_prefix(folder).map_or_else(|_| whole(), Path::to_owned);
-    found.display().to_string()
 }
 
 impl Arguments {

@@ -10,7 +10,6 @@ use input::files::{LARGEST_INPUT, read_named};
 use input::shipped::{MEASUREMENTS, Source, TASKS};
 use insertion::evaluation::template::Template;
 use insertion::space::Space;
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Measurements from the bench, and the bounds of what nobody measured.
@@ -61,12 +60,10 @@ fn own_task(source: &Source, task: &str) -> Result<Option<PathBuf>, Failure> {
             "{file}: task `{task}`: {problem}; mend the line `# task {task}: ..`, or give --task"
         ))
     };
-    match read_task(&path.to_string_lossy()) {
-        Err(error) => Err(wrong(error.to_string())),
-        Ok(found) if found.task.name != task => {
-            Err(wrong(format!("{} is called `{}`", path.display(), found.task.name)))
-        }
-        Ok(_) => Ok(Some(path)),
+    let found = read_task(&path.to_string_lossy()).map_err(|error| wrong(error.to_string()))?;
+    match found.task.name == task {
+        true => Ok(Some(path)),
+        false => Err(wrong(format!("{} is called `{}`", path.display(), found.task.name))),
     }
 }
 
@@ -90,8 +87,9 @@ pub fn task(source: &Source) -> Result<TaskSource, Failure> {
     let Source { file, text } = source;
     let wrong = |problem: String| Failure::usage(format!("{file}: {problem}; give --task"));
     let found = experiments::parse(text, file).map_err(Failure::input)?;
-    let tasks: BTreeSet<&str> = found.iter().map(|line| &*line.task).collect();
-    let tasks: Vec<&str> = tasks.into_iter().collect();
+    let mut tasks: Vec<&str> = found.iter().map(|line| &*line.task).collect();
+    tasks.sort_unstable();
+    tasks.dedup();
     let [task] = tasks[..] else {
         return Err(wrong(match tasks.is_empty() {
             true => "has no line yet that says of which task".to_owned(),
@@ -112,9 +110,8 @@ const MOST_FINGERS: usize = 200;
 pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
     let mut found = experiments::parse(&source.text, &source.file).map_err(Failure::input)?;
     let shipped = TASKS.iter().map(|task| task.name);
-    let own = experiments::own_tasks(&source.text).into_keys();
-    let known: BTreeSet<&str> = shipped.chain(more.iter().copied()).chain(own).collect();
-    let known: Vec<&str> = known.into_iter().collect();
+    let own = experiments::own_tasks(&source.text).into_keys().filter(|own| !more.contains(own));
+    let known: Vec<&str> = shipped.chain(more.iter().copied()).chain(own).collect();
     experiments::check_tasks(&found, &known, &source.file).map_err(Failure::input)?;
     found.sort_by(Experiment::order);
     for of_task in found.chunk_by(|a, b| a.task == b.task) {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Studies, optimize, optimize_line};
+use common::{Studies, command, optimize, optimize_line, run};
 
 #[test]
 fn measurements_are_added_checked_and_refused() {
@@ -80,6 +80,14 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     assert_eq!(before["answer"]["verdict"], "measured_before", "{before}");
     let headline = before["answer"]["headline"].as_str().expect("words");
     assert!(headline.ends_with("you measured 9.9 mm"), "{headline}");
+    assert!(headline.contains(", printed already: "), "{headline}");
+    let words = "another finger is worth a print";
+    assert!(before["answer"]["next"]["why"].as_str().is_some_and(|why| why.contains(words)));
+    known["ranges"] = serde_json::json!([]);
+    known["bounds"] = serde_json::json!([[best["values"], 1.5]]);
+    folder.file("a/bench.json", known.to_string());
+    let bound = folder.study("a", 12, &json).json()["answer"]["headline"].to_string();
+    assert!(bound.contains("you measured 1.5 mm or more"), "{bound}");
     folder.file("a/bench.json", kept);
     // The search did not know of it.
     let plain = folder.study("b", 12, &["--task", "ket8", "--json"]).json();
@@ -103,19 +111,35 @@ fn measurements_are_kept_with_a_study_and_new_ones_leave_its_evaluations() {
     let with = |more: &[&str]| {
         folder.study("a", 12, &[&FEW[..], &["--json", "--measurements", &file], more].concat())
     };
-    let before = with(&[]).json();
+    // A study without measurements takes its first ones, too.
+    folder.study("a", 12, &FEW).succeeds();
+    let first = with(&[]);
+    assert!(first.stderr.contains("2 new measurements\n"), "{}", first.stderr);
+    let before = first.json();
     assert_eq!(before["bench"]["measured"], 2);
+    folder.study("a", 12, &FEW).fails(2, &["input_sha256.measurements", "--accept-changed"]);
     std::fs::remove_file(&file).expect("the file is removed");
     folder.resume("a").succeeds();
-    folder.file("bench.csv", lines + "ket8,25,20,9.9\n");
-    with(&[]).fails(2, &["input_sha256.measurements", "--accept-changed"]);
-    let after = with(&["--accept-changed"]).json();
+    // Changed or removed lines ask.
+    for other in [lines.replace("7.6", "7.7"), lines.replace("usb,20,0,5.7\n", "")] {
+        folder.file("bench.csv", other + "ket8,25,20,9.9\n");
+        with(&[]).fails(2, &["input_sha256.measurements", "--accept-changed"]);
+    }
+    // Those that follow do not, be there a comment or a column more.
+    let more = lines.replace("range_mm\n", "range_mm,note\n").replace("6\n", "6,\n");
+    let more = more.replace("5.7\n", "5.7,\n") + "# measured on Monday\nket8,25,20,9.9,\n";
+    folder.file("bench.csv", more + "usb,25,20,9.9,\n");
+    let grown = with(&[]);
+    assert!(grown.stderr.contains("1 new measurement\n"), "{}", grown.stderr);
+    let after = grown.json();
     assert_eq!(after["bench"]["measured"], 3);
+    assert_eq!(after["segments"][2]["first"], 12);
     assert_eq!(after["recommended_by_simulation"], before["recommended_by_simulation"]);
     assert_ne!(after["recommended"]["bench"], before["recommended"]["bench"]);
     assert_eq!(after["evaluations"], 12);
     // Whoever asks from now on gets the same answer, and nobody has to accept anything again.
     let dir = folder.word("a");
+    assert_eq!(with(&[]).stderr, "");
     for again in [with(&[]), optimize(&["resume", &dir, "--quiet", "--json"])] {
         assert_eq!(again.json()["recommended"], after["recommended"]);
     }
@@ -144,4 +168,50 @@ fn measurements_that_a_study_cannot_use_are_refused_before_it_begins() {
     refused(line, &objective, &["centred-range is not known on the bench"]);
     let constraint = ["--task", "ket8", "--constraint", "peak-force<=30"];
     refused(line, &constraint, &["a --constraint is not known on the bench"]);
+}
+
+#[test]
+fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
+    let folder = Studies::new();
+    let few = "--engine fake --simulations 24 --samples 20 --measurements";
+    let line = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        run(command(&words).current_dir(folder.0.path()))
+    };
+    // A file that is not there is empty for `next` alone.
+    let next = line(&format!("next --task ket8 {few} bench.csv"));
+    let words = "ket8: nothing measured yet (bench.csv does not exist); by simulation alone\n";
+    assert!(next.succeeds().starts_with(words), "{}", next.stdout);
+    line(&format!("next {few} bench.csv")).fails(2, &["bench.csv: has no line", "give --task"]);
+    line(&format!("calibrate --task ket8 {few} bench.csv")).fails(2, &["bench.csv: cannot read"]);
+    line(&format!("next --task ket8 {few} bensh")).fails(2, &["no measurement file"]);
+    assert!(!folder.dir("bench.csv").exists());
+    // The task is that of the lines, and its file that of the comment line.
+    let own = include_str!("../tasks/ket8.toml").replace("\"ket8\"", "\"mine\"");
+    std::fs::create_dir(folder.dir("own")).expect("a folder");
+    folder.file("own/mine.toml", &own);
+    let add = "measure add own/bench.csv --density 20 --direction";
+    line(&format!("{add} 0 --range-mm 5.7 --task own/mine.toml")).succeeds();
+    assert!(folder.read("own/bench.csv").starts_with("# task mine: mine.toml\ntask,"));
+    line(&format!("{add} 10 --range-mm 6.1 --task own/mine.toml")).succeeds();
+    assert_eq!(folder.read("own/bench.csv").matches('#').count(), 1);
+    line("measure check own/bench.csv").succeeds();
+    let next = line(&format!("next {few} own/bench.csv"));
+    assert!(next.succeeds().starts_with("mine: 2 fingers measured"), "{}", next.stdout);
+    let found = line(&format!("calibrate --json {few} own/bench.csv")).json();
+    assert_eq!(found["tasks"][0]["task"], "mine");
+    // Without the comment a study of these measurements knows it.
+    let text = folder.read("own/bench.csv").replace("# task mine: mine.toml\n", "");
+    folder.file("hand.csv", text);
+    line(&format!("next {few} hand.csv")).fails(2, &["no file is known of the task `mine`"]);
+    let study = "--budget 12 --quiet --task own/mine.toml";
+    line(&format!("{study} {few} hand.csv")).succeeds();
+    assert!(line(&format!("next {few} hand.csv")).succeeds().starts_with("mine: 2 fingers"));
+    // A file that has gone, or has another task, is not taken for it.
+    folder.file("own/mine.toml", own.replace("\"mine\"", "\"other\""));
+    line("measure check own/bench.csv").fails(2, &["is called `other`", "# task mine: .."]);
+    std::fs::remove_file(folder.dir("own/mine.toml")).expect("it is removed");
+    line(&format!("next {few} own/bench.csv")).fails(2, &["mine.toml: cannot read the task"]);
+    let two = folder.file("two.csv", format!("{HEAD}ket8,10,0,7.6\nusb,20,0,5.7\n"));
+    line(&format!("next {few} {two}")).fails(2, &["has lines of ket8, usb; give --task"]);
 }

@@ -59,7 +59,12 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
             let file = shipped.map(str::to_owned).or(given);
             let file = file.unwrap_or_else(|| named.input("measurements", MEASUREMENTS));
             let asked = format!("--task {tasks} --measurements {file} --count {PRINTS}");
-            (format!("optimize next {asked}"), "which fingers to print and measure first")
+            let why = match (&answer.verdict, &answer.record.on_bench) {
+                (Verdict::MeasuredBefore { .. }, _) => "whether another finger is worth a print",
+                (_, Some(_)) => "what to print to gain or learn most; above is the widest expected",
+                (_, None) => "what to print first by measurements too; above by simulation alone",
+            };
+            (format!("optimize next {asked}"), why)
         }
         _ => ("optimize measure add bench.csv".to_owned(), "asks for what your robot measured"),
     }

@@ -184,7 +184,7 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     }));
     lines.extend(raced(answer));
     lines.extend(answer.orders.iter().map(robot));
-    if answer.orders.is_empty() {
+    if answer.orders.is_empty() && answer.record.on_bench.is_none() {
         lines.push(line("robot", "no bench experiment is known: print and measure the best few"));
     }
     lines

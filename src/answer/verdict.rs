@@ -27,8 +27,10 @@ pub enum Verdict<'a> {
     MeasuredBefore {
         /// The finger.
         design: &'a Design,
-        /// Its measured range, mm.
-        range_mm: f64,
+        /// Its measured range, mm; `None` if it is known from below only, or not at all.
+        range_mm: Option<f64>,
+        /// What it tolerates at the least, mm, if its range is not known.
+        at_least_mm: Option<f64>,
     },
     /// Choose from a front.
     Choose {
@@ -61,11 +63,19 @@ impl<'a> Verdict<'a> {
         }
         if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
             let design = &best.design;
-            let before = measured.iter().find(|measured| measured.design == *design);
-            return before.map_or(Verdict::Print(design), |measured| Verdict::MeasuredBefore {
-                design,
-                range_mm: measured.range_mm,
-            });
+            let own = || measured.iter().filter(|measured| measured.design == *design);
+            // A finger may be measured on several days.
+            let mean_mm = own().map(|one| one.range_mm).sum::<f64>() / own().count() as f64;
+            let mut bounds = answer.record.on_bench.iter().flat_map(|found| &found.bounds);
+            let bound = bounds.find(|(printed, _)| printed == design).map(|(_, mm)| *mm);
+            return match (mean_mm.is_nan(), bound) {
+                (true, None) => Verdict::Print(design),
+                (unknown, bound) => Verdict::MeasuredBefore {
+                    design,
+                    range_mm: (!unknown).then_some(mean_mm),
+                    at_least_mm: bound.flatten(),
+                },
+            };
         }
         let Some(found) = &answer.recommended else { return Verdict::NoneFeasible };
         let first = &found.design.design;
@@ -110,8 +120,13 @@ impl<'a> Verdict<'a> {
             Verdict::Any { safe, of } => {
                 format!("Any of {of} fingers will do; without other needs print {}", finger(safe))
             }
-            Verdict::MeasuredBefore { design, range_mm } => {
-                format!("Use the finger with {}: you measured {}", finger(design), mm(*range_mm))
+            Verdict::MeasuredBefore { design, range_mm, at_least_mm } => {
+                let measured = match (range_mm, at_least_mm) {
+                    (Some(range_mm), _) => format!("you measured {}", mm(*range_mm)),
+                    (None, Some(least_mm)) => format!("you measured {} or more", mm(*least_mm)),
+                    (None, None) => "you measured no range".to_owned(),
+                };
+                format!("Use the finger with {}, printed already: {measured}", finger(design))
             }
             Verdict::Choose { first, of: 1 } => {
                 format!("Print the finger with {}: best in all objectives", finger(first))

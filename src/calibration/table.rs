@@ -3,6 +3,7 @@
 use super::calibrate::{Calibration, Coordinate, LeftOut, Prediction, TaskResult};
 use super::predict::{INTERVAL, Predicted};
 use super::subject::Subject;
+use crate::calibration::experiments::Experiment;
 use crate::calibration::statistics::mean;
 use crate::study::{BenchEffort, BenchFinger, OnBench, Provenance};
 use insertion::evaluation::Evaluation;
@@ -346,11 +347,18 @@ pub fn on_bench(
         probability_best: prediction.best,
         failures: subject.failures(prediction.finger),
     };
+    let lines = subject.experiments.iter().map(|(finger, line)| (&subject.designs[*finger], line));
+    let known = |(design, line): (&Design, &Experiment)| Some((design.clone(), line.range_mm()?));
+    let others = lines.clone().filter(|(_, line)| line.range_mm().is_none());
+    let bound = |(design, line): (&Design, &Experiment)| {
+        (design.clone(), line.extent().map(|(least_mm, _)| least_mm))
+    };
     OnBench {
         provenance,
         effort,
         measured: subject.measured().len(),
-        ranges: Vec::new(),
+        ranges: lines.filter_map(known).collect(),
+        bounds: others.map(bound).collect(),
         fingers: result.predictions.len(),
         trust: result.trust(subject.emulator.error_mm),
         warnings: warnings(subject, result),

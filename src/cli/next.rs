@@ -2,8 +2,6 @@
 
 use super::progress::Progress;
 use super::{Failure, print, print_json};
-use crate::calibration::next::Advice;
-use crate::calibration::subject::Subject;
 use crate::calibration::table::design_json;
 use crate::session::{Advised, NextRequest};
 use clap::Args;
@@ -13,7 +11,7 @@ use serde_json::{Value, json};
 /// Say which finger to print next, and when to stop printing.
 ///
 /// The finger with the largest expected gain of the best known bench range, by simulation and
-/// by what was measured; the file of measurements may have no line yet.
+/// by what was measured; the file of measurements may have no line yet, or not be there.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -29,15 +27,15 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { request, json, quiet } = arguments;
     let mut progress = Progress::of_simulations(request.how.simulations(), *quiet || *json);
-    let Advised { subject, advice } = request.run(&NEVER, &mut |event| progress.see(event))?;
+    let found = request.run(&NEVER, &mut |event| progress.see(event))?;
     drop(progress);
     if *json {
-        return print_json(&to_json(&subject, &advice));
+        return print_json(&to_json(&found));
     }
-    print(&text(&subject, &advice, request.print_cost_mm))
+    print(&text(&found, request))
 }
 
-fn to_json(subject: &Subject, advice: &Advice) -> Value {
+fn to_json(Advised { subject, advice, missing }: &Advised) -> Value {
     let next = advice.next.iter().map(|print| {
         let mut fields = design_json(&subject.designs[print.finger]);
         fields.insert("expected_mm".into(), json!(print.expected_mm));
@@ -50,20 +48,26 @@ fn to_json(subject: &Subject, advice: &Advice) -> Value {
     json!({
         "task": subject.task,
         "measured": subject.measured().len(),
+        "measurements_missing": missing,
         "best_known_mm": advice.best_known_mm,
         "next": next.collect::<Vec<_>>(),
         "stop": advice.stop,
     })
 }
 
-fn text(subject: &Subject, advice: &Advice, cost_mm: f64) -> String {
-    let measured = subject.measured().len();
+fn text(Advised { subject, advice, missing }: &Advised, request: &NextRequest) -> String {
+    let (measured, cost_mm) = (subject.measured().len(), request.print_cost_mm);
+    let file = missing.then(|| format!(" ({} does not exist)", request.bench.measurements));
     let mut lines = vec![match advice.best_known_mm {
         Some(best) => format!(
             "{}: {measured} fingers measured, the best of them expected at {best:.1} mm",
             subject.task
         ),
-        None => format!("{}: nothing measured yet; by simulation alone", subject.task),
+        None => format!(
+            "{}: nothing measured yet{}; by simulation alone",
+            subject.task,
+            file.unwrap_or_default()
+        ),
     }];
     for (i, print) in advice.next.iter().enumerate() {
         lines.push(format!("{}. {}", i + 1, subject.designs[print.finger].labelled()));

@@ -66,6 +66,10 @@ pub fn to_its_end(open: OpenStudy, shown: Shown) -> Result<(), Failure> {
 
 /// The study, what is to be known before it starts said.
 pub fn warned(open: OpenStudy) -> Result<OpenStudy, Failure> {
+    if open.new_measurements > 0 {
+        let plural = if open.new_measurements == 1 { "" } else { "s" };
+        say(&format!("{} new measurement{plural}", open.new_measurements));
+    }
     open.warnings()?.iter().for_each(|warning| say(&format!("warning: {warning}")));
     Ok(open)
 }

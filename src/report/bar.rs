@@ -102,7 +102,7 @@ fn on_bench(answer: &Answer, bench: &OnBench) -> Vec<Row> {
     let mut expected = Row::new(name, "likely", [-high / 2.0, high / 2.0]);
     expected.parts.push(("measured", [-low / 2.0, low / 2.0]));
     let mut rows = vec![expected];
-    if let Verdict::MeasuredBefore { design, range_mm } = answer.verdict {
+    if let Verdict::MeasuredBefore { design, range_mm: Some(range_mm), .. } = answer.verdict {
         rows.push(measured(&Measured { design: design.clone(), range_mm }));
     }
     rows.push(Row::simulated(&bench.simulated.window, None));

@@ -12,7 +12,7 @@ use crate::calibration::experiments::Experiment;
 use crate::calibration::prior::{Parameter, Priors};
 use crate::calibration::simulation::Simulation;
 use crate::calibration::subject::Subject;
-use input::shipped::PRIORS;
+use input::shipped::{PRIORS, Source};
 use insertion::evaluation::template::Template;
 use insertion::space::Design;
 use std::path::PathBuf;
@@ -22,8 +22,13 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// Priors unless others are named.
 pub const DEFAULT_PRIORS: &str = "bench";
 
-/// Fingers on the bench: of which tasks, and what was measured of them.
+/// Fingers on the bench: of which tasks, and what was measured of them. Without tasks it is the one
+/// that the measurements are of.
 #[derive(Debug, Clone, clap::Args)]
+#[command(mut_arg("tasks", |task| task.required(false).default_value("").hide_default_value(true).help(
+    "Task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of \
+     the measurements, if they are of one]"
+)))]
 pub struct BenchRequest {
     /// Tasks, robot, space, finger model.
     #[command(flatten)]
@@ -85,18 +90,30 @@ pub(super) struct Prepared<'a> {
 impl CalibrateRequest {
     /// Simulations in all.
     pub fn simulations(&self) -> usize {
-        self.bench.setup.tasks.len() * self.how.simulations()
+        self.bench.setup.tasks.len().max(1) * self.how.simulations()
     }
 
     /// Predicts every finger of the space on each task.
     pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Calibrated, Failure> {
+        let source = measured::file(&self.bench.measurements)?;
         let Prepared { subjects, layout, settings } =
-            self.how.prepare(&self.bench, &[], stop, watch)?;
+            self.how.prepare((&self.bench, &source), &[], stop, watch)?;
         let watch = Mutex::new(watch);
         let done = |[done, of]: [usize; 2]| tell(&watch, folds(done, of));
         let found = Calibration::new(layout, &subjects, &Settings { done: &done, ..settings });
         not_stopped(stop)?;
         Ok(Calibrated { subjects, found })
+    }
+}
+
+impl BenchRequest {
+    /// The setup, of the task of these measurements if none is given.
+    fn setup(&self, measurements: &Source) -> Result<Setup, Failure> {
+        if !self.setup.tasks.is_empty() {
+            return self.setup.setup();
+        }
+        let tasks = vec![measured::task(measurements)?];
+        SetupRequest { tasks, ..self.setup.clone() }.setup()
     }
 }
 
@@ -110,13 +127,13 @@ impl HowCalibrated {
     /// asked for beside those of the space.
     pub(super) fn prepare<'a>(
         &self,
-        bench: &BenchRequest,
+        (bench, measurements): (&BenchRequest, &Source),
         more: &[Design],
         stop: &'a AtomicBool,
         watch: &mut Watch<'_>,
     ) -> Result<Prepared<'a>, Failure> {
-        let setup = bench.setup.setup()?;
-        let experiments = measured::read(&bench.measurements, &setup.task_names())?;
+        let setup = bench.setup(measurements)?;
+        let experiments = measured::lines(measurements, &setup.task_names())?;
         let priors = find("file of priors", PRIORS, &self.priors)?;
         let priors = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
         let effort = self.effort.or(None)?;
@@ -128,7 +145,7 @@ impl HowCalibrated {
             cache: self.cache.folder(&setup)?,
             stop,
         };
-        let (subjects, layout) = ground.subjects(&bench.measurements, &experiments, more, watch)?;
+        let (subjects, layout) = ground.subjects(&measurements.file, &experiments, more, watch)?;
         Ok(Prepared { subjects, layout, settings: settings(effort, self.seed, stop) })
     }
 }

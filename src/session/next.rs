@@ -2,12 +2,13 @@
 
 use super::calibration::{BenchRequest, HowCalibrated, Prepared};
 use super::failure::not_stopped;
-use super::{Failure, Watch};
+use super::{Failure, Watch, measured};
 use crate::calibration::bench::sampled;
 use crate::calibration::next::{Advice, advise};
 use crate::calibration::published;
 use crate::calibration::subject::Subject;
 use ask_tell::stream::stream;
+use input::shipped::Source;
 use insertion::space::Design;
 use std::sync::atomic::AtomicBool;
 
@@ -54,12 +55,14 @@ pub struct Advised {
     pub subject: Subject,
     /// Which of them to print.
     pub advice: Advice,
+    /// Whether the file of measurements is not there yet.
+    pub missing: bool,
 }
 
 impl NextRequest {
     /// Says which finger to print next.
     pub fn run(&self, stop: &AtomicBool, watch: &mut Watch<'_>) -> Result<Advised, Failure> {
-        if self.bench.setup.tasks.len() != 1 {
+        if self.bench.setup.tasks.len() > 1 {
             return Err(Failure::usage("give one --task: a finger is printed for one"));
         }
         let published = match self.among {
@@ -69,7 +72,13 @@ impl NextRequest {
                 .map(|design| Design::infill(design.density_percent, design.direction_deg))
                 .collect(),
         };
-        let prepared = self.how.prepare(&self.bench, &published, stop, watch)?;
+        let file = &self.bench.measurements;
+        let missing = measured::is_missing(file);
+        let source = match missing {
+            true => Source { file: file.clone(), text: String::new() },
+            false => measured::file(file)?,
+        };
+        let prepared = self.how.prepare((&self.bench, &source), &published, stop, watch)?;
         let Prepared { mut subjects, layout, settings } = prepared;
         let benches = layout.benches(&subjects);
         let one = subjects.first().zip(benches.first());
@@ -85,6 +94,6 @@ impl NextRequest {
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
         let advice = advise(bench, &posterior, &among, count, cost_mm, &mut random);
         not_stopped(stop)?;
-        Ok(Advised { subject: subjects.swap_remove(0), advice })
+        Ok(Advised { subject: subjects.swap_remove(0), advice, missing })
     }
 }

@@ -8,7 +8,7 @@ use crate::calibration::bench::Settings;
 use crate::calibration::calibrate::Calibration;
 use crate::calibration::simulation::Simulation;
 use crate::calibration::table::{self, by_range, on_bench};
-use crate::study::{OnBench, Study, StudyConfig, write_own_file};
+use crate::study::{Study, StudyConfig, write_own_file};
 use insertion::evaluation::objective::{Measure, Objectives};
 use rayon::ThreadPool;
 use std::sync::Mutex;
@@ -71,12 +71,7 @@ pub(super) fn predict(
         let simulation = Simulation::new(&setup.evaluator, task, &[], cache, stop);
         let simulated = simulation.window(&subject.designs[best], &[]).map_err(Failure::input)?;
         not_stopped(stop)?;
-        let ranges = measured.experiments.iter().filter(|line| line.task == task.task.name);
-        let ranges = ranges.filter_map(|line| Some((line.design.clone(), line.range_mm()?)));
-        let found = OnBench {
-            ranges: ranges.collect(),
-            ..on_bench(subject, result, simulated, provenance, effort)
-        };
+        let found = on_bench(subject, result, simulated, provenance, effort);
         Ok::<_, Failure>((found, table::predictions_csv(subject, result)))
     })?;
     write_own_file(&study.dir().join(TABLE), &predictions)?;

@@ -31,6 +31,8 @@ pub struct OpenStudy {
     /// Plan of the measurements beside the window.
     pub(super) plan: Plan,
     pub(super) cache: Option<Cache>,
+    /// Lines of measurement on its task that it has not seen before.
+    pub new_measurements: usize,
 }
 
 /// A study that has ended.
@@ -58,7 +60,7 @@ impl OpenStudy {
         let goals = study.config.goals();
         let plan = setup.plan(study.config.seed, |measure| goals.need(measure))?;
         let cache = how.cache(&setup)?;
-        Ok(OpenStudy { study, setup, how, plan, cache })
+        Ok(OpenStudy { study, setup, how, plan, cache, new_measurements: 0 })
     }
 
     /// The study as it stands.

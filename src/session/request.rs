@@ -30,8 +30,9 @@ pub enum TaskSource {
 impl TaskSource {
     /// The tasks of a list of names by commas, or the one file whose path has commas.
     pub fn list(names: &str) -> Vec<Self> {
-        if Path::new(names).is_file() {
-            return vec![TaskSource::Named(names.to_owned())];
+        if names.is_empty() || Path::new(names).is_file() {
+            let one = (!names.is_empty()).then(|| TaskSource::Named(names.to_owned()));
+            return one.into_iter().collect();
         }
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }

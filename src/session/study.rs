@@ -8,8 +8,8 @@ use super::open::OpenStudy;
 use super::request::SetupRequest;
 use super::{Failure, Setup, measured, on_bench};
 use crate::study::{
-    Confirmation, INDIFFERENCE_MM, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET, Study,
-    StudyConfig, read_config, study_name,
+    Confirmation, INDIFFERENCE_MM, INDIFFERENCES_MM, IfChanged, LARGEST_BATCH, LARGEST_BUDGET,
+    Study, StudyConfig, read_config, study_name,
 };
 use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
@@ -184,9 +184,11 @@ impl StudyRequest {
             let kept = read_config(&dir).ok().map(|found| found.batch);
             config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
         }
-        let if_changed = self.run.if_changed();
+        let more = measured::more(&dir, &setup);
+        let if_changed = more.map_or(self.run.if_changed(), |_| IfChanged::NewSegment);
         let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
-        OpenStudy::new(study, setup, self.run.clone())
+        let open = OpenStudy::new(study, setup, self.run.clone())?;
+        Ok(OpenStudy { new_measurements: more.unwrap_or(0), ..open })
     }
 
     /// Setup, configuration and folder of the study, checked; nothing is written.

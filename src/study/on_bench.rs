@@ -23,6 +23,9 @@ pub struct OnBench {
     /// Those of them whose range was measured whole, and that range, mm.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ranges: Vec<(Design, f64)>,
+    /// The others, and what they tolerate at the least, mm, if that is known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bounds: Vec<(Design, Option<f64>)>,
     /// Fingers of the space that were predicted.
     pub fingers: usize,
     pub trust: LeaveOneOut,

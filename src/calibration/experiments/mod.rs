@@ -12,6 +12,7 @@ use input::shipped::nearest;
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
 /// The cell of `range_mm` that says: the finger was tried, and no range could be measured.
 pub const NOT_MEASURABLE: &str = "not measurable";
@@ -31,6 +32,39 @@ pub const COLUMNS: [&str; 12] = [
     "date",
     "note",
 ];
+
+/// Begin of a comment line that says where the file of a task of one's own is, from the folder of the
+/// measurements: `# task usb-c: usb-c.toml`.
+const OWN_TASK: &str = "# task ";
+
+/// The comment line for a task of one's own; other lines that begin with `#` are no measurements
+/// either.
+pub fn own_task(name: &str, path: &str) -> String {
+    format!("{OWN_TASK}{name}: {path}\n")
+}
+
+/// The tasks of one's own, each with the path of its file, as the last comment line of it says.
+pub fn own_tasks(text: &str) -> BTreeMap<&str, &str> {
+    // A spreadsheet fills lines up with commas.
+    let named = comments(text).filter_map(|line| line.strip_prefix(OWN_TASK)?.split_once(": "));
+    named.map(|(name, path)| (name, path.trim_end_matches([',', ' ']))).collect()
+}
+
+fn comments(text: &str) -> impl Iterator<Item = &str> {
+    text.trim_start_matches('\u{feff}').lines().filter(|line| line.starts_with('#'))
+}
+
+/// Whether there is nothing but comments.
+fn is_empty(text: &str) -> bool {
+    let text = text.trim_start_matches('\u{feff}');
+    text.lines().all(|line| line.trim().is_empty() || line.starts_with('#'))
+}
+
+fn reader() -> csv::ReaderBuilder {
+    let mut reader = csv::ReaderBuilder::new();
+    reader.comment(Some(b'#'));
+    reader
+}
 
 /// All that is wrong with one file, a line each.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -110,17 +144,18 @@ impl Experiment {
 pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
     // The reader counts a line of a "\r\n" file too few; spreadsheets begin with a mark.
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-    if text.trim().is_empty() {
+    if is_empty(&text) {
         return Ok(Vec::new());
     }
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut reader = reader().trim(csv::Trim::All).from_reader(text.as_bytes());
     let one = |problem: String| Problems::of(file, vec![problem]);
-    let header = reader.headers().map_err(|error| one(syntax(&error)))?.clone();
-    check_header(&header).map_err(one)?;
+    let wrong = |error: csv::Error| one(syntax(&text, &error));
+    let header = reader.headers().map_err(wrong)?.clone();
+    check_header(&header, line_at(&text, header.position())).map_err(one)?;
     let (mut found, mut problems) = (Vec::new(), Vec::new());
     for record in reader.records() {
-        let record = record.map_err(|error| one(syntax(&error)))?;
-        let at = record.position().map_or(0, csv::Position::line);
+        let record = record.map_err(wrong)?;
+        let at = line_at(&text, record.position());
         match line::experiment(&header, &record, at) {
             Ok(experiment) => {
                 problems.extend(line::twice(&experiment, &found));
@@ -132,18 +167,26 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
     if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
 }
 
-fn syntax(error: &csv::Error) -> String {
+/// The line of a record: the reader says that of the comments before it.
+fn line_at(text: &str, position: Option<&csv::Position>) -> u64 {
+    let Some(position) = position else { return 1 };
+    let rest = text.get(position.byte() as usize..).unwrap_or("");
+    let bare = |line: &&str| line.is_empty() || line.starts_with('#');
+    position.line() + rest.lines().take_while(bare).count() as u64
+}
+
+fn syntax(text: &str, error: &csv::Error) -> String {
     let words = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("has {len} cells where the header has {expected_len}")
         }
         _ => error.to_string(),
     };
-    problem(error.position().map_or(1, csv::Position::line), "", &words)
+    problem(line_at(text, error.position()), "", &words)
 }
 
 /// Checks that the columns are known, stand once, and say which finger was tried.
-fn check_header(header: &StringRecord) -> Result<(), String> {
+fn check_header(header: &StringRecord, at: u64) -> Result<(), String> {
     for (i, name) in header.iter().enumerate() {
         let of_space = name.starts_with("task.") || name.starts_with("finger.");
         if !of_space && !COLUMNS.contains(&name) {
@@ -152,17 +195,17 @@ fn check_header(header: &StringRecord) -> Result<(), String> {
                 hint(name, &COLUMNS),
                 COLUMNS.join(", ")
             );
-            return Err(problem(1, name, &words));
+            return Err(problem(at, name, &words));
         }
         if header.iter().take(i).any(|other| other == name) {
-            return Err(problem(1, name, "is given twice; each column may stand once"));
+            return Err(problem(at, name, "is given twice; each column may stand once"));
         }
     }
     match COLUMNS[..3].iter().find(|needed| header.iter().all(|name| name != **needed)) {
         None => Ok(()),
         Some(missing) => {
             let words = "is missing; a line says which finger was tried on which task";
-            Err(problem(1, missing, words))
+            Err(problem(at, missing, words))
         }
     }
 }
@@ -186,11 +229,12 @@ pub fn check_tasks(experiments: &[Experiment], known: &[&str], file: &str) -> Re
     if problems.is_empty() { Ok(()) } else { Err(Problems::of(file, problems)) }
 }
 
-/// The file's text with one line more; `cells` are the columns that are not empty. Columns that
-/// the file does not have yet are added at its end; a new file has all the documented ones.
-pub fn appended(text: &str, cells: &[(&str, String)]) -> Result<String, csv::Error> {
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let mut header: Vec<String> = match text.trim().is_empty() {
+/// The file's text with one line more, after a comment line if that is not empty; `cells` are the
+/// columns that are not empty. Columns that the file does not have yet are added at its end; a new
+/// file has all the documented ones.
+pub fn appended(text: &str, comment: &str, cells: &[(&str, String)]) -> Result<String, csv::Error> {
+    let mut reader = reader().from_reader(text.as_bytes());
+    let mut header: Vec<String> = match is_empty(text) {
         true => COLUMNS.map(str::to_owned).to_vec(),
         false => reader.headers()?.iter().map(|name| name.trim().to_owned()).collect(),
     };
@@ -205,18 +249,21 @@ pub fn appended(text: &str, cells: &[(&str, String)]) -> Result<String, csv::Err
         cell.map_or("", |(_, text)| text.as_str())
     });
     let line = |cells: &mut dyn Iterator<Item = &str>| {
-        let mut writer = csv::Writer::from_writer(Vec::new());
+        // What begins with the mark of a comment is quoted.
+        let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
         writer.write_record(cells)?;
         let bytes = writer.into_inner().map_err(|error| error.into_error())?;
         Ok::<_, csv::Error>(String::from_utf8_lossy(&bytes).into_owned())
     };
     let last = line(&mut new.into_iter())?;
     // What is there stays as it was written, unless a column is new.
-    if had == header.len() && !text.trim().is_empty() {
+    if had == header.len() && !is_empty(text) {
         let end = if text.ends_with('\n') { "" } else { "\n" };
-        return Ok(format!("{text}{end}{last}"));
+        return Ok(format!("{text}{end}{comment}{last}"));
     }
-    let mut whole = line(&mut header.iter().map(String::as_str))?;
+    let mut whole: String = comments(text).flat_map(|line| [line, "\n"]).collect();
+    whole += comment;
+    whole += &line(&mut header.iter().map(String::as_str))?;
     for record in reader.records() {
         let record = record?;
         let more = std::iter::repeat_n("", header.len() - had);

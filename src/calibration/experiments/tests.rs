@@ -103,15 +103,36 @@ fn a_line_is_added_and_the_others_stay_as_they_were() {
             ("note", "a, b".to_owned()),
         ]
     };
-    let new = appended("", &cells("7")).unwrap();
+    let new = appended("", "", &cells("7")).unwrap();
     assert!(new.starts_with("task,infill_density_percent,infill_direction_deg,negative_mm,"));
     assert_eq!(parse(&new, "m.csv").unwrap()[0].note, "a, b");
     let short = "task,infill_density_percent,infill_direction_deg,range_mm\nusb,10,0,4.70";
-    let longer = appended(short, &cells("7")[..4]).unwrap();
+    let longer = appended(short, "", &cells("7")[..4]).unwrap();
     assert_eq!(longer, format!("{short}\nket8,20,0,7\n"));
-    let wider = appended(&longer, &cells("6")).unwrap();
+    let wider = appended(&longer, "", &cells("6")).unwrap();
     assert!(
         wider.contains("range_mm,note\nusb,10,0,4.70,\nket8,20,0,7,\nket8,20,0,6,\"a, b\"\n"),
         "{wider}"
     );
+}
+
+#[test]
+fn a_comment_line_keeps_the_file_of_a_task_and_is_no_line_of_the_table() {
+    let head = "task,infill_density_percent,infill_direction_deg,range_mm\nmine,20,0,7\n";
+    let cells = |key: &'static str, cell: &str| {
+        let all = [("task", "mine"), (DENSITY_KEY, "20"), (DIRECTION_KEY, "9"), (key, cell)];
+        all.map(|(column, cell)| (column, cell.to_owned()))
+    };
+    let old = own_task("mine", "my tasks/mine.toml") + head;
+    let moved = appended(&old, &own_task("mine", "b.toml"), &cells("range_mm", "8")).unwrap();
+    assert_eq!(moved, format!("{old}# task mine: b.toml\nmine,20,9,8\n"));
+    assert_eq!(own_tasks(&moved)["mine"], "b.toml");
+    assert_eq!(parse(&moved, "m.csv").unwrap().iter().map(|l| l.line).collect::<Vec<_>>(), [3, 5]);
+    let error = parse(&moved.replace(",8", ",x"), "m.csv").unwrap_err().to_string();
+    assert!(error.starts_with("m.csv: line 5: range_mm: "), "{error}");
+    // A column more: the comments stay.
+    let wider = appended(&moved, "", &cells("failure_negative", "3")).unwrap();
+    assert_eq!(own_tasks(&wider), own_tasks(&moved));
+    assert_eq!(own_tasks("\u{feff}# task a: a.toml,,,\r\n")["a"], "a.toml");
+    assert_eq!(parse("# task a: a.toml\n\n", "m.csv"), Ok(vec![]));
 }

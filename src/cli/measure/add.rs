@@ -1,11 +1,13 @@
 //! `optimize measure add`.
 
-use crate::calibration::experiments::{COLUMNS, NOT_MEASURABLE, appended, parse};
+use crate::calibration::experiments::{
+    COLUMNS, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
+};
 use crate::cli::{Failure, print, say};
-use crate::session::read_task;
+use crate::session::{TaskFile, read_task};
 use clap::Args;
 use input::files::{LARGEST_INPUT, Table};
-use input::shipped::MEASUREMENTS;
+use input::shipped::{MEASUREMENTS, TASKS};
 use std::io::{self, BufRead};
 use std::path::Path;
 
@@ -82,15 +84,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if cells.is_empty() {
         cells = asked(&mut io::stdin().lock())?;
     }
+    let mut own = None;
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
-        *name = read_task(name)?.task.name;
+        let TaskFile { source, task } = read_task(name)?;
+        let shipped = TASKS.iter().any(|shipped| shipped.text == source.text);
+        // From the folder of the measurements on, if that is around it, else the whole path.
+        let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+        let path = Path::new(name).strip_prefix(folder).map(Path::to_owned);
+        let path = path.or_else(|_| std::path::absolute(&*name)).map_err(Failure::input)?;
+        own = (!shipped).then(|| (task.name.clone(), path.display().to_string()));
+        *name = task.name;
     }
     // Read only now: others may have added lines meanwhile.
     let unusable = |error| Failure::usage(format!("{file}: cannot add to it: {error}"));
     let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
     let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
-    let new = appended(table.text(), &cells).map_err(Failure::input)?;
+    let new =
+        |(name, path): &(String, String)| own_tasks(table.text()).get(&**name) != Some(&&**path);
+    let comment = own.filter(new).map_or(String::new(), |(name, path)| own_task(&name, &path));
+    let new = appended(table.text(), &comment, &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;
     table.replace(&new).map_err(full)?;
     print(&format!("{file}: {}\n", super::lines(&found)))

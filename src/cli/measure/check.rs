@@ -13,7 +13,7 @@ pub struct Arguments {
     /// The file; `published` is the one shipped
     #[arg(value_name = "FILE")]
     file: String,
-    /// A task of your own that its lines name; may be given several times
+    /// A task of your own that its lines name without a comment line; may be given several times
     #[arg(long, value_name = "FILE.toml")]
     task: Vec<String>,
     /// Print the result as JSON

@@ -2,12 +2,13 @@
 
 mod add;
 mod check;
+mod sheet;
 
 use super::Failure;
 use crate::calibration::experiments::Experiment;
 use clap::Subcommand;
 
-/// Add measurements from the bench to a file, or check such a file.
+/// Add measurements from the bench to a file, check such a file, or print a sheet to measure by.
 ///
 /// The file is `docs/guide/measuring.md`'s measurements.csv. Only the task, the infill and something that
 /// was measured are needed; a range alone is enough.
@@ -18,12 +19,18 @@ pub enum Arguments {
     Add(Box<add::Arguments>),
     #[command(after_help = "Example: optimize measure check bench.csv")]
     Check(check::Arguments),
+    #[command(
+        after_help = "Example: optimize measure sheet --task usb --finger 10,0 --finger 30,0 \
+                            --out sheet.html"
+    )]
+    Sheet(sheet::Arguments),
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments {
         Arguments::Add(arguments) => add::run(arguments),
         Arguments::Check(arguments) => check::run(arguments),
+        Arguments::Sheet(arguments) => sheet::run(arguments),
     }
 }
 

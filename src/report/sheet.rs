@@ -2,7 +2,7 @@
 
 use super::elements::{inert, styled};
 use input::units::{DEG, MM};
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::Outcome;
 use insertion::task::Task;
 use maud::{Markup, html};
 
@@ -10,6 +10,14 @@ use maud::{Markup, html};
 const WALK: i32 = 12;
 /// Boxes for starts near each end.
 const NEAR: usize = 12;
+/// What an insertion looks like, and each failure class.
+const MEANINGS: [&str; 5] = [
+    "seated, upright, held",
+    "the plug leaves the fingers before it is at the socket",
+    "the leading edge is not in the opening when the search ends",
+    "it is in the opening, and is not seated",
+    "the plug leaves the fingers, or slips in them, in search or push",
+];
 
 /// How an insertion may end, as simulated.
 #[derive(Debug, Clone)]
@@ -22,30 +30,17 @@ pub struct Picture {
     pub example: Option<&'static str>,
 }
 
-/// What is to be measured.
-#[derive(Debug, Clone, Copy)]
-pub struct Sheet<'a> {
-    /// The task.
-    pub task: &'a Task,
-    /// How commands name it.
-    pub name: &'a str,
-    /// Infill density, percent, and direction, degrees, of each finger.
-    pub fingers: &'a [(f64, f64)],
-    /// One of each outcome.
-    pub pictures: &'a [Picture],
-}
-
-/// The sheet as a page: how to measure, then a page for each finger.
-pub fn page(sheet: &Sheet<'_>) -> String {
+/// The sheet as a page: how to measure on a task, as commands name it, then a page for each finger (infill
+/// density, percent, and direction, degrees); one picture of each outcome.
+pub fn page(task: &Task, name: &str, fingers: &[(f64, f64)], pictures: &[Picture]) -> String {
     let body = html! {
-        section { (how(sheet)) }
-        @for &finger in sheet.fingers { section { (boxes(sheet, finger)) } }
+        section { (how(task, pictures)) }
+        @for &finger in fingers { section { (boxes(task, name, finger)) } }
     };
-    styled(&format!("Measuring sheet: {}", sheet.task.name), include_str!("sheet.css"), body)
+    styled(&format!("Measuring sheet: {}", task.name), include_str!("sheet.css"), body)
 }
 
-fn how(sheet: &Sheet<'_>) -> Markup {
-    let Sheet { task, pictures, .. } = sheet;
+fn how(task: &Task, pictures: &[Picture]) -> Markup {
     let [x, y, z] = task.strategy.start.map(|place| format!("{:.1}", place / MM));
     let (depth, tilt) = (task.success.depth / MM, task.success.tilt / DEG);
     html! {
@@ -69,48 +64,38 @@ fn how(sheet: &Sheet<'_>) -> Markup {
         h2 { "What counts as inserted" }
         p { "At rest after the push the tip is at least " (format!("{depth:.1}")) " mm below the socket's top, the plug leans by "
             "at most " (format!("{tilt:.1}")) "°, and both fingers still hold it. Write + for inserted, else the class:" }
-        div.pictures { @for picture in *pictures { (drawn(picture)) } }
+        div.pictures { @for picture in pictures { (drawn(picture)) } }
     }
 }
 
 fn drawn(Picture { outcome, svg, example }: &Picture) -> Markup {
-    let class = outcome.failure().map_or("+".to_owned(), |class| class.to_string());
-    let words = match outcome {
-        Outcome::Failed(FailureClass::ContactLossBeforeSearch) => {
-            "the plug leaves the fingers before it is at the socket"
-        }
-        Outcome::Failed(FailureClass::PlugMissed) => {
-            "the leading edge is not in the opening when the search ends"
-        }
-        Outcome::Failed(FailureClass::Jammed) => "it is in the opening, and is not seated",
-        Outcome::Failed(FailureClass::ContactLossInInsertion) => {
-            "the plug leaves the fingers, or slips in them, in search or push"
-        }
-        Outcome::Inserted | Outcome::Diverged => "seated, upright, held",
-    };
+    let class = usize::from(outcome.failure().unwrap_or(0));
     html! {
         figure {
             img src=(inert(svg)) alt=(outcome.label());
             figcaption {
-                b { (class) " " (outcome.label()) } ": " (words)
-                @if let Some(task) = example { " (simulated: " (task) ")" } @else { " (simulated)" }
+                b { (if class == 0 { "+".to_owned() } else { class.to_string() }) " " (outcome.label()) } ": "
+                (MEANINGS[class]) " (simulated" @if let Some(task) = example { ", " (task) } ")"
             }
         }
     }
 }
 
-fn boxes(Sheet { task, name, .. }: &Sheet<'_>, (density, direction): (f64, f64)) -> Markup {
+fn boxes(task: &Task, name: &str, (density, direction): (f64, f64)) -> Markup {
     let start = |step: i32| format!("{:+.1}", 0.5 * f64::from(step));
     html! {
         h1 { (task.name) ": infill density " (density) " %, direction " (direction) "°" }
         p.line { "Date" i {} "Finger no." i {} "Start taught at" i {} "Start 0, 3 of 3" i {} }
         @for (title, sign) in [("-", -1), ("+", 1)] {
             h2 { "Outward to " (title) ", mm" }
-            table { tr { @for step in 1..=WALK { th { (start(sign * step)) } } } tr.empty { @for _ in 1..=WALK { td {} } }
-                    tr.empty { @for _ in 1..=WALK { td {} } } }
+            table {
+                tr { @for step in 1..=WALK { th { (start(sign * step)) } } }
+                @for _ in 0..2 { tr.empty { @for _ in 1..=WALK { td {} } } }
+            }
             h2 { "Near the end at " (title) ": start, mm, and how it ended" }
-            table { tr.empty { th { "mm" } @for _ in 0..NEAR { td {} } } tr.empty { th { "+ 1 2 3 4" } @for _ in 0..NEAR { td {} } }
-                    tr.empty { th { "mm" } @for _ in 0..NEAR { td {} } } tr.empty { th { "+ 1 2 3 4" } @for _ in 0..NEAR { td {} } } }
+            table {
+                @for word in ["mm", "+ 1234", "mm", "+ 1234"] { tr.empty { th { (word) } @for _ in 0..NEAR { td {} } } }
+            }
             p.line { "End, mm" i {} "Class beyond it" i {} "Gaps, mm" i {} }
         }
         p.line { "Largest force N" i {} "Attempts" i {} "Notes" i {} }

@@ -2,11 +2,12 @@
 
 mod add;
 mod check;
-mod sheet;
 
-use super::Failure;
+use super::{Failure, print};
 use crate::calibration::experiments::Experiment;
+use crate::session::SheetRequest;
 use clap::Subcommand;
+use insertion::trial::NEVER;
 
 /// Add measurements from the bench to a file, check such a file, or print a sheet to measure by.
 ///
@@ -19,18 +20,21 @@ pub enum Arguments {
     Add(Box<add::Arguments>),
     #[command(after_help = "Example: optimize measure check bench.csv")]
     Check(check::Arguments),
+    /// Write a sheet to print and fill in, to measure windows by hand
     #[command(
-        after_help = "Example: optimize measure sheet --task usb --finger 10,0 --finger 30,0 \
-                            --out sheet.html"
+        after_help = "Example: optimize measure sheet --task usb --finger 10,0 --out sheet.html"
     )]
-    Sheet(sheet::Arguments),
+    Sheet(SheetRequest),
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments {
         Arguments::Add(arguments) => add::run(arguments),
         Arguments::Check(arguments) => check::run(arguments),
-        Arguments::Sheet(arguments) => sheet::run(arguments),
+        Arguments::Sheet(request) => {
+            request.run(&NEVER)?;
+            print(&format!("wrote {}\n", request.out.display()))
+        }
     }
 }
 

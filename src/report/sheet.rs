@@ -6,10 +6,8 @@ use insertion::outcome::Outcome;
 use insertion::task::Task;
 use maud::{Markup, html};
 
-/// Starts of the coarse walk that have boxes, on each side.
-const WALK: i32 = 12;
-/// Boxes for starts near each end.
-const NEAR: usize = 12;
+/// Boxes in a row: starts outward, or near an end.
+const BOXES: i32 = 12;
 /// What an insertion looks like, and each failure class.
 const MEANINGS: [&str; 5] = [
     "seated, upright, held",
@@ -26,8 +24,8 @@ pub struct Picture {
     pub outcome: Outcome,
     /// Plug, fingertips and socket at the end, seen along x.
     pub svg: String,
-    /// The shipped task that it is of, unless it is the sheet's own.
-    pub example: Option<&'static str>,
+    /// The task that it is of.
+    pub task: String,
 }
 
 /// The sheet as a page: how to measure on a task, as commands name it, then a page for each finger (infill
@@ -68,38 +66,36 @@ fn how(task: &Task, pictures: &[Picture]) -> Markup {
     }
 }
 
-fn drawn(Picture { outcome, svg, example }: &Picture) -> Markup {
+fn drawn(Picture { outcome, svg, task }: &Picture) -> Markup {
     let class = usize::from(outcome.failure().unwrap_or(0));
     html! {
         figure {
             img src=(inert(svg)) alt=(outcome.label());
             figcaption {
                 b { (if class == 0 { "+".to_owned() } else { class.to_string() }) " " (outcome.label()) } ": "
-                (MEANINGS[class]) " (simulated" @if let Some(task) = example { ", " (task) } ")"
+                (MEANINGS[class]) " (simulated, " (task) ")"
             }
         }
     }
 }
 
 fn boxes(task: &Task, name: &str, (density, direction): (f64, f64)) -> Markup {
-    let start = |step: i32| format!("{:+.1}", 0.5 * f64::from(step));
     html! {
         h1 { (task.name) ": infill density " (density) " %, direction " (direction) "°" }
         p.line { "Date" i {} "Finger no." i {} "Start taught at" i {} "Start 0, 3 of 3" i {} }
         @for (title, sign) in [("-", -1), ("+", 1)] {
             h2 { "Outward to " (title) ", mm" }
             table {
-                tr { @for step in 1..=WALK { th { (start(sign * step)) } } }
-                @for _ in 0..2 { tr.empty { @for _ in 1..=WALK { td {} } } }
+                tr { @for step in 1..=BOXES { th { (format!("{:+.1}", 0.5 * f64::from(sign * step))) } } }
+                @for _ in 0..2 { tr.empty { @for _ in 1..=BOXES { td {} } } }
             }
             h2 { "Near the end at " (title) ": start, mm, and how it ended" }
             table {
-                @for word in ["mm", "+ 1234", "mm", "+ 1234"] { tr.empty { th { (word) } @for _ in 0..NEAR { td {} } } }
+                @for word in ["mm", "+ 1234", "mm", "+ 1234"] { tr.empty { th { (word) } @for _ in 0..BOXES { td {} } } }
             }
             p.line { "End, mm" i {} "Class beyond it" i {} "Gaps, mm" i {} }
         }
         p.line { "Largest force N" i {} "Attempts" i {} "Notes" i {} }
-        p { "Then:" }
         pre {
             "optimize measure add bench.csv --task " (name) " --density " (density) " --direction " (direction) " \\\n"
             "         --negative-mm ______ --positive-mm ______ --failure-negative __ --failure-positive __ \\\n"

@@ -1,8 +1,9 @@
 //! The sheet to measure windows by hand.
 
-use super::{Failure, FingerRequest, SetupRequest, TaskSource, TrialDone, TrialRequest, read_task};
+use super::{Failure, FingerRequest, SetupRequest, TaskSource, TrialRequest, read_task};
 use crate::report::sheet::{self, Picture};
 use crate::study::write_file;
+use insertion::evaluation::evaluator::Specimen;
 use insertion::outcome::Outcome;
 use insertion::trial::picture;
 use std::path::PathBuf;
@@ -10,14 +11,17 @@ use std::sync::atomic::AtomicBool;
 
 /// How far outward pictures are looked for, mm.
 const FARTHEST_MM: u8 = 12;
-/// Shipped examples of what no start of the task shows: task, shift, mm, and grip, N, unless it is the task's.
-const EXAMPLES: [(&str, f64, Option<f64>); 5] = [
-    ("ket8", 0.0, None),
-    ("ket8", 0.0, Some(0.02)),
-    ("ket8", -12.0, None),
-    ("ket8", 3.0, None),
-    ("usb", -10.0, None),
+/// Shipped examples of what no start of the task shows, as [`ended`] takes them.
+const EXAMPLES: [At<'_>; 5] = [
+    ("ket8", (10.0, 0.0), 0.0, None),
+    ("ket8", (10.0, 0.0), 0.0, Some(0.02)),
+    ("ket8", (10.0, 0.0), -12.0, None),
+    ("ket8", (10.0, 0.0), 3.0, None),
+    ("usb", (10.0, 0.0), -10.0, None),
 ];
+
+/// Task, finger, shift of the start, mm, and force that holds the plug, N, unless it is the task's.
+type At<'a> = (&'a str, (f64, f64), f64, Option<f64>);
 
 /// Of which task and fingers the windows are to be measured.
 #[derive(Debug, Clone, clap::Args)]
@@ -46,39 +50,25 @@ impl SheetRequest {
         let task = read_task(&self.task)?.task;
         let shifts = (1..=FARTHEST_MM).flat_map(|mm| [f64::from(mm), -f64::from(mm)]);
         let outward = shifts.filter_map(|shift| Some((self.fingers.first()?, shift)));
-        let mut pictures = Vec::new();
-        for (&finger, shift) in self.fingers.iter().map(|finger| (finger, 0.0)).chain(outward) {
-            picture(&mut pictures, &tried(&self.task, finger, (shift, None), stop)?, None);
-        }
-        for (task, shift, grip) in EXAMPLES {
-            picture(&mut pictures, &tried(task, (10.0, 0.0), (shift, grip), stop)?, Some(task));
-        }
+        let own = self.fingers.iter().map(|finger| (finger, 0.0)).chain(outward);
+        let own = own.map(|(finger, shift)| (&*self.task, *finger, shift, None));
+        let ended = own.chain(EXAMPLES).map(|at| ended(at, stop));
+        let mut pictures = ended.collect::<Result<Vec<_>, Failure>>()?;
+        pictures.retain(|picture| picture.outcome != Outcome::Diverged);
         pictures.sort_by_key(|picture| picture.outcome.failure());
+        pictures.dedup_by_key(|picture| picture.outcome);
         Ok(write_file(&self.out, &sheet::page(&task, &self.task, &self.fingers, &pictures))?)
     }
 }
 
-/// A trial with the start shifted by so much, mm, held with so much, N.
-fn tried(
-    task: &str,
-    (density, direction): (f64, f64),
-    (offset_mm, grip): (f64, Option<f64>),
-    stop: &AtomicBool,
-) -> Result<TrialDone, Failure> {
+fn ended((task, infill, offset_mm, grip): At<'_>, stop: &AtomicBool) -> Result<Picture, Failure> {
     let tasks = vec![TaskSource::Named(task.to_owned())];
     let set = grip.map(|force| ("task.grip.force_n".to_owned(), force)).into_iter().collect();
-    let (density, direction) = (Some(density), Some(direction));
+    let (density, direction) = (Some(infill.0), Some(infill.1));
     let finger = FingerRequest { density, direction, set, ..FingerRequest::default() };
     let setup = SetupRequest { tasks, ..SetupRequest::default() };
-    TrialRequest { setup, finger, offset_mm, ..TrialRequest::default() }.run(stop)
-}
-
-/// Keeps the picture of an outcome that is met for the first time.
-fn picture(pictures: &mut Vec<Picture>, done: &TrialDone, example: Option<&'static str>) {
-    let outcome = done.trial.outcome;
-    if outcome != Outcome::Diverged && pictures.iter().all(|one| one.outcome != outcome) {
-        let specimen = &done.chosen.specimen;
-        let svg = picture::ended(&specimen.task, &specimen.finger.pad, &done.trial);
-        pictures.push(Picture { outcome, svg, example });
-    }
+    let done = TrialRequest { setup, finger, offset_mm, ..TrialRequest::default() }.run(stop)?;
+    let Specimen { task, finger, .. } = done.chosen.specimen;
+    let svg = picture::ended(&task, &finger.pad, &done.trial);
+    Ok(Picture { outcome: done.trial.outcome, svg, task: task.name })
 }

@@ -153,7 +153,8 @@ def measure_window(
     attempts = bench.attempts(search)
     ended = bench.written(attempts.settings["date"])
     try:
-        measured = _Course(robot, search, attempts, task_given.success.depth_mm).run(0 if ended else attempts_max)
+        course = _Course(robot, search, attempts, task_given.success.depth_mm)
+        measured = course.run(0 if ended else attempts_max)
     finally:
         attempts.close()
     bench.write(measured, attempts.settings["date"])
@@ -162,7 +163,8 @@ def measure_window(
 
 def _checked(search: Search, attempts_max: int) -> Search:
     lengths = (search.resolution_mm, search.step_mm, search.limit_mm)
-    if not all(math.isfinite(length) for length in lengths) or not 0.01 <= lengths[0] <= lengths[1] <= lengths[2] <= 100.0:
+    # Written so that a NaN is outside.
+    if not 0.01 <= lengths[0] <= lengths[1] <= lengths[2] <= 100.0:
         raise InputError(
             "resolution_mm, step_mm, limit_mm: are lengths in mm, each at most the next, from 0.01 to 100; "
             f"given {', '.join(f'{length:g}' for length in lengths)}"
@@ -195,8 +197,8 @@ class _Course:
             if in_doubt == DOUBTFUL:
                 raise self.stopped(offset, f"{DOUBTFUL} attempts in a row cannot be: {done.doubt}")
         if not window.inserts:
-            raise self.stopped(0.0, "the taught start does not insert: teach another; if none inserts, note it by "
-                                    "`optimize measure add --not-measurable`")
+            why = "the taught start does not insert: teach another; if none inserts, note it by "
+            raise self.stopped(0.0, why + "`optimize measure add --not-measurable`")
         return self.measurement(window, settled=offset is None)
 
     def attempt(self, offset: float) -> Tried:
@@ -258,7 +260,8 @@ class _Course:
 
     def stopped(self, offset: float, why: str) -> RunError:
         self.attempts.stopped(offset, why)
-        return RunError(f"start {offset:+g} mm: {why}\nwhat was measured is in {self.attempts.path}; the same call goes on there")
+        kept = f"what was measured is in {self.attempts.path}; the same call goes on there"
+        return RunError(f"start {offset:+g} mm: {why}\n{kept}")
 
     def measurement(self, window: Window, settled: bool) -> Measurement:
         counted = self.attempts.counted()

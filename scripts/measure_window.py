@@ -3,7 +3,7 @@
 
 20 synthetic robots, each end drawn 0.5 to 5 mm from the taught start, the probability to insert a logistic with
 0.6 mm from 90 to 10 %; every fourth has a gap of 0.3 mm, at least 0.5 mm from the start and from the end, in which
-nothing inserts. The method (priors, lapse, odds of a gap) was fixed on the seeds 1000 to 1399; 1 to 20 are counted.
+nothing inserts. The method (priors, lapse, odds of a gap) was fixed on the seeds 1000 to 1399; 101 to 120 are counted.
 
     python scripts/measure_window.py [FIRST SEED] [COUNT] [WIDTH mm]
 """
@@ -45,7 +45,7 @@ class Synthetic:
 
 
 def main() -> None:
-    usual = ("1", "20", "0.6")
+    usual = ("101", "20", "0.6")
     first, count, width = [*sys.argv[1:], *usual[len(sys.argv) - 1 :]]
     first, count, width_mm = int(first), int(count), float(width)
     errors, attempts, held, gaps, met = [], [], 0, 0, 0

@@ -65,7 +65,7 @@ class Side:
     tried: Iterable[tuple[float, bool]]
     #: Runs of starts that are gaps.
     gaps: list[list[float]] = field(default_factory=list)
-    #: A start of what may be a gap: to be tried once more.
+    #: A start in or beyond what may be a gap: to be tried once more.
     doubtful: float | None = None
 
     def __post_init__(self) -> None:
@@ -110,7 +110,10 @@ class Side:
             if odds > TAKEN:
                 self.gaps.append(run)
             elif odds > 1.0:
-                self.doubtful = run[len(run) // 2]
+                # Of a gap, what fails and what inserts beyond it tell by turns.
+                beyond = min(start for start, tally in self.tallies.items() if tally.inserted and start > run[-1])
+                again = failures > self.tallies[beyond].inserted + self.tallies[beyond].failed
+                self.doubtful = beyond if again else run[len(run) // 2]
 
     def _runs(self) -> list[list[float]]:
         """Neighbouring starts that always failed, with one beyond that inserted."""
@@ -124,6 +127,15 @@ class Side:
 
     def walk(self) -> float | None:
         """The next start of the coarse walk outward, which ends with two failures in a row or at the limit."""
+        return self._walked()[0]
+
+    @property
+    def open(self) -> bool:
+        """Whether the walk came no farther than to starts that inserted: the end lies beyond them."""
+        return self._walked()[1] == 0
+
+    def _walked(self) -> tuple[float | None, int]:
+        """The walk's next start, and how many failed in a row at its end; what came first counts."""
         failed, steps = 0, 0
         while failed < 2:
             steps += 1
@@ -131,14 +143,9 @@ class Side:
             if start > self.search.limit_mm + 1e-9:
                 break
             if start not in self.tallies:
-                return start
+                return start, failed
             failed = 0 if self.tallies[start].first else failed + 1
-        return None
-
-    @property
-    def open(self) -> bool:
-        """Whether the farthest start inserted: the end lies beyond it."""
-        return not self.tallies or self.tallies[max(self.tallies)].inserted > 0
+        return None, failed
 
     @property
     def farthest(self) -> float:

@@ -86,8 +86,10 @@ fn boxes(task: &Task, name: &str, (density, direction): (f64, f64)) -> Markup {
         @for (title, sign) in [("-", -1), ("+", 1)] {
             h2 { "Outward to " (title) ", mm" }
             table {
-                tr { @for step in 1..=BOXES { th { (format!("{:+.1}", 0.5 * f64::from(sign * step))) } } }
-                @for _ in 0..2 { tr.empty { @for _ in 1..=BOXES { td {} } } }
+                @for row in 0..2 {
+                    tr { @for step in 1..=BOXES { th { (format!("{:+.1}", 0.5 * f64::from(sign * (row * BOXES + step)))) } } }
+                    tr.empty { @for _ in 1..=BOXES { td {} } }
+                }
             }
             h2 { "Near the end at " (title) ": start, mm, and how it ended" }
             table {

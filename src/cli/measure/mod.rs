@@ -9,7 +9,7 @@ use crate::session::SheetRequest;
 use clap::Subcommand;
 use insertion::trial::NEVER;
 
-/// Add measurements from the bench to a file, check such a file, or print a sheet to measure by.
+/// Add measurements from the bench to a file, check such a file, or write a sheet to measure by.
 ///
 /// The file is `docs/guide/measuring.md`'s measurements.csv. Only the task, the infill and something that
 /// was measured are needed; a range alone is enough.

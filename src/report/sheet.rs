@@ -11,7 +11,7 @@ const BOXES: i32 = 12;
 /// What an insertion looks like, and each failure class.
 const MEANINGS: [&str; 5] = [
     "seated, upright, held",
-    "the plug leaves the fingers before it is at the socket",
+    "the plug slips out of the fingers before it is at the socket (drawn as that begins)",
     "the leading edge is not in the opening when the search ends",
     "it is in the opening, and is not seated",
     "the plug leaves the fingers, or slips in them, in search or push",

@@ -109,10 +109,10 @@ class Attempts:
         self._file.close()
 
 
-def newest(stem: Path) -> Path | None:
-    """The last file of attempts ``<stem>-<day>.jsonl``."""
-    found = sorted(glob.glob(f"{glob.escape(str(stem))}-[0-9]*.jsonl"))
-    return Path(found[-1]) if found else None
+def newest(stem: Path) -> str | None:
+    """The day of the last file of attempts ``<stem>-<day>.jsonl``."""
+    found = glob.glob(f"{glob.escape(str(stem))}-[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9].jsonl")
+    return max(found)[-len("2026-03-31.jsonl") : -len(".jsonl")] if found else None
 
 
 def _sync_folder(folder: Path) -> None:

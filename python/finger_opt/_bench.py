@@ -36,18 +36,13 @@ class Bench:
         """The attempts to go on with: those of a measurement that has not ended, or that ended today."""
         density, direction = self.finger.values()
         stem = self.out.with_name(f"{self.out.stem}-{self.task.name}-{density}-{direction}")
-        today = datetime.date.today().isoformat()
-        settings = {"task": self.task.name, "version": __version__, **self.finger, **vars(search), "date": today}
+        date = datetime.date.today().isoformat()
         last = newest(stem)
-        if last is not None:
-            attempts = Attempts(last, settings)
-            date = attempts.settings["date"]
-            if date == today or not self.written(date):
-                self.check(date)
-                return attempts
-            attempts.close()
-        self.check(today)
-        return Attempts(Path(f"{stem}-{today}.jsonl"), settings)
+        if last is not None and not self.written(last):
+            date = last
+        self.check(date)
+        settings = {"task": self.task.name, "version": __version__, **self.finger, **vars(search), "date": date}
+        return Attempts(Path(f"{stem}-{date}.jsonl"), settings)
 
     def written(self, date: str) -> bool:
         """Whether the file has a line of this finger, measured so, of that day."""

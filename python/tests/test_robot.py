@@ -179,6 +179,24 @@ def test_another_search_does_not_go_on_in_the_same_log(out):
         measure_window(Steps(), out=out, **FINGER)
 
 
+def test_what_was_measured_on_another_day_is_measured_anew(out):
+    measure_window(Steps(), out=out, step_mm=0.4, **FINGER)
+    (log,) = out.parent.glob("*.jsonl")
+    before = log.with_name("bench-usb-20-10-2026-01-02.jsonl")
+    before.write_text(log.read_text().replace(log.stem[-10:], "2026-01-02"))
+    out.write_text(out.read_text().replace(log.stem[-10:], "2026-01-02"))
+    log.unlink()
+    robot = Steps()
+    found = measure_window(robot, out=out, **FINGER)
+    assert found.log == log and found.attempts == len(robot.offsets)
+    assert len(out.read_text().splitlines()) == 3
+    # One that was not finished then goes on, as of its day.
+    out.unlink()
+    log.unlink()
+    assert measure_window(robot, out=out, step_mm=0.4, **FINGER).log == before
+    assert "2026-01-02" in out.read_text()
+
+
 KILLED = """
 import sys, time
 sys.path.insert(0, sys.argv[2])

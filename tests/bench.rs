@@ -215,3 +215,14 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     let two = folder.file("two.csv", format!("{HEAD}ket8,10,0,7.6\nusb,20,0,5.7\n"));
     line(&format!("next {few} {two}")).fails(2, &["has lines of ket8, usb; give --task"]);
 }
+
+#[test]
+fn a_sheet_has_a_page_for_each_finger_and_a_picture_of_each_outcome() {
+    let folder = Studies::new();
+    let out = folder.file("sheet.html", "");
+    optimize_line(&format!("measure sheet --task usb --finger 10,0 --finger 30,0 --out {out}"))
+        .succeeds();
+    let page = folder.read("sheet.html");
+    assert_eq!((page.matches("<section>").count(), page.matches("<img ").count()), (3, 5));
+    assert!(page.contains("--density 30 --direction 0") && page.contains("12.0 mm below"));
+}

@@ -48,9 +48,9 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # It needs gymnasium, which most do without.
-    if name == "gym":
+    # The one needs gymnasium, which most do without; the other, a robot.
+    if name in ("gym", "robot"):
         import importlib
 
-        return importlib.import_module(".gym", __name__)
+        return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -21,6 +21,7 @@ pub mod replay;
 pub mod sensitivity;
 mod set;
 mod shape;
+pub mod sheet;
 pub mod stiffness;
 mod surface;
 #[cfg(test)]

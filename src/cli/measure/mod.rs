@@ -3,11 +3,13 @@
 mod add;
 mod check;
 
-use super::Failure;
+use super::{Failure, print};
 use crate::calibration::experiments::Experiment;
+use crate::session::SheetRequest;
 use clap::Subcommand;
+use insertion::trial::NEVER;
 
-/// Add measurements from the bench to a file, or check such a file.
+/// Add measurements from the bench to a file, check such a file, or write a sheet to measure by.
 ///
 /// The file is `docs/guide/measuring.md`'s measurements.csv. Only the task, the infill and something that
 /// was measured are needed; a range alone is enough.
@@ -18,12 +20,21 @@ pub enum Arguments {
     Add(Box<add::Arguments>),
     #[command(after_help = "Example: optimize measure check bench.csv")]
     Check(check::Arguments),
+    /// Write a sheet to print and fill in, to measure windows by hand
+    #[command(
+        after_help = "Example: optimize measure sheet --task usb --finger 10,0 --out sheet.html"
+    )]
+    Sheet(SheetRequest),
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments {
         Arguments::Add(arguments) => add::run(arguments),
         Arguments::Check(arguments) => check::run(arguments),
+        Arguments::Sheet(request) => {
+            request.run(&NEVER)?;
+            print(&format!("wrote {}\n", request.out.display()))
+        }
     }
 }
 

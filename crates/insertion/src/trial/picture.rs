@@ -42,7 +42,7 @@ impl View {
 /// One row of panels per view, one column per phase, as a stand-alone SVG; `label` says what was
 /// tried. All panels have one scale, and nothing sticks out of them.
 pub fn svg(task: &Task, pad: &Pad, trial: &Trial, label: &str) -> String {
-    let mut views = [1, 0].map(|axis| (axis, view(task, pad, trial, axis)));
+    let mut views = [1, 0].map(|axis| (axis, view(task, pad, &trial.phases, axis)));
     let widest = views.iter().map(|(_, view)| view.width()).fold(0.0, f64::max);
     for (_, view) in &mut views {
         let room = (widest - view.width()) / 2.0;
@@ -75,6 +75,20 @@ pub fn svg(task: &Task, pad: &Pad, trial: &Trial, label: &str) -> String {
     out
 }
 
+/// How a trial ended, seen along x, as a stand-alone SVG without words; empty if it did not begin.
+pub fn ended(task: &Task, pad: &Pad, trial: &Trial) -> String {
+    let Some(phase) = trial.phases.last() else { return String::new() };
+    let phase = PhaseEnd { name: String::new(), ..phase.clone() };
+    let view = view(task, pad, std::slice::from_ref(&phase), 1);
+    let [width, height] = [view.across, view.up].map(|[low, high]| (high - low) * SCALE);
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\">\n"
+    );
+    panel(&mut out, (task, pad), &phase, 1, &view, [0.0, 0.0]);
+    out.push_str("</svg>\n");
+    out
+}
+
 fn outcome(trial: &Trial) -> String {
     let end = match trial.outcome {
         Outcome::Failed(class) => format!("failed: {} (class {})", class.label(), class.number()),
@@ -102,11 +116,11 @@ fn bodies(task: &Task, pad: &Pad, phase: &PhaseEnd) -> Vec<(Vec<Geom>, Pose, &'s
 }
 
 /// Extent that holds every phase, seen along x (axis 1) or y (axis 0).
-fn view(task: &Task, pad: &Pad, trial: &Trial, axis: usize) -> View {
+fn view(task: &Task, pad: &Pad, phases: &[PhaseEnd], axis: usize) -> View {
     let empty = [f64::INFINITY, f64::NEG_INFINITY];
     let mut view = View { across: empty, up: empty };
     let wider = |[low, high]: [f64; 2], at: f64| [low.min(at), high.max(at)];
-    for phase in &trial.phases {
+    for phase in phases {
         for (geoms, body, _) in bodies(task, pad, phase) {
             for point in geoms.iter().flat_map(|geom| projected(geom, &body, axis)) {
                 view.across = wider(view.across, point.x);
@@ -114,7 +128,7 @@ fn view(task: &Task, pad: &Pad, trial: &Trial, axis: usize) -> View {
             }
         }
     }
-    if trial.phases.is_empty() {
+    if phases.is_empty() {
         return View { across: [-1.0, 1.0], up: [-1.0, 1.0] };
     }
     let room = |[low, high]: [f64; 2], top: f64| [low - ROOM, high + ROOM + top];

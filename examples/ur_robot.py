@@ -1,0 +1,167 @@
+"""A UR as the robot of `finger_opt.robot.measure_window`, over ur_rtde (pip install ur_rtde).
+
+NOT TRIED ON HARDWARE. Its calls are checked against the signatures of ur_rtde 1.6.5, nothing more. Read it,
+change it to your cell, look at the moves that it prints (`dry_run=True`), and then run it slowly, with a
+person beside the robot who has a hand on the stop button. Set the safety limits of the robot first: simulated
+insertions reach more than 100 N. The gripper stays closed; this program does not move it.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import finger_opt as fo
+from finger_opt.robot import Attempt
+
+#: What the recorder of the RTDE client writes: a column for each number, in SI units.
+RECORDED = ["timestamp", "actual_TCP_pose", "actual_TCP_force", "target_TCP_pose"]
+ACCELERATION_M_S2 = 0.5
+RETREAT_M_S = 0.02
+
+
+class DryRun(RuntimeError):
+    """The moves were printed, and nothing moved."""
+
+
+@dataclass(frozen=True)
+class Move:
+    """A straight move of the TCP in the base's frame, which ends where the force is reached."""
+
+    name: str
+    pose: list[float]
+    speed_m_s: float
+    force_n: float
+
+
+@dataclass
+class URRobot:
+    """Tries insertions with the strategy of a task file, each phase a guarded straight move.
+
+    ``taught`` is the pose (x, y, z, rx, ry, rz; m, rad) of the TCP at the start that inserts; ``surface_m`` the
+    height of the TCP above it, along ``out_of_socket``, at which the tip touches the socket's top (below 0).
+    ``jaws`` and ``out_of_socket`` are the task's y and z in the base's frame. ``force_limit_n`` ends a move.
+    """
+
+    host: str
+    task: fo.Task
+    taught: Sequence[float]
+    surface_m: float
+    jaws: Sequence[float] = (0.0, 1.0, 0.0)
+    out_of_socket: Sequence[float] = (0.0, 0.0, 1.0)
+    force_limit_n: float = 60.0
+    touch_n: float = 5.0
+    dry_run: bool = True
+    ask: Callable[[str], str] = input
+    #: A person has to answer; this is far longer than the moves take.
+    timeout_s: float = 600.0
+    control: Any = field(default=None, repr=False)
+    receive: Any = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        y, z = np.array(self.jaws, float), np.array(self.out_of_socket, float)
+        if not (np.isclose(np.linalg.norm(y), 1) and np.isclose(np.linalg.norm(z), 1) and abs(y @ z) < 1e-6):
+            raise ValueError("jaws and out_of_socket are directions of length 1, at right angles")
+        self.axes = np.column_stack([np.cross(y, z), y, z])
+        if not self.dry_run and self.control is None:
+            import rtde_control
+            import rtde_receive
+
+            self.control = rtde_control.RTDEControlInterface(self.host)
+            self.receive = rtde_receive.RTDEReceiveInterface(self.host)
+
+    def pose(self, shift_mm: np.ndarray) -> list[float]:
+        """The taught pose, shifted in the task's frame."""
+        place = np.array(self.taught[:3], float) + self.axes @ shift_mm / 1000.0
+        return [*place.tolist(), *self.taught[3:]]
+
+    def program(self, offset_mm: float) -> list[Move]:
+        """The moves of an attempt: to the shifted start, then the phases of the task's strategy."""
+        at = np.array([0.0, offset_mm, 0.0])
+        moves = [Move("start", self.pose(at), RETREAT_M_S, self.touch_n)]
+        for phase in self.task.strategy.phase:
+            touching = phase.motion == "touch"
+            at = at + np.array(list(phase.move_mm))
+            limit = self.touch_n if touching else self.force_limit_n
+            moves.append(Move(phase.name, self.pose(at), phase.speed_mm_per_s / 1000.0, limit))
+        return moves
+
+    def insert(self, offset_mm: float, log: Path | None = None) -> Attempt:
+        """One attempt; with ``dry_run`` it prints the moves and raises :class:`DryRun`."""
+        moves = self.program(offset_mm)
+        if self.dry_run:
+            for move in moves:
+                where = ", ".join(f"{number:+.4f}" for number in move.pose)
+                print(f"{move.name:<12} to [{where}] at {move.speed_m_s:.3f} m/s, until {move.force_n:g} N")
+            raise DryRun("nothing moved; give dry_run=False once these moves are right")
+        for move in moves:
+            if not self.control.isPoseWithinSafetyLimits(move.pose):
+                raise RuntimeError(f"{move.name}: {move.pose} is outside the safety limits")
+        start, *phases = moves
+        if self.guarded(start) >= start.force_n:
+            raise RuntimeError("something is in the way to the start")
+        self.control.zeroFtSensor()
+        time.sleep(0.2)
+        if log is not None:
+            self.receive.startFileRecording(str(log), RECORDED)
+        try:
+            peak = 0.0
+            for move in phases:
+                peak = max(peak, self.guarded(move))
+                if peak >= self.force_limit_n:
+                    break
+            depth_mm = self.depth_mm()
+            inserted, failure = self.judged(depth_mm)
+        finally:
+            if log is not None:
+                self.receive.stopFileRecording()
+        self.retreat()
+        return Attempt(inserted, failure, depth_mm, peak, log)
+
+    def guarded(self, move: Move) -> float:
+        """Moves until the pose or the force is reached; gives the largest force, N."""
+        self.control.moveL(move.pose, move.speed_m_s, ACCELERATION_M_S2, True)
+        peak = 0.0
+        time.sleep(0.02)
+        while self.control.getAsyncOperationProgress() >= 0:
+            if self.receive.isProtectiveStopped() or self.receive.isEmergencyStopped():
+                raise RuntimeError(f"{move.name}: the robot has stopped; look at it before it goes on")
+            force = float(np.linalg.norm(self.receive.getActualTCPForce()[:3]))
+            peak = max(peak, force)
+            if force >= move.force_n:
+                self.control.stopL(10.0)
+                break
+            time.sleep(0.004)
+        return peak
+
+    def depth_mm(self) -> float:
+        """How far the tip is below the socket's top, from where the TCP is."""
+        below = np.array(self.receive.getActualTCPPose()[:3]) - np.array(self.taught[:3], float)
+        return 1000.0 * (self.surface_m - float(self.axes[:, 2] @ below))
+
+    def judged(self, depth_mm: float) -> tuple[bool, int | None]:
+        """Deep enough is not enough: a plug may stand beside the socket, or have left the fingers."""
+        said = self.ask(f"depth {depth_mm:.1f} mm. Inserted: +, else the failure class 1 to 4: ").strip()
+        return said == "+", int(said) if said in ("1", "2", "3", "4") else None
+
+    def retreat(self) -> None:
+        """Pulls straight out to the height of the start, along the axis of the socket."""
+        pose = self.receive.getActualTCPPose()
+        up = self.axes[:, 2] * float(self.axes[:, 2] @ (np.array(self.taught[:3], float) - np.array(pose[:3])))
+        out = [*(np.array(pose[:3]) + up).tolist(), *pose[3:]]
+        if self.guarded(Move("retreat", out, RETREAT_M_S, self.force_limit_n)) >= self.force_limit_n:
+            raise RuntimeError("the plug does not come out; free it by hand")
+
+
+if __name__ == "__main__":
+    robot = URRobot("192.168.0.10", fo.Task.from_toml("usb"), (0.4, -0.2, 0.3, 0.0, 3.1416, 0.0), surface_m=-0.0104)
+    try:
+        # With dry_run=False: finger_opt.robot.measure_window(robot, task=robot.task, density=20, direction=10)
+        robot.insert(-0.5)
+    except DryRun as reason:
+        print(reason)

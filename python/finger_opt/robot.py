@@ -1,0 +1,321 @@
+"""Measure the tolerance window of a finger with a robot, or rehearse that on a simulated one.
+
+>>> from finger_opt.robot import SimulatedRobot, measure_window          # doctest: +SKIP
+>>> robot = SimulatedRobot("usb", 20, 10, noise=0.6)                      # doctest: +SKIP
+>>> measure_window(robot, task="usb", density=20, direction=10)           # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import threading
+from collections import Counter
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from numbers import Real
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from ._attempts import Attempt, Attempts, Tried
+from ._bench import Bench
+from ._ends import INTERVAL, Gap, Search, Side, Window
+from ._measure import trial
+from ._native import InputError, RunError
+from ._task import Given, Task
+
+__all__ = ["Attempt", "Gap", "Measurement", "Robot", "SimulatedRobot", "measure_window"]
+
+#: How long an attempt may take unless the robot says otherwise (``timeout_s``), s.
+TIMEOUT_S = 120.0
+#: What was inserted is at least so deep, as a share of the depth at which the task counts it as inserted.
+LEAST_DEPTH = 0.5
+#: How many attempts in a row may be doubtful.
+DOUBTFUL = 3
+
+
+class Robot(Protocol):
+    """What can try an insertion.
+
+    ``timeout_s``, if it has one, is how long an attempt may take, s; 120 otherwise.
+    """
+
+    def insert(self, offset_mm: float, log: Path | None = None) -> Attempt:
+        """Tries to insert from the taught start shifted by ``offset_mm`` along y, the direction in which the
+        jaws close; records force and pose in ``log``, if it can; leaves the robot ready for the next."""
+        ...
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A measured window: each end is where half of the attempts insert, mm from the taught start.
+
+    An interval holds its end with 95 % probability. An end that was not met up to the limit, or before
+    ``attempts_max`` were made, is ``None``. ``failure_negative`` and ``failure_positive`` are the classes
+    met most beyond the ends. ``gaps`` are starts within the window that do not insert; the ends lie beyond
+    them. ``settled`` is whether both ends are known as asked; ``doubtful`` of the ``attempts`` do not count.
+    """
+
+    negative_mm: float | None
+    positive_mm: float | None
+    negative_interval_mm: tuple[float, float] | None
+    positive_interval_mm: tuple[float, float] | None
+    failure_negative: int | None
+    failure_positive: int | None
+    gaps: tuple[Gap, ...]
+    #: The farthest starts that inserted.
+    inserted_mm: tuple[float, float]
+    peak_force_n: float
+    attempts: int
+    doubtful: int
+    settled: bool
+    #: One line of JSON for each attempt.
+    log: Path
+
+    @property
+    def range_mm(self) -> float | None:
+        """Width of the window, mm, if both ends were met."""
+        if self.negative_mm is None or self.positive_mm is None:
+            return None
+        return round(self.positive_mm - self.negative_mm, 2)
+
+
+class SimulatedRobot:
+    """A robot that is simulated: for rehearsals, notebooks and tests.
+
+    Task, density (percent), direction (degrees) and ``engine`` are those of :func:`finger_opt.trial`. ``cell``
+    is what the robot hides: settings of that function (``{"robot": "ur5e", "task.friction.plug_socket": 0.3}``),
+    or the name or path of a robot file. ``noise`` is the width, mm, over which the probability to insert goes
+    from 90 to 10 % at an end: each start is off by a logistic error, drawn with ``seed``.
+    """
+
+    def __init__(
+        self,
+        task: Given,
+        density: float,
+        direction: float,
+        engine: str | None = None,
+        cell: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+        noise: float = 0.0,
+        seed: int = 0,
+    ) -> None:
+        if not 0.0 <= noise <= 100.0:
+            raise InputError(f"noise: is {noise}; it is a width in mm, 0 to 100")
+        hidden = dict(cell) if isinstance(cell, Mapping) else {"robot": cell}
+        self._finger = {"task": task, "density": density, "direction": direction}
+        self._settings = {"engine": engine, **hidden}
+        self._scale, self._drawn = noise / (2.0 * math.log(9.0)), np.random.default_rng(seed)
+
+    def insert(self, offset_mm: float, log: Path | None = None) -> Attempt:
+        """Simulates the insertion; nothing is recorded."""
+        offset_mm += self._scale * float(self._drawn.logistic())
+        ended = trial(**self._finger, offset_mm=offset_mm, **self._settings)
+        inserted = ended["outcome"] == "inserted"
+        return Attempt(inserted, ended["failure"], ended["depth_mm"], ended["peak_force_n"])
+
+
+def measure_window(
+    robot: Robot,
+    *,
+    step_mm: float = 0.5,
+    resolution_mm: float = 0.1,
+    limit_mm: float = 15.0,
+    repeats: int = 2,
+    out: str | os.PathLike[str] = "bench.csv",
+    task: Given,
+    density: float,
+    direction: float,
+    attempts_max: int = 60,
+) -> Measurement:
+    """Measures the tolerance window of a finger with a robot, and adds it to the measurement file ``out``.
+
+    The start is shifted outward by ``step_mm`` until two neighbouring starts fail, at most by ``limit_mm``.
+    Then each end is a logistic curve, known by Bayes' rule from all attempts on its side (prior: its place
+    uniform, its width from 90 to 10 % log-normal around 0.4 mm by a factor of 2, 1 attempt of 100 wrong
+    for other reasons). The next start, a multiple of ``resolution_mm``, is the one whose outcome is expected
+    to tell most of the end's place, until its standard deviation is ``resolution_mm`` and, within a step,
+    ``repeats`` attempts inserted inside it and ``repeats`` failed outside. Starts that keep failing where
+    others beyond insert are a gap, and no part of the curve.
+
+    Each attempt is on the disk, in a file beside ``out``, before the next begins: the same call goes on
+    there after whatever ended it. A window that was measured today is not measured again.
+
+    Raises :class:`InputError` for wrong arguments, before the robot moves, and :class:`RunError` if the
+    robot raises, takes longer than its ``timeout_s``, reports what cannot be (three times in a row; once it is
+    marked and tried again), or if the taught start does not insert.
+    """
+    search = _checked(Search(step_mm, resolution_mm, limit_mm, repeats), attempts_max)
+    task_given = task if isinstance(task, Task) else Task.from_toml(task)
+    bench = Bench(Path(out), task_given, density, direction)
+    attempts = bench.attempts(search)
+    ended = bench.written(attempts.settings["date"])
+    try:
+        course = _Course(robot, search, attempts, task_given.success.depth_mm)
+        measured = course.run(0 if ended else attempts_max)
+    finally:
+        attempts.close()
+    bench.write(measured, attempts.settings["date"])
+    return measured
+
+
+def _checked(search: Search, attempts_max: int) -> Search:
+    lengths = (search.resolution_mm, search.step_mm, search.limit_mm)
+    # Written so that a NaN is outside.
+    if not 0.01 <= lengths[0] <= lengths[1] <= lengths[2] <= 100.0:
+        raise InputError(
+            "resolution_mm, step_mm, limit_mm: are lengths in mm, each at most the next, from 0.01 to 100; "
+            f"given {', '.join(f'{length:g}' for length in lengths)}"
+        )
+    if search.limit_mm > 1000.0 * search.resolution_mm:
+        raise InputError("limit_mm: is at most 1000 times resolution_mm")
+    for name, count in (("repeats", search.repeats), ("attempts_max", attempts_max)):
+        if not 1 <= count <= 10_000:
+            raise InputError(f"{name}: is {count}; it is a number from 1 to 10000")
+    return search
+
+
+class _Course:
+    """The attempts of one measurement, one after the other."""
+
+    def __init__(self, robot: Robot, search: Search, attempts: Attempts, depth_mm: float) -> None:
+        self.robot, self.search, self.attempts, self.depth_mm = robot, search, attempts, depth_mm
+
+    def run(self, attempts_max: int) -> Measurement:
+        in_doubt = 0
+        while True:
+            tried = [(one.offset_mm, one.attempt.inserted) for one in self.attempts.counted()]
+            window = Window(self.search, tried)
+            offset = window.next()
+            if offset is None or len(self.attempts.tried) >= attempts_max:
+                break
+            done = self.attempt(offset)
+            self.attempts.add(done)
+            in_doubt = in_doubt + 1 if done.doubt else 0
+            if in_doubt == DOUBTFUL:
+                raise self.stopped(offset, f"{DOUBTFUL} attempts in a row cannot be: {done.doubt}")
+        if not window.inserts:
+            why = "the taught start does not insert: teach another; if none inserts, note it by "
+            raise self.stopped(0.0, why + "`optimize measure add --not-measurable`")
+        return self.measurement(window, settled=offset is None)
+
+    def attempt(self, offset: float) -> Tried:
+        """One attempt, and whether it can be believed."""
+        folder = self.attempts.path.with_suffix("")
+        folder.mkdir(exist_ok=True)
+        log = folder / f"{len(self.attempts.tried) + 1:03}.csv"
+        try:
+            done = self.in_time(offset, log)
+        except Exception as error:
+            raise self.stopped(offset, f"the robot raised {type(error).__name__}: {error}") from error
+        finally:
+            # Of use only to a robot that records.
+            with suppress(OSError):
+                folder.rmdir()
+        if not isinstance(done, Attempt):
+            raise self.stopped(offset, f"the robot returned {done!r}, which is no Attempt")
+        doubt = self.doubt(done)
+        if doubt:
+            finite = [x if _finite(x) else 0.0 for x in (done.depth_mm, done.peak_force_n)]
+            done = Attempt(done.inserted is True, None, *finite, done.log)
+        return Tried(offset, done, doubt)
+
+    def in_time(self, offset: float, log: Path) -> Any:
+        """What the robot returns, or raises; itself an error if that takes too long."""
+        limit = float(getattr(self.robot, "timeout_s", TIMEOUT_S))
+        ended: list[tuple[Any, BaseException | None]] = []
+
+        def insert() -> None:
+            try:
+                ended.append((self.robot.insert(offset, log), None))
+            except BaseException as error:
+                ended.append((None, error))
+
+        # A thread that hangs does not keep the process.
+        thread = threading.Thread(target=insert, daemon=True)
+        thread.start()
+        thread.join(limit)
+        if not ended:
+            raise TimeoutError(f"no answer within {limit:g} s; look at the robot before it goes on")
+        done, error = ended[0]
+        if error is not None:
+            raise error
+        return done
+
+    def doubt(self, done: Attempt) -> str | None:
+        """Why an attempt cannot be as it is reported."""
+        if not isinstance(done.inserted, (bool, np.bool_)):
+            return f"inserted is {done.inserted!r}, neither True nor False"
+        if not (_finite(done.depth_mm) and _finite(done.peak_force_n) and done.peak_force_n >= 0.0):
+            return f"depth {done.depth_mm} mm and peak force {done.peak_force_n} N are no measured numbers"
+        if done.failure not in (None, 1, 2, 3, 4):
+            return f"{done.failure} is no failure class; there are 1 to 4"
+        if done.inserted and done.failure is not None:
+            return f"inserted, and failed with class {done.failure}"
+        if done.inserted and done.depth_mm < LEAST_DEPTH * self.depth_mm:
+            return f"inserted at a depth of {done.depth_mm:g} mm; the task counts from {self.depth_mm:g} mm on"
+        return None
+
+    def stopped(self, offset: float, why: str) -> RunError:
+        self.attempts.stopped(offset, why)
+        kept = f"what was measured is in {self.attempts.path}; the same call goes on there"
+        return RunError(f"start {offset:+g} mm: {why}\n{kept}")
+
+    def measurement(self, window: Window, settled: bool) -> Measurement:
+        counted = self.attempts.counted()
+        (negative, low), (positive, high) = (_end(side) for side in window.sides)
+        failures = [self.failure(side) for side in window.sides]
+        return Measurement(
+            negative_mm=negative,
+            positive_mm=positive,
+            negative_interval_mm=low,
+            positive_interval_mm=high,
+            failure_negative=failures[0],
+            failure_positive=failures[1],
+            gaps=tuple(self.gap(side, run) for side in window.sides for run in side.gaps),
+            inserted_mm=(0.0 - window.sides[0].farthest, window.sides[1].farthest),
+            peak_force_n=max(one.attempt.peak_force_n for one in counted if one.attempt.inserted),
+            attempts=len(self.attempts.tried),
+            doubtful=len(self.attempts.tried) - len(counted),
+            settled=settled and not any(side.open for side in window.sides),
+            log=self.attempts.path,
+        )
+
+    def failure(self, side: Side, among: list[float] | None = None) -> int | None:
+        """The class met most, in a gap or beyond the end."""
+        gaps = {start for run in side.gaps for start in run}
+        classes = Counter(
+            one.attempt.failure
+            for one in self.attempts.counted()
+            if not one.attempt.inserted and one.attempt.failure is not None and one.offset_mm * side.sign >= 0.0
+            and (abs(one.offset_mm) in among if among else abs(one.offset_mm) not in gaps)
+        )
+        return classes.most_common(1)[0][0] if classes else None
+
+    def gap(self, side: Side, run: list[float]) -> Gap:
+        inserted = [start for start, tally in side.tallies.items() if tally.inserted]
+        within = max(s for s in inserted if s < run[0]), min(s for s in inserted if s > run[-1])
+        failed = _outward(side.sign, run[0], run[-1])
+        return Gap(failed, _outward(side.sign, *within), self.failure(side, run))
+
+
+def _finite(number: Any) -> bool:
+    return isinstance(number, Real) and math.isfinite(number)
+
+
+def _outward(sign: int, near: float, far: float) -> tuple[float, float]:
+    """Two lengths outward as places along y, the lower first."""
+    return (near, far) if sign > 0 else (-far, -near)
+
+
+def _end(side: Side) -> tuple[float | None, tuple[float, float] | None]:
+    """The end in mm along y, and its interval."""
+    if side.open:
+        return None, None
+    rest = (1.0 - INTERVAL) / 2.0
+    low, middle, high = (round(side.quantile(share), 2) for share in (rest, 0.5, 1.0 - rest))
+    # A start is not set finer than 0.02 mm, and a file with less is refused.
+    middle = middle if middle >= 0.02 else 0.0
+    return side.sign * middle + 0.0, _outward(side.sign, low, high)

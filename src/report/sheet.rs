@@ -1,0 +1,107 @@
+//! The sheet to measure windows by hand: how, and boxes to fill in, on A4.
+
+use super::elements::{inert, styled};
+use input::units::{DEG, MM};
+use insertion::outcome::Outcome;
+use insertion::task::Task;
+use maud::{Markup, html};
+
+/// Boxes in a row: starts outward, or near an end.
+const BOXES: i32 = 12;
+/// What an insertion looks like, and each failure class.
+const MEANINGS: [&str; 5] = [
+    "seated, upright, held",
+    "the plug slips out of the fingers before it is at the socket (drawn as that begins)",
+    "the leading edge is not in the opening when the search ends",
+    "it is in the opening, and is not seated",
+    "the plug leaves the fingers, or slips in them, in search or push",
+];
+
+/// How an insertion may end, as simulated.
+#[derive(Debug, Clone)]
+pub struct Picture {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Plug, fingertips and socket at the end, seen along x.
+    pub svg: String,
+    /// The task that it is of.
+    pub task: String,
+}
+
+/// The sheet as a page: how to measure on a task, as commands name it, then a page for each finger (infill
+/// density, percent, and direction, degrees); one picture of each outcome.
+pub fn page(task: &Task, name: &str, fingers: &[(f64, f64)], pictures: &[Picture]) -> String {
+    let body = html! {
+        section { (how(task, pictures)) }
+        @for &finger in fingers { section { (boxes(task, name, finger)) } }
+    };
+    styled(&format!("Measuring sheet: {}", task.name), include_str!("sheet.css"), body)
+}
+
+fn how(task: &Task, pictures: &[Picture]) -> Markup {
+    let [x, y, z] = task.strategy.start.map(|place| format!("{:.1}", place / MM));
+    let (depth, tilt) = (task.success.depth / MM, task.success.tilt / DEG);
+    html! {
+        h1 { "Measuring sheet: " (task.name) }
+        p { (task.description) }
+        p.line { "Date" i {} "Robot" i {} "Measured by" i {} "Socket no." i {} "Force limit N" i {} }
+        h2 { "Where to teach" }
+        p { "Limit the robot's force before the first insertion. By the task file the search begins with the TCP at x " (x)
+            ", y " (y) ", z " (z) " mm from the middle of the socket's opening (z out of it), the plug tilted by "
+            (format!("{:.1}", task.strategy.tilt / DEG)) "°. Teach the start near there from which the plug inserts "
+            "three times of three: this is 0. Shifts are along y, in which the jaws close; + is away from the wall that "
+            "the search moves to. Keep grasp, speeds, plug and socket the same for all fingers." }
+        h2 { "Which starts, in which order" }
+        ol {
+            li { "From 0 in steps of 0.5 mm to -, until two neighbouring starts fail; then the same to +." }
+            li { "A start that fails while the next one inserts: try it again. If it fails again, it is a gap: note it, and go on." }
+            li { "Near each end, by 0.1 mm: first the middle between the last start that inserted and the first that failed, "
+                 "then where you are least sure, until about half of the attempts insert at one start or between two "
+                 "neighbours; at least 8 attempts. That start is the end." }
+        }
+        h2 { "What counts as inserted" }
+        p { "At rest after the push the tip is at least " (format!("{depth:.1}")) " mm below the socket's top, the plug leans by "
+            "at most " (format!("{tilt:.1}")) "°, and both fingers still hold it. Write + for inserted, else the class:" }
+        div.pictures { @for picture in pictures { (drawn(picture)) } }
+    }
+}
+
+fn drawn(Picture { outcome, svg, task }: &Picture) -> Markup {
+    let class = usize::from(outcome.failure().unwrap_or(0));
+    html! {
+        figure {
+            img src=(inert(svg)) alt=(outcome.label());
+            figcaption {
+                b { (if class == 0 { "+".to_owned() } else { class.to_string() }) " " (outcome.label()) } ": "
+                (MEANINGS[class]) " (simulated, " (task) ")"
+            }
+        }
+    }
+}
+
+fn boxes(task: &Task, name: &str, (density, direction): (f64, f64)) -> Markup {
+    html! {
+        h1 { (task.name) ": infill density " (density) " %, direction " (direction) "°" }
+        p.line { "Date" i {} "Finger no." i {} "Start taught at" i {} "Start 0, 3 of 3" i {} }
+        @for (title, sign) in [("-", -1), ("+", 1)] {
+            h2 { "Outward to " (title) ", mm" }
+            table {
+                @for row in 0..2 {
+                    tr { @for step in 1..=BOXES { th { (format!("{:+.1}", 0.5 * f64::from(sign * (row * BOXES + step)))) } } }
+                    tr.empty { @for _ in 1..=BOXES { td {} } }
+                }
+            }
+            h2 { "Near the end at " (title) ": start, mm, and how it ended" }
+            table {
+                @for word in ["mm", "+ 1234", "mm", "+ 1234"] { tr.empty { th { (word) } @for _ in 0..BOXES { td {} } } }
+            }
+            p.line { "End, mm" i {} "Class beyond it" i {} "Gaps, mm" i {} }
+        }
+        p.line { "Largest force N" i {} "Attempts" i {} "Notes" i {} }
+        pre {
+            "optimize measure add bench.csv --task " (name) " --density " (density) " --direction " (direction) " \\\n"
+            "         --negative-mm ______ --positive-mm ______ --failure-negative __ --failure-positive __ \\\n"
+            "         --peak-force-n ______ --date ____-__-__"
+        }
+    }
+}

@@ -171,12 +171,12 @@ pub struct Imported {
     pub intrusion: Option<(f64, Point3<f64>, &'static str)>,
 }
 
-/// The mesh with faces that can be cut, few enough to be cut in seconds.
-pub fn few_faces(mesh: Mesh, say: &dyn Fn(&str)) -> Result<Mesh, MeshError> {
+/// The mesh with faces that can be cut, few enough to be cut in seconds, and what was reduced.
+pub fn few_faces(mesh: Mesh) -> Result<(Mesh, Option<String>), MeshError> {
     let Mesh { file, surface } = mesh;
     let before = surface.faces.len();
     if before <= MANY_FACES {
-        return Ok(Mesh { file, surface });
+        return Ok((Mesh { file, surface }, None));
     }
     let surface = reduced(surface);
     let (after, tolerance) = (surface.faces.len(), TOLERANCE / MM);
@@ -187,8 +187,8 @@ pub fn few_faces(mesh: Mesh, say: &dyn Fn(&str)) -> Result<Mesh, MeshError> {
         );
         return Err(MeshError::File(file, problem));
     }
-    say(&format!("{file}: {before} faces reduced to {after}, within {tolerance} mm"));
-    Ok(Mesh { file, surface })
+    let said = format!("{file}: {before} faces reduced to {after}, within {tolerance} mm");
+    Ok((Mesh { file, surface }, Some(said)))
 }
 
 /// Plug as the jaws of an axis hold it.

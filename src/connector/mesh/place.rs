@@ -53,9 +53,12 @@ pub fn placed(
     let meshes = |unit: Unit| {
         let mesh = |i: usize| {
             let surface = Surface::new(triangles[i], unit.metres(), files[i])?;
-            few_faces(Mesh { file: files[i].to_owned(), surface }, say)
+            few_faces(Mesh { file: files[i].to_owned(), surface })
         };
-        Ok::<_, MeshError>([mesh(0)?, mesh(1)?])
+        let (plug, socket) = rayon::join(|| mesh(0), || mesh(1));
+        let [(plug, of_plug), (socket, of_socket)] = [plug?, socket?];
+        of_plug.iter().chain(&of_socket).for_each(|reduced| say(reduced));
+        Ok::<_, MeshError>([plug, socket])
     };
     if let (Some(unit), Some(along)) = (unit, along) {
         let (why_unit, why_along) = (None, None);

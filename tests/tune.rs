@@ -63,6 +63,7 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
     assert_eq!(found["nearest"]["outcome"], "contact loss before search");
     assert!(found["nearest"]["phase"].is_string(), "{found}");
     assert_eq!(read_to_string(&own).unwrap(), weak, "a file is written");
+    optimize(&["task", "tune", &own, "--out", &own]).fails(2, &["own.toml exists"]);
     let ran = optimize(&["task", "tune", "usb"]);
     assert_eq!(ran.code, Some(2));
     assert!(ran.stderr.contains("name the file to write with --out"), "{}", ran.stderr);

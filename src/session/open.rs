@@ -86,7 +86,7 @@ impl OpenStudy {
                 let (name, ends) = (&task.name, outcome(trial.outcome));
                 let (command, why) = command::mend(&record, self.study.dir(), place);
                 warnings.push(format!(
-                    "{name}: with the middle finger the nominal start ends with {ends}; {command} {why}"
+                    "{name}: with the medium finger the nominal start ends with {ends}; {command} {why}"
                 ));
             }
         }

@@ -113,14 +113,14 @@ pub(super) fn nominal_start(
     robot: &Robot,
     engine: EngineKind,
 ) -> Result<(Finger, Trial), Failure> {
-    let finger = middling()?;
+    let finger = medium()?;
     let shaped = finger.shaped(&task.finger, 0.0);
     let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
     Ok((finger, rig.grasp(&shaped).trial(0.0)))
 }
 
-/// The shipped measured finger of middling compliance stiffness.
-fn middling() -> Result<Finger, Failure> {
+/// The shipped measured finger of medium compliance stiffness.
+fn medium() -> Result<Finger, Failure> {
     let nothing = || Failure::running("no measured fingers are shipped");
     let [file] = STIFFNESS else { return Err(nothing()) };
     let designs = stiffness::parse(file.text, file.file).map_err(Failure::input)?;

@@ -33,7 +33,7 @@ pub struct TuneRequest {
     /// Seed of the search
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Write this file in place of FILE
+    /// Write this new file in place of FILE
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Write no task file
@@ -50,7 +50,7 @@ pub struct TuneDone {
     pub task: Task,
     /// All that was tried.
     pub tuned: Tuned,
-    /// The soft, the middling and the stiff finger.
+    /// The soft, the medium and the stiff finger.
     pub fingers: [Finger; 3],
     /// Their windows on the task as it is written; `None` if no strategy inserts.
     pub after: Option<Vec<Window>>,
@@ -91,6 +91,10 @@ impl TuneRequest {
     /// The file to write; a shipped task is not one.
     fn target(&self) -> Result<Option<&Path>, Failure> {
         match &self.out {
+            Some(out) if out.exists() => {
+                let out = out.display();
+                Err(Failure::usage(format!("{out} exists; name another file with --out")))
+            }
             Some(out) => Ok(Some(out)),
             None if Path::new(&self.file).is_file() => Ok(Some(Path::new(&self.file))),
             None if self.dry_run => Ok(None),

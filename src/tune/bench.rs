@@ -24,7 +24,7 @@ pub struct Bench<'a> {
     pub robot: &'a Robot,
     /// Contact engine.
     pub engine: EngineKind,
-    /// A soft, a middling and a stiff finger.
+    /// A soft, a medium and a stiff finger.
     pub fingers: [Finger; 3],
     /// Three others, between them.
     pub others: [Finger; 3],
@@ -37,12 +37,12 @@ pub struct Bench<'a> {
 pub struct Tried {
     /// The strategy, its start where it was taught.
     pub strategy: Strategy,
-    /// Windows of the soft, the middling and the stiff finger; of none where the middling one
+    /// Windows of the soft, the medium and the stiff finger; of none where the medium one
     /// inserts from no start.
     pub windows: Vec<Window>,
     /// The least of their ranges, mm, if all insert; otherwise below 0, by how clearly they fail.
     pub score: f64,
-    /// Of starts that all fail the one that fails least clearly, by the middling finger.
+    /// Of starts that all fail the one that fails least clearly, by the medium finger.
     pub nearest: Option<Box<Trial>>,
     /// Windows that were measured for this.
     pub cost: usize,
@@ -68,9 +68,9 @@ impl<'a> Bench<'a> {
         engine: EngineKind,
         stop: &'a AtomicBool,
     ) -> Option<Self> {
-        let [soft, middling, stiff, others @ ..] =
+        let [soft, medium, stiff, others @ ..] =
             fingers()?.map(|finger| finger.shaped(&task.finger, 0.0));
-        Some(Bench { task, robot, engine, fingers: [soft, middling, stiff], others, stop })
+        Some(Bench { task, robot, engine, fingers: [soft, medium, stiff], others, stop })
     }
 
     /// The window of a finger and how clearly its nominal start fails, 0 if it inserts.
@@ -104,13 +104,13 @@ impl<'a> Bench<'a> {
         Ok(Tried::of(strategy.clone(), found))
     }
 
-    /// The strategy with its start moved to the middle of the middling finger's window.
+    /// The strategy with its start moved to the middle of the medium finger's window.
     pub fn taught(&self, strategy: &Strategy) -> Result<Tried, RigError> {
         let mut strategy = Strategy { rule: StartRule::Given, ..strategy.clone() };
         let task = Task { strategy: strategy.clone(), ..self.task.clone() };
-        let [soft, middling, stiff] = self.fingers;
-        let rig = self.engine.rig(&task, self.robot, &middling, 1.0)?;
-        match teach(&*rig, &middling, self.stop) {
+        let [soft, medium, stiff] = self.fingers;
+        let rig = self.engine.rig(&task, self.robot, &medium, 1.0)?;
+        match teach(&*rig, &medium, self.stop) {
             Ok(taught) => {
                 strategy.start[1] += offset(taught.by);
                 let others = self.windows(&strategy, &[soft, stiff], Conditions::NOMINAL)?;
@@ -120,7 +120,7 @@ impl<'a> Bench<'a> {
             }
             Err(nearest) => {
                 strategy.start[1] += offset(nearest.by);
-                // Below whatever inserts with the middling finger.
+                // Below whatever inserts with the medium finger.
                 let score = nearest.trial.margin.min(0.0) - 1.0;
                 let nearest = Some(Box::new(nearest.trial));
                 Ok(Tried { strategy, windows: Vec::new(), score, nearest, cost: 1 })
@@ -145,13 +145,13 @@ impl Tried {
         self.score >= 0.0
     }
 
-    /// The middling finger's smaller side, mm.
+    /// The medium finger's smaller side, mm.
     pub fn side_mm(&self) -> f64 {
         let side = |window: &Window| window.positive_mm().min(-window.negative_mm());
         self.windows.get(1).map_or(0.0, side)
     }
 
-    /// Whether all three insert, and the middling one far enough to either side.
+    /// Whether all three insert, and the medium one far enough to either side.
     pub fn is_enough(&self) -> bool {
         self.inserts() && self.side_mm() >= ENOUGH_MM
     }

@@ -10,7 +10,7 @@ use insertion::task::{Ending, Stage, Strategy, Task};
 
 /// Values of a knob: an odd number, so that the present one is among them.
 const LEVELS: u32 = 31;
-/// Most tilt, degrees: beyond it the roofs leave the shoulder.
+/// Most tilt, degrees: the larger published one and the shift that `priors/levers.toml` allows.
 const MOST_TILT_DEG: f64 = 15.0;
 
 /// Number of a strategy, with the row of `priors/` that bounds it: from its lower bound by the present

@@ -39,7 +39,7 @@ const FINALISTS: usize = 12;
 pub enum Stage {
     /// The strategy as the file has it.
     AsItIs,
-    /// A start taught with the middling finger.
+    /// A start taught with the medium finger.
     Start,
     /// Strategies of families of connectors, each with a taught start.
     Families,
@@ -89,7 +89,7 @@ pub struct Tuned {
     pub windows: usize,
 }
 
-/// Looks for a strategy, up to a stage; stages after `until_enough` holds are left out if asked.
+/// How far to look for a strategy.
 pub struct Effort<'a> {
     /// The last stage.
     pub last: Stage,

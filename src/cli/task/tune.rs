@@ -16,9 +16,9 @@ use serde_json::{Value, json};
 
 /// Find a start and a strategy by which a connector inserts, before fingers are compared
 ///
-/// A start taught with a middling finger; then the strategies of the shipped tasks, carried over to
+/// A start taught with a medium finger; then the strategies of the shipped tasks, carried over to
 /// this opening; then a search over tilt, strokes, preload and push speed for the widest least range
-/// of a soft, a middling and a stiff finger from one start. Exit code 1 if nothing inserts.
+/// of a soft, a medium and a stiff finger from one start. Exit code 1 if nothing inserts.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -55,11 +55,11 @@ fn nothing(file: &str, tuned: &Tuned) -> Failure {
 pub fn brief(name: &str, tuned: &Tuned) -> String {
     let step = tuned.best();
     let range = outcome(step);
-    let text = format!("{}: {range} with a soft, a middling and a stiff finger", step.what);
+    let text = format!("{}: {range} with a soft, a medium and a stiff finger", step.what);
     lines([(name.to_owned(), text)])
 }
 
-/// What was chosen: stage, what it changes, and ranges of a soft, a middling and a stiff finger; null
+/// What was chosen: stage, what it changes, and ranges of a soft, a medium and a stiff finger; null
 /// where nothing inserts.
 pub fn brief_json(tuned: &Tuned) -> Value {
     match tuned.inserts() {
@@ -129,7 +129,7 @@ fn text(done: &TuneDone) -> String {
     let line = |name: &str, text: String| (name.to_owned(), text);
     let mut all = vec![
         line("task", task.name.clone()),
-        line("fingers", format!("{}: soft, middling, stiff (compliance)", compliances(fingers))),
+        line("fingers", format!("{}: soft, medium, stiff (compliance)", compliances(fingers))),
     ];
     all.extend(steps(tuned));
     match after {

@@ -99,15 +99,18 @@ fn replaced(text: &str, spans: &[(usize, usize)], n: usize, by: &str) -> Vec<u8>
     [&text[..from], by, &text[to..]].concat().into_bytes()
 }
 
-/// Places of numbers that are no part of a word.
+/// Places of numbers that are no part of a word, nor of a sentence in quotes, which may say anything.
 fn numbers(text: &str) -> Vec<(usize, usize)> {
+    let sentences = words(text).into_iter().filter(|&(from, to)| text[from..to].contains(' '));
+    let sentences: Vec<_> = sentences.collect();
     let other = |c: char| !(c.is_ascii_alphanumeric() || "._-+".contains(c));
     let mut next = 0;
     let number = |piece: &str| {
         let from = next;
         next += piece.len();
         let word = piece.trim_end_matches(other);
-        word.parse::<f64>().is_ok().then_some((from, from + word.len()))
+        let said = sentences.iter().any(|&(begin, end)| (begin..end).contains(&from));
+        (!said && word.parse::<f64>().is_ok()).then_some((from, from + word.len()))
     };
     text.split_inclusive(other).filter_map(number).collect()
 }

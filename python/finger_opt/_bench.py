@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import csv
 import datetime
+import os
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ._attempts import Attempts, newest
 from ._ends import Search
 from ._native import InputError, RunError, __version__
-from ._task import Task
+from ._task import Given, Task
 
 if TYPE_CHECKING:
     from .robot import Measurement
@@ -25,10 +25,13 @@ NOTE = "50 % points"
 class Bench:
     """The measurement file, and the line of this finger in it."""
 
-    def __init__(self, out: Path, task: Task, density: float, direction: float) -> None:
+    def __init__(self, out: Path, task: Given, density: float, direction: float) -> None:
         if not out.parent.is_dir():
             raise InputError(f"{out}: there is no folder {out.parent}")
-        self.out, self.task = out, task
+        self.out = out
+        self.task = task if isinstance(task, Task) else Task.from_toml(task)
+        #: The name or the file of the task, if it has one: the caller may have changed a task.
+        self.named = None if isinstance(task, Task) or "\n" in str(task) else str(task)
         infill = {"infill_density_percent": density, "infill_direction_deg": direction}
         self.finger = {key: f"{float(value):.10g}" for key, value in infill.items()}
 
@@ -50,18 +53,22 @@ class Bench:
         if not self.out.exists():
             return False
         with self.out.open(newline="", encoding="utf-8-sig") as file:
-            rows = [row for row in csv.DictReader(file) if wanted.items() <= row.items()]
+            lines = (line for line in file if not line.startswith("#"))
+            rows = [row for row in csv.DictReader(lines) if wanted.items() <= row.items()]
         return any((row.get("note") or "").startswith(NOTE) for row in rows)
 
     def check(self, date: str) -> None:
         """Whether a line of that day could be added, before the robot moves."""
         if self.written(date):
             return
-        with tempfile.TemporaryDirectory() as folder:
-            copy = Path(folder) / self.out.name
+        # In the same folder, from which the file names the files of tasks.
+        copy = self.out.with_name(f".{self.out.stem}-{os.getpid()}.csv")
+        try:
             if self.out.exists():
                 copy.write_bytes(self.out.read_bytes())
             self.add(copy, {"range_mm": "1", "date": date}, InputError)
+        finally:
+            copy.unlink(missing_ok=True)
 
     def write(self, measured: Measurement, date: str) -> None:
         """Adds the line, unless it is there."""
@@ -82,16 +89,18 @@ class Bench:
         self.add(self.out, cells, RunError)
 
     def add(self, file: Path, cells: dict[str, str], error: type[Exception]) -> None:
-        with tempfile.TemporaryDirectory() as folder:
-            # By its text: the caller may have changed it.
-            task = Path(folder) / "task.toml"
-            task.write_text(self.task.to_toml(), encoding="utf-8")
-            density, direction = self.finger.values()
-            words = ["--task", str(task), "--density", density, "--direction", direction]
-            words += [f"--{key.replace('_', '-')}={value}" for key, value in cells.items()]
-            code = "import sys; from finger_opt._shell import main; sys.exit(main())"
-            command = [sys.executable, "-c", code, "measure", "add", str(file), *words]
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
+        task = self.named
+        if task is None:
+            # Beside the measurements, which name it.
+            own = self.out.with_name(f"{self.out.stem}-{self.task.name}.toml")
+            own.write_text(self.task.to_toml(), encoding="utf-8")
+            task = str(own)
+        density, direction = self.finger.values()
+        words = ["--task", task, "--density", density, "--direction", direction]
+        words += [f"--{key.replace('_', '-')}={value}" for key, value in cells.items()]
+        code = "import sys; from finger_opt._shell import main; sys.exit(main())"
+        command = [sys.executable, "-c", code, "measure", "add", str(file), *words]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             said = done.stderr.strip().removeprefix("error: ").replace(str(file), str(self.out))
             raise error(said or f"{self.out}: `optimize measure add` ended with {done.returncode}")

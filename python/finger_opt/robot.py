@@ -25,7 +25,7 @@ from ._bench import Bench
 from ._ends import INTERVAL, Gap, Search, Side, Window
 from ._measure import trial
 from ._native import InputError, RunError
-from ._task import Given, Task
+from ._task import Given
 
 __all__ = ["Attempt", "Gap", "Measurement", "Robot", "SimulatedRobot", "measure_window"]
 
@@ -148,12 +148,11 @@ def measure_window(
     marked and tried again), or if the taught start does not insert.
     """
     search = _checked(Search(step_mm, resolution_mm, limit_mm, repeats), attempts_max)
-    task_given = task if isinstance(task, Task) else Task.from_toml(task)
-    bench = Bench(Path(out), task_given, density, direction)
+    bench = Bench(Path(out), task, density, direction)
     attempts = bench.attempts(search)
     ended = bench.written(attempts.settings["date"])
     try:
-        course = _Course(robot, search, attempts, task_given.success.depth_mm)
+        course = _Course(robot, search, attempts, bench.task.success.depth_mm)
         measured = course.run(0 if ended else attempts_max)
     finally:
         attempts.close()

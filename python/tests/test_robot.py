@@ -245,6 +245,7 @@ def test_a_task_of_ones_own(out, command):
     own = out.with_name("mine.toml")
     own.write_text(task.to_toml())
     assert command("measure", "check", str(out), "--task", str(own))[0] == 0
+    assert command("measure", "check", str(out))[0] == 0
 
 
 def test_a_simulated_robot_measures_what_evaluate_finds(out, fake):

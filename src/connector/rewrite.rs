@@ -12,7 +12,14 @@ pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, Tom
     let mut file: DocumentMut = text.parse()?;
     let changed = Task { strategy: after.clone(), ..task.clone() };
     let new: DocumentMut = write::strategy_of(&changed).parse()?;
+    // Inline tables are written out: a comment has no place in them.
+    if let Ok(table) = std::mem::take(&mut file["strategy"]).into_table() {
+        file["strategy"] = Item::Table(table);
+    }
     if let (Some(old), Some(new)) = (file["strategy"].as_table_mut(), new["strategy"].as_table()) {
+        if let Some(Ok(phases)) = old.remove("phase").map(Item::into_array_of_tables) {
+            old.insert("phase", Item::ArrayOfTables(phases));
+        }
         change(old, new);
         if let Some(rule) = old.remove("start") {
             comment_above(old, "start_mm", &format!("# start was {}", shown(&rule)));
@@ -141,6 +148,23 @@ mod tests {
             let unchanged = strategy(file.text, &task, &task.strategy).unwrap();
             assert_eq!(unchanged, file.text, "{}", file.name);
         }
+    }
+
+    #[test]
+    fn inline_tables_are_changed_too() {
+        let [file, ..] = TASKS else { panic!() };
+        let mut fields: toml::Table = toml::from_str(file.text).unwrap();
+        let strategy = fields.remove("strategy").unwrap();
+        let text = format!("strategy = {strategy}\n{fields}");
+        let task = Task::parse(&text, "own").unwrap();
+        let after = Family::Peg.of(&task).unwrap();
+        let written = super::strategy(&text, &task, &after).unwrap();
+        let read = Task::parse(&written, "written").unwrap();
+        assert!((read.strategy.tilt - after.tilt).abs() < 1e-6, "{written}");
+        let off = read.strategy.phases.iter().zip(&after.phases).map(|(read, after)| {
+            (0..3).map(|i| (read.displacement[i] - after.displacement[i]).abs()).fold(0.0, f64::max)
+        });
+        assert!(off.fold(0.0, f64::max) < 1e-7, "{written}");
     }
 
     #[test]

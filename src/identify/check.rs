@@ -162,7 +162,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     let [from, to] = [any, after(log, any, 3.0 * TOUCH_S)];
     let force = mean(&log.moments[after(log, any, TOUCH_S).min(to - 1)..to])
         - Air::of(air(log, Some(any))).bias;
-    let [x, y, z] = force.map(|newton| newton.abs()).into();
+    let [x, y, z]: [f64; 3] = force.abs().into();
     let words = format!("the force on the tool becomes ({}) N", shown(force, 1));
     if z >= x.max(y) && force.z < 0.0 {
         let text = format!(

@@ -110,7 +110,7 @@ impl Frame {
         let turned = tilt.scaled_axis();
         let askew = turned.yz().norm();
         if askew > ASKEW || turned.x.abs() > PI / 2.0 {
-            let [x, y, z] = turned.map(f64::to_degrees).into();
+            let [x, y, z]: [f64; 3] = turned.map(f64::to_degrees).into();
             return Err(format!(
                 "the tool is turned by ({x:.0}, {y:.0}, {z:.0}) degrees about the task's axes from \
                  where it is upright; give `upright_axis_angle_rad` in the frame file, or correct it"

@@ -128,18 +128,18 @@ impl Log {
         if self.moments.iter().any(|moment| moment.target.is_some()) {
             text = format!("{text},{}", TARGETS.join(","));
         }
+        // Writing to a String cannot fail. What rounds to 0 has no sign.
+        let fixed = |text: &mut String, value: f64, digits: usize| {
+            let scale = 10_f64.powi(digits as i32);
+            let _ = write!(text, ",{:.digits$}", (value * scale).round() / scale + 0.0);
+        };
         for moment in &self.moments {
-            let ([x, y, z], tilt) = ((moment.position / MM).into(), moment.tilt / DEG);
-            let ([fx, fy, fz], time) = (moment.force.into(), moment.time_s);
-            // Writing to a String cannot fail. What rounds to 0 has no sign.
-            let z5 = [x, y, z, tilt].map(|value: f64| (value * 1e5).round() / 1e5 + 0.0);
-            let z4 = [fx, fy, fz].map(|value: f64| (value * 1e4).round() / 1e4 + 0.0);
-            let _ = write!(text, "\n{time:.6}");
-            z5.iter().for_each(|value| drop(write!(text, ",{value:.5}")));
-            z4.iter().for_each(|value| drop(write!(text, ",{value:.4}")));
-            for value in moment.target.iter().flat_map(|target| &target.position) {
-                let _ = write!(text, ",{:.5}", value / MM);
-            }
+            let _ = write!(text, "\n{:.6}", moment.time_s);
+            moment.position.iter().for_each(|value| fixed(&mut text, value / MM, 5));
+            fixed(&mut text, moment.tilt / DEG, 5);
+            moment.force.iter().for_each(|value| fixed(&mut text, *value, 4));
+            let target = moment.target.iter().flat_map(|target| &target.position);
+            target.for_each(|value| fixed(&mut text, value / MM, 5));
         }
         text.push('\n');
         text

@@ -195,11 +195,11 @@ impl<'a> Table<'a> {
             return Err(format!("a force of {large} looks like millinewtons; give newtons"));
         }
         let vector = Vector3::from_column_slice;
-        let (TcpAt { tcp, target }, force) = match self.format {
+        let (tcp, target, force) = match self.format {
             Format::Rtde(frame) => {
                 let target = (!goal.is_empty()).then(|| of_base(frame, &goal)).transpose()?;
                 let tcp = of_base(frame, &numbers[1..7])?;
-                (TcpAt { tcp, target }, frame.force_of_base(vector(force)))
+                (tcp, target, frame.force_of_base(vector(force)))
             }
             Format::Task => {
                 let of = |place: &[f64]| match place.iter().find(|mm| mm.abs() > FARTHEST / MM) {
@@ -216,7 +216,7 @@ impl<'a> Table<'a> {
                 let target = target.map(|position| Target { position, tilt: 0.0 });
                 let tcp = Target { position: of(&numbers[1..4])?, tilt: numbers[4] * DEG };
                 let force = vector(force);
-                (TcpAt { tcp, target }, self.frame.map_or(force, |frame| frame.force(force)))
+                (tcp, target, self.frame.map_or(force, |frame| frame.force(force)))
             }
         };
         Ok(Moment {
@@ -228,12 +228,6 @@ impl<'a> Table<'a> {
             force,
         })
     }
-}
-
-/// Where the TCP is, and where it should be.
-struct TcpAt {
-    tcp: Target,
-    target: Option<Target>,
 }
 
 /// A pose of six numbers, m and rad in the base.

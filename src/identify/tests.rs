@@ -150,7 +150,7 @@ fn what_cannot_be_read_is_told_with_its_line() {
         (short, "has 39 moments; it must have 50"),
         (String::new(), "a.csv: is empty"),
         (metres.csv(), "look like metres; give millimetres"),
-        (scaled(1, 1e3), "line 9: a position of 4"),
+        (scaled(1, 1e3), "looks like millimetres; RTDE records metres"),
         (scaled(4, 57.3), "looks like degrees; RTDE records axis-angle in rad"),
         (scaled(4, 0.5), "`upright_axis_angle_rad`"),
     ] {

@@ -74,7 +74,7 @@ fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
     let first = after(log, 0, FIRST_AIR_S).max(5);
     let over = |air: &Air, from: usize, to: usize| size(mean(&moments[from..to]) - air.bias);
     let start = Air::of(&moments[..first]);
-    let noise = |air: &Air, count: usize| air.noise.norm() / (count as f64).sqrt();
+    let noise = |air: &Air, count: usize| size(air.noise) / (count as f64).sqrt();
     let touches = |&at: &usize| {
         let short = after(log, at, MEAN_S).max(at + 3);
         let long = after(log, at, LASTS_S).max(short);
@@ -84,6 +84,7 @@ fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
             && over(&start, short, long.max(short + 1)) > least
     };
     let found = (0..moments.len().saturating_sub(3)).find(touches)?;
+    let found = after(log, found, MEAN_S).max(found + 3) - 1;
     // Back to where it left the noise of the air that is next to it: the bias may drift until then.
     let mut touch = found;
     for _ in 0..3 {
@@ -95,7 +96,7 @@ fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
         touch = found;
         while touch > 0 {
             let from = before(log, touch, MEAN_S).min(touch.saturating_sub(3));
-            if over(&air, from, touch + 1) <= noise(&air, touch + 1 - from) {
+            if over(&air, from, touch + 1) <= 2.0 * noise(&air, touch + 1 - from) {
                 break;
             }
             touch -= 1;

@@ -13,6 +13,8 @@ const LASTS_S: f64 = 0.06;
 const NEAR_AIR_S: [f64; 2] = [0.3, 0.02];
 /// Least force of a touch, N; and least multiple of the noise of a mean.
 const LEAST: [f64; 2] = [1.5, 5.0];
+/// A mean force within this is none, without noise, too, N.
+const LEFT_N: f64 = 0.05;
 
 /// The mean force in the air before the touch, N; of the whole log, if nothing is touched.
 pub fn bias(log: &Log) -> Vector3<f64> {
@@ -96,7 +98,7 @@ fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
         touch = found;
         while touch > 0 {
             let from = before(log, touch, MEAN_S).min(touch.saturating_sub(3));
-            if over(&air, from, touch + 1) <= 2.0 * noise(&air, touch + 1 - from) {
+            if over(&air, from, touch + 1) <= LEFT_N.max(2.0 * noise(&air, touch + 1 - from)) {
                 break;
             }
             touch -= 1;

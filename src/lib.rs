@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! input, contact, finray, ask_tell -> insertion
-//!       -> connector, sensitivity, map, study, calibration -> levers, tune -> answer -> report -> session -> cli
+//!       -> connector, sensitivity, map, study, calibration -> identify, levers, tune -> answer -> report -> session -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -20,6 +20,8 @@ pub mod answer;
 pub mod calibration;
 pub mod cli;
 pub mod connector;
+#[allow(dead_code, unused_imports)] // until its command is there
+pub(crate) mod identify;
 pub mod levers;
 pub mod map;
 pub mod report;

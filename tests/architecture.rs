@@ -3,12 +3,13 @@
 use std::path::Path;
 
 /// A room may use those before it (`docs/architecture.md`).
-const FLOW: [&str; 11] = [
+const FLOW: [&str; 12] = [
     "connector",
     "sensitivity",
     "map",
     "study",
     "calibration",
+    "identify",
     "levers",
     "tune",
     "answer",

@@ -10,56 +10,69 @@ use jiff::civil::Date;
 const ROUNDING_MM: f64 = 0.151;
 
 /// The cells of one line, and what was wrong with those read so far.
-struct Cells<'a> {
-    header: &'a StringRecord,
-    record: &'a StringRecord,
-    line: u64,
-    problems: Vec<String>,
+pub(crate) struct Cells<'a> {
+    pub(super) header: &'a StringRecord,
+    pub(super) record: &'a StringRecord,
+    pub(crate) line: u64,
+    pub(super) problems: Vec<String>,
 }
 
 impl<'a> Cells<'a> {
     /// The text of a column; empty if the file does not have it.
-    fn text(&self, column: &str) -> &'a str {
+    pub(crate) fn text(&self, column: &str) -> &'a str {
         let at = self.header.iter().position(|other| other == column);
         at.and_then(|at| self.record.get(at)).unwrap_or("")
     }
 
     /// The value of a column; what is wrong with it is kept.
-    fn read<T>(&mut self, column: &str, value: fn(&str) -> Result<T, String>) -> Option<T> {
+    pub(crate) fn read<T>(
+        &mut self,
+        column: &str,
+        value: fn(&str) -> Result<T, String>,
+    ) -> Option<T> {
         value(self.text(column)).map_err(|words| self.problem(column, &words)).ok()
     }
 
     /// The same, of a column that may be empty.
-    fn known<T>(&mut self, column: &str, value: fn(&str) -> Result<T, String>) -> Option<T> {
+    pub(crate) fn known<T>(
+        &mut self,
+        column: &str,
+        value: fn(&str) -> Result<T, String>,
+    ) -> Option<T> {
         if self.text(column).is_empty() { None } else { self.read(column, value) }
     }
 
-    fn problem(&mut self, column: &str, words: &str) {
+    pub(crate) fn problem(&mut self, column: &str, words: &str) {
         self.problems.push(problem(self.line, column, words));
+    }
+
+    /// The infill, and what else columns of a space file set.
+    pub(crate) fn design(&mut self) -> Design {
+        let density = self.read(DENSITY_KEY, density).unwrap_or_default();
+        let direction = self.read(DIRECTION_KEY, direction).unwrap_or_default();
+        let mut design = Design::infill(density, direction);
+        for key in self.header.iter().filter(|name| is_of_space(name)) {
+            design.0.extend(self.known(key, number).map(|value| (key.to_owned(), value)));
+        }
+        design
     }
 }
 
-pub(super) fn experiment(
-    header: &StringRecord,
-    record: &StringRecord,
-    line: u64,
-) -> Result<Experiment, Vec<String>> {
-    let mut cells = Cells { header, record, line, problems: Vec::new() };
+/// Whether a column is a key of a space file.
+pub(super) fn is_of_space(name: &str) -> bool {
+    name.starts_with("task.") || name.starts_with("finger.")
+}
+
+/// The experiment of a line; what is wrong with it is kept in `cells`.
+pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experiment {
     let task = cells.text("task").to_owned();
     if task.is_empty() {
         cells.problem("task", "is empty; name the task");
     }
-    let density = cells.read(DENSITY_KEY, density).unwrap_or_default();
-    let direction = cells.read(DIRECTION_KEY, direction).unwrap_or_default();
-    let mut design = Design::infill(density, direction);
-    for key in header.iter().filter(|name| name.starts_with("task.") || name.starts_with("finger."))
-    {
-        design.0.extend(cells.known(key, number).map(|value| (key.to_owned(), value)));
-    }
     let experiment = Experiment {
-        line,
+        line: cells.line,
         task,
-        design,
+        design: cells.design(),
         negative_mm: cells.known("negative_mm", length),
         positive_mm: cells.known("positive_mm", length),
         range_mm: cells.known("range_mm", range).flatten(),
@@ -70,9 +83,12 @@ pub(super) fn experiment(
         note: cells.text("note").to_owned(),
     };
     if cells.problems.is_empty() {
-        check_window(&mut cells, &experiment);
+        check_window(cells, &experiment);
     }
-    if cells.problems.is_empty() { Ok(experiment) } else { Err(cells.problems) }
+    if cells.problems.is_empty() {
+        cells.problems.extend(twice(&experiment, before));
+    }
+    experiment
 }
 
 /// A window holds the start from which it is measured, and is as wide as the range.
@@ -105,7 +121,7 @@ fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
 }
 
 /// The same finger on the same task and day as on an earlier line.
-pub(super) fn twice(new: &Experiment, before: &[Experiment]) -> Option<String> {
+fn twice(new: &Experiment, before: &[Experiment]) -> Option<String> {
     let same = |old: &&Experiment| {
         old.task == new.task && old.design == new.design && old.date == new.date
     };
@@ -153,7 +169,7 @@ fn direction(text: &str) -> Result<f64, String> {
     }
 }
 
-fn length(text: &str) -> Result<f64, String> {
+pub(crate) fn length(text: &str) -> Result<f64, String> {
     match number(text)? {
         long if long.abs() > MOST_MM => {
             Err(format!("{long} looks like micrometres; give millimetres, as in {}", long / 1e3))
@@ -176,7 +192,7 @@ fn range(text: &str) -> Result<Option<f64>, String> {
     }
 }
 
-fn failure(text: &str) -> Result<FailureClass, String> {
+pub(crate) fn failure(text: &str) -> Result<FailureClass, String> {
     let class = text.parse::<u8>().ok().and_then(|number| FailureClass::try_from(number).ok());
     let known = FailureClass::ALL.map(|class| format!("{} ({})", class.number(), class.label()));
     class.ok_or_else(|| format!("`{text}` is no failure class; there are {}", known.join(", ")))

@@ -3,7 +3,7 @@
 //! Only the task, the design and something that was measured are needed; columns may be left
 //! out, and further design parameters are further columns, named as in a space file.
 
-mod line;
+pub(crate) mod line;
 #[cfg(test)]
 mod tests;
 
@@ -11,6 +11,7 @@ use csv::StringRecord;
 use input::shipped::nearest;
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use line::{Cells, is_of_space};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
@@ -72,13 +73,13 @@ fn reader() -> csv::ReaderBuilder {
 pub struct Problems(Vec<String>);
 
 impl Problems {
-    fn of(file: &str, problems: Vec<String>) -> Self {
+    pub(crate) fn of(file: &str, problems: Vec<String>) -> Self {
         Problems(problems.into_iter().map(|problem| format!("{file}: {problem}")).collect())
     }
 }
 
 /// A fault of a line, in a column unless its name is empty.
-fn problem(line: u64, column: &str, words: &str) -> String {
+pub(crate) fn problem(line: u64, column: &str, words: &str) -> String {
     let column = if column.is_empty() { String::new() } else { format!("{column}: ") };
     format!("line {line}: {column}{words}")
 }
@@ -142,27 +143,47 @@ impl Experiment {
 
 /// Reads and checks a measurement file; `file` is named in errors. An empty file has no lines.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
+    let why = "a line says which finger was tried on which task";
+    rows(text, file, &Columns { all: &COLUMNS, needed: 3, why }, line::experiment)
+}
+
+/// Columns of a table of fingers.
+pub(crate) struct Columns<'a> {
+    /// All but keys of a space file, the needed ones first.
+    pub all: &'a [&'a str],
+    pub needed: usize,
+    /// What a line says by those that are needed.
+    pub why: &'a str,
+}
+
+/// Reads and checks such a table by `one`, which is given the lines before, too, and leaves what is
+/// wrong in the cells.
+pub(crate) fn rows<T>(
+    text: &str,
+    file: &str,
+    columns: &Columns<'_>,
+    mut one: impl FnMut(&mut Cells<'_>, &[T]) -> T,
+) -> Result<Vec<T>, Problems> {
     // The reader counts a line of a "\r\n" file too few; spreadsheets begin with a mark.
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
     if is_empty(&text) {
         return Ok(Vec::new());
     }
     let mut reader = reader().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let one = |problem: String| Problems::of(file, vec![problem]);
-    let wrong = |error: csv::Error| one(syntax(&text, &error));
+    let fault = |problem: String| Problems::of(file, vec![problem]);
+    let wrong = |error: csv::Error| fault(syntax(&text, &error));
     let header = reader.headers().map_err(wrong)?.clone();
-    check_header(&header, line_at(&text, header.position())).map_err(one)?;
+    check_header(&header, columns, line_at(&text, header.position())).map_err(fault)?;
     let (mut found, mut problems) = (Vec::new(), Vec::new());
     for record in reader.records() {
         let record = record.map_err(wrong)?;
-        let at = line_at(&text, record.position());
-        match line::experiment(&header, &record, at) {
-            Ok(experiment) => {
-                problems.extend(line::twice(&experiment, &found));
-                found.push(experiment);
-            }
-            Err(more) => problems.extend(more),
+        let line = line_at(&text, record.position());
+        let mut cells = Cells { header: &header, record: &record, line, problems: Vec::new() };
+        let row = one(&mut cells, &found);
+        if cells.problems.is_empty() {
+            found.push(row);
         }
+        problems.extend(cells.problems);
     }
     if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
 }
@@ -185,15 +206,15 @@ fn syntax(text: &str, error: &csv::Error) -> String {
     problem(line_at(text, error.position()), "", &words)
 }
 
-/// Checks that the columns are known, stand once, and say which finger was tried.
-fn check_header(header: &StringRecord, at: u64) -> Result<(), String> {
+/// Checks that the columns are known, stand once, and say what is needed.
+fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result<(), String> {
+    let Columns { all, needed, why } = columns;
     for (i, name) in header.iter().enumerate() {
-        let of_space = name.starts_with("task.") || name.starts_with("finger.");
-        if !of_space && !COLUMNS.contains(&name) {
+        if !is_of_space(name) && !all.contains(&name) {
             let words = format!(
                 "is no column{}; there are {}, and keys of a space file (task. or finger.)",
-                hint(name, &COLUMNS),
-                COLUMNS.join(", ")
+                hint(name, all),
+                all.join(", ")
             );
             return Err(problem(at, name, &words));
         }
@@ -201,12 +222,9 @@ fn check_header(header: &StringRecord, at: u64) -> Result<(), String> {
             return Err(problem(at, name, "is given twice; each column may stand once"));
         }
     }
-    match COLUMNS[..3].iter().find(|needed| header.iter().all(|name| name != **needed)) {
+    match all[..*needed].iter().find(|needed| header.iter().all(|name| name != **needed)) {
         None => Ok(()),
-        Some(missing) => {
-            let words = "is missing; a line says which finger was tried on which task";
-            Err(problem(at, missing, words))
-        }
+        Some(missing) => Err(problem(at, missing, &format!("is missing; {why}"))),
     }
 }
 

@@ -1,0 +1,133 @@
+//! `frame.toml`: where the task's frame is in the robot's base, and what the recorded force means.
+
+use super::log::Target;
+use input::units::MM;
+use input::{Check, InputError, read};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use serde::Deserialize;
+use std::f64::consts::{PI, TAU};
+
+/// Standard gravity, m/s^2.
+const GRAVITY: f64 = 9.80665;
+/// A frame nearer to the base's axes than this, mm, is one in metres.
+const NEAREST_MM: f64 = 10.0;
+/// Turn of the TCP from upright that is not about x, rad, from which on its tilt says nothing.
+const ASKEW: f64 = 0.5;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Raw {
+    origin_mm: [f64; 3],
+    axis_angle_rad: [f64; 3],
+    upright_axis_angle_rad: Option<[f64; 3]>,
+    #[serde(default = "on_tool")]
+    force_sign: f64,
+    #[serde(default)]
+    tool_mass_kg: f64,
+    #[serde(default)]
+    tool_centre_mm: [f64; 3],
+    #[serde(default = "yes")]
+    gravity_compensated: bool,
+}
+
+fn on_tool() -> f64 {
+    1.0
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// The task's frame in the robot's base, and the tool on the sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Pose of the task's frame in the base, m.
+    base: Isometry3<f64>,
+    /// Orientation of the upright TCP in the task's frame.
+    upright: UnitQuaternion<f64>,
+    /// 1 if the recorded force is that on the tool, -1 if that of the tool.
+    sign: f64,
+    /// Mass of what hangs on the sensor, kg.
+    pub tool_mass: f64,
+    /// Its centre, from the TCP, m.
+    pub tool_centre: Vector3<f64>,
+    /// Whether the recorded force is without the tool's weight.
+    compensated: bool,
+}
+
+impl Frame {
+    /// Reads and checks a frame; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If it is no TOML of this shape, a value cannot be used or looks like one in another unit.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let (raw, check): (Raw, _) = (read(text, file)?, Check { file });
+        let turn = |key: &str, turn: [f64; 3]| {
+            let turn = Vector3::from(check.each(key, turn, Check::finite)?);
+            let must = "be a turn of at most 6.2832 (rad); degrees must be multiplied by 0.017453";
+            check.require(key, turn.norm(), turn.norm() <= TAU + 1e-3, must)?;
+            Ok(UnitQuaternion::from_scaled_axis(turn))
+        };
+        let origin = Vector3::from(check.each("origin_mm", raw.origin_mm, Check::finite)?);
+        let (far, fits) = (origin.norm(), (NEAREST_MM..=1e4).contains(&origin.norm()));
+        let must = "lie 10 .. 10000 from the base (mm); metres must be multiplied by 1000";
+        check.require("origin_mm", far, fits, must)?;
+        let rotation = turn("axis_angle_rad", raw.axis_angle_rad)?;
+        let upright = match raw.upright_axis_angle_rad {
+            Some(upright) => rotation.inverse() * turn("upright_axis_angle_rad", upright)?,
+            None => UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI),
+        };
+        let sign = raw.force_sign;
+        let must = "be 1 (force on the tool) or -1 (force of the tool)";
+        check.require("force_sign", sign, sign.abs() == 1.0, must)?;
+        let mass = raw.tool_mass_kg;
+        let must = "lie in 0 .. 50 (kg); grams must be divided by 1000";
+        check.require("tool_mass_kg", mass, (0.0..=50.0).contains(&mass), must)?;
+        if mass == 0.0 && !raw.gravity_compensated {
+            let problem = "is needed where `gravity_compensated` is false; give the mass of all \
+                           that hangs on the sensor";
+            return check.fail("tool_mass_kg", problem);
+        }
+        let centre = check.each("tool_centre_mm", raw.tool_centre_mm, Check::distance)?;
+        Ok(Frame {
+            base: Isometry3::from_parts(Translation3::from(origin * MM), rotation),
+            upright,
+            sign,
+            tool_mass: mass,
+            tool_centre: Vector3::from(centre) * MM,
+            compensated: raw.gravity_compensated,
+        })
+    }
+
+    /// A pose in the base (m; axis-angle, rad) as one in the task's frame.
+    ///
+    /// # Errors
+    /// What would be right, if the TCP is turned from upright by more than a tilt about x.
+    pub(super) fn pose(&self, place: [f64; 3], turn: [f64; 3]) -> Result<Target, String> {
+        let position = self.base.inverse_transform_point(&Vector3::from(place).into()).coords;
+        let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
+        let tilt = self.base.rotation.inverse() * rotation * self.upright.inverse();
+        let turned = tilt.scaled_axis();
+        let askew = turned.yz().norm();
+        if askew > ASKEW || turned.x.abs() > PI / 2.0 {
+            let [x, y, z]: [f64; 3] = turned.map(f64::to_degrees).into();
+            return Err(format!(
+                "the tool is turned by ({x:.0}, {y:.0}, {z:.0}) degrees about the task's axes from \
+                 where it is upright; give `upright_axis_angle_rad` in the frame file, or correct it"
+            ));
+        }
+        Ok(Target { position, tilt: turned.x })
+    }
+
+    /// A recorded force in the base as the force on the tool in the task's frame, N.
+    pub(super) fn force_of_base(&self, force: Vector3<f64>) -> Vector3<f64> {
+        self.force(self.base.rotation.inverse() * force)
+    }
+
+    /// A recorded force in the task's frame as that on the tool, N.
+    pub(super) fn force(&self, force: Vector3<f64>) -> Vector3<f64> {
+        let weight =
+            self.base.rotation.inverse() * Vector3::new(0.0, 0.0, -self.tool_mass * GRAVITY);
+        self.sign * force - if self.compensated { Vector3::zeros() } else { weight }
+    }
+}

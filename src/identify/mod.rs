@@ -1,0 +1,16 @@
+//! From the logs of attempts to the cell in which they were made. Reads files, writes none.
+//!
+//! 1. `log`: one attempt, moment by moment; `read`: from the formats in which it is recorded.
+//! 2. `frame`: the task's frame in the robot's base, and what its force means.
+//! 3. `runs`: which finger, offset and outcome belong to which log.
+//! 4. `touch`: where the tool touches, and the force before.
+//! 5. `check`: what is wrong with a log, before anything is fitted to it.
+
+pub mod check;
+pub mod frame;
+pub mod log;
+pub mod read;
+pub mod runs;
+#[cfg(test)]
+mod tests;
+pub mod touch;

@@ -1,0 +1,248 @@
+//! Logs from text: `t_s,x_mm,..` in the task's frame, or what an RTDE recorder writes in the base's.
+
+use super::frame::Frame;
+use super::log::{COLUMNS, Log, LogError, MOST, Moment, TARGETS, Target};
+use input::files;
+use input::shown;
+use input::units::{DEG, MM};
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Most bytes of a log: ten minutes at 500 Hz.
+pub const LARGEST_LOG: u64 = 64 << 20;
+/// No robot reaches so far, m.
+const FARTHEST: f64 = 10.0;
+/// A TCP stays not so near to the opening all the time, mm.
+const NEAREST_MM: f64 = 1.0;
+/// Largest force that is taken for newtons.
+const MOST_N: f64 = 5000.0;
+/// Nothing is recorded so seldom, s.
+const SLOWEST_S: f64 = 0.5;
+
+/// Reads a log; one in the base's frame needs `frame`.
+///
+/// # Errors
+/// If it cannot be read, is longer than [`LARGEST_LOG`], or [`parse`] refuses it.
+pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Log, LogError> {
+    let file = path.display().to_string();
+    let text = files::read_named(path, LARGEST_LOG)
+        .map_err(|error| LogError::Whole(file.clone(), format!("cannot be read: {error}")))?;
+    parse(&text, &file, frame)
+}
+
+/// Reads and checks a log's text; `file` is named in errors. Lines that begin with `#` are none.
+///
+/// # Errors
+/// If it has no known header, a cell cannot be used or looks like one in another unit, or
+/// [`Log::new`] refuses it.
+pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, LogError> {
+    let whole = |problem: String| LogError::Whole(file.to_owned(), problem);
+    let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
+    let bare = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('#');
+    let (at, header) = lines
+        .find(|(_, line)| !bare(line))
+        .ok_or_else(|| whole(format!("is empty; a log begins with {}", COLUMNS.join(","))))?;
+    let fault = |at: usize, problem| LogError::Line(file.to_owned(), at + 1, problem);
+    let table = Table::new(header, frame).map_err(|problem| fault(at, problem))?;
+    let mut moments: Vec<Moment> = Vec::new();
+    for (at, line) in lines.filter(|(_, line)| !bare(line)) {
+        if moments.len() == MOST {
+            return Err(whole(format!("has more than {MOST} moments; cut it to the attempt")));
+        }
+        let mut moment = table.moment(line).map_err(|problem| fault(at, problem))?;
+        moment.line = at + 1;
+        if let (Format::Task, Some(target)) = (&table.format, &mut moment.target) {
+            target.tilt = moments.first().map_or(moment.tilt, |first| first.tilt);
+        }
+        moments.push(moment);
+    }
+    let log = Log::new(file, moments)?;
+    check_units(&log).map_err(whole)?;
+    Ok(log)
+}
+
+/// What only a whole log shows to be in another unit.
+fn check_units(log: &Log) -> Result<(), String> {
+    let gap = median_gap(log);
+    if gap > SLOWEST_S {
+        return Err(format!(
+            "the time between its lines is {gap}, which looks like milliseconds; \
+                            give seconds"
+        ));
+    }
+    let far = log.moments.iter().map(|moment| moment.position.amax()).fold(0.0, f64::max);
+    if far < NEAREST_MM * MM {
+        return Err(format!(
+            "no coordinate is beyond {} mm, so that they look like metres; give \
+                            millimetres",
+            shown(far / MM)
+        ));
+    }
+    Ok(())
+}
+
+/// Median time between two moments, s.
+pub(super) fn median_gap(log: &Log) -> f64 {
+    let mut gaps: Vec<f64> = log.moments.windows(2).map(|w| w[1].time_s - w[0].time_s).collect();
+    gaps.sort_by(f64::total_cmp);
+    gaps.get(gaps.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// How a log was recorded, with the frame that it needs.
+enum Format<'a> {
+    Task,
+    Rtde(&'a Frame),
+}
+
+/// The columns of a log: time, TCP, force; then the commanded TCP, if there is one.
+struct Table<'a> {
+    format: Format<'a>,
+    frame: Option<&'a Frame>,
+    commas: bool,
+    names: Vec<&'a str>,
+    places: Vec<usize>,
+    targets: Vec<usize>,
+}
+
+/// The cells of a line, without quotes.
+fn cells(line: &str, commas: bool) -> impl Iterator<Item = &str> {
+    let blanks = (!commas).then(|| line.split_whitespace());
+    let split = commas.then(|| line.split(','));
+    let cells = split.into_iter().flatten().chain(blanks.into_iter().flatten());
+    cells.map(|cell| cell.trim().trim_matches('"'))
+}
+
+impl<'a> Table<'a> {
+    fn new(header: &'a str, frame: Option<&'a Frame>) -> Result<Self, String> {
+        if header.contains(';') {
+            return Err("its columns are separated by `;`; separate them by commas".to_owned());
+        }
+        let commas = header.contains(',');
+        let names: Vec<&str> = cells(header, commas).collect();
+        let axes =
+            |name: &str, count: usize| (0..count).map(move |i| format!("{name}_{i}")).collect();
+        let rtde: [Vec<String>; 3] =
+            [axes("actual_TCP_pose", 6), axes("actual_TCP_force", 3), axes("target_TCP_pose", 6)];
+        let [pose, force, goal] = rtde;
+        let rtde = [vec!["timestamp".to_owned()], pose, force].concat();
+        let has = |name: &&str| names.contains(name);
+        let known = |all: &[String]| all.iter().filter(|name| has(&name.as_str())).count();
+        let task = COLUMNS.map(str::to_owned).to_vec();
+        let is_rtde = known(&rtde) > known(&task);
+        let (needed, goal) = match is_rtde {
+            true => (rtde, goal),
+            false => (task, TARGETS.map(str::to_owned).to_vec()),
+        };
+        let wanted = if known(&goal) > 0 { &goal[..] } else { &[] };
+        let missing: Vec<&str> =
+            needed.iter().chain(wanted).map(String::as_str).filter(|name| !has(name)).collect();
+        if missing.len() > needed.len() / 2 {
+            return Err(format!(
+                "is no header of a log; it would have the columns {}, or `timestamp`, \
+                 `actual_TCP_pose_0` to `_5` and `actual_TCP_force_0` to `_5`",
+                COLUMNS.join(",")
+            ));
+        }
+        if !missing.is_empty() {
+            return Err(format!("the header lacks {}", missing.join(", ")));
+        }
+        if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+            return Err(format!("the header has {} twice; each column may stand once", twice.1));
+        }
+        let format = match (is_rtde, frame) {
+            (false, _) => Format::Task,
+            (true, Some(frame)) => Format::Rtde(frame),
+            (true, None) => {
+                return Err(
+                    "its poses are in the robot's base; give the pose of the task's frame \
+                            there by --frame frame.toml"
+                        .to_owned(),
+                );
+            }
+        };
+        let place = |name: &String| names.iter().position(|other| other == name);
+        let places = needed.iter().filter_map(place).collect();
+        let targets = wanted.iter().filter_map(place).collect();
+        Ok(Table { format, frame, commas, names, places, targets })
+    }
+
+    /// The moment of a line; its own line and, in the task's frame, the commanded tilt are not set.
+    fn moment(&self, line: &str) -> Result<Moment, String> {
+        let found: Vec<&str> = cells(line, self.commas).collect();
+        if found.len() != self.names.len() {
+            let (has, header) = (found.len(), self.names.len());
+            return Err(format!(
+                "has {has} cells where the header has {header}; complete the line, \
+                                or cut it"
+            ));
+        }
+        let number = |place: &usize| {
+            let (name, cell) = (self.names[*place], found[*place]);
+            match cell.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(value),
+                _ if cell.is_empty() => {
+                    Err(format!("{name}: is empty; give a number, or cut the line"))
+                }
+                _ => Err(format!("{name}: `{}` is no finite number", files::visible(cell))),
+            }
+        };
+        let numbers = |places: &[usize]| places.iter().map(number).collect::<Result<Vec<f64>, _>>();
+        let (numbers, goal) = (numbers(&self.places)?, numbers(&self.targets)?);
+        let force = &numbers[numbers.len() - 3..];
+        if let Some(large) = force.iter().find(|force| force.abs() > MOST_N) {
+            let large = shown(*large);
+            return Err(format!("a force of {large} looks like millinewtons; give newtons"));
+        }
+        let vector = Vector3::from_column_slice;
+        let (tcp, target, force) = match self.format {
+            Format::Rtde(frame) => {
+                let target = (!goal.is_empty()).then(|| of_base(frame, &goal)).transpose()?;
+                let tcp = of_base(frame, &numbers[1..7])?;
+                (tcp, target, frame.force_of_base(vector(force)))
+            }
+            Format::Task => {
+                let of = |place: &[f64]| match place.iter().find(|mm| mm.abs() > FARTHEST / MM) {
+                    Some(mm) => Err(format!(
+                        "a coordinate of {} looks like micrometres; give millimetres",
+                        shown(*mm)
+                    )),
+                    None => Ok(vector(place) * MM),
+                };
+                if numbers[4].abs() > 90.0 {
+                    return Err(format!("tilt_deg: is {}; it must lie in -90 .. 90", numbers[4]));
+                }
+                let target = (!goal.is_empty()).then(|| of(&goal)).transpose()?;
+                let target = target.map(|position| Target { position, tilt: 0.0 });
+                let tcp = Target { position: of(&numbers[1..4])?, tilt: numbers[4] * DEG };
+                let force = vector(force);
+                (tcp, target, self.frame.map_or(force, |frame| frame.force(force)))
+            }
+        };
+        Ok(Moment {
+            line: 0,
+            time_s: numbers[0],
+            position: tcp.position,
+            tilt: tcp.tilt,
+            target,
+            force,
+        })
+    }
+}
+
+/// A pose of six numbers, m and rad in the base.
+fn of_base(frame: &Frame, pose: &[f64]) -> Result<Target, String> {
+    let [x, y, z, rx, ry, rz] = *pose else { return Err("a pose has six numbers".to_owned()) };
+    let (place, turn) = ([x, y, z], [rx, ry, rz]);
+    if let Some(far) = place.iter().find(|m| m.abs() > FARTHEST) {
+        let far = shown(*far);
+        return Err(format!("a position of {far} looks like millimetres; RTDE records metres"));
+    }
+    if let Some(large) = turn.iter().find(|rad| rad.abs() > TAU + 1e-3) {
+        let large = shown(*large);
+        return Err(format!(
+            "a turn of {large} looks like degrees; RTDE records axis-angle in rad"
+        ));
+    }
+    frame.pose(place, turn)
+}

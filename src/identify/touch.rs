@@ -1,0 +1,108 @@
+//! Where a log's tool first touches, and the force in the air before that.
+
+use super::log::{Log, Moment};
+use nalgebra::Vector3;
+
+/// A log begins with at least so long in the air, s, or its touch is not found.
+const FIRST_AIR_S: f64 = 0.05;
+/// Forces are averaged over this time, s, against the noise, and over three moments at least.
+const MEAN_S: f64 = 0.01;
+/// A touch lasts at least so long, s: longer than the starts and stops of a quick move.
+const LASTS_S: f64 = 0.06;
+/// Air from which the noise and bias next to the touch are taken, s, and its distance from it, s.
+const NEAR_AIR_S: [f64; 2] = [0.3, 0.02];
+/// Least force of a touch, N; and least multiple of the noise of a mean.
+const LEAST: [f64; 2] = [1.5, 5.0];
+/// A mean force within this is none, without noise, too, N.
+const LEFT_N: f64 = 0.05;
+
+/// The mean force in the air before the touch, N; of the whole log, if nothing is touched.
+pub fn bias(log: &Log) -> Vector3<f64> {
+    Air::of(air(log, touch(log))).bias
+}
+
+/// The moments in the air, without those next to the touch; never empty.
+pub(super) fn air(log: &Log, touch: Option<usize>) -> &[Moment] {
+    let end = touch.map_or(log.moments.len(), |at| before(log, at, NEAR_AIR_S[1]).max(1));
+    &log.moments[..end]
+}
+
+/// Index of the moment at which the tool touches: the force along z, less the bias, rises from there
+/// to 1.5 N and 5 times its noise, and stays. `None` if it never does.
+pub fn touch(log: &Log) -> Option<usize> {
+    onset(log, |force| force.z)
+}
+
+/// Index of the moment from which a force of any direction stays.
+pub(super) fn any_touch(log: &Log) -> Option<usize> {
+    onset(log, |force| force.norm())
+}
+
+/// Mean force and noise of a moment's force in the air, N.
+pub(super) struct Air {
+    pub bias: Vector3<f64>,
+    pub noise: Vector3<f64>,
+}
+
+impl Air {
+    /// The noise is that of differences from one moment to the next, which no drift changes.
+    pub fn of(moments: &[Moment]) -> Self {
+        let square = |w: &[Moment]| (w[1].force - w[0].force).map(|step| step * step);
+        let squares: Vector3<f64> = moments.windows(2).map(square).sum();
+        let pairs = moments.len().saturating_sub(1).max(1) as f64;
+        Air { bias: mean(moments), noise: (squares / (2.0 * pairs)).map(f64::sqrt) }
+    }
+}
+
+/// Mean force, N.
+pub(super) fn mean(moments: &[Moment]) -> Vector3<f64> {
+    moments.iter().map(|moment| moment.force).sum::<Vector3<f64>>() / moments.len().max(1) as f64
+}
+
+/// Index of the moment `seconds` before that of an index.
+fn before(log: &Log, at: usize, seconds: f64) -> usize {
+    let since = log.moments[at].time_s - seconds;
+    log.moments[..at].partition_point(|moment| moment.time_s < since)
+}
+
+/// Index of the moment `seconds` after that of an index; of the end, if there is none.
+pub(super) fn after(log: &Log, at: usize, seconds: f64) -> usize {
+    let until = log.moments[at].time_s + seconds;
+    at + log.moments[at..].partition_point(|moment| moment.time_s < until)
+}
+
+fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
+    let moments = &log.moments;
+    let first = after(log, 0, FIRST_AIR_S).max(5);
+    let over = |air: &Air, from: usize, to: usize| size(mean(&moments[from..to]) - air.bias);
+    let start = Air::of(&moments[..first]);
+    let noise = |air: &Air, count: usize| size(air.noise) / (count as f64).sqrt();
+    let touches = |&at: &usize| {
+        let short = after(log, at, MEAN_S).max(at + 3);
+        let long = after(log, at, LASTS_S).max(short);
+        let least = LEAST[0].max(LEAST[1] * noise(&start, short - at));
+        long < moments.len()
+            && over(&start, at, short) > least
+            && over(&start, short, long.max(short + 1)) > least
+    };
+    let found = (0..moments.len().saturating_sub(3)).find(touches)?;
+    let found = after(log, found, MEAN_S).max(found + 3) - 1;
+    // Back to where it left the noise of the air that is next to it: the bias may drift until then.
+    let mut touch = found;
+    for _ in 0..3 {
+        let near = before(log, touch, NEAR_AIR_S[1]);
+        let air = match before(log, touch, NEAR_AIR_S[0]) {
+            from if near >= from + 5 => Air::of(&moments[from..near]),
+            _ => return Some(touch),
+        };
+        touch = found;
+        while touch > 0 {
+            let from = before(log, touch, MEAN_S).min(touch.saturating_sub(3));
+            if over(&air, from, touch + 1) <= LEFT_N.max(2.0 * noise(&air, touch + 1 - from)) {
+                break;
+            }
+            touch -= 1;
+        }
+    }
+    Some(touch)
+}

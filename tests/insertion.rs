@@ -237,7 +237,7 @@ fn the_success_rate_follows_the_window() {
         let finger = finger(compliance, 52.4);
         let predicted = Prediction::exact(finger.compliance, finger.assembly);
         let found =
-            robustness::evaluate(&rig, Grasp::of(&finger), &predicted, Search::Strides, &plan);
+            robustness::evaluate(&rig, Grasp::of(&finger), &predicted, Search::Strides, &plan, &[]);
         let success = found.success.unwrap();
         assert_eq!(success.diverged, 0);
         (found.window.range_mm(), success.rate().unwrap())
@@ -259,7 +259,7 @@ fn a_robust_range_is_smaller_than_the_range() {
     let predicted = surrogate::fit(&measured, &printed).unwrap().predict(20.0, 10.0).unwrap();
     let finger = Finger::new(predicted.compliance.mean, predicted.assembly.mean);
     let (rig, grasp) = (direct("ket12"), Grasp::of(&finger));
-    let found = robustness::evaluate(&rig, grasp, &predicted, Search::Strides, &plan);
+    let found = robustness::evaluate(&rig, grasp, &predicted, Search::Strides, &plan, &[]);
     let robust = found.robust.unwrap();
     assert_eq!((robust.ranges_mm.len(), robust.diverged), (6, 0));
     assert!(robust.sd_mm() > 0.0);

@@ -158,7 +158,8 @@ impl<'py> Keywords<'py> {
         Ok(SetupRequest {
             tasks: tasks.into_iter().flat_map(|TaskWord(sources)| sources).collect(),
             space: self.text("space")?.unwrap_or(usual.space),
-            robot: self.text("robot")?.unwrap_or(usual.robot),
+            robot: self.text("robot")?,
+            cell: self.text("cell")?,
             stiffness_data: self.text("stiffness_data")?,
             engine: self.choice("engine")?.unwrap_or(usual.engine),
             finger_model: FingerModelRequest {

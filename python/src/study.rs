@@ -79,6 +79,7 @@ pub fn study<'py>(
         constraints: words.parsed("constraint")?,
         uncertainty: words.text("uncertainty")?,
         measurements: words.text("measurements")?,
+        priors: words.text("priors")?,
         aggregate: words.choice("aggregate")?,
         weights: words.numbers("weights")?,
         seed: words.take("seed")?.unwrap_or(usual.seed),

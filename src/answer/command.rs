@@ -2,7 +2,9 @@
 
 use super::trust::Trust;
 use super::{Answer, Verdict};
-use crate::study::{FINGER, INDIFFERENCE_MM, Provenance, StudyRecord, input_path, sha256_hex};
+use crate::study::{
+    CELL, FINGER, INDIFFERENCE_MM, Provenance, StudyRecord, input_path, sha256_hex,
+};
 use input::shipped::{
     FINGERS, MEASUREMENTS, ROBOTS, SPACES, STIFFNESS, Shipped, TASKS, UNCERTAINTIES,
 };
@@ -138,10 +140,12 @@ const USUAL: [&str; 2] = ["--space infill", "--robot servo"];
 /// Options from the space to the engine.
 fn setup(named: &Named) -> Vec<String> {
     let provenance = named.provenance();
-    let mut words = vec![
-        format!("--space {}", named.input("space", SPACES)),
-        format!("--robot {}", named.input("robot", ROBOTS)),
-    ];
+    // A cell holds its robot.
+    let robot = match provenance.input_sha256.contains_key(CELL) {
+        true => format!("--cell {}", named.input(CELL, &[])),
+        false => format!("--robot {}", named.input("robot", ROBOTS)),
+    };
+    let mut words = vec![format!("--space {}", named.input("space", SPACES)), robot];
     if name(provenance, "stiffness", STIFFNESS).is_none() {
         words.push(format!("--stiffness-data {}", named.input("stiffness", &[])));
     }

@@ -2,12 +2,12 @@
 
 use super::bench::{Bench, Settings, sampled};
 use super::predict::{Of, Predicted, draws, predict};
-use super::prior::Parameter;
 use super::process::COORDINATES;
 use super::statistics::{mean, spearman};
 use super::subject::Subject;
 use crate::study::LeaveOneOut;
 use ask_tell::stream::stream;
+use insertion::evaluation::cell::Parameter;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};

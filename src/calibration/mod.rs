@@ -16,7 +16,6 @@ pub(crate) mod experiments;
 pub(crate) mod next;
 pub(crate) mod order;
 pub(crate) mod predict;
-pub(crate) mod prior;
 pub(crate) mod process;
 pub mod published;
 pub(crate) mod simulation;

@@ -1,20 +1,17 @@
 //! Simulated windows under values of what nobody measured.
 
-use super::prior::{Parameter, Target};
 use crate::study::Cache;
 use input::units::MM;
 use insertion::evaluation::Evaluation;
+use insertion::evaluation::cell::{Parameter, Target};
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::{self, Search};
-use insertion::finger::Finger;
-use insertion::finger::model::FingerSource;
 use insertion::outcome::Outcome;
-use insertion::robot::{Drive, Robot};
+use insertion::robot::Robot;
 use insertion::space::Design;
-use insertion::surrogate::Prediction;
-use insertion::trial::{Conditions, Grasp};
+use insertion::trial::Grasp;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -37,16 +34,15 @@ impl<'a> Simulation<'a> {
     pub fn new(
         evaluator: &'a Evaluator,
         template: &'a Template,
-        parameters: &'a [Parameter],
+        parameters: impl Iterator<Item = &'a Parameter>,
         cache: Option<PathBuf>,
         stop: &'a AtomicBool,
     ) -> Self {
         let has = |parameter: &&Parameter| match &parameter.sets {
-            Target::Number(path) => number(evaluator, template, path).is_some(),
-            Target::Flange => matches!(evaluator.robot.drive, Drive::Servo(_)),
-            _ => true,
+            Target::Number(path) => evaluator.number(template, path).is_some(),
+            _ => parameter.fits(&evaluator.robot),
         };
-        let parameters = parameters.iter().filter(has).collect();
+        let parameters = parameters.filter(has).collect();
         Simulation { evaluator, template, parameters, cache, stop }
     }
 
@@ -54,7 +50,7 @@ impl<'a> Simulation<'a> {
     pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
         let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
         let values: Vec<_> = values.collect();
-        let (specimen, robot) = under(self.evaluator, self.template, (design, None), &values)?;
+        let (specimen, robot) = self.evaluator.under(self.template, (design, None), &values)?;
         let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;
         let own = self.measure(&specimen, &robot)?;
         if inserts(&own) {
@@ -89,67 +85,5 @@ impl<'a> Simulation<'a> {
             cache.put(&key, &evaluation);
         }
         Ok(evaluation)
-    }
-}
-
-/// The number of that key in the task file, or in the finger file of computed fingers.
-pub fn number(evaluator: &Evaluator, template: &Template, key: &str) -> Option<f64> {
-    template.numbers.number(key).or_else(|| match &evaluator.fingers {
-        FingerSource::Paper => None,
-        FingerSource::Computed(fingers) => fingers.file.numbers.number(key),
-    })
-}
-
-/// A design under these values of parameters, and the robot; its stiffness is predicted unless given.
-pub fn under(
-    evaluator: &Evaluator,
-    template: &Template,
-    (design, given): (&Design, Option<Prediction>),
-    values: &[(&Parameter, f64)],
-) -> Result<(Specimen, Robot), Impossible> {
-    let mut set = design.clone();
-    for (parameter, value) in values {
-        if let Target::Number(key) = &parameter.sets
-            && let Some(own) = design.get(key).or_else(|| number(evaluator, template, key))
-        {
-            set.0.insert(key.clone(), parameter.applied(own, *value));
-        }
-    }
-    let stiffness = given.map_or_else(|| evaluator.predict(&set), Ok)?;
-    let mut specimen = evaluator.specimen(template, &set, stiffness)?;
-    let mut robot = evaluator.robot.clone();
-    for (parameter, value) in values {
-        change(parameter, *value, &mut specimen, &mut robot);
-    }
-    Ok((specimen, robot))
-}
-
-/// Changes what a parameter sets beside the numbers of the task file.
-fn change(parameter: &Parameter, value: f64, specimen: &mut Specimen, robot: &mut Robot) {
-    let Finger { compliance, assembly, rotation, rcc, .. } = &mut specimen.finger;
-    match parameter.sets {
-        Target::Number(_) => (),
-        Target::Clearance => {
-            let clearance = parameter.applied(0.0, value) * MM;
-            specimen.task = Conditions { clearance, ..Conditions::NOMINAL }.task(&specimen.task);
-        }
-        Target::Edges => {
-            specimen.task = specimen.task.rounded(parameter.applied(0.0, value) * MM);
-        }
-        Target::Chamfer => {
-            specimen.task = specimen.task.chamfered(parameter.applied(0.0, value) * MM);
-        }
-        Target::Stiffness => {
-            *compliance = parameter.applied(*compliance, value);
-            *assembly = parameter.applied(*assembly, value);
-        }
-        Target::Tilting => rotation[0] = parameter.applied(rotation[0], value),
-        Target::Centre => *rcc = parameter.applied(*rcc / MM, value) * MM,
-        Target::Flange => {
-            if let Drive::Servo(servo) = &mut robot.drive {
-                let all = servo.stiffness.iter_mut().chain(&mut servo.rotational_stiffness);
-                all.for_each(|stiffness| *stiffness = parameter.applied(*stiffness, value));
-            }
-        }
     }
 }

@@ -15,6 +15,7 @@ pub fn json(chosen: &Chosen) -> Value {
     json!({
         "task": specimen.task.name,
         "robot": chosen.robot,
+        "cell": chosen.cell,
         "infill_density_percent": chosen.design.get(DENSITY_KEY),
         "infill_direction_deg": chosen.design.get(DIRECTION_KEY),
         "set": chosen.set,

@@ -2,7 +2,6 @@
 
 use super::rows::{Changed, Row, rows};
 use super::{Base, Lever, Levers};
-use crate::calibration::simulation::under;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{Impossible, Template};
@@ -123,7 +122,7 @@ impl Question<'_> {
     }
 
     fn cell(&self, design: &Design, given: Option<Prediction>) -> Result<Cell, Impossible> {
-        under(self.evaluator, self.template, (design, given), &[])
+        self.evaluator.under(self.template, (design, given), &[])
     }
 
     /// The design with the infill of the space whose finger is softest, and with that of the stiffest.
@@ -166,8 +165,9 @@ impl Question<'_> {
             templates: Vec::new(),
             robot: robot.clone(),
             engine: self.evaluator.engine,
+            cell: None,
         };
-        Ok(evaluator.measure(&specimen, Search::default(), &Plan::WINDOW, stop)?)
+        evaluator.measure(&specimen, Search::default(), &Plan::WINDOW, stop)
     }
 }
 

@@ -1,12 +1,11 @@
 //! Which levers a task and a robot have, and between what values.
 
 use super::measure::Question;
-use crate::calibration::prior::{Parameter, Priors, Target, Way};
-use crate::calibration::simulation::{number, under};
 use crate::connector::body::{ConvexBody, width};
 use crate::connector::seat::section;
 use input::shipped::{LEVERS, PRIORS};
 use input::units::{MM, N_PER_MM};
+use insertion::evaluation::cell::{Parameter, Priors, Target, Way};
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::template::Impossible;
 use insertion::robot::{Drive, Robot};
@@ -63,7 +62,7 @@ pub fn rows(question: &Question<'_>, task: &Task) -> Result<Vec<Row>, Impossible
 fn present(question: &Question<'_>, task: &Task, sets: &Target) -> Option<f64> {
     let Question { evaluator, template, design, .. } = question;
     match sets {
-        Target::Number(key) => design.get(key).or_else(|| number(evaluator, template, key)),
+        Target::Number(key) => design.get(key).or_else(|| evaluator.number(template, key)),
         Target::Clearance => Some(clearance(task) / MM),
         Target::Chamfer => Some(0.0),
         Target::Flange => match &evaluator.robot.drive {
@@ -114,7 +113,7 @@ impl Row {
             return None;
         }
         let set = [(&self.parameter, to)];
-        let (specimen, robot) = under(evaluator, template, (design, *given), &set).ok()?;
+        let (specimen, robot) = evaluator.under(template, (design, *given), &set).ok()?;
         evaluator.engine.rig(&specimen.task, &robot, &specimen.finger, 1.0).ok()?;
         Some(Changed { value, specimen, robot })
     }

@@ -9,10 +9,10 @@ use crate::calibration::bench::Settings;
 use crate::calibration::calibrate::{Calibration, Layout};
 use crate::calibration::emulator::{CalibrationError, Emulator, Set};
 use crate::calibration::experiments::Experiment;
-use crate::calibration::prior::{Parameter, Priors};
 use crate::calibration::simulation::Simulation;
 use crate::calibration::subject::Subject;
 use input::shipped::{PRIORS, Source};
+use insertion::evaluation::cell::Priors;
 use insertion::evaluation::template::Template;
 use insertion::space::Design;
 use std::path::PathBuf;
@@ -108,12 +108,12 @@ impl CalibrateRequest {
 
 impl BenchRequest {
     /// The setup, of the task of these measurements if none is given.
-    fn setup(&self, measurements: &Source) -> Result<Setup, Failure> {
+    fn setup(&self, measurements: &Source, priors: &Priors) -> Result<Setup, Failure> {
         if !self.setup.tasks.is_empty() {
-            return self.setup.setup();
+            return self.setup.setup_with(Some(priors));
         }
         let tasks = vec![measured::task(measurements)?];
-        SetupRequest { tasks, ..self.setup.clone() }.setup()
+        SetupRequest { tasks, ..self.setup.clone() }.setup_with(Some(priors))
     }
 }
 
@@ -132,14 +132,14 @@ impl HowCalibrated {
         stop: &'a AtomicBool,
         watch: &mut Watch<'_>,
     ) -> Result<Prepared<'a>, Failure> {
-        let setup = bench.setup(measurements)?;
-        let experiments = measured::lines(measurements, &setup.task_names())?;
         let priors = find("file of priors", PRIORS, &self.priors)?;
         let priors = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
+        let setup = bench.setup(measurements, &priors)?;
+        let experiments = measured::lines(measurements, &setup.task_names())?;
         let effort = self.effort.or(None)?;
         let ground = Ground {
             setup: &setup,
-            parameters: &priors.parameters,
+            priors: &priors,
             simulations: usize::from(effort.simulations),
             seed: self.seed,
             cache: self.cache.folder(&setup)?,
@@ -158,8 +158,8 @@ pub(super) fn folds(done: usize, of: usize) -> Part {
 pub(super) struct Ground<'a> {
     /// Tasks, robot, fingers, space.
     pub setup: &'a Setup,
-    /// Parameters that nobody measured.
-    pub parameters: &'a [Parameter],
+    /// What nobody measured.
+    pub priors: &'a Priors,
     /// Simulations per task.
     pub simulations: usize,
     /// Names their set.
@@ -173,7 +173,8 @@ pub(super) struct Ground<'a> {
 impl<'a> Ground<'a> {
     fn simulation(&self, template: &'a Template) -> Simulation<'a> {
         let evaluator = &self.setup.evaluator;
-        Simulation::new(evaluator, template, self.parameters, self.cache.clone(), self.stop)
+        let parameters = self.priors.of(&template.task.name);
+        Simulation::new(evaluator, template, parameters, self.cache.clone(), self.stop)
     }
 
     /// The tasks' fingers and their parameters; `measurements` is the file's name.

@@ -70,6 +70,8 @@ pub struct Chosen {
     pub specimen: Specimen,
     /// Name of the robot.
     pub robot: String,
+    /// Name of the cell, if one is given.
+    pub cell: Option<String>,
     /// Where its springs come from that were not measured.
     pub finger_model: FingerModelKind,
     /// All that names the design: infill and what was set; empty for a stiffness alone.
@@ -120,6 +122,7 @@ impl FingerRequest {
         Ok(Chosen {
             specimen,
             robot: evaluator.robot.name.clone(),
+            cell: evaluator.cell.as_ref().map(|cell| cell.name.clone()),
             finger_model: evaluator.fingers.kind(),
             design,
             set,

@@ -3,11 +3,11 @@
 use super::files::find;
 use super::{Failure, Setup, TaskSource, read_task};
 use crate::calibration::experiments::{self, Experiment};
-use crate::calibration::prior::Priors;
 use crate::calibration::subject::whole;
 use crate::study::{BENCH_ROLES, StudyRecord, input_path, read_config};
 use input::files::{LARGEST_INPUT, read_named};
 use input::shipped::{MEASUREMENTS, Source, TASKS};
+use insertion::evaluation::cell::Priors;
 use insertion::evaluation::template::Template;
 use insertion::space::Space;
 use std::path::{Path, PathBuf};

@@ -48,7 +48,7 @@ pub(super) fn predict(
     }
     let ground = Ground {
         setup,
-        parameters: &measured.priors.parameters,
+        priors: &measured.priors,
         simulations: usize::from(effort.simulations),
         seed: study.config.seed,
         cache: how.cache.folder(setup)?,
@@ -68,7 +68,7 @@ pub(super) fn predict(
         let (subject, result) = one.ok_or_else(nothing)?;
         let best = by_range(result).first().map(|best| best.finger).ok_or_else(nothing)?;
         let (task, cache) = (setup.only_task()?, ground.cache.clone());
-        let simulation = Simulation::new(&setup.evaluator, task, &[], cache, stop);
+        let simulation = Simulation::new(&setup.evaluator, task, [].iter(), cache, stop);
         let simulated = simulation.window(&subject.designs[best], &[]).map_err(Failure::input)?;
         not_stopped(stop)?;
         let found = on_bench(subject, result, simulated, provenance, effort);

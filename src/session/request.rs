@@ -2,7 +2,9 @@
 
 use super::files::{Fingers, find, stiffness_data};
 use super::{Failure, Setup};
+use input::files::{LARGEST_INPUT, read_named};
 use input::shipped::{FINGERS, ROBOTS, SPACES, Source, TASKS};
+use insertion::evaluation::cell::Priors;
 use insertion::finger::file::is_shape;
 use insertion::finger::model::{FingerModelKind, FingerSource};
 use insertion::space::{Parameter, Space};
@@ -56,9 +58,12 @@ pub struct SetupRequest {
     /// Search space: infill, codesign, finger, or the path of a space file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_SPACE)]
     pub space: String,
-    /// Robot: see `optimize robots`, or the path of a robot file
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
-    pub robot: String,
+    /// Robot: see `optimize robots`, or the path of a robot file [default: servo]
+    #[arg(long, value_name = "NAME")]
+    pub robot: Option<String>,
+    /// Your own cell: robot, friction and more, as `optimize identify` writes it
+    #[arg(long, value_name = "FILE.toml")]
+    pub cell: Option<String>,
     /// Your own stiffness measurements in place of the shipped ones
     #[arg(long, value_name = "FILE.csv")]
     pub stiffness_data: Option<String>,
@@ -90,7 +95,8 @@ impl Default for SetupRequest {
         SetupRequest {
             tasks: Vec::new(),
             space: DEFAULT_SPACE.to_owned(),
-            robot: DEFAULT_ROBOT.to_owned(),
+            robot: None,
+            cell: None,
             stiffness_data: None,
             engine: EngineKind::default(),
             finger_model: FingerModelRequest { kind: None, finger: DEFAULT_FINGER.to_owned() },
@@ -102,6 +108,11 @@ impl Default for SetupRequest {
 impl SetupRequest {
     /// Reads and checks all that is named.
     pub fn setup(&self) -> Result<Setup, Failure> {
+        self.setup_with(None)
+    }
+
+    /// The same with the robot that these priors hold, if they do.
+    pub(super) fn setup_with(&self, priors: Option<&Priors>) -> Result<Setup, Failure> {
         if self.tasks.is_empty() {
             return Err(Failure::usage("give --task"));
         }
@@ -114,12 +125,40 @@ impl SetupRequest {
         };
         let tasks = self.tasks.iter().map(task).collect::<Result<Vec<_>, Failure>>()?;
         let space = find("space", SPACES, &self.space)?;
-        let robot = find("robot", ROBOTS, &self.robot)?;
+        let cell = self.cell.as_deref().map(cell).transpose()?;
+        let robot = self.robot(priors.and_then(Priors::robot_text), cell.as_ref())?;
         let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
         let fingers = Fingers::parse(self.finger_model.file(Some(&parsed))?)?;
         let stiffness =
             stiffness_data(self.stiffness_data.as_deref(), &fingers.measured_finger()?)?;
-        Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, self.engine)
+        let setup =
+            Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, self.engine)?;
+        match cell {
+            Some((source, cell)) => setup.within(source, cell),
+            None => Ok(setup),
+        }
+    }
+
+    /// The file of the robot: of the one that priors or the cell hold, else of the one named.
+    fn robot(
+        &self,
+        of_priors: Option<String>,
+        cell: Option<&(Source, Priors)>,
+    ) -> Result<Source, Failure> {
+        let held = |flag: &str, text| match &self.robot {
+            Some(_) => {
+                Err(Failure::usage(format!("{flag} holds a robot: leave out --robot or {flag}")))
+            }
+            None => Ok(Source { file: format!("{flag}: [robot]"), text }),
+        };
+        match (of_priors, cell.and_then(|(_, cell)| cell.robot_text())) {
+            (Some(_), Some(_)) => Err(Failure::usage(
+                "--priors holds a robot, and so does --cell: leave out one of them",
+            )),
+            (Some(text), None) => held("--priors", text),
+            (None, Some(text)) => held("--cell", text),
+            (None, None) => find("robot", ROBOTS, self.robot.as_deref().unwrap_or(DEFAULT_ROBOT)),
+        }
     }
 }
 
@@ -152,6 +191,15 @@ impl FingerModelRequest {
             FingerModelKind::Computed => find("finger", FINGERS, &self.finger).map(Some),
         }
     }
+}
+
+/// The file of a cell, and what it says.
+fn cell(path: &str) -> Result<(Source, Priors), Failure> {
+    let text = read_named(Path::new(path), LARGEST_INPUT)
+        .map_err(|error| Failure::usage(format!("{path}: cannot read the cell: {error}")))?;
+    let source = Source { file: path.to_owned(), text };
+    let cell = super::setup::cell(&source)?;
+    Ok((source, cell))
 }
 
 /// A task file with this rule of its start. What is no task stays as it is, to be refused.

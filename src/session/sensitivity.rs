@@ -46,6 +46,11 @@ impl SensitivityRequest {
         if self.uncertainty != "none" {
             setup = setup.under_named(&self.uncertainty)?;
         }
+        if setup.uncertainty.as_ref().is_some_and(|uncertainty| uncertainty.cell.is_some()) {
+            return Err(Failure::usage(
+                "--uncertainty: varies errors here, no cell; give the cell by --cell",
+            ));
+        }
         let template = setup.only_task()?;
         let errors = setup.uncertainty.as_ref().map(|uncertainty| &uncertainty.errors);
         let factors = Factors::new(&setup.space, errors).map_err(Failure::usage)?;

@@ -4,17 +4,19 @@ use super::Failure;
 use super::files::{Fingers, find, surrogate};
 use super::measured::{self, Measured};
 use super::request::DEFAULT_FINGER;
-use crate::calibration::prior::Priors;
-use crate::study::{BENCH_ROLES, FINGER, Inputs, Provenance, sha256};
+use crate::study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};
 use input::shipped::{FINGERS, Source, UNCERTAINTIES};
+use insertion::evaluation::cell::{Priors, Target};
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{Template, printable};
 use insertion::evaluation::uncertainty::Uncertainty;
+use insertion::finger::computed::AtPad;
+use insertion::finger::file::is_shape;
 use insertion::finger::model::{FingerModelKind, FingerSource};
 use insertion::robot::Robot;
-use insertion::space::Space;
+use insertion::space::{Design, Space};
 use insertion::surrogate::Model;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
@@ -61,6 +63,11 @@ impl Setup {
         let fingers = Fingers::parse(finger_input(inputs)?)?;
         let others = [&robot?, &stiffness?];
         let mut setup = Setup::new(&tasks, (&space, parsed), others, fingers, engine)?;
+        if inputs.contains_key(CELL) {
+            let source = input(inputs, CELL)?;
+            let found = cell(&source)?;
+            setup = setup.within(source, found)?;
+        }
         if inputs.contains_key(UNCERTAINTY) {
             setup = setup.under(input(inputs, UNCERTAINTY)?)?;
         }
@@ -91,7 +98,8 @@ impl Setup {
         let sources = roles.chain(others).chain(finger);
         let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
         let surrogate = Arc::new(surrogate(stiffness_source, &fingers.measured_finger()?)?);
-        let evaluator = Evaluator { surrogate, fingers: fingers.made(), templates, robot, engine };
+        let fingers = fingers.made();
+        let evaluator = Evaluator { surrogate, fingers, templates, robot, engine, cell: None };
         fit_together(&evaluator, &space, &space_source.file)?;
         let task_files = tasks.iter().map(|task| task.file.clone()).collect();
         Ok(Setup { inputs, evaluator, uncertainty: None, measured: None, space, task_files })
@@ -111,9 +119,21 @@ impl Setup {
             templates: own.templates.clone(),
             robot: own.robot.clone(),
             engine: own.engine,
+            cell: own.cell.clone(),
         };
         fit_together(&evaluator, &self.space, SPACE).ok()?;
         Some(evaluator)
+    }
+
+    /// The same in a cell, whose robot it has; of the cell's source.
+    pub(super) fn within(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
+        for row in &cell.parameters {
+            row.change_robot(row.middle(), &mut self.evaluator.robot);
+        }
+        self.evaluator.cell = Some(cell.clone());
+        possible(&self.evaluator, &cell, &source.file)?;
+        self.inputs.insert(CELL.to_owned(), source.text);
+        Ok(self)
     }
 
     /// The same with the errors of that name under which designs are measured.
@@ -123,6 +143,15 @@ impl Setup {
 
     fn under(mut self, errors: Source) -> Result<Self, Failure> {
         let uncertainty = Uncertainty::parse(&errors.text, &errors.file).map_err(Failure::input)?;
+        let robot = &self.evaluator.robot;
+        let rows = uncertainty.cell.iter().filter(|cell| cell.robot.is_none());
+        let mut rows = rows.flat_map(|cell| &cell.parameters);
+        if let Some(row) = rows.find(|row| !row.fits(robot)) {
+            return Err(Failure::usage(format!(
+                "{}: {}: goes with a robot of kind = \"servo\", which `{}` is not",
+                errors.file, row.name, robot.name
+            )));
+        }
         self.uncertainty = Some(uncertainty);
         self.inputs.insert(UNCERTAINTY.to_owned(), errors.text);
         Ok(self)
@@ -190,6 +219,23 @@ fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), 
     printable::check_springs(evaluator, space, file).map_err(Failure::input)
 }
 
+/// Whether each task can have the cell's numbers.
+fn possible(evaluator: &Evaluator, cell: &Priors, file: &str) -> Result<(), Failure> {
+    for template in &evaluator.templates {
+        for row in cell.of(&template.task.name) {
+            let Target::Number(key) = &row.sets else { continue };
+            let value = evaluator.number(template, key).filter(|_| !is_shape(key));
+            let Some(value) = value else { continue };
+            let design = Design::infill(0.0, 0.0).with(key, value);
+            let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };
+            template
+                .apply(&design, &FingerSource::Paper, at_pad)
+                .map_err(|error| Failure::usage(format!("{file}: {}: {error}", row.name)))?;
+        }
+    }
+    Ok(())
+}
+
 /// A task that is given twice would count twice.
 fn different(templates: &[Template]) -> Result<(), Failure> {
     let names: Vec<&str> = templates.iter().map(|template| &*template.task.name).collect();
@@ -198,6 +244,17 @@ fn different(templates: &[Template]) -> Result<(), Failure> {
         Some((_, twice)) => {
             Err(Failure::usage(format!("two tasks are called `{twice}`; give each task once")))
         }
+    }
+}
+
+/// The cell of a file, which has to hold a robot.
+pub(super) fn cell(Source { file, text }: &Source) -> Result<Priors, Failure> {
+    let cell = Priors::parse(text, file).map_err(Failure::input)?;
+    match cell.robot {
+        Some(_) => Ok(cell),
+        None => Err(Failure::usage(format!(
+            "{file}: robot: is missing; a cell has its robot in [robot], as a robot file"
+        ))),
     }
 }
 

@@ -13,6 +13,7 @@ use crate::study::{
 };
 use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
+use insertion::evaluation::cell::Priors;
 use insertion::evaluation::objective::{Aggregate, AggregateKind, Constraint, Measure, Objectives};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -67,6 +68,10 @@ pub struct StudyRequest {
     /// the finger that is best there, predicted from all simulations and these measurements
     #[arg(long, value_name = "FILE")]
     pub measurements: Option<String>,
+    /// What nobody measured, and its bounds, for --measurements: bench, or the path of a file
+    /// [default: bench]
+    #[arg(long, value_name = "NAME")]
+    pub priors: Option<String>,
     /// What is made of the values of several tasks [default: min]
     #[arg(long, value_enum)]
     pub aggregate: Option<AggregateKind>,
@@ -166,6 +171,7 @@ impl StudyRequest {
             constraints: Vec::new(),
             uncertainty: None,
             measurements: None,
+            priors: None,
             aggregate: None,
             weights: Vec::new(),
             seed: 0,
@@ -199,7 +205,15 @@ impl StudyRequest {
         within("--polish", self.polish, &POLISHES)?;
         within("--seed", self.seed, &SEEDS)?;
         within("--batch", self.batch, &BATCHES)?;
-        let mut setup = self.setup.setup()?;
+        if self.priors.is_some() && self.measurements.is_none() {
+            return Err(Failure::usage(
+                "--priors goes with --measurements: without, nothing is drawn",
+            ));
+        }
+        let priors = self.priors.as_deref().unwrap_or(DEFAULT_PRIORS);
+        let priors = find("file of priors", PRIORS, priors)?;
+        let of_robot = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
+        let mut setup = self.setup.setup_with(Some(&of_robot))?;
         let constrained = self.constraints.iter().map(|constraint| constraint.measure);
         let mut measures = self.objective.measures().iter().copied().chain(constrained);
         match (measures.any(Measure::is_drawn), &self.uncertainty) {
@@ -215,7 +229,6 @@ impl StudyRequest {
             }
         }
         if let Some(name) = &self.measurements {
-            let priors = find("file of priors", PRIORS, DEFAULT_PRIORS)?;
             setup = setup.with_measurements(measured::file(name)?, priors)?;
         }
         let mut config = self.config(&setup)?;

@@ -39,6 +39,8 @@ pub const JOURNAL_FILE: &str = "journal.jsonl";
 const INPUTS: &str = "inputs";
 /// Role of the finger file among the inputs.
 pub const FINGER: &str = "finger";
+/// Role of the file of a cell among the inputs.
+pub const CELL: &str = "cell";
 const LOCK_FILE: &str = ".lock";
 /// Who has the lock, if that is not known.
 const UNKNOWN_OWNER: &str = "of unknown number";

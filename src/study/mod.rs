@@ -36,7 +36,7 @@ pub use course::Ending;
 pub(crate) use course::{Arrived, Course, Next, Wanted};
 pub use error::StudyError;
 pub(crate) use folder::{
-    FINGER, IfChanged, Inputs, input_path, read_config, sha256, write_own_file,
+    CELL, FINGER, IfChanged, Inputs, input_path, read_config, sha256, write_own_file,
 };
 pub use folder::{Study, write_file};
 pub use line::{decode, encode};

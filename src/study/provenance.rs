@@ -24,7 +24,7 @@ pub struct Provenance {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simulation_sha256: Option<String>,
     /// SHA-256 of each input file by its role (`task_1` and so on, `space`, `robot`,
-    /// `stiffness`; `uncertainty`, the `finger` of computed ones, `measurements` and `priors` where
+    /// `stiffness`; `cell`, `uncertainty`, the `finger` of computed ones, `measurements` and `priors` where
     /// there is one), in hexadecimal.
     pub input_sha256: BTreeMap<String, String>,
     pub engine: EngineRecord,

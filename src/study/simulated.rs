@@ -8,7 +8,6 @@ use insertion::evaluation::robustness::race::Race;
 use insertion::evaluation::template::Impossible;
 use insertion::evaluation::tolerance::Search;
 use insertion::space::Design;
-use insertion::trial::run::RigError;
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -78,7 +77,7 @@ impl Simulated<'_> {
     }
 
     /// The evaluation, and whether it was in the cache.
-    fn measure(&self, specimen: &Specimen, plan: &Plan) -> Result<(Evaluation, bool), RigError> {
+    fn measure(&self, specimen: &Specimen, plan: &Plan) -> Result<(Evaluation, bool), Impossible> {
         let keep = self.cache.map(|cache| (cache, self.key(cache, specimen, plan)));
         if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
             return Ok((found, true));

@@ -1,11 +1,11 @@
 //! Numbers of a strategy that are searched over.
 
-use crate::calibration::prior::{Parameter, Priors};
 use crate::connector::body::ConvexBody;
 use crate::connector::seat;
 use input::InputError;
 use input::shipped::{LEVERS, PRIORS};
 use input::units::{DEG, MM};
+use insertion::evaluation::cell::{Parameter, Priors};
 use insertion::task::{Ending, Stage, Strategy, Task};
 
 /// Values of a knob: an odd number, so that the present one is among them.

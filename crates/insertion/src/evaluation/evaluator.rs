@@ -1,10 +1,11 @@
 //! Design in, evaluation out: the one way from a design to what is measured of it.
 
+use super::cell::{Parameter, Priors};
 use super::leaving;
 use super::robustness::firm::{self, Firm};
 use super::robustness::race::Race;
 use super::robustness::repeat::Repeats;
-use super::robustness::{self, Plan};
+use super::robustness::{self, Drawn, Plan};
 use super::taught::{Moved, teach};
 use super::template::{Impossible, Template};
 use super::tolerance::Search;
@@ -45,6 +46,7 @@ const STIFFEST_N_PER_MM: f64 = 1e6;
 ///     templates: vec![Template::parse(TASKS[0].text, TASKS[0].file)?],
 ///     robot: Robot::parse(ROBOTS[0].text, ROBOTS[0].file)?,
 ///     engine: EngineKind::Direct,
+///     cell: None,
 /// };
 /// let design = Design::infill(20.0, 10.0);
 /// let stiffness = evaluator.predict(&design)?;
@@ -63,6 +65,8 @@ pub struct Evaluator {
     pub robot: Robot,
     /// Contact engine.
     pub engine: EngineKind,
+    /// Cell whose numbers apply where a design sets none, if it is known; `robot` is its robot.
+    pub cell: Option<Priors>,
 }
 
 /// A design on one task: what is simulated.
@@ -70,6 +74,8 @@ pub struct Evaluator {
 pub struct Specimen {
     /// The task, with the numbers that the design sets.
     pub task: Task,
+    /// What it was made of.
+    pub design: Design,
     /// Finger that the design gives.
     pub finger: Finger,
     /// Source of the finger's remote centre.
@@ -109,17 +115,29 @@ impl Evaluator {
             FingerSource::Paper => Ok(plain),
             FingerSource::Computed(fingers) => {
                 let measured = &self.surrogate.measurements;
+                let design = &self.completed(None, design, &self.rows(None));
                 Ok(leaving::predict(fingers, measured, design, plain)?)
             }
         }
     }
 
-    /// A design of this stiffness on one of the tasks.
+    /// A design of this stiffness on one of the tasks, in the cell if that is known.
     pub fn specimen(
         &self,
         template: &Template,
         design: &Design,
         stiffness: Prediction,
+    ) -> Result<Specimen, Impossible> {
+        self.specimen_under(template, design, stiffness, &self.rows(Some(template)))
+    }
+
+    /// The same where these rows of a cell have these values, unless the design sets the number.
+    pub(super) fn specimen_under(
+        &self,
+        template: &Template,
+        design: &Design,
+        stiffness: Prediction,
+        rows: &[(&Parameter, f64)],
     ) -> Result<Specimen, Impossible> {
         for (key, axis) in [
             ("compliance stiffness", stiffness.compliance),
@@ -135,8 +153,13 @@ impl Evaluator {
             DESIGN.not_negative(key, axis.sd / N_PER_MM)?;
         }
         let at_pad = AtPad::of(&stiffness);
-        let (task, Made { finger, centre }) = template.apply(design, &self.fingers, at_pad)?;
-        Ok(Specimen { task, finger, centre, stiffness })
+        let set = self.completed(Some(template), design, rows);
+        let (task, Made { finger, centre }) = template.apply(&set, &self.fingers, at_pad)?;
+        let mut specimen = Specimen { task, design: design.clone(), finger, centre, stiffness };
+        for (row, value) in rows.iter().filter(|(row, _)| design.get(row.sets.key()).is_none()) {
+            row.change(*value, &mut specimen);
+        }
+        Ok(specimen)
     }
 
     /// By how much the start of a specimen is moved, in grid steps; `None` if its task has no
@@ -160,8 +183,17 @@ impl Evaluator {
         taught: Option<OffsetStep>,
         step_factor: f64,
     ) -> Result<Box<dyn Rig>, RigError> {
-        let Specimen { task, finger, .. } = specimen;
-        let rig = self.engine.rig(task, &self.robot, finger, step_factor)?;
+        self.rig_of(specimen, &self.robot, taught, step_factor)
+    }
+
+    fn rig_of(
+        &self,
+        Specimen { task, finger, .. }: &Specimen,
+        robot: &Robot,
+        taught: Option<OffsetStep>,
+        step_factor: f64,
+    ) -> Result<Box<dyn Rig>, RigError> {
+        let rig = self.engine.rig(task, robot, finger, step_factor)?;
         Ok(match taught {
             None | Some(0) => rig,
             Some(by) => Box::new(Moved { rig, by }),
@@ -175,11 +207,22 @@ impl Evaluator {
         search: Search,
         plan: &Plan,
         stop: &AtomicBool,
-    ) -> Result<Evaluation, RigError> {
+    ) -> Result<Evaluation, Impossible> {
         let taught = self.taught(specimen, stop)?;
         let rig = self.rig(specimen, taught, 1.0)?;
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
-        let evaluation = robustness::evaluate(&*rig, grasp, &specimen.stiffness, search, plan);
+        let draw = |cell: &Priors, values: &[f64]| -> Result<Drawn, Impossible> {
+            let (drawn, robot) = self.drawn(specimen, cell, values)?;
+            Ok((self.rig_of(&drawn, &robot, taught, 1.0)?, drawn.finger))
+        };
+        let cells = match plan.cells() {
+            None => Vec::new(),
+            Some((cell, all)) => {
+                all.iter().map(|values| draw(cell, values)).collect::<Result<_, _>>()?
+            }
+        };
+        let predicted = &specimen.stiffness;
+        let evaluation = robustness::evaluate(&*rig, grasp, predicted, search, plan, &cells);
         Ok(Evaluation { taught, ..evaluation })
     }
 
@@ -190,7 +233,7 @@ impl Evaluator {
         search: Search,
         plan: &Plan,
         stop: &AtomicBool,
-    ) -> Result<Evaluation, RigError> {
+    ) -> Result<Evaluation, Impossible> {
         let found = self.measure(specimen, search, plan, stop)?;
         if found.window.nominal == Outcome::Inserted {
             return Ok(found);
@@ -223,10 +266,10 @@ impl Evaluator {
     pub fn evaluate_by(
         &self,
         design: &Design,
-        measure: impl Fn(&Specimen) -> Result<Evaluation, RigError>,
+        measure: impl Fn(&Specimen) -> Result<Evaluation, Impossible>,
     ) -> Result<Measured, Impossible> {
         let stiffness = self.predict(design)?;
-        let on = |template| Ok(measure(&self.specimen(template, design, stiffness)?)?);
+        let on = |template| measure(&self.specimen(template, design, stiffness)?);
         let tasks = self.templates.iter().map(on).collect::<Result<_, Impossible>>()?;
         Ok(Measured { stiffness, tasks, cached: Vec::new() })
     }

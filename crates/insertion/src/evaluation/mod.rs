@@ -1,5 +1,6 @@
 //! Results of window searches and evaluations.
 
+pub mod cell;
 pub mod evaluator;
 mod leaving;
 pub mod objective;
@@ -193,13 +194,18 @@ impl SuccessRate {
     }
 }
 
+/// The probability with which a standard normal number stays below this one.
+fn normal_share(number: f64) -> f64 {
+    0.5 * libm::erfc(-number * std::f64::consts::FRAC_1_SQRT_2)
+}
+
 /// The number that a standard normal one stays below with this probability, by bisection.
 fn normal_quantile(probability: f64) -> f64 {
     let (mut low, mut high) = (-40.0, 40.0);
     for _ in 0..100 {
         let middle = (low + high) / 2.0;
-        let below = 0.5 * libm::erfc(-middle * std::f64::consts::FRAC_1_SQRT_2);
-        *(if below < probability { &mut low } else { &mut high }) = middle;
+        let below = normal_share(middle) < probability;
+        *(if below { &mut low } else { &mut high }) = middle;
     }
     low
 }

@@ -4,11 +4,13 @@ pub mod firm;
 pub mod race;
 pub mod repeat;
 
+use crate::evaluation::cell::Priors;
 use crate::evaluation::tolerance::{self, Search};
 use crate::evaluation::uncertainty::{
-    Draw, RobustSettings, Statistic, SuccessSettings, Uncertainty, draws,
+    Draw, RobustSettings, Statistic, SuccessSettings, Uncertainty, cells, draws,
 };
 use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
+use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::surrogate::Prediction;
 use crate::trial::{Grasp, Rig};
@@ -22,11 +24,18 @@ pub struct Plan {
     robust: Option<(Vec<Draw>, RobustSettings)>,
     /// Race for the success rate, if there is one.
     race: Option<Race>,
+    /// Cell of which each draw is another, with the values of its rows in each.
+    cells: Option<(Priors, Vec<Vec<f64>>)>,
 }
+
+/// Where one draw is tried, and by which finger before its own errors.
+pub type Drawn = (Box<dyn Rig>, Finger);
+/// A draw's rig, grasp and offset, m.
+type Insertion<'a> = (&'a dyn Rig, Grasp<'a>, f64);
 
 impl Plan {
     /// Nothing beside the window.
-    pub const WINDOW: Plan = Plan { success: None, robust: None, race: None };
+    pub const WINDOW: Plan = Plan { success: None, robust: None, race: None, cells: None };
 
     /// Success rates, robust ranges or both; `seed` names the streams that errors are drawn from.
     pub fn new(uncertainty: &Uncertainty, seed: u64, success: bool, robust: bool) -> Self {
@@ -36,7 +45,17 @@ impl Plan {
             success: success.then(|| (draws(rate.trials), rate)),
             robust: robust.then(|| (draws(range.samples), range)),
             race: None,
+            cells: uncertainty.cell.as_ref().map(|cell| {
+                let rate = if success { rate.trials } else { 0 };
+                let range = if robust { range.samples } else { 0 };
+                (cell.clone(), cells(cell, seed, rate.max(range)))
+            }),
         }
+    }
+
+    /// The cell of which each draw is another, and the values of its rows in each.
+    pub(super) fn cells(&self) -> Option<(&Priors, &[Vec<f64>])> {
+        self.cells.as_ref().map(|(cell, values)| (cell, &values[..]))
     }
 
     /// The same in this race.
@@ -45,42 +64,50 @@ impl Plan {
     }
 }
 
-/// Measures a grasp by fingers of this predicted stiffness: its window, and what the plan adds.
+/// Measures a grasp by fingers of this predicted stiffness: its window, and what the plan adds; draws
+/// for which `cells` has none are tried in `rig`.
 pub fn evaluate(
     rig: &dyn Rig,
     grasp: Grasp,
     predicted: &Prediction,
     search: Search,
     plan: &Plan,
+    cells: &[Drawn],
 ) -> Evaluation {
     let mut evaluation = tolerance::evaluate_in(rig, grasp, search);
     let drawn = |draws: &[Draw]| -> Vec<_> {
-        draws.iter().map(|draw| (draw.grasp(grasp, predicted), draw.offset)).collect()
+        let one = |(i, draw): (usize, &Draw)| {
+            let (rig, finger): (&dyn Rig, Finger) = match cells.get(i) {
+                Some((rig, finger)) => (&**rig, *finger),
+                None => (rig, grasp.finger),
+            };
+            (rig, draw.grasp(Grasp { finger, ..grasp }, predicted), draw.offset)
+        };
+        draws.iter().enumerate().map(one).collect()
     };
     if let Some((draws, settings)) = &plan.success {
-        evaluation.success = Some(success_rate(rig, &drawn(draws), settings, plan.race.as_ref()));
+        evaluation.success = Some(success_rate(&drawn(draws), settings, plan.race.as_ref()));
     }
     if let Some((draws, settings)) = &plan.robust {
-        evaluation.robust = Some(robust_range(rig, &drawn(draws), settings));
+        evaluation.robust = Some(robust_range(&drawn(draws), settings));
     }
     evaluation
 }
 
 fn success_rate(
-    rig: &dyn Rig,
-    drawn: &[(Grasp, f64)],
+    drawn: &[Insertion],
     settings: &SuccessSettings,
     race: Option<&Race>,
 ) -> SuccessRate {
     race::run(drawn.len() as u32, settings.confidence, race, |draw| {
-        let (grasp, offset) = drawn[draw as usize];
+        let (rig, grasp, offset) = drawn[draw as usize];
         rig.hold(grasp).trial(offset).outcome
     })
 }
 
 /// Measures the window of each grasp. The offset is left out: the window spans the offsets.
-fn robust_range(rig: &dyn Rig, drawn: &[(Grasp, f64)], settings: &RobustSettings) -> RobustRange {
-    let window = |&(grasp, _): &(Grasp, f64)| {
+fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
+    let window = |&(rig, grasp, _): &Insertion| {
         let found = tolerance::evaluate_in(rig, grasp, settings.search);
         let diverged = found.window.nominal == Outcome::Diverged;
         ((!diverged).then(|| found.window.range_mm()), found.trials)
@@ -125,21 +152,22 @@ mod tests {
     use input::units::MM;
 
     /// Fingers of 3 N/mm and this assembly stiffness (N/mm) drawn under the shipped errors.
-    fn drawn(assembly: f64, count: u32) -> (Uncertainty, Vec<(Grasp<'static>, f64)>) {
+    fn drawn(rig: &dyn Rig, assembly: f64, count: u32) -> (Uncertainty, Vec<Insertion<'_>>) {
         let typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
         let predicted = predicted([3.0, 1.0], [assembly, 2.0]);
         let nominal = Grasp::of(&finger(3.0, assembly));
         let drawn = draws(&typical.errors, 5, count).into_iter();
-        let drawn = drawn.map(|draw| (draw.grasp(nominal, &predicted), draw.offset)).collect();
+        let drawn = drawn.map(|draw| (rig, draw.grasp(nominal, &predicted), draw.offset)).collect();
         (typical, drawn)
     }
 
     #[test]
     fn every_trial_ends_as_its_own_window_says() {
-        let (typical, drawn) = drawn(20.0, 300);
-        let found = success_rate(&FakeRig::default(), &drawn, &typical.success, None);
+        let rig = FakeRig::default();
+        let (typical, drawn) = drawn(&rig, 20.0, 300);
+        let found = success_rate(&drawn, &typical.success, None);
         let (mut below, mut above) = (0, 0);
-        for (grasp, offset) in &drawn {
+        for (_, grasp, offset) in &drawn {
             let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
             let offset = offset / MM;
             // A window that errors closed jams on the whole of its lower side.
@@ -163,12 +191,13 @@ mod tests {
 
     #[test]
     fn each_range_is_that_of_its_own_window() {
-        let (typical, drawn) = drawn(60.0, 12);
+        let rig = FakeRig::default();
+        let (typical, drawn) = drawn(&rig, 60.0, 12);
         let settings = RobustSettings { search: Search::Strides, ..typical.robust };
-        let found = robust_range(&FakeRig::default(), &drawn, &settings);
+        let found = robust_range(&drawn, &settings);
         let expected: Vec<f64> = drawn
             .iter()
-            .map(|(grasp, _)| {
+            .map(|(_, grasp, _)| {
                 let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
                 if low > 0.0 || high < 0.0 {
                     return 0.0;

@@ -1,6 +1,7 @@
 //! Draws from the distribution.
 
 use super::Errors;
+use crate::evaluation::cell::Priors;
 use crate::finger::Finger;
 use crate::surrogate::{Estimate, Prediction};
 use crate::trial::{Conditions, Grasp};
@@ -11,6 +12,20 @@ use rand_distr::StandardNormal;
 const PURPOSE: &str = "errors";
 /// A stream of its own: errors that came later leave those before as they were.
 const PURPOSE_ACROSS: &str = "error of the start along x";
+
+/// Goes before the key of what a cell's row sets: rows more or less leave the others as they were.
+const PURPOSE_CELL: &str = "cell ";
+
+/// `count` draws of a cell's rows, in their order; draw `i` of a row is a function of the seed, `i`
+/// and the row alone.
+pub fn cells(cell: &Priors, seed: u64, count: u32) -> Vec<Vec<f64>> {
+    let draw = |i: u32| {
+        let share =
+            |key: &str| stream(seed, u64::from(i), &format!("{PURPOSE_CELL}{key}")).random::<f64>();
+        cell.parameters.iter().map(|row| row.at(share(row.sets.key()))).collect()
+    };
+    (0..count).map(draw).collect()
+}
 
 /// One draw: what one insertion is like. It does not depend on the design, so
 /// that designs are compared under the same errors (common random numbers).

@@ -2,9 +2,12 @@
 
 mod draw;
 
-pub use draw::{Draw, draws};
+pub use draw::{Draw, cells, draws};
 
+use crate::evaluation::cell::{Priors, Target};
 use crate::evaluation::tolerance::Search;
+use crate::finger::file::is_shape;
+use input::shipped::UNCERTAINTIES;
 use input::units::{DEG, MM, PERCENT};
 use input::{Check, InputError, read};
 use serde::Deserialize;
@@ -22,6 +25,8 @@ pub struct Uncertainty {
     pub success: SuccessSettings,
     /// Settings of robust-range measurements.
     pub robust: RobustSettings,
+    /// Cell whose rows are drawn in place of errors.
+    pub cell: Option<Priors>,
 }
 
 /// Spread of each error; 0 switches it off.
@@ -150,11 +155,16 @@ const LARGEST_FACTOR: f64 = 10.0;
 const MOST: u32 = 100_000;
 
 impl Uncertainty {
-    /// Reads and checks a distribution; `file` is named in errors.
+    /// Reads and checks a distribution; `file` is named in errors. Of a cell it is that of its rows:
+    /// settings are then those of the shipped file, and there are no other errors.
     ///
     /// # Errors
     /// If the text is not such a file, or a value cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let rows = |table: toml::Table| table.contains_key("parameter");
+        if text.parse().is_ok_and(rows) {
+            return Self::of(Priors::parse(text, file)?, file);
+        }
         let raw: RawUncertainty = read(text, file)?;
         let check = Check { file };
         sources(check, &raw)?;
@@ -177,6 +187,25 @@ impl Uncertainty {
             },
             name: raw.name,
             description: raw.description,
+            cell: None,
+        })
+    }
+
+    fn of(cell: Priors, file: &str) -> Result<Self, InputError> {
+        let shape = |target: &Target| matches!(target, Target::Number(key) if is_shape(key));
+        if let Some(row) = cell.parameters.iter().find(|row| shape(&row.sets)) {
+            let problem =
+                "cannot be drawn: it makes another finger, which a space can; leave it out";
+            return Check { file }.fail(&row.name, problem);
+        }
+        let typical = Self::parse(UNCERTAINTIES[0].text, UNCERTAINTIES[0].file)?;
+        let (name, description) = (cell.name.clone(), cell.description.clone());
+        Ok(Uncertainty {
+            name,
+            description,
+            errors: Errors::default(),
+            cell: Some(cell),
+            ..typical
         })
     }
 }

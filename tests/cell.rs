@@ -1,0 +1,125 @@
+//! `--cell`: a cell's robot and numbers in every command that takes a task.
+
+mod common;
+
+use common::{Studies, optimize_line};
+use input::shipped::ROBOTS;
+
+/// A row of a cell file.
+fn row(name: &str, sets: &str, way: &str, numbers: &str, shared: bool) -> String {
+    format!(
+        "[[parameter]]\nname = \"{name}\"\nsets = \"{sets}\"\nas = \"{way}\"\nscale = \"linear\"\n\
+         {numbers}\nshared = {shared}\nsource = \"made up\"\n"
+    )
+}
+
+/// The file of a cell with the robot `servo` and these rows.
+fn cell(rows: &str) -> String {
+    let servo = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap().text;
+    format!("name = \"mine\"\ndescription = \"made up\"\ntask = \"usb\"\n[robot]\n{servo}\n{rows}")
+}
+
+fn friction(value: f64) -> String {
+    let numbers = format!("value = {value}\nsd = 0.02\nlow = 0.05\nhigh = 0.8");
+    row("friction", "task.friction.plug_socket", "value", &numbers, false)
+}
+
+/// What a command prints as JSON, but for the time it took and the cell.
+fn printed(line: &str) -> serde_json::Value {
+    let mut found = optimize_line(&format!("{line} --json")).json();
+    let keys = found.as_object_mut().unwrap();
+    keys.remove("wall_s");
+    keys.remove("cell");
+    keys.remove("set");
+    found
+}
+
+const TRIAL: &str = "trial --density 20 --direction 10 --task";
+
+#[test]
+fn a_nominal_cell_changes_nothing_and_a_row_is_as_if_set() {
+    let folder = Studies::new();
+    let around = "low = 0.5\nhigh = 2.0\nvalue = 1.0\nsd = 0.1";
+    let nominal = [
+        friction(0.2),
+        row("modulus", "finger.stiffness", "factor", around, true),
+        row("centre", "finger.rcc_mm", "factor", around, true),
+        row("flange", "robot.stiffness_n_per_mm", "factor", around, true),
+        row("gap", "task.clearance_mm", "shift", "low = -0.05\nhigh = 0.05", false),
+    ];
+    let file = folder.file("cell.toml", cell(&nominal.concat()));
+    let evaluate = "evaluate --task usb --density 20 --direction 10";
+    let with = format!("{evaluate} --cell {file}");
+    assert_eq!(optimize_line(&format!("{with} --engine fake --json")).json()["cell"], "mine");
+    assert_eq!(printed(&with), printed(evaluate));
+
+    let rough = folder.file("rough.toml", cell(&friction(0.4)));
+    let set = "--set task.friction.plug_socket";
+    let (in_cell, as_set) =
+        (format!("{TRIAL} usb --cell {rough}"), format!("{TRIAL} usb {set}=0.4"));
+    assert_eq!(printed(&in_cell), printed(&as_set));
+    assert_ne!(printed(&in_cell), printed(&format!("{TRIAL} usb")));
+    assert_eq!(
+        printed(&format!("{in_cell} {set}=0.3")),
+        printed(&format!("{TRIAL} usb {set}=0.3"))
+    );
+    // A row that is usb's alone.
+    assert_eq!(printed(&format!("{TRIAL} ket8 --cell {rough}")), printed(&format!("{TRIAL} ket8")));
+}
+
+#[test]
+fn what_does_not_go_with_a_cell_is_named() {
+    let folder = Studies::new();
+    let file = folder.file("cell.toml", cell(&friction(0.3)));
+    let bare = folder.file("bare.toml", "name = \"a\"\ndescription = \"b\"\nparameter = []\n");
+    let wild = folder.file("wild.toml", cell(&friction(0.3)).replace("servo\"\n", "arms\"\n"));
+    let odd = "value = 80.0\nsd = 1.0\nlow = 1.0\nhigh = 90.0";
+    let tilt = row("tilt", "task.strategy.tilt_deg", "value", odd, false);
+    let tilted = folder.file("tilted.toml", cell(&tilt));
+    for (more, parts) in [
+        (format!("--cell {file} --robot rigid"), ["--cell holds a robot", "--robot"]),
+        (format!("--cell {bare}"), ["bare.toml: robot: is missing", "[robot]"]),
+        (format!("--cell {wild}"), ["wild.toml: [robot]", "arms"]),
+        (format!("--cell {tilted}"), ["tilted.toml: tilt", "must lie in"]),
+        ("--cell none.toml".to_owned(), ["none.toml", "cannot read the cell"]),
+    ] {
+        optimize_line(&format!("{TRIAL} usb --engine fake {more}")).fails(2, &parts);
+    }
+    let few = "--task usb --engine fake --measurements published --simulations 24 --samples 20";
+    let calibrate = format!("calibrate {few} --json --no-cache --priors {file}");
+    optimize_line(&format!("{calibrate} --robot servo")).fails(2, &["--priors holds a robot"]);
+    optimize_line(&format!("{calibrate} --cell {file}")).fails(2, &["so does --cell"]);
+}
+
+#[test]
+fn a_study_in_a_cell_goes_on_from_its_copy() {
+    let folder = Studies::new();
+    let file = folder.file("cell.toml", cell(&friction(0.3)));
+    folder.study("s", 4, &["--cell", &file]).succeeds();
+    assert_eq!(folder.read("s/inputs/cell"), folder.read("cell.toml"));
+    folder.file("cell.toml", cell(&friction(0.35)));
+    folder.study("s", 8, &["--cell", &file]).fails(2, &["input_sha256.cell"]);
+    folder.resume("s").succeeds();
+    let page = folder.read("s/report.html");
+    assert!(page.contains("--cell inputs/cell"), "{page}");
+}
+
+#[test]
+fn each_draw_under_a_cell_is_another_cell() {
+    let folder = Studies::new();
+    let modulus = |sd: f64| {
+        let numbers = format!("value = 1.0\nsd = {sd}\nlow = 0.2\nhigh = 5.0");
+        row("modulus", "finger.stiffness", "factor", &numbers, true)
+    };
+    let ranges = |sd: f64| {
+        let file = folder.file("cell.toml", cell(&modulus(sd)));
+        let line = "evaluate --task usb --density 20 --direction 10 --engine fake --json";
+        let found = optimize_line(&format!("{line} --uncertainty {file}")).json();
+        assert_eq!(found["success_rate"], 1.0, "every start is the nominal one");
+        let ranges = found["robust_ranges_mm"].as_array().unwrap().clone();
+        (ranges.iter().filter(|range| **range != found["range_mm"]).count(), ranges.len())
+    };
+    let (differ, all) = ranges(0.4);
+    assert!(differ > all / 2 && all == 12, "{differ} of {all}");
+    assert_eq!(ranges(0.0).0, 0);
+}

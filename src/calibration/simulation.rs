@@ -1,8 +1,11 @@
 //! Simulated windows under values of what nobody measured.
 
-use super::prior::{Parameter, Target};
+use super::prior::{Parameter, Priors, Target};
 use crate::study::Cache;
+use input::numbers::DESIGN;
+use input::shipped::PRIORS;
 use input::units::MM;
+use input::{Check, InputError};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
@@ -151,5 +154,39 @@ fn change(parameter: &Parameter, value: f64, specimen: &mut Specimen, robot: &mu
                 all.for_each(|stiffness| *stiffness = parameter.applied(*stiffness, value));
             }
         }
+    }
+}
+
+/// The shipped prior of that name: the key that it sets, and its value at this share.
+///
+/// # Errors
+/// If there is none.
+pub fn prior_at(name: &str, share: f64) -> Result<(String, f64), InputError> {
+    let parameter = shipped(name)?;
+    Ok((parameter.sets.key().to_owned(), parameter.at(share)))
+}
+
+/// A design in a cell in which the shipped priors of these names have these values, and its robot.
+///
+/// # Errors
+/// If there is no such prior, or the design cannot be simulated.
+pub fn in_cell(
+    evaluator: &Evaluator,
+    template: &Template,
+    design: &Design,
+    values: &[(&str, f64)],
+) -> Result<(Specimen, Robot), Impossible> {
+    let parameters: Vec<Parameter> =
+        values.iter().map(|(name, _)| shipped(name)).collect::<Result<_, _>>()?;
+    let values: Vec<_> = parameters.iter().zip(values.iter().map(|(_, value)| *value)).collect();
+    under(evaluator, template, (design, None), &values)
+}
+
+fn shipped(name: &str) -> Result<Parameter, InputError> {
+    let [file, ..] = PRIORS else { return DESIGN.fail(name, "no priors are shipped") };
+    let priors = Priors::parse(file.text, file.file)?;
+    match priors.parameters.into_iter().find(|parameter| parameter.name == name) {
+        Some(parameter) => Ok(parameter),
+        None => Check { file: file.file }.fail(name, "is no parameter of it"),
     }
 }

@@ -9,4 +9,5 @@
 pub mod analytic;
 pub mod cli;
 mod compare;
+mod identified;
 mod problems;

@@ -24,3 +24,5 @@ pub(crate) mod subject;
 pub(crate) mod table;
 #[cfg(test)]
 mod tests;
+
+pub use simulation::{in_cell, prior_at};

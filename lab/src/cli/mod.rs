@@ -3,6 +3,7 @@
 mod benchmark;
 mod check;
 mod cross_check;
+mod identify;
 mod landscape;
 mod map;
 mod optimizers;
@@ -53,6 +54,8 @@ enum Command {
     Settle(settle::Arguments),
     #[command(after_help = "Example: lab landscape --task usb --out usb.csv")]
     Landscape(landscape::Arguments),
+    #[command(after_help = "Example: lab identify truth --cells 1..20 --out truth.csv")]
+    Identify(identify::Arguments),
     #[command(after_help = "Example: lab map --task usb --density 10 --direction 26 --out usb.csv")]
     Map(map::Arguments),
 }
@@ -76,6 +79,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Windows(arguments) => windows::run(arguments),
         Command::Optimizers(arguments) => optimizers::run(arguments),
         Command::Landscape(arguments) => landscape::run(arguments),
+        Command::Identify(arguments) => identify::run(arguments),
         Command::Map(arguments) => map::run(arguments),
         Command::Settle(arguments) => settle::run(arguments),
     };

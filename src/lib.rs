@@ -20,8 +20,7 @@ pub mod answer;
 pub mod calibration;
 pub mod cli;
 pub mod connector;
-#[allow(dead_code, unused_imports)] // until its command is there
-pub(crate) mod identify;
+pub mod identify;
 pub mod levers;
 pub mod map;
 pub mod report;

@@ -25,4 +25,3 @@ pub(crate) mod table;
 #[cfg(test)]
 mod tests;
 
-pub use simulation::{in_cell, prior_at};

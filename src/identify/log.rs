@@ -3,6 +3,7 @@
 use input::units::{DEG, MM};
 use insertion::outcome::FailureClass;
 use insertion::space::Design;
+use insertion::trial::Sample;
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 
@@ -153,4 +154,24 @@ impl Moment {
         let vectors = self.position.iter().chain(&self.force).chain(&target);
         vectors.chain([&self.time_s, &self.tilt]).all(|value| value.is_finite())
     }
+}
+
+/// The log that a robot with a perfect sensor would write of a simulated attempt.
+///
+/// # Errors
+/// As of [`Log::new`]: if the attempt ended before there was much to write.
+pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, LogError> {
+    let start = samples.first().map_or(0.0, |sample| sample.time_s);
+    let moment = |(i, sample): (usize, &Sample)| Moment {
+        line: i + 2,
+        time_s: sample.time_s - start,
+        position: Vector3::from(sample.tcp_mm) * MM,
+        tilt: sample.tcp_tilt_deg * DEG,
+        target: Some(Target {
+            position: Vector3::from(sample.target_mm) * MM,
+            tilt: sample.tcp_tilt_deg * DEG,
+        }),
+        force: Vector3::from(sample.sensed_n),
+    };
+    Log::new(file, samples.iter().enumerate().map(moment).collect())
 }

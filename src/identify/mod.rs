@@ -7,10 +7,16 @@
 //! 5. `check`: what is wrong with a log, before anything is fitted to it.
 
 pub mod check;
+pub mod curves;
+pub mod formulas;
 pub mod frame;
 pub mod log;
+pub mod misfit;
+pub mod question;
 pub mod read;
+pub mod replay;
 pub mod runs;
+pub mod smoother;
 #[cfg(test)]
 mod tests;
 pub mod touch;

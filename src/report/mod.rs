@@ -11,6 +11,7 @@ mod elements;
 mod explore;
 mod first;
 mod front;
+pub mod identify;
 pub mod levers;
 pub mod map;
 mod marks;

@@ -6,13 +6,15 @@ use super::film::FilmRequest;
 use super::finger::{Chosen, FingerRequest};
 use super::repeat::RepeatRequest;
 use super::request::SetupRequest;
+use crate::identify::curves::STEP_S;
+use crate::identify::log::of_samples;
 use crate::study::write_file;
 use contact::mjcf::{self, MjcfSettings};
 use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::{OffsetStep, tolerance};
 use insertion::outcome::Outcome;
-use insertion::trial::{Driven, Grasp, Sample, State, Trial, cell, picture};
+use insertion::trial::{Course, Driven, Grasp, Probe, Sample, State, Trial, cell, picture};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -56,6 +58,12 @@ pub struct TrialRequest {
     /// What is recorded.
     #[command(flatten)]
     pub film: FilmRequest,
+    /// Write force and pose at 500 Hz, as a robot logs them, from the search on
+    #[arg(long, value_name = "FILE.csv")]
+    pub log: Option<PathBuf>,
+    /// In place of an insertion, slide the part on a flat plate: 8 mm along y and back at 5 N, for `identify`
+    #[arg(long, requires = "log", conflicts_with_all = ["repeats", "svg", "record", "plot"])]
+    pub probe: bool,
     /// Draw plug, fingertips and socket at the end of each phase
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
@@ -97,12 +105,22 @@ impl TrialRequest {
         let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
         let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
         let filmed = self.film.record(&*rig, specimen, offset_mm, stop)?;
-        let grasp = || rig.hold(Grasp { stop, ..Grasp::of(&specimen.finger) });
-        let (trial, samples) = match (self.every_s, filmed) {
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let logged_s = self.log.as_ref().map(|_| STEP_S);
+        let (trial, samples) = match (logged_s.or(self.every_s), filmed) {
+            _ if self.probe => {
+                let rig = setup.evaluator.rig(specimen, None, 1.0).map_err(Failure::input)?;
+                let probed = rig.follow(grasp, Course::Probe(Probe::USUAL), STEP_S);
+                probed.into_iter().next().ok_or_else(undriven)?
+            }
             (None, Some(recording)) => (recording.trial, Vec::new()),
-            (every_s, _) => grasp().sampled(offset, every_s),
+            (every_s, _) => rig.hold(grasp).sampled(offset, every_s),
         };
         not_stopped(stop)?;
+        if let Some(file) = &self.log {
+            let log = of_samples(&file.to_string_lossy(), &samples).map_err(Failure::input)?;
+            write_file(file, &log.csv())?;
+        }
         if let Some(file) = &self.svg {
             let label = format!("{}, start shifted by {offset_mm:+.1} mm", specimen.task.name);
             write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
@@ -122,9 +140,13 @@ impl TrialRequest {
             }
             counts
         });
-        let written = self.svg.iter().chain(self.film.files()).cloned().collect();
+        let written = self.svg.iter().chain(&self.log).chain(self.film.files()).cloned().collect();
         Ok(TrialDone { chosen, offset_mm, taught, trial, samples, repeats, written })
     }
+}
+
+fn undriven() -> Failure {
+    Failure::usage("this engine simulates nothing that could be driven; use --engine direct")
 }
 
 /// A grasped part in front of its socket, which a caller commands step by step: no command of the
@@ -151,11 +173,7 @@ impl Insertion {
         let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
         let rig = setup.evaluator.rig(&specimen, None, 1.0).map_err(Failure::input)?;
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
-        let driven = rig.driven(grasp).ok_or_else(|| {
-            Failure::usage(
-                "this engine simulates nothing that could be driven; use --engine direct",
-            )
-        })?;
+        let driven = rig.driven(grasp).ok_or_else(undriven)?;
         not_stopped(stop)?;
         Ok(Insertion { driven, taught: taught.map_or(0.0, tolerance::offset) })
     }

@@ -1,13 +1,15 @@
 //! `lab identify`: identification of a cell, tried on cells that are hidden in the other engine.
 
 use super::{Failure, print};
-use crate::identified::HiddenCell;
 use crate::identified::truth::{self, Rows};
+use crate::identified::{HiddenCell, logs, tried};
 use clap::{Args, Subcommand};
 use finger_opt::calibration::published;
 use finger_opt::cli::terminal::say;
-use finger_opt::session::{SetupRequest, TaskSource};
+use finger_opt::report::identify;
+use finger_opt::session::{Setup, SetupRequest, TaskSource};
 use finger_opt::study::write_file;
+use insertion::space::Design;
 use insertion::stiffness::Measurement;
 use insertion::trial::engine::EngineKind;
 use rayon::prelude::*;
@@ -31,6 +33,8 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Stage {
     Truth(Truth),
+    Logs(Cells),
+    Try(Cells),
 }
 
 /// Measure the windows of the published fingers in hidden cells, in MuJoCo and in our engine
@@ -47,6 +51,66 @@ struct Truth {
     out: PathBuf,
 }
 
+/// Write the logs of attempts in hidden cells; or identify the cells from them
+#[derive(Debug, Args)]
+struct Cells {
+    /// Cells, first and last
+    #[arg(long, value_name = "A..B", value_parser = cells)]
+    cells: RangeInclusive<u64>,
+    /// Table that `truth` has written
+    #[arg(long, value_name = "FILE.csv")]
+    truth: PathBuf,
+    /// Folder of the logs: one in it for each cell
+    #[arg(long, value_name = "DIR")]
+    logs: PathBuf,
+}
+
+impl Cells {
+    fn rows(&self) -> Result<Rows, Failure> {
+        truth::parse(&std::fs::read_to_string(&self.truth).map_err(running)?)
+    }
+
+    fn folder(&self, cell: u64) -> PathBuf {
+        self.logs.join(cell.to_string())
+    }
+
+    fn write(&self) -> Result<(), Failure> {
+        let (engine, setup, rows) = (mujoco()?, setup()?, self.rows()?);
+        let all: Vec<u64> = self.cells.clone().collect();
+        all.par_iter().try_for_each(|&number| {
+            let cell = HiddenCell::draw(&setup.evaluator, number)?;
+            let known = |design: &Design| truth::known(&rows, number, design);
+            logs::write(&cell, known, engine, &self.folder(number))?;
+            say(&format!("cell {number}: logged"));
+            Ok(())
+        })
+    }
+
+    fn identify(&self) -> Result<(), Failure> {
+        let (setup, rows) = (setup()?, self.rows()?);
+        let mut all = Vec::new();
+        for number in self.cells.clone() {
+            let cell = HiddenCell::draw(&setup.evaluator, number)?;
+            let known = |design: &Design| truth::known(&rows, number, design);
+            let (one, done) = tried::identify(&cell, known, &self.folder(number))?;
+            say(&format!("cell {number}\n{}", identify::text(&done)));
+            let file = self.folder(number).join("identified.json");
+            write_file(&file, &identify::json(&done).to_string())?;
+            all.push(one);
+        }
+        print(&tried::table(&all))
+    }
+}
+
+fn mujoco() -> Result<EngineKind, Failure> {
+    EngineKind::from_name("mujoco")
+        .ok_or_else(|| Failure::usage("build lab with --features mujoco"))
+}
+
+fn setup() -> Result<Setup, Failure> {
+    SetupRequest { tasks: TaskSource::list(TASKS), ..SetupRequest::default() }.setup()
+}
+
 fn cells(text: &str) -> Result<RangeInclusive<u64>, String> {
     let range = text.split_once("..").and_then(|(first, last)| {
         let [first, last] = [first, last].map(|number| number.parse::<u64>().ok());
@@ -58,15 +122,14 @@ fn cells(text: &str) -> Result<RangeInclusive<u64>, String> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.stage {
         Stage::Truth(truth) => truth.run(),
+        Stage::Logs(cells) => cells.write(),
+        Stage::Try(cells) => cells.identify(),
     }
 }
 
 impl Truth {
     fn run(&self) -> Result<(), Failure> {
-        let engine = EngineKind::from_name("mujoco")
-            .ok_or_else(|| Failure::usage("build lab with --features mujoco"))?;
-        let setup =
-            SetupRequest { tasks: TaskSource::list(TASKS), ..SetupRequest::default() }.setup()?;
+        let (engine, setup) = (mujoco()?, setup()?);
         let mut rows = match self.out.exists() {
             true => truth::parse(&std::fs::read_to_string(&self.out).map_err(running)?)?,
             false => Rows::new(),

@@ -1,10 +1,13 @@
 //! Identification tried on cells whose unknowns are drawn and hidden: the truth in the other engine.
 
+pub mod logs;
+pub mod tried;
 pub mod truth;
 
 use ask_tell::stream::stream;
-use finger_opt::calibration::{in_cell, prior_at};
 use finger_opt::session::Failure;
+use input::shipped::PRIORS;
+use insertion::evaluation::cell::{Parameter, Priors};
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::taught::teach;
 use insertion::evaluation::template::Template;
@@ -39,6 +42,7 @@ pub struct HiddenCell<'a> {
     pub evaluator: &'a Evaluator,
     /// Its task as the file has it.
     pub template: &'a Template,
+    rows: Vec<Parameter>,
     /// Values of the priors, as of [`HIDDEN`]: factors, and the radius in mm.
     pub values: [f64; 5],
     /// The same as a table has them.
@@ -53,16 +57,16 @@ impl<'a> HiddenCell<'a> {
     pub fn draw(evaluator: &'a Evaluator, number: u64) -> Result<Self, Failure> {
         let task = (number + 1) as usize % evaluator.templates.len();
         let template = &evaluator.templates[task];
+        let rows = rows()?;
         let mut random = stream(SEED, number, "hidden cell");
         for draws in 1..=DRAWS {
-            let ([mut values, mut shown], mut keys) = ([[0.0; 5]; 2], HIDDEN.iter().enumerate());
-            keys.try_for_each(|(i, (name, _))| {
-                let (key, value) = prior_at(name, random.random()).map_err(Failure::input)?;
-                values[i] = value;
-                shown[i] = template.numbers.number(&key).unwrap_or(1.0) * value;
-                Ok::<(), Failure>(())
-            })?;
-            let cell = HiddenCell { number, draws, evaluator, template, values, shown };
+            let [mut values, mut shown] = [[0.0; 5]; 2];
+            for (i, row) in rows.iter().enumerate() {
+                values[i] = row.at(random.random());
+                shown[i] = template.numbers.number(row.sets.key()).unwrap_or(1.0) * values[i];
+            }
+            let rows = rows.clone();
+            let cell = HiddenCell { number, draws, evaluator, template, rows, values, shown };
             let (specimen, robot) = cell.setup(&Design::infill(MIDDLE[0], MIDDLE[1]))?;
             let rig = EngineKind::Direct.rig(&specimen.task, &robot, &specimen.finger, 1.0);
             if teach(&*rig.map_err(Failure::input)?, &specimen.finger, &NEVER).is_ok() {
@@ -77,9 +81,8 @@ impl<'a> HiddenCell<'a> {
     /// # Errors
     /// If it cannot be simulated there.
     pub fn setup(&self, design: &Design) -> Result<(Specimen, Robot), Failure> {
-        let values: Vec<_> =
-            HIDDEN.iter().zip(self.values).map(|((name, _), value)| (*name, value)).collect();
-        in_cell(self.evaluator, self.template, design, &values).map_err(Failure::input)
+        let values: Vec<_> = self.rows.iter().zip(self.values).collect();
+        self.evaluator.under(self.template, (design, None), &values).map_err(Failure::input)
     }
 
     /// The same in the cell as the files have it.
@@ -87,6 +90,17 @@ impl<'a> HiddenCell<'a> {
     /// # Errors
     /// If it cannot be simulated there.
     pub fn nominal(&self, design: &Design) -> Result<(Specimen, Robot), Failure> {
-        in_cell(self.evaluator, self.template, design, &[]).map_err(Failure::input)
+        self.evaluator.under(self.template, (design, None), &[]).map_err(Failure::input)
     }
+}
+
+/// The shipped priors of what is hidden.
+fn rows() -> Result<Vec<Parameter>, Failure> {
+    let file = PRIORS[0];
+    let priors = Priors::parse(file.text, file.file).map_err(Failure::input)?;
+    let row = |(name, _): &(&str, &str)| {
+        let found = priors.parameters.iter().find(|row| row.name == *name).cloned();
+        found.ok_or_else(|| Failure::running(format!("{}: has no row `{name}`", file.file)))
+    };
+    HIDDEN.iter().map(row).collect()
 }

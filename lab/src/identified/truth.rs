@@ -9,7 +9,7 @@ use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::{OffsetStep, Window, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
-use insertion::space::Design;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::stiffness::Measurement;
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
@@ -21,6 +21,43 @@ const WAYS: [&str; 3] = ["truth", "direct", "nominal"];
 /// Columns of a way after its name. Ends count from the task's own start, not from the taught one.
 const COLUMNS: [&str; 6] =
     ["start_mm", "negative_mm", "positive_mm", "range_mm", "failure_negative", "failure_positive"];
+
+/// What the table knows of a finger in a cell, mm.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Known {
+    /// The start that was taught.
+    pub start: f64,
+    /// The farthest starts that insert.
+    pub negative: f64,
+    /// ... towards +y.
+    pub positive: f64,
+    /// The true range.
+    pub range: f64,
+    /// The range with the cell as the files have it.
+    pub nominal: f64,
+}
+
+/// What the rows know of a finger.
+pub fn known(rows: &Rows, cell: u64, design: &Design) -> Option<Known> {
+    let header = header();
+    let columns: Vec<&str> = header.split(',').collect();
+    let number = |row: &str, name: &str| {
+        let at = columns.iter().position(|column| *column == name)?;
+        row.split(',').nth(at)?.parse::<f64>().ok()
+    };
+    let is = |row: &&String| {
+        [DENSITY_KEY, DIRECTION_KEY].iter().all(|key| number(row, key) == design.get(key))
+    };
+    let row = rows.iter().filter(|((of, _), _)| *of == cell).map(|(_, row)| row).find(is)?;
+    let mm = |name: &str| number(row, name).unwrap_or(0.0);
+    Some(Known {
+        start: mm("truth_start_mm"),
+        negative: mm("truth_negative_mm"),
+        positive: mm("truth_positive_mm"),
+        range: mm("truth_range_mm"),
+        nominal: mm("nominal_range_mm"),
+    })
+}
 
 /// Rows of the table by cell and number of the finger.
 pub type Rows = BTreeMap<(u64, u32), String>;
@@ -83,7 +120,7 @@ pub fn measure(
 }
 
 /// The window about a start that inserts: `near`, or else a taught one; `None` if none inserts.
-fn window(
+pub fn window(
     (specimen, robot): &(Specimen, Robot),
     engine: EngineKind,
     near: Option<OffsetStep>,

@@ -195,7 +195,7 @@ impl SuccessRate {
 }
 
 /// The probability with which a standard normal number stays below this one.
-fn normal_share(number: f64) -> f64 {
+pub fn normal_share(number: f64) -> f64 {
     0.5 * libm::erfc(-number * std::f64::consts::FRAC_1_SQRT_2)
 }
 

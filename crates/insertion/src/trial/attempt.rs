@@ -148,7 +148,7 @@ impl<'a> Attempt<'a> {
     }
 
     /// Grasps the part.
-    fn take(&mut self) -> Result<(), Stop> {
+    pub fn take(&mut self) -> Result<(), Stop> {
         self.coarsely(Self::close)?;
         self.grasp = self.grasp_points();
         if self.task.grip.hold == Hold::Always {

@@ -108,8 +108,8 @@ impl Grasp<'static> {
 /// A course that is not the strategy of the task.
 #[derive(Debug, Clone, Copy)]
 pub enum Course<'a> {
-    /// A commanded path, task frame.
-    Path(&'a Path),
+    /// Commanded paths, task frame, each from the same grasp.
+    Paths(&'a [&'a Path]),
     /// A probe of the friction on a flat plate, whose top is at z = 0, in the socket's place.
     Probe(Probe),
 }
@@ -133,9 +133,9 @@ pub trait Rig: Send + Sync {
     }
 
     /// What becomes of such a grasp along that course, sampled each `every_s` seconds from where it
-    /// begins, if it is simulated.
-    fn follow(&self, _grasp: Grasp<'_>, _course: Course<'_>, _every_s: f64) -> Option<Followed> {
-        None
+    /// begins: once for each path; empty if it is not simulated.
+    fn follow(&self, _grasp: Grasp<'_>, _course: Course<'_>, _every_s: f64) -> Vec<Followed> {
+        Vec::new()
     }
 
     /// The trial of such a grasp whose moves the caller commands, once it is made whatever becomes of

@@ -118,20 +118,29 @@ impl Rig for EngineRig {
         Some(Recording::new(trial, frames))
     }
 
-    fn follow(&self, grasp: Grasp<'_>, course: Course<'_>, every_s: f64) -> Option<Followed> {
-        let (mut attempt, end);
+    fn follow(&self, grasp: Grasp<'_>, course: Course<'_>, every_s: f64) -> Vec<Followed> {
+        let engine = &*self.engine;
+        let ended = |mut attempt: Attempt<'_>, end| {
+            let samples = attempt.sampled();
+            (attempt.result(end), samples)
+        };
         match course {
-            Course::Path(path) => {
-                attempt = self.attempt(&*self.engine, &self.task, grasp);
-                end = attempt.follow(path, every_s);
+            Course::Paths(paths) => {
+                let mut held = self.attempt(engine, &self.task, grasp);
+                let taken = held.take();
+                let each = paths.iter().map(|path| {
+                    let mut attempt = held.clone();
+                    let end = taken.and_then(|()| attempt.follow(path, every_s));
+                    ended(attempt, end)
+                });
+                each.collect()
             }
             Course::Probe(probe) => {
-                attempt = self.attempt(&*self.engine, &on_plate(&self.task), grasp);
-                end = attempt.probe(&probe, every_s);
+                let mut attempt = self.attempt(engine, &on_plate(&self.task), grasp);
+                let end = attempt.take().and_then(|()| attempt.probe(&probe, every_s));
+                vec![ended(attempt, end)]
             }
         }
-        let samples = attempt.sampled();
-        Some((attempt.result(end), samples))
     }
 
     fn driven(&self, grasp: Grasp<'_>) -> Option<Driven> {

@@ -90,9 +90,8 @@ const YIELDING: f64 = 2e-4;
 const LIFTING: f64 = 0.02;
 
 impl Attempt<'_> {
-    /// Grasps the part, carries it to where the path begins, and follows it; sampled from there on.
+    /// Carries the grasped part to where the path begins, and follows it; sampled from there on.
     pub fn follow(&mut self, path: &Path, every_s: f64) -> Result<(), Stop> {
-        self.take()?;
         self.carry(path.at(0.0))?;
         self.trace = Some(Trace::new(every_s));
         self.stage = Stage::Search;
@@ -113,9 +112,8 @@ impl Attempt<'_> {
         Ok(())
     }
 
-    /// Grasps the part and probes the face that this attempt's socket is.
+    /// Probes the face that this attempt's socket is with the grasped part.
     pub fn probe(&mut self, probe: &Probe, every_s: f64) -> Result<(), Stop> {
-        self.take()?;
         let z = self.task.grip.tcp_z + ABOVE;
         self.carry(Tcp { position: Vector3::new(0.0, -0.5 * probe.stroke, z), tilt: 0.0 })?;
         self.trace = Some(Trace::new(every_s));

@@ -1,0 +1,134 @@
+//! A log, or a simulated attempt, at even times: what formulas and fits compare.
+
+use super::log::{Log, Moment, Target};
+use input::units::{DEG, MM};
+use insertion::trial::{Path, Sample, Tcp};
+use nalgebra::Vector3;
+
+/// Time between two points, s: 500 Hz.
+pub const STEP_S: f64 = 2e-3;
+/// A target that slows down by this share of its highest speed at once has been stopped.
+const STOPPED: f64 = 0.25;
+
+/// Curves of one attempt, SI units, task frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curves {
+    /// Position of the TCP.
+    pub tcp: Vec<Vector3<f64>>,
+    /// Commanded position of the TCP, if it was recorded.
+    pub target: Option<Vec<Vector3<f64>>>,
+    /// Force on the tool, less what the sensor shows in the air.
+    pub force: Vec<Vector3<f64>>,
+    /// Tilt of the TCP.
+    pub tilt: Vec<f64>,
+}
+
+impl Curves {
+    /// Of a log, from its first moment on; the force is what it shows less `bias`.
+    pub fn of_log(log: &Log, bias: Vector3<f64>) -> Self {
+        let moments = &log.moments;
+        let (first, last) = (moments[0].time_s, moments[moments.len() - 1].time_s);
+        let count = ((last - first) / STEP_S) as usize + 1;
+        let mut at = 0;
+        let points: Vec<Moment> = (0..count)
+            .map(|i| {
+                let time = first + i as f64 * STEP_S;
+                while at + 2 < moments.len() && moments[at + 1].time_s <= time {
+                    at += 1;
+                }
+                between(&moments[at], &moments[at + 1], time)
+            })
+            .collect();
+        let target = |point: &Moment| point.target.map(|target| target.position);
+        Curves {
+            tcp: points.iter().map(|point| point.position).collect(),
+            target: points.iter().map(target).collect(),
+            force: points.iter().map(|point| point.force - bias).collect(),
+            tilt: points.iter().map(|point| point.tilt).collect(),
+        }
+    }
+
+    /// Of samples `STEP_S` apart, as a sensor shows them that carries a tool of this mass, kg.
+    pub fn of_samples(samples: &[Sample], tool_mass: f64) -> Self {
+        let vectors = |of: fn(&Sample) -> [f64; 3], unit: f64| {
+            samples.iter().map(|sample| Vector3::from(of(sample)) * unit).collect::<Vec<_>>()
+        };
+        let tcp = vectors(|sample| sample.tcp_mm, MM);
+        let carried = accelerations(&tcp).into_iter().map(|a| a * tool_mass);
+        let force = vectors(|sample| sample.sensed_n, 1.0);
+        Curves {
+            force: force.into_iter().zip(carried).map(|(force, carried)| force - carried).collect(),
+            target: Some(vectors(|sample| sample.target_mm, MM)),
+            tilt: samples.iter().map(|sample| sample.tcp_tilt_deg * DEG).collect(),
+            tcp,
+        }
+    }
+
+    /// What is commanded, or, where that was not recorded, where the TCP was; with the log's first tilt
+    /// unless it tells the commanded one.
+    pub fn path(&self) -> Option<Path> {
+        let commanded = self.target.as_ref().unwrap_or(&self.tcp);
+        let tilt = self.tilt.first().copied().unwrap_or(0.0);
+        let place = |(i, position): (usize, &Vector3<f64>)| {
+            (i as f64 * STEP_S, Tcp { position: *position, tilt })
+        };
+        Path::new(commanded.iter().enumerate().map(place))
+    }
+
+    /// Where the target was stopped because a touch was felt: its place among the points.
+    pub fn stopped(&self) -> Option<usize> {
+        let target = self.target.as_ref()?;
+        let speeds: Vec<f64> =
+            target.windows(2).map(|pair| (pair[0].z - pair[1].z) / STEP_S).collect();
+        let fastest = speeds.iter().copied().fold(0.0, f64::max);
+        let before = self.path().map_or(0, |path| (path.push() / STEP_S) as usize);
+        let slowed = |i: &usize| speeds[*i] - speeds[*i + 1];
+        let all = 0..before.min(speeds.len().saturating_sub(1));
+        let most = all.max_by(|a, b| slowed(a).total_cmp(&slowed(b)))?;
+        let usual = speeds[..before.min(speeds.len())].iter().copied().fold(0.0, f64::max);
+        (slowed(&most) > STOPPED * usual.min(fastest)).then_some(most + 1)
+    }
+}
+
+fn between(a: &Moment, b: &Moment, time: f64) -> Moment {
+    let share = ((time - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
+    let vector = |a: Vector3<f64>, b: Vector3<f64>| a + share * (b - a);
+    let number = |a: f64, b: f64| a + share * (b - a);
+    let target = a.target.zip(b.target).map(|(a, b)| Target {
+        position: vector(a.position, b.position),
+        tilt: number(a.tilt, b.tilt),
+    });
+    Moment {
+        line: a.line,
+        time_s: time,
+        position: vector(a.position, b.position),
+        tilt: number(a.tilt, b.tilt),
+        target,
+        force: vector(a.force, b.force),
+    }
+}
+
+/// First derivatives, by central differences of two steps to either side.
+pub fn rates(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    let last = points.len().saturating_sub(1);
+    let rate = |i: usize| {
+        let (a, b) = (i.saturating_sub(2), (i + 2).min(last));
+        (points[b] - points[a]) / ((b - a).max(1) as f64 * STEP_S)
+    };
+    (0..points.len()).map(rate).collect()
+}
+
+/// Second derivatives.
+pub fn accelerations(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    rates(&rates(points))
+}
+
+/// Means over so many points to either side.
+pub fn smoothed(points: &[Vector3<f64>], reach: usize) -> Vec<Vector3<f64>> {
+    let mean = |i: usize| {
+        let range = i.saturating_sub(reach)..(i + reach + 1).min(points.len());
+        let count = range.len() as f64;
+        points[range].iter().sum::<Vector3<f64>>() / count
+    };
+    (0..points.len()).map(mean).collect()
+}

@@ -1,0 +1,236 @@
+//! What stands in the logs by itself: stiffness of the robot, preload, friction.
+
+use super::curves::{Curves, STEP_S, accelerations, rates, smoothed};
+use insertion::surrogate::Estimate;
+use nalgebra::{DMatrix, DVector, Vector3};
+use std::ops::Range;
+
+/// Points to either side that are averaged before anything is differentiated: 10 ms.
+const REACH: usize = 5;
+/// Delays of the force that are tried, points: up to 30 ms.
+const DELAYS: usize = 15;
+/// Least standard deviation that is believed, as a share: a robot is no ideal spring.
+const FLOOR: f64 = 0.02;
+
+/// One axis of a soft flange: F = -k e - c e' + m a, with e how far the TCP is behind its target and m
+/// its mass less that which the sensor carries.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flange {
+    /// k, N/m.
+    pub stiffness: Estimate,
+    /// c, N s/m.
+    pub damping: f64,
+    /// m, kg.
+    pub mass: f64,
+    /// Delay of the force behind the pose that fits best, s.
+    pub delay_s: f64,
+    /// Share of the variance of the force that it explains, 0 to 1.
+    pub explained: f64,
+}
+
+/// The flange along an axis, 0 x to 2 z, by least squares over attempts; its error is that of leaving out
+/// one attempt at a time. `None` without targets, or where no force moves the robot.
+pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
+    let fits = (0..=DELAYS).filter_map(|delay| {
+        let sums: Vec<Sums> = all.iter().filter_map(|one| Sums::of(one, axis, delay)).collect();
+        let fit = solve(sums.iter())?;
+        Some((delay, sums, fit))
+    });
+    let (delay, sums, fit) = fits.max_by(|a, b| a.2.explained.total_cmp(&b.2.explained))?;
+    let without = |i: usize| {
+        let others = sums.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, sums)| sums);
+        solve(others).map(|fit| fit.terms[0])
+    };
+    let left_out: Vec<f64> = (0..sums.len()).filter_map(without).collect();
+    let n = left_out.len() as f64;
+    let mean = left_out.iter().sum::<f64>() / n.max(1.0);
+    let spread: f64 = left_out.iter().map(|k| (k - mean).powi(2)).sum();
+    let jackknife = if n > 1.0 { ((n - 1.0) / n * spread).sqrt() } else { f64::INFINITY };
+    let [stiffness, damping, mass] = fit.terms;
+    let known = stiffness > 0.0 && jackknife < stiffness;
+    known.then_some(Flange {
+        stiffness: Estimate { mean: stiffness, sd: jackknife.max(FLOOR * stiffness) },
+        damping,
+        mass,
+        delay_s: delay as f64 * STEP_S,
+        explained: fit.explained,
+    })
+}
+
+/// Sums of products over one attempt, each column less its mean: the bias of the sensor is left out.
+struct Sums {
+    products: DMatrix<f64>,
+    with_force: DVector<f64>,
+    force: f64,
+}
+
+struct Fit {
+    terms: [f64; 3],
+    explained: f64,
+}
+
+impl Sums {
+    fn of(one: &Curves, axis: usize, delay: usize) -> Option<Self> {
+        let count = one.tcp.len().checked_sub(delay).filter(|&count| count > 4 * REACH)?;
+        let target = smoothed(&smoothed(one.target.as_ref()?, REACH), REACH);
+        let tcp = smoothed(&smoothed(&one.tcp, REACH), REACH);
+        let force = smoothed(&smoothed(&one.force, REACH), REACH);
+        let behind: Vec<Vector3<f64>> = target.iter().zip(&tcp).map(|(to, at)| to - at).collect();
+        let (rate, acceleration) = (rates(&behind), accelerations(&tcp));
+        let column = |values: &[Vector3<f64>], from: usize, sign: f64| {
+            let column = DVector::from_fn(count, |i, _| sign * values[i + from][axis]);
+            let mean = column.mean();
+            column.add_scalar(-mean)
+        };
+        let columns = [(&behind, -1.0), (&rate, -1.0), (&acceleration, 1.0)];
+        let columns = columns.map(|(values, sign)| column(values, 0, sign));
+        let force = column(&force, delay, 1.0);
+        Some(Sums {
+            products: DMatrix::from_fn(3, 3, |i, j| columns[i].dot(&columns[j])),
+            with_force: DVector::from_fn(3, |i, _| columns[i].dot(&force)),
+            force: force.norm_squared(),
+        })
+    }
+}
+
+fn solve<'a>(sums: impl Iterator<Item = &'a Sums>) -> Option<Fit> {
+    let (mut a, mut b, mut force) = (DMatrix::zeros(3, 3), DVector::zeros(3), 0.0);
+    for sums in sums {
+        a += &sums.products;
+        b += &sums.with_force;
+        force += sums.force;
+    }
+    // The columns differ by orders of magnitude.
+    let scale = DVector::from_fn(3, |i, _| a[(i, i)].sqrt());
+    if scale.iter().any(|s| *s <= 0.0) || force <= 0.0 {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(3, 3, |i, j| a[(i, j)] / (scale[i] * scale[j]));
+    let right = b.component_div(&scale);
+    let terms = scaled.cholesky()?.solve(&right);
+    let explained = terms.dot(&right) / force;
+    Some(Fit { terms: [0, 1, 2].map(|i| terms[i] / scale[i]), explained })
+}
+
+/// Preload, m: from where the TCP was when the target was stopped by the touch to where it was sent.
+pub fn preload(all: &[Curves]) -> Option<Estimate> {
+    let of = |one: &Curves| {
+        let (stopped, target) = (one.stopped()?, one.target.as_ref()?);
+        let rest = target[stopped..].windows(2).position(|pair| pair[0] == pair[1]);
+        let sent = target[stopped + rest?];
+        Some(one.tcp[stopped].z - sent.z)
+    };
+    estimate(&all.iter().filter_map(of).collect::<Vec<_>>(), 0.0)
+}
+
+/// Mean, and its standard deviation from the scatter, at least `floor` of it.
+fn estimate(values: &[f64], floor: f64) -> Option<Estimate> {
+    let n = values.len() as f64;
+    let mean = (n > 0.0).then(|| values.iter().sum::<f64>() / n)?;
+    let scatter = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+    let sd = if n > 1.0 { (scatter / (n - 1.0) / n).sqrt() } else { 0.0 };
+    Some(Estimate { mean, sd: sd.max(floor * mean.abs()) })
+}
+
+/// One slide of a probe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slide {
+    /// Tangential force over normal force where it slides.
+    pub ratio: f64,
+    /// Whether the ratio went on rising: then the part turned in the grasp, and slid little or not at all.
+    pub rising: bool,
+}
+
+/// Friction of plug and socket, from a probe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Friction {
+    pub slides: Vec<Slide>,
+    /// Coefficient; `None` if the part turned in all slides of a direction.
+    pub coefficient: Option<Estimate>,
+}
+
+/// Least part of a slide, s.
+const SLIDE_S: f64 = 0.3;
+/// Normal force below which there is no contact, N.
+const CONTACT_N: f64 = 1.5;
+/// A ratio that grows by this share over the last part of a slide has not settled.
+const RISING: f64 = 0.12;
+/// Least standard deviation of a coefficient, as a share: a contact is no Coulomb law.
+const FRICTION_FLOOR: f64 = 0.04;
+
+/// Friction from a probe along y, with the drift of the sensor taken out by the air before and after it.
+pub fn friction(probe: &Curves) -> Option<Friction> {
+    let force = undrifted(probe)?;
+    let moved = probe.target.as_ref().unwrap_or(&probe.tcp);
+    let speed: Vec<f64> = rates(&smoothed(moved, REACH)).iter().map(|rate| rate.y).collect();
+    let fastest = speed.iter().map(|v| v.abs()).fold(0.0, f64::max);
+    let sliding = |sign: f64| {
+        let on = |i: usize| sign * speed[i] > 0.4 * fastest && force[i].z > CONTACT_N;
+        runs_of(speed.len(), on)
+    };
+    let least = (SLIDE_S / STEP_S) as usize;
+    let each = |sign: f64| -> Vec<Slide> {
+        let long = sliding(sign).into_iter().filter(|range| range.len() >= least);
+        long.map(|range| slide(&force, range)).collect()
+    };
+    let [forth, back] = [1.0, -1.0].map(each);
+    let angle = |slides: &[Slide]| {
+        let settled = slides.iter().filter(|slide| !slide.rising);
+        estimate(&settled.map(|slide| libm::atan(slide.ratio)).collect::<Vec<_>>(), 0.0)
+    };
+    // A face that is not level adds its angle one way and takes it the other.
+    let both = angle(&forth).zip(angle(&back));
+    let coefficient = both.map(|(a, b)| {
+        let mean = libm::tan(0.5 * (a.mean + b.mean));
+        let sd = 0.5 * a.sd.hypot(b.sd);
+        Estimate { mean, sd: sd.max(FRICTION_FLOOR * mean) }
+    });
+    let slides = [forth, back].concat();
+    (!slides.is_empty()).then_some(Friction { slides, coefficient })
+}
+
+/// The force less a line through what the sensor shows in the air before and after the contact.
+fn undrifted(probe: &Curves) -> Option<Vec<Vector3<f64>>> {
+    let force = smoothed(&probe.force, 2 * REACH);
+    let touching = |i: &usize| force[*i].z > CONTACT_N;
+    let first = (0..force.len()).find(touching)?;
+    let last = (0..force.len()).rfind(touching)?;
+    let free = 5 * REACH;
+    let air = |range: Range<usize>| {
+        let middle = 0.5 * (range.start + range.end) as f64;
+        let forces = &probe.force[range];
+        let count = forces.len() as f64;
+        (forces.len() > REACH).then(|| (middle, forces.iter().sum::<Vector3<f64>>() / count))
+    };
+    let before = air(0..first.saturating_sub(free))?;
+    let after = air((last + free).min(force.len())..force.len()).unwrap_or(before);
+    let slope = match after.0 > before.0 {
+        true => (after.1 - before.1) / (after.0 - before.0),
+        false => Vector3::zeros(),
+    };
+    let less = |(i, force): (usize, Vector3<f64>)| force - before.1 - slope * (i as f64 - before.0);
+    Some(force.into_iter().enumerate().map(less).collect())
+}
+
+fn slide(force: &[Vector3<f64>], range: Range<usize>) -> Slide {
+    let ratio = |from: f64, to: f64| {
+        let place = |share: f64| range.start + (share * range.len() as f64) as usize;
+        let part = &force[place(from)..place(to)];
+        let sum: Vector3<f64> = part.iter().sum();
+        (sum.y / sum.z).abs()
+    };
+    let (middle, last) = (ratio(0.5, 0.7), ratio(0.75, 0.95));
+    Slide { ratio: last, rising: last > (1.0 + RISING) * middle }
+}
+
+/// The runs of neighbours for which something holds.
+fn runs_of(count: usize, holds: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for i in (0..count).filter(|&i| holds(i)) {
+        match runs.last_mut() {
+            Some(run) if run.end == i => run.end = i + 1,
+            _ => runs.push(i..i + 1),
+        }
+    }
+    runs
+}

@@ -1,0 +1,376 @@
+//! From the logs of attempts to the numbers of their cell.
+
+use super::check::Remark;
+use super::curves::Curves;
+use super::formulas::{self, Flange, Friction};
+use super::log::{Ended, Run};
+use super::replay::{Logged, Replay};
+use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
+use super::touch::bias;
+use input::units::{MM, N_PER_MM};
+use insertion::evaluation::cell::{Parameter, Priors, Target, Way};
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::normal_share;
+use insertion::evaluation::template::{Impossible, Template};
+use insertion::outcome::Outcome;
+use insertion::robot::{Drive, Robot, Servo};
+use insertion::space::Scale;
+use insertion::surrogate::Estimate;
+use std::sync::atomic::AtomicBool;
+
+/// Ten members to each unknown; four rounds; neighbours over 0.1 s err together.
+pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, alike: 10.0, seed: 0 };
+/// Factor on the deviations that the smoother leaves, from the coverage on synthetic cells.
+pub const INFLATION: f64 = 1.0;
+/// An unknown that keeps so much of its prior's deviation is left at it.
+const UNTOLD: f64 = 0.8;
+const FRICTION: &str = "task.friction.plug_socket";
+const STRATEGY: &str = "task.strategy.";
+
+/// What is asked.
+pub struct Question<'a> {
+    /// Knows the fingers; its robot is the start, of which the logs may tell more.
+    pub evaluator: &'a Evaluator,
+    pub template: &'a Template,
+    pub priors: &'a Priors,
+    pub runs: &'a [Run],
+    /// Mass that the force sensor carries, kg.
+    pub tool_mass: f64,
+    pub seed: u64,
+    pub stop: &'a AtomicBool,
+}
+
+/// Source of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum From {
+    /// Read from the logs by a formula.
+    Formula,
+    /// Fitted to the curves of the logs.
+    Fit,
+    /// These logs cannot tell it.
+    Prior,
+}
+
+/// A number of the cell before and after.
+#[derive(Debug, Clone)]
+pub struct Unknown {
+    /// The prior's row.
+    pub prior: Parameter,
+    /// The same, with what the logs say.
+    pub posterior: Parameter,
+    /// The prior's deviation that the logs were expected to leave, and did leave, as shares of it.
+    pub left: Option<[f64; 2]>,
+    pub from: From,
+    /// The attempt that would tell it, if these do not.
+    pub advice: Option<&'static str>,
+}
+
+/// An attempt, measured and simulated.
+pub struct Compared {
+    pub logged: Logged,
+    /// Under the numbers of the files, and under what was identified.
+    pub before: (Curves, Outcome),
+    pub after: (Curves, Outcome),
+}
+
+/// What the logs say.
+pub struct Identified {
+    pub robot: Robot,
+    /// The robot's axes x, y and z as far as the logs tell them.
+    pub flange: [Option<Flange>; 3],
+    pub preload: Option<Estimate>,
+    /// Of each probe, by its file.
+    pub probes: Vec<(String, Friction)>,
+    pub unknowns: Vec<Unknown>,
+    pub smoothed: Smoothed,
+    pub compared: Vec<Compared>,
+}
+
+/// The logs of one cell, what was noticed in them, and what they say.
+pub struct IdentifyDone {
+    /// Name of the task.
+    pub task: String,
+    /// What is to be known of the logs, each a sentence.
+    pub remarks: Vec<Remark>,
+    /// Numbers of the cell, and the curves they come from.
+    pub found: Identified,
+    /// The cell, for `--cell`, `--priors` and `--uncertainty`.
+    pub cell: Priors,
+}
+
+impl Question<'_> {
+    /// Reads what formulas tell, and fits the rest.
+    ///
+    /// # Errors
+    /// If a prior sets what cannot be.
+    pub fn answer(&self) -> Result<Identified, Impossible> {
+        let attempts: Vec<Logged> = self.runs.iter().filter_map(Logged::new).collect();
+        let curves: Vec<Curves> = attempts.iter().map(|one| one.curves.clone()).collect();
+        let flange = [0, 1, 2].map(|axis| formulas::flange(&curves, axis));
+        let probes = self.probes();
+        let preload = formulas::preload(&curves);
+        let robot = self.robot(&flange);
+        let (mut fitted, mut rest) = (Vec::new(), Vec::new());
+        for prior in self.rows() {
+            let known = self.known(&prior, &flange, preload, &probes, &attempts);
+            let read = prior.sets.key().starts_with(STRATEGY) || prior.sets == Target::Flange;
+            match (known, read) {
+                (Some(known), true) => rest.push(told(prior, known, From::Formula)),
+                (None, true) => rest.push(untold(prior, None)),
+                (known, false) => fitted.push((prior, known)),
+            }
+        }
+        let replay = Replay {
+            evaluator: self.evaluator,
+            robot: &robot,
+            template: self.template,
+            tool_mass: self.tool_mass,
+            stop: self.stop,
+        };
+        let rows: Vec<&Parameter> =
+            fitted.iter().map(|(prior, known)| known.as_ref().unwrap_or(prior)).collect();
+        let smoothed = self.smoothed(&replay, &attempts, &rows)?;
+        let unknowns: Vec<Unknown> = fitted
+            .iter()
+            .enumerate()
+            .map(|(i, (prior, known))| fit(prior, known.as_ref(), &smoothed, i))
+            .chain(rest)
+            .collect();
+        let compared = self.compared(&replay, attempts, &unknowns)?;
+        Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared })
+    }
+
+    fn probes(&self) -> Vec<(String, Friction)> {
+        let probes = self.runs.iter().filter(|run| run.ended == Ended::Probe);
+        let friction = |run: &Run| {
+            let found = formulas::friction(&Curves::of_log(&run.log, bias(&run.log)))?;
+            Some((run.log.file.clone(), found))
+        };
+        probes.filter_map(friction).collect()
+    }
+
+    /// The rows of the prior that the task has; of a friction as values.
+    fn rows(&self) -> Vec<Parameter> {
+        let Question { evaluator, template, .. } = self;
+        let has = |row: &Parameter| match &row.sets {
+            Target::Number(key) => evaluator.number(template, key).is_some(),
+            _ => true,
+        };
+        let as_value = |row: &Parameter| {
+            let own = match &row.sets {
+                Target::Number(key) => evaluator.number(template, key),
+                Target::Clearance | Target::Edges | Target::Chamfer => Some(0.0),
+                _ => None,
+            };
+            let Some(own) = own else { return row.clone() };
+            let [low, high] = [row.low, row.high].map(|bound| row.applied(own, bound));
+            let value = row.value.map(|value| row.applied(own, value));
+            let factor = if row.way == Way::Factor { own.abs() } else { 1.0 };
+            let cut = matches!(row.sets, Target::Edges | Target::Chamfer | Target::Clearance);
+            Parameter {
+                // The opening has no width of its own that could be set.
+                way: if cut { Way::Shift } else { Way::Value },
+                // A stroke towards -y is a factor on a negative number.
+                low: low.min(high),
+                high: low.max(high),
+                scale: if low < 0.0 { Scale::Linear } else { row.scale },
+                value,
+                sd: row.sd.map(|sd| sd * factor),
+                ..row.clone()
+            }
+        };
+        self.priors.of(&template.task.name).filter(|row| has(row)).map(as_value).collect()
+    }
+
+    /// The robot with the axes that the logs tell; rotations in proportion to the translations' mean.
+    fn robot(&self, flange: &[Option<Flange>; 3]) -> Robot {
+        let own = &self.evaluator.robot;
+        let known: Vec<(usize, &Flange)> =
+            flange.iter().enumerate().filter_map(|(i, axis)| Some((i, axis.as_ref()?))).collect();
+        let base = match own.drive {
+            Drive::Servo(servo) => servo,
+            _ if known.len() == 3 => SOFT,
+            _ => return own.clone(),
+        };
+        if known.is_empty() {
+            return own.clone();
+        }
+        let n = known.len() as f64;
+        let ratio = |(i, axis): &(usize, &Flange)| libm::log(axis.stiffness.mean / base.stiffness[*i]);
+        let factor = libm::exp(known.iter().map(ratio).sum::<f64>() / n);
+        let mut servo = Servo {
+            stiffness: base.stiffness.map(|k| k * factor),
+            rotational_stiffness: base.rotational_stiffness.map(|k| k * factor),
+            ..base
+        };
+        for (i, axis) in &known {
+            servo.stiffness[*i] = axis.stiffness.mean;
+        }
+        Robot { name: "identified".to_owned(), drive: Drive::Servo(servo), ..own.clone() }
+    }
+
+    /// A row as formulas tell it, if they do.
+    fn known(
+        &self,
+        prior: &Parameter,
+        flange: &[Option<Flange>; 3],
+        preload: Option<Estimate>,
+        probes: &[(String, Friction)],
+        attempts: &[Logged],
+    ) -> Option<Parameter> {
+        let key = prior.sets.key();
+        if prior.sets == Target::Flange {
+            let axes = flange.iter().flatten();
+            let shares = axes.clone().map(|axis| axis.stiffness.sd / axis.stiffness.mean);
+            let sd = shares.fold(0.0, f64::max);
+            let source = "force over how far the TCP is behind its target; the values are the robot's";
+            let factor = Parameter { way: Way::Factor, low: 0.5, high: 2.0, ..prior.clone() };
+            return axes.count().gt(&0).then(|| with(&factor, 1.0, sd, source));
+        }
+        if key.ends_with("preload_mm") {
+            let Estimate { mean, sd } = preload?;
+            let sd = (sd / MM).max(0.01);
+            return Some(with(prior, mean / MM, sd, "where the target stopped, and where it was sent"));
+        }
+        if key.starts_with(STRATEGY) && key.ends_with("move_mm.y") {
+            let stroke = |one: &Logged| {
+                let (target, from) = (one.curves.target.as_ref()?, one.curves.stopped()?);
+                let to = one.push.min(target.len() - 1);
+                Some((target[to].y - target[from].y) / MM)
+            };
+            let strokes: Vec<f64> = attempts.iter().filter_map(stroke).collect();
+            let mean = (!strokes.is_empty()).then(|| strokes.iter().sum::<f64>() / strokes.len() as f64)?;
+            return Some(with(prior, mean, 0.01, "commanded from the touch to the push"));
+        }
+        if key == FRICTION {
+            let said: Vec<Estimate> = probes.iter().filter_map(|(_, found)| found.coefficient).collect();
+            let n = said.len() as f64;
+            let mean = (n > 0.0).then(|| said.iter().map(|one| one.mean).sum::<f64>() / n)?;
+            let scatter = said.iter().map(|one| (one.mean - mean).powi(2)).sum::<f64>() / n;
+            let sd = said.iter().map(|one| one.sd).sum::<f64>() / n;
+            return Some(with(prior, mean, sd.hypot(scatter.sqrt()), "probe: slides both ways"));
+        }
+        None
+    }
+
+    fn smoothed(
+        &self,
+        replay: &Replay<'_>,
+        attempts: &[Logged],
+        rows: &[&Parameter],
+    ) -> Result<Smoothed, Impossible> {
+        let data: Vec<Datum> = attempts.iter().flat_map(Logged::data).collect();
+        let predict = |z: &[f64]| -> Result<Predicted, Impossible> {
+            let replayed = replay.curves(attempts, &values(rows, z))?;
+            let each = attempts.iter().zip(&replayed);
+            Ok(each.flat_map(|(logged, (curves, _))| logged.predicted(curves)).collect())
+        };
+        smooth(rows.len(), &data, Settings { seed: self.seed, ..SETTINGS }, predict)
+    }
+
+    fn compared(
+        &self,
+        replay: &Replay<'_>,
+        attempts: Vec<Logged>,
+        unknowns: &[Unknown],
+    ) -> Result<Vec<Compared>, Impossible> {
+        let now: Vec<(&Parameter, f64)> =
+            unknowns.iter().map(|one| (&one.posterior, one.posterior.middle())).collect();
+        let now: Vec<_> = now.into_iter().filter(|(row, _)| row.sets != Target::Flange).collect();
+        let files = Replay { robot: &self.evaluator.robot, ..*replay };
+        let before = files.curves(&attempts, &[])?;
+        let after = replay.curves(&attempts, &now)?;
+        let each = attempts.into_iter().zip(before).zip(after);
+        let compared = each.map(|((logged, before), after)| Compared { logged, before, after });
+        Ok(compared.collect())
+    }
+}
+
+/// A flange that all axes are told of: what is left is a wrist and a gripper, as of `robots/servo.toml`.
+const SOFT: Servo = Servo {
+    stiffness: [10.0 * N_PER_MM; 3],
+    rotational_stiffness: [400.0; 3],
+    mass: 2.0,
+    inertia: 0.01,
+    damping_ratio: 1.0,
+};
+
+/// The values of rows at these standard normal coordinates.
+fn values<'a>(rows: &[&'a Parameter], z: &[f64]) -> Vec<(&'a Parameter, f64)> {
+    rows.iter().zip(z).map(|(row, &z)| (*row, row.at(normal_share(z)))).collect()
+}
+
+/// A row with a value, within its bounds, which give way to a measurement.
+fn with(row: &Parameter, value: f64, sd: f64, source: &str) -> Parameter {
+    Parameter {
+        value: Some(value),
+        sd: Some(sd),
+        low: row.low.min(value - 3.0 * sd).max(if row.low > 0.0 { 0.2 * value } else { f64::MIN }),
+        high: row.high.max(value + 3.0 * sd),
+        source: source.to_owned(),
+        ..row.clone()
+    }
+}
+
+fn told(prior: Parameter, posterior: Parameter, from: From) -> Unknown {
+    Unknown { prior, posterior, left: None, from, advice: None }
+}
+
+fn untold(prior: Parameter, left: Option<[f64; 2]>) -> Unknown {
+    let advice = advice(&prior);
+    Unknown { posterior: prior.clone(), prior, left, from: From::Prior, advice: Some(advice) }
+}
+
+/// An unknown after the fit.
+fn fit(prior: &Parameter, known: Option<&Parameter>, smoothed: &Smoothed, i: usize) -> Unknown {
+    let z: Vec<f64> = smoothed.members.iter().map(|member| member[i]).collect();
+    let (mean, sd) = moments(&z);
+    let left = Some([smoothed.expected_sd[i], INFLATION * sd]);
+    if let Some(known) = known {
+        // What was measured by itself is not bent to make up for what the model lacks elsewhere.
+        return Unknown { left, ..told(prior.clone(), known.clone(), From::Formula) };
+    }
+    if INFLATION * sd > UNTOLD {
+        return untold(prior.clone(), left);
+    }
+    let row = prior;
+    let at = |z: &f64| row.at(normal_share(mean + INFLATION * (z - mean)));
+    let log = row.scale == Scale::Log;
+    let drawn: Vec<f64> = z.iter().map(at).map(|v| if log { libm::log(v) } else { v }).collect();
+    let (mean, sd) = moments(&drawn);
+    let (value, sd) = if log { (libm::exp(mean), sd * libm::exp(mean)) } else { (mean, sd) };
+    let posterior = Parameter {
+        value: Some(value.clamp(row.low, row.high)),
+        sd: Some(sd),
+        source: "curves of the attempts".to_owned(),
+        ..row.clone()
+    };
+    Unknown { left, ..told(prior.clone(), posterior, From::Fit) }
+}
+
+fn moments(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    (mean, variance.sqrt())
+}
+
+/// The attempt that would tell a number.
+fn advice(row: &Parameter) -> &'static str {
+    match &row.sets {
+        Target::Flange => "record target_TCP_pose beside actual_TCP_pose",
+        Target::Number(key) if key == FRICTION => {
+            "a probe: slide 8 mm along y and back at 5 mm/s and 5 N on a flat face"
+        }
+        Target::Number(key) if key.ends_with("preload_mm") => {
+            "record target_TCP_pose: the preload is how far the target goes beyond the touch"
+        }
+        Target::Number(_) | Target::Tilting | Target::Centre => {
+            "starts at both ends of the window, where the plug turns in the grasp"
+        }
+        Target::Edges | Target::Chamfer => "starts 0.2 mm inside and outside of both ends of the window",
+        Target::Clearance => "measure plug and opening with a caliper",
+        Target::Stiffness => "press the finger with a weight: `optimize finger --sheet`",
+    }
+}

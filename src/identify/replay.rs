@@ -1,0 +1,170 @@
+//! The logged attempts in the simulator, along their commanded paths, and what of both is compared.
+
+use super::curves::{Curves, STEP_S};
+use super::log::{Ended, Run};
+use super::smoother::{Datum, Predicted};
+use super::touch::{bias, touch};
+use insertion::evaluation::cell::Parameter;
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::template::{Impossible, Template};
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::space::Design;
+use insertion::trial::{Course, Grasp, Path};
+use input::units::MM;
+use nalgebra::Vector3;
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+
+/// Points that make one datum: 10 ms.
+const POINTS: usize = 5;
+/// Error of a force that the model does not know: drift of the sensor, N, and share of the force.
+const FORCE_N: f64 = 0.5;
+const FORCE_SHARE: f64 = 0.1;
+/// Error of a pose, m (repeatability of a small arm), and share of how far it is off its target.
+const POSE: f64 = 0.03 * MM;
+const POSE_SHARE: f64 = 0.1;
+/// Contact is lost below and had above, N, for so many data: 30 ms.
+const LOST_N: f64 = 1.5;
+const HAD_N: f64 = 4.0;
+const EVENT: usize = 3;
+
+/// Part of an attempt, for reports.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    Search,
+    Push,
+}
+
+/// A logged attempt, ready to be replayed.
+#[derive(Debug, Clone)]
+pub struct Logged {
+    pub file: String,
+    pub design: Design,
+    pub offset: f64,
+    pub ended: Ended,
+    pub curves: Curves,
+    path: Path,
+    /// First point that is compared: the touch.
+    pub touch: usize,
+    /// Point at which the push begins.
+    pub push: usize,
+}
+
+impl Logged {
+    /// `None` of an attempt that touches nothing, or of a probe.
+    pub fn new(run: &Run) -> Option<Self> {
+        let touched = touch(&run.log).filter(|_| run.ended != Ended::Probe)?;
+        let curves = Curves::of_log(&run.log, bias(&run.log));
+        let since = run.log.moments[touched].time_s - run.log.moments[0].time_s;
+        let path = curves.path()?;
+        Some(Logged {
+            file: run.log.file.clone(),
+            design: run.design.clone(),
+            offset: run.offset,
+            ended: run.ended,
+            touch: (since / STEP_S) as usize,
+            push: (path.push() / STEP_S) as usize,
+            curves,
+            path,
+        })
+    }
+
+    /// The points of each datum.
+    fn bins(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        let bins = (self.curves.tcp.len() - self.touch.min(self.curves.tcp.len())) / POINTS;
+        (0..bins).map(|i| self.touch + i * POINTS..self.touch + (i + 1) * POINTS)
+    }
+
+    /// The phase of each datum.
+    pub fn phases(&self) -> impl Iterator<Item = Phase> + '_ {
+        let phase = |bin: Range<usize>| if bin.start < self.push { Phase::Search } else { Phase::Push };
+        self.bins().flat_map(move |bin| std::iter::repeat_n(phase(bin), self.each()))
+    }
+
+    /// Numbers of each datum: three of the force, and three of how far the TCP is off its target.
+    pub fn each(&self) -> usize {
+        if self.curves.target.is_some() { 6 } else { 3 }
+    }
+
+    /// What was measured.
+    pub fn data(&self) -> Vec<Datum> {
+        let off = off(&self.curves);
+        let datum = |bin: Range<usize>| {
+            let force = mean(&self.curves.force, &bin);
+            let sd = FORCE_N.hypot(FORCE_SHARE * force.norm());
+            let forces = force.iter().map(|&value| Datum { value, sd }).collect::<Vec<_>>();
+            let poses = off.iter().map(|off| mean(off, &bin)).flat_map(|off| {
+                let sd = POSE.hypot(POSE_SHARE * off.norm());
+                [0, 1, 2].map(|i| Datum { value: off[i], sd })
+            });
+            forces.into_iter().chain(poses).collect::<Vec<_>>()
+        };
+        self.bins().flat_map(datum).collect()
+    }
+
+    /// The same of a replay, up to the first contact that is made or lost in one of the two alone.
+    pub fn predicted(&self, replayed: &Curves) -> Predicted {
+        let off = off(replayed);
+        let (mut apart, mut over) = (0, false);
+        let datum = |bin: Range<usize>| {
+            over = over || bin.end > replayed.force.len();
+            if over {
+                return vec![None; self.each()];
+            }
+            let [mine, other] =
+                [&self.curves.force, &replayed.force].map(|force| mean(force, &bin));
+            let differ = mine.norm().min(other.norm()) < LOST_N && mine.norm().max(other.norm()) > HAD_N;
+            apart = if differ { apart + 1 } else { 0 };
+            over = apart >= EVENT;
+            let poses = off.iter().take(self.each() / 6).map(|off| mean(off, &bin));
+            let all = [other].into_iter().chain(poses);
+            all.flat_map(|vector| [0, 1, 2].map(|i| Some(vector[i]))).collect()
+        };
+        self.bins().flat_map(datum).collect()
+    }
+}
+
+/// How far the TCP is off its target, if that is known.
+fn off(curves: &Curves) -> Option<Vec<Vector3<f64>>> {
+    let target = curves.target.as_ref()?;
+    Some(curves.tcp.iter().zip(target).map(|(tcp, target)| tcp - target).collect())
+}
+
+fn mean(points: &[Vector3<f64>], bin: &Range<usize>) -> Vector3<f64> {
+    points[bin.clone()].iter().sum::<Vector3<f64>>() / bin.len() as f64
+}
+
+/// Where attempts are replayed.
+#[derive(Clone, Copy)]
+pub struct Replay<'a> {
+    pub evaluator: &'a Evaluator,
+    pub robot: &'a Robot,
+    pub template: &'a Template,
+    /// Mass that the sensor carries, kg.
+    pub tool_mass: f64,
+    pub stop: &'a AtomicBool,
+}
+
+impl Replay<'_> {
+    /// Curves of attempts under these values, and how they ended; each finger is grasped once.
+    pub fn curves(
+        &self,
+        attempts: &[Logged],
+        values: &[(&Parameter, f64)],
+    ) -> Result<Vec<(Curves, Outcome)>, Impossible> {
+        let Replay { evaluator, template, .. } = self;
+        let mut all = Vec::with_capacity(attempts.len());
+        for alike in attempts.chunk_by(|a, b| a.design == b.design) {
+            let (specimen, _) = evaluator.under(template, (&alike[0].design, None), values)?;
+            let rig = evaluator.engine.rig(&specimen.task, self.robot, &specimen.finger, 1.0)?;
+            let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
+            let paths: Vec<&Path> = alike.iter().map(|logged| &logged.path).collect();
+            let followed = rig.follow(grasp, Course::Paths(&paths), STEP_S);
+            all.extend(followed.into_iter().map(|(trial, samples)| {
+                (Curves::of_samples(&samples, self.tool_mass), trial.outcome)
+            }));
+        }
+        Ok(all)
+    }
+}

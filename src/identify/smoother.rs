@@ -1,0 +1,263 @@
+//! An ensemble smoother with multiple data assimilation: ES-MDA (Emerick and Reynolds 2013,
+//! doi:10.1016/j.cageo.2012.03.011), for few unknowns and many, partly missing, data.
+//!
+//! With ten members to each unknown, the covariance of unknowns and data is that of a linear regression of
+//! the data on the unknowns; what the line leaves over counts as an error of the data. So members that
+//! happen to fit do not make the spread collapse.
+
+use ask_tell::stream::stream;
+use nalgebra::{DMatrix, DVector};
+use rand::RngExt;
+use rand_distr::StandardNormal;
+use rayon::prelude::*;
+
+/// Coordinates of the unknowns, standard normal before any data.
+pub type Coordinates = Vec<f64>;
+
+/// What a member predicts of the data, in their order; `None` where it cannot be compared.
+pub type Predicted = Vec<Option<f64>>;
+
+/// A number that was measured, and the standard deviation of its error, model and sensor together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Datum {
+    pub value: f64,
+    pub sd: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Members to each unknown.
+    pub members: usize,
+    /// Times that the data are assimilated, each time with their variance so often.
+    pub rounds: usize,
+    /// Data whose errors are one: neighbours on a curve err together.
+    pub alike: f64,
+    pub seed: u64,
+}
+
+/// Unknowns before and after.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Smoothed {
+    /// Members after the last round.
+    pub members: Vec<Coordinates>,
+    /// Standard deviations that the data were expected to leave, from the first members alone.
+    pub expected_sd: Vec<f64>,
+    /// Root mean square of (measured less predicted) / sd, of the members' mean, before each round and at last.
+    pub misfit: Vec<f64>,
+    /// Share of the data that at least a quarter of the last members can be compared with.
+    pub compared: f64,
+}
+
+/// Residuals count at most so many standard deviations: one event at another time is no ten.
+const CLIPPED: f64 = 3.0;
+/// A coordinate stays within so many standard deviations of the prior.
+const FARTHEST: f64 = 3.0;
+/// Members, as a share, that have to be comparable for a datum to count.
+const ENOUGH: f64 = 0.25;
+
+/// Draws members, and assimilates the data; `predict` is asked in parallel, and ends the whole if it fails.
+pub fn smooth<E: Send>(
+    unknowns: usize,
+    data: &[Datum],
+    settings: Settings,
+    predict: impl Fn(&[f64]) -> Result<Predicted, E> + Sync,
+) -> Result<Smoothed, E> {
+    let count = settings.members * unknowns;
+    let mut random = stream(settings.seed, 0, "members");
+    let mut members: Vec<Coordinates> = (0..count)
+        .map(|_| (0..unknowns).map(|_| random.sample(StandardNormal)).collect())
+        .collect();
+    let (mut misfit, mut expected_sd) = (Vec::new(), Vec::new());
+    for round in 0..=settings.rounds {
+        let predicted: Vec<Predicted> =
+            members.par_iter().map(|member| predict(member)).collect::<Result<_, E>>()?;
+        let known = Known::of(data, &predicted);
+        misfit.push(known.misfit());
+        if round == settings.rounds {
+            let compared = known.data.len() as f64 / data.len().max(1) as f64;
+            return Ok(Smoothed { members, expected_sd, misfit, compared });
+        }
+        let linear = Linear::of(&members, &known);
+        if round == 0 {
+            expected_sd = linear.expected_sd(settings.alike);
+        }
+        let mut random = stream(settings.seed, round as u64 + 1, "perturbed data");
+        let rounds = settings.rounds as f64;
+        members = linear.updated(&members, &known, rounds * settings.alike, &mut random);
+    }
+    unreachable!("the last round returns")
+}
+
+/// The data that count, and what each member predicts of them: the mean of the others where it is silent.
+struct Known {
+    data: Vec<Datum>,
+    /// A row for each datum, a column for each member.
+    predicted: DMatrix<f64>,
+}
+
+impl Known {
+    fn of(data: &[Datum], predicted: &[Predicted]) -> Self {
+        let members = predicted.len();
+        let (mut kept, mut rows) = (Vec::new(), Vec::new());
+        for (i, datum) in data.iter().enumerate() {
+            let said: Vec<Option<f64>> = predicted.iter().map(|member| member[i]).collect();
+            let count = said.iter().flatten().count();
+            if (count as f64) < ENOUGH * members as f64 || count == 0 {
+                continue;
+            }
+            let mean = said.iter().flatten().sum::<f64>() / count as f64;
+            kept.push(*datum);
+            rows.extend(said.into_iter().map(|value| value.unwrap_or(mean)));
+        }
+        Known { predicted: DMatrix::from_row_slice(kept.len(), members, &rows), data: kept }
+    }
+
+    fn misfit(&self) -> f64 {
+        let each = self.data.iter().zip(self.predicted.row_iter());
+        let squares = each.map(|(datum, row)| ((datum.value - row.mean()) / datum.sd).powi(2));
+        (squares.sum::<f64>() / self.data.len().max(1) as f64).sqrt()
+    }
+}
+
+/// The data as a linear function of the unknowns, over the members.
+struct Linear {
+    /// A row for each datum, a column for each unknown.
+    slopes: DMatrix<f64>,
+    /// Variance of each datum: its own, and what the line leaves over.
+    variances: DVector<f64>,
+    /// Inverse of the members' covariance.
+    precision: DMatrix<f64>,
+}
+
+impl Linear {
+    fn of(members: &[Coordinates], known: &Known) -> Self {
+        let (count, unknowns) = (members.len(), members[0].len());
+        let z = centred(DMatrix::from_fn(unknowns, count, |i, j| members[j][i]));
+        let d = centred(known.predicted.clone());
+        // A hair of a ridge: members that have come together would leave nothing to divide by.
+        let gram = &z * z.transpose() + DMatrix::identity(unknowns, unknowns) * (1e-9 * count as f64);
+        let inverse = gram.clone().try_inverse().unwrap_or_else(|| DMatrix::zeros(unknowns, unknowns));
+        let slopes = &d * z.transpose() * &inverse;
+        let left = &d - &slopes * &z;
+        let freedom = (count.saturating_sub(unknowns + 1)).max(1) as f64;
+        let own = known.data.iter().map(|datum| datum.sd * datum.sd);
+        let over = left.row_iter().map(|row| row.norm_squared() / freedom);
+        let variances = DVector::from_iterator(known.data.len(), own.zip(over).map(|(a, b)| a + b));
+        Linear { slopes, variances, precision: inverse * count as f64 }
+    }
+
+    /// Slopes over the variances.
+    fn weighed(&self, factor: f64) -> DMatrix<f64> {
+        let mut weighed = self.slopes.transpose();
+        for (mut column, variance) in weighed.column_iter_mut().zip(self.variances.iter()) {
+            column /= variance * factor;
+        }
+        weighed
+    }
+
+    fn expected_sd(&self, alike: f64) -> Vec<f64> {
+        let posterior = (&self.precision + self.weighed(alike) * &self.slopes).try_inverse();
+        let size = self.precision.nrows();
+        let posterior = posterior.unwrap_or_else(|| DMatrix::identity(size, size));
+        posterior.diagonal().iter().map(|variance| variance.max(0.0).sqrt().min(1.0)).collect()
+    }
+
+    fn updated(
+        &self,
+        members: &[Coordinates],
+        known: &Known,
+        factor: f64,
+        random: &mut impl rand::Rng,
+    ) -> Vec<Coordinates> {
+        let weighed = self.weighed(factor);
+        let Some(covariance) = (&self.precision + &weighed * &self.slopes).try_inverse() else {
+            return members.to_vec();
+        };
+        let gain = covariance * weighed;
+        let each = members.iter().zip(known.predicted.column_iter());
+        let update = |(member, predicted): (&Coordinates, nalgebra::DVectorView<'_, f64>)| {
+            let innovation = DVector::from_fn(known.data.len(), |i, _| {
+                let sd = self.variances[i].sqrt();
+                let noise: f64 = random.sample(StandardNormal);
+                let clipped = (known.data[i].value - predicted[i]).clamp(-CLIPPED * sd, CLIPPED * sd);
+                clipped + factor.sqrt() * sd * noise
+            });
+            let step = &gain * innovation;
+            let moved = member.iter().zip(step.iter()).map(|(z, by)| z + by);
+            moved.map(|z| z.clamp(-FARTHEST, FARTHEST)).collect()
+        };
+        each.map(update).collect()
+    }
+}
+
+fn centred(mut rows: DMatrix<f64>) -> DMatrix<f64> {
+    for mut row in rows.row_iter_mut() {
+        let mean = row.mean();
+        row.add_scalar_mut(-mean);
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::convert::Infallible;
+
+    const SETTINGS: Settings = Settings { members: 20, rounds: 4, alike: 1.0, seed: 0 };
+
+    /// A line through noise: its posterior is known in closed form.
+    #[test]
+    fn of_a_linear_model_the_posterior_is_gaussian_and_known() {
+        // d_i = z0 + i z1 + noise of 0.5, z0 = 0.4, z1 = -0.8.
+        let at = |i: usize| i as f64 / 10.0;
+        let mut random = stream(7, 0, "noise");
+        let data: Vec<Datum> = (0..20)
+            .map(|i| {
+                let noise: f64 = random.sample(StandardNormal);
+                Datum { value: 0.4 - 0.8 * at(i) + 0.5 * noise, sd: 0.5 }
+            })
+            .collect();
+        let predict = |z: &[f64]| {
+            Ok::<_, Infallible>((0..20).map(|i| Some(z[0] + at(i) * z[1])).collect())
+        };
+        let settings = Settings { members: 400, ..SETTINGS };
+        let found = smooth(2, &data, settings, predict).unwrap();
+        let (mut a, mut b) = (DMatrix::<f64>::identity(2, 2), DVector::zeros(2));
+        for (i, datum) in data.iter().enumerate() {
+            let row = DVector::from_vec(vec![1.0, at(i)]);
+            a += &row * row.transpose() / 0.25;
+            b += row * datum.value / 0.25;
+        }
+        let covariance = a.try_inverse().unwrap();
+        let mean = &covariance * b;
+        for i in 0..2 {
+            let values: Vec<f64> = found.members.iter().map(|member| member[i]).collect();
+            let n = values.len() as f64;
+            let m = values.iter().sum::<f64>() / n;
+            let sd = (values.iter().map(|v| (v - m).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+            let known = covariance[(i, i)].sqrt();
+            assert!((m - mean[i]).abs() < 0.15 * known, "{m} and {}", mean[i]);
+            assert!((sd / known - 1.0).abs() < 0.15, "{sd} and {known}");
+            assert!((found.expected_sd[i] / known - 1.0).abs() < 0.1);
+        }
+        assert!(found.misfit[4] < found.misfit[0] && found.compared == 1.0);
+    }
+
+    #[test]
+    fn what_no_datum_tells_keeps_its_spread_and_missing_data_change_nothing() {
+        let data = vec![Datum { value: 1.0, sd: 0.1 }; 10];
+        let predict = |z: &[f64]| {
+            let silent = z[1] > 0.0;
+            Ok::<_, Infallible>((0..10).map(|i| (i < 5 || !silent).then_some(z[0])).collect())
+        };
+        let found = smooth(2, &data, SETTINGS, predict).unwrap();
+        let spread = |i: usize| {
+            let values = found.members.iter().map(|member| member[i]);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)])
+        };
+        assert!(spread(0)[0] > 0.7 && spread(0)[1] < 1.3, "{:?}", spread(0));
+        assert!(spread(1)[0] < -1.2 && spread(1)[1] > 1.2, "{:?}", spread(1));
+        assert!(found.expected_sd[1] > 0.9);
+        assert_eq!(found, smooth(2, &data, SETTINGS, predict).unwrap());
+    }
+}

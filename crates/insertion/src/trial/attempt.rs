@@ -18,6 +18,7 @@ use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+pub mod commanded;
 mod descent;
 pub mod driven;
 
@@ -137,20 +138,31 @@ impl<'a> Attempt<'a> {
     /// Grasp, lift, tilt, carry to the start, and the approach through the air.
     pub fn prepare(&mut self) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
+        self.take()?;
+        let position = Vector3::from(task.strategy.start);
+        self.carry(Tcp { position, tilt: task.strategy.tilt })?;
+        for phase in task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach) {
+            self.phase(phase)?;
+        }
+        Ok(())
+    }
+
+    /// Grasps the part.
+    fn take(&mut self) -> Result<(), Stop> {
         self.coarsely(Self::close)?;
         self.grasp = self.grasp_points();
-        if task.grip.hold == Hold::Always {
+        if self.task.grip.hold == Hold::Always {
             self.hold();
         }
         self.end_phase("grasp");
         self.world.place(self.cell.stand, Pose::translation(0.0, 0.0, -1.0));
-        let [x, y, z] = task.strategy.start;
-        let start = Tcp { position: Vector3::new(x, y, z), tilt: task.strategy.tilt };
-        self.follow(Move::lasting(self.target, start, CARRY_S), self.rest_time())?;
+        Ok(())
+    }
+
+    /// Lifts the part, tilts it and carries it there.
+    fn carry(&mut self, to: Tcp) -> Result<(), Stop> {
+        self.make(Move::lasting(self.target, to, CARRY_S), self.rest_time())?;
         self.end_phase("carry");
-        for phase in task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach) {
-            self.phase(phase)?;
-        }
         Ok(())
     }
 
@@ -186,7 +198,7 @@ impl<'a> Attempt<'a> {
         let begun = self.begun.take().unwrap_or(Begun { motion: self.motion(phase), steps: 0 });
         let motion = begun.motion;
         let end = match phase.ending {
-            Ending::Duration(rest) => self.follow(motion, rest.max(self.rest_time())),
+            Ending::Duration(rest) => self.make(motion, rest.max(self.rest_time())),
             Ending::Tolerance(within) => self.reach(motion, within),
             Ending::Touch { preload, sensed } => self.touch(begun, preload, sensed, phase.speed),
         };
@@ -212,13 +224,17 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    fn follow(&mut self, motion: Move, rest: f64) -> Result<(), Stop> {
+    fn make(&mut self, motion: Move, rest: f64) -> Result<(), Stop> {
         for i in 1..=self.steps(motion.duration) {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
         }
         self.target = motion.at(f64::INFINITY);
-        self.coarsely(|attempt| (0..attempt.steps(rest)).try_for_each(|_| attempt.step()))
+        self.rest(rest)
+    }
+
+    fn rest(&mut self, time: f64) -> Result<(), Stop> {
+        self.coarsely(|attempt| (0..attempt.steps(time)).try_for_each(|_| attempt.step()))
     }
 
     /// Takes longer steps meanwhile, while nothing is commanded to move.
@@ -232,7 +248,7 @@ impl<'a> Attempt<'a> {
 
     /// Commands a move and waits until the TCP is there, as near as asked.
     fn reach(&mut self, motion: Move, within: f64) -> Result<(), Stop> {
-        self.follow(motion, 0.0)?;
+        self.make(motion, 0.0)?;
         for _ in 0..self.steps(TOLERANCE_TIMEOUT_S) {
             if (self.tcp() - self.target.position).amax() < within {
                 break;
@@ -268,7 +284,7 @@ impl<'a> Attempt<'a> {
         // From where the TCP is: the lag of a soft flange would come on top of the preload.
         let reached = along.dot(&(self.tcp() - start.position));
         let to = start.moved(along * (reached + preload));
-        self.follow(Move::new(self.target, to, speed), self.rest_time())
+        self.make(Move::new(self.target, to, speed), self.rest_time())
     }
 
     fn step(&mut self) -> Result<(), Stop> {
@@ -296,10 +312,14 @@ impl<'a> Attempt<'a> {
     /// State of the trial, with the net force of the socket on the plug, world axes, N.
     fn sample(&self, force: &Vector3<f64>) -> Sample {
         let placement = self.placement();
+        let flange = self.pose(self.cell.flange);
         Sample {
             time_s: self.time,
             phase: self.phases.len() as u32,
-            tcp_mm: (self.pose(self.cell.flange).translation.vector / MM).into(),
+            tcp_mm: (flange.translation.vector / MM).into(),
+            tcp_tilt_deg: flange.rotation.scaled_axis().x / DEG,
+            target_mm: ((self.socket * self.target.pose()).translation.vector / MM).into(),
+            sensed_n: (self.socket.rotation * self.watch.force).into(),
             tip_mm: (placement.tip / MM).into(),
             tilt_deg: placement.tilt / DEG,
             force_n: (self.socket.rotation * force).into(),

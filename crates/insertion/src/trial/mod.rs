@@ -20,8 +20,10 @@ pub mod record;
 pub mod run;
 mod watch;
 
+pub use attempt::commanded::{Path, Probe};
 pub use attempt::driven::{Driven, State};
 pub use conditions::Conditions;
+pub use motion::Tcp;
 pub use record::{Recording, Sample};
 
 /// State at the end of one phase of a trial.
@@ -103,6 +105,18 @@ impl Grasp<'static> {
     }
 }
 
+/// A course that is not the strategy of the task.
+#[derive(Debug, Clone, Copy)]
+pub enum Course<'a> {
+    /// A commanded path, task frame.
+    Path(&'a Path),
+    /// A probe of the friction on a flat plate, whose top is at z = 0, in the socket's place.
+    Probe(Probe),
+}
+
+/// A trial and its samples.
+pub type Followed = (Trial, Vec<Sample>);
+
 /// A place where trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
     /// Grasps the part: once for all offsets, which differ from the approach on.
@@ -115,6 +129,12 @@ pub trait Rig: Send + Sync {
 
     /// The trial of a grasp, its start shifted by `offset` metres along y, filmed if it can be.
     fn record(&self, _grasp: Grasp<'_>, _offset: f64) -> Option<Recording> {
+        None
+    }
+
+    /// What becomes of such a grasp along that course, sampled each `every_s` seconds from where it
+    /// begins, if it is simulated.
+    fn follow(&self, _grasp: Grasp<'_>, _course: Course<'_>, _every_s: f64) -> Option<Followed> {
         None
     }
 

@@ -7,17 +7,19 @@ use nalgebra::{Translation3, UnitQuaternion, Vector3};
 /// A TCP target: position, m, and tilt about x, rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tcp {
+    /// Place, m.
     pub position: Vector3<f64>,
+    /// Tilt about x, rad.
     pub tilt: f64,
 }
 
 impl Tcp {
-    pub fn pose(&self) -> Pose {
+    pub(super) fn pose(&self) -> Pose {
         let rotation = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), self.tilt);
         Pose::from_parts(Translation3::from(self.position), rotation)
     }
 
-    pub fn moved(&self, by: Vector3<f64>) -> Tcp {
+    pub(super) fn moved(&self, by: Vector3<f64>) -> Tcp {
         Tcp { position: self.position + by, tilt: self.tilt }
     }
 }

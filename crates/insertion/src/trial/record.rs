@@ -121,6 +121,12 @@ pub struct Sample {
     pub phase: u32,
     /// Position of the TCP, mm.
     pub tcp_mm: [f64; 3],
+    /// Tilt of the TCP about x, degrees.
+    pub tcp_tilt_deg: f64,
+    /// Commanded position of the TCP, mm.
+    pub target_mm: [f64; 3],
+    /// Force of the socket on the plug as a wrist sensor filters it, N.
+    pub sensed_n: [f64; 3],
     /// Tip of the plug, mm.
     pub tip_mm: [f64; 3],
     /// Angle between the plug's axis and z, degrees.
@@ -140,6 +146,9 @@ impl Sample {
             time_s: number(before.time_s, after.time_s),
             phase: after.phase,
             tcp_mm: vector(before.tcp_mm, after.tcp_mm),
+            tcp_tilt_deg: number(before.tcp_tilt_deg, after.tcp_tilt_deg),
+            target_mm: vector(before.target_mm, after.target_mm),
+            sensed_n: vector(before.sensed_n, after.sensed_n),
             tip_mm: vector(before.tip_mm, after.tip_mm),
             tilt_deg: number(before.tilt_deg, after.tilt_deg),
             force_n: vector(before.force_n, after.force_n),

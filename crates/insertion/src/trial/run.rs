@@ -3,11 +3,11 @@
 use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
 use super::record::{Frame, Recorder, Sample, Trace};
-use super::{Grasp, Grasped, Recording, Rig, Trial, cell};
+use super::{Course, Followed, Grasp, Grasped, Recording, Rig, Trial, cell};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::robot::{Mounted, Robot};
-use crate::task::{Phase, Stage, Task};
+use crate::task::{Part, Phase, Solid, Stage, Task};
 use contact::{Engine, Unsupported};
 use input::units::N_PER_MM;
 use nalgebra::Vector3;
@@ -70,24 +70,42 @@ impl EngineRig {
     fn prepare<'a>(
         &self,
         engine: &dyn Engine,
-        Grasp { finger, conditions, stop }: Grasp<'a>,
+        grasp: Grasp<'a>,
         filmed: bool,
     ) -> Prepared<'a> {
-        let task = Arc::new(conditions.task(&self.task));
+        let mut attempt = self.attempt(engine, &self.task, grasp);
+        attempt.recorder = filmed.then(Recorder::default);
+        let end = attempt.prepare();
+        Prepared { attempt, end, descended: OnceLock::new() }
+    }
+
+    /// An attempt right before its grasp.
+    fn attempt<'a>(&self, engine: &dyn Engine, task: &Task, grasp: Grasp<'a>) -> Attempt<'a> {
+        let Grasp { finger, conditions, stop } = grasp;
+        let task = Arc::new(conditions.task(task));
         let mut cell = cell::build(&task, &self.robot, &finger);
         conditions.displace(&mut cell);
         let world = engine.world(&cell.scene);
         let mut attempt = Attempt::new(Arc::clone(&self.robot), task, cell, world, stop);
         attempt.conditions = conditions;
-        attempt.recorder = filmed.then(Recorder::default);
-        let end = attempt.prepare();
-        Prepared { attempt, end, descended: OnceLock::new() }
+        attempt
     }
 
     fn ready<'a>(&'a self, grasp: Grasp<'a>, filmed: bool) -> Ready<'a> {
         let prepared = self.prepare(&*self.engine, grasp, filmed);
         Ready { rig: self, grasp, filmed, prepared, halved: OnceLock::new() }
     }
+}
+
+/// Half of the width of the plate that is probed, m: no plug gets near its rim.
+const PLATE: f64 = 0.1;
+
+/// The task with a plate in the socket's place, its top at z = 0.
+fn on_plate(task: &Task) -> Task {
+    let half = Vector3::new(PLATE, PLATE, 0.0);
+    let solid = Solid::Box { min: -half - Vector3::z() * PLATE, max: half };
+    let plate = Part { name: "plate".to_owned(), solid, friction: None };
+    Task { socket: vec![plate], ..task.clone() }
 }
 
 impl Rig for EngineRig {
@@ -98,6 +116,22 @@ impl Rig for EngineRig {
     fn record(&self, grasp: Grasp<'_>, offset: f64) -> Option<Recording> {
         let (trial, _, frames) = self.ready(grasp, true).watched(offset, None);
         Some(Recording::new(trial, frames))
+    }
+
+    fn follow(&self, grasp: Grasp<'_>, course: Course<'_>, every_s: f64) -> Option<Followed> {
+        let (mut attempt, end);
+        match course {
+            Course::Path(path) => {
+                attempt = self.attempt(&*self.engine, &self.task, grasp);
+                end = attempt.follow(path, every_s);
+            }
+            Course::Probe(probe) => {
+                attempt = self.attempt(&*self.engine, &on_plate(&self.task), grasp);
+                end = attempt.probe(&probe, every_s);
+            }
+        }
+        let samples = attempt.sampled();
+        Some((attempt.result(end), samples))
     }
 
     fn driven(&self, grasp: Grasp<'_>) -> Option<Driven> {

@@ -1,0 +1,155 @@
+//! A trial along a path that somebody else commanded: a log's; and the probe of the friction.
+
+use super::{Attempt, Stop};
+use crate::task::{Hold, Stage};
+use crate::trial::motion::{Move, Tcp};
+use crate::trial::record::{Sample, Trace};
+use input::units::MM;
+use nalgebra::Vector3;
+
+/// A commanded path of the TCP, task frame: places at times that rise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    times: Vec<f64>,
+    places: Vec<Tcp>,
+}
+
+/// How far the command has to go down in one piece to be the push, m: more than a search dips.
+const PUSH: f64 = 3.0 * MM;
+
+impl Path {
+    /// From times, s, and places; `None` unless there are two and the times rise.
+    pub fn new(moments: impl IntoIterator<Item = (f64, Tcp)>) -> Option<Self> {
+        let (times, places): (Vec<f64>, Vec<Tcp>) = moments.into_iter().unzip();
+        let rise = times.windows(2).all(|pair| pair[0] < pair[1]);
+        (times.len() > 1 && rise).then_some(Path { times, places })
+    }
+
+    /// Duration, s.
+    pub fn duration(&self) -> f64 {
+        self.times[self.times.len() - 1] - self.times[0]
+    }
+
+    /// The command so long after the start, s; stays at the end after it.
+    fn at(&self, time: f64) -> Tcp {
+        let time = self.times[0] + time;
+        let after = self.times.partition_point(|&t| t <= time);
+        if after == 0 || after == self.times.len() {
+            return self.places[after.saturating_sub(1)];
+        }
+        let [from, to] = [&self.places[after - 1], &self.places[after]];
+        let share = (time - self.times[after - 1]) / (self.times[after] - self.times[after - 1]);
+        Tcp {
+            position: from.position + share * (to.position - from.position),
+            tilt: from.tilt + share * (to.tilt - from.tilt),
+        }
+    }
+
+    /// Time from the start to the push, s: the last descent, if it is far enough; else the end.
+    pub fn push(&self) -> f64 {
+        let heights: Vec<f64> = self.places.iter().map(|place| place.position.z).collect();
+        let last = heights.len() - 1;
+        let rises = |i: &usize| heights[*i] <= heights[*i + 1];
+        // At its end the command may rest.
+        let end = (0..last).rev().find(|i| !rises(i)).map_or(0, |i| i + 1);
+        let begin = (0..end).rev().find(rises).map_or(0, |i| i + 1);
+        let far = heights[begin] - heights[end] > PUSH;
+        self.times[if far { begin } else { last }] - self.times[0]
+    }
+}
+
+/// Friction probe: the upright part pressed on a flat face and slid along y, forth and back.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Probe {
+    /// Force with which it is pressed, N.
+    pub force: f64,
+    /// Length of a slide, m.
+    pub stroke: f64,
+    /// Speed of a slide, m/s.
+    pub speed: f64,
+    /// Slides: one forth, one back, and so on.
+    pub slides: u32,
+}
+
+impl Probe {
+    /// 8 mm forth and back, twice, at 5 mm/s and 5 N. With 10 N a key of 8 mm topples over its edge from a friction
+    /// of 0.3 on, and 5 mm end before it slides both ways.
+    pub const USUAL: Probe = Probe { force: 5.0, stroke: 8.0 * MM, speed: 5.0 * MM, slides: 4 };
+}
+
+/// From how far above the face the probe comes down, m.
+const ABOVE: f64 = 2.0 * MM;
+/// How far it comes down at most, m: even the softest robot presses by then.
+const DEEPEST: f64 = 20.0 * MM;
+/// Rest in the air before the probe and after it, s: both say what the sensor shows without a contact.
+const SETTLED: f64 = 0.2;
+/// How fast the command gives way to a force, m/s to the N: it follows within 0.1 s on a stiff robot, and never
+/// so fast that it swings.
+const YIELDING: f64 = 2e-4;
+/// Speed at which it is lifted off, m/s.
+const LIFTING: f64 = 0.02;
+
+impl Attempt<'_> {
+    /// Grasps the part, carries it to where the path begins, and follows it; sampled from there on.
+    pub fn follow(&mut self, path: &Path, every_s: f64) -> Result<(), Stop> {
+        self.take()?;
+        self.carry(path.at(0.0))?;
+        self.trace = Some(Trace::new(every_s));
+        self.stage = Stage::Search;
+        let push = path.push();
+        for i in 1..=self.steps(path.duration()) {
+            let time = i as f64 * self.world.step_s();
+            if time > push && self.stage == Stage::Search {
+                self.end_phase("search");
+                self.stage = Stage::Assembly;
+                if self.task.grip.hold == Hold::Assembly {
+                    self.hold();
+                }
+            }
+            self.target = path.at(time);
+            self.step()?;
+        }
+        self.end_phase("push");
+        Ok(())
+    }
+
+    /// Grasps the part and probes the face that this attempt's socket is.
+    pub fn probe(&mut self, probe: &Probe, every_s: f64) -> Result<(), Stop> {
+        self.take()?;
+        let z = self.task.grip.tcp_z + ABOVE;
+        self.carry(Tcp { position: Vector3::new(0.0, -0.5 * probe.stroke, z), tilt: 0.0 })?;
+        self.trace = Some(Trace::new(every_s));
+        self.stage = Stage::Search;
+        self.rest(SETTLED)?;
+        let down = Vector3::new(0.0, 0.0, -probe.speed);
+        for _ in 0..self.steps(DEEPEST / probe.speed) {
+            if self.watch.force.z >= probe.force {
+                break;
+            }
+            self.press(down)?;
+        }
+        let slide = self.steps(probe.stroke / probe.speed);
+        for i in 0..probe.slides {
+            let along = if i.is_multiple_of(2) { probe.speed } else { -probe.speed };
+            for _ in 0..slide {
+                let lower = YIELDING * (self.watch.force.z - probe.force);
+                self.press(Vector3::new(0.0, along, lower))?;
+            }
+        }
+        let up = self.target.moved(Vector3::new(0.0, 0.0, 2.0 * ABOVE));
+        self.make(Move::new(self.target, up, LIFTING), SETTLED)?;
+        self.end_phase("probe");
+        Ok(())
+    }
+
+    /// Moves the command at this velocity, m/s, for a step.
+    fn press(&mut self, velocity: Vector3<f64>) -> Result<(), Stop> {
+        self.target = self.target.moved(velocity * self.world.step_s());
+        self.step()
+    }
+
+    /// Samples so far, which are taken out.
+    pub fn sampled(&mut self) -> Vec<Sample> {
+        self.trace.take().map_or_else(Vec::new, |trace| trace.samples)
+    }
+}

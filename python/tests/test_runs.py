@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -206,3 +207,17 @@ def test_the_sensor_and_the_cell_are_checked(tmp_path, fake):
         SimulatedRobot("usb", 20, 10, force_noise_n=float("nan"))
     # A closed formula has no course.
     assert SimulatedRobot("usb", 20, 10, **fake).insert(0.0, tmp_path / "log.csv").log is None
+
+
+def test_a_cell_file_is_what_the_robot_hides(tmp_path):
+    robot = (Path(__file__).parents[2] / "robots" / "servo.toml").read_text()
+    row = {"name": "friction", "sets": "task.friction.plug_socket", "as": "factor", "scale": "log", "source": "hidden"}
+    numbers = {"value": 1.5, "sd": 0.1, "low": 0.5, "high": 2.0}
+    lines = [f'{key} = "{value}"' for key, value in row.items()] + [f"{key} = {value}" for key, value in numbers.items()]
+    cell = tmp_path / "cell.toml"
+    cell.write_text("\n".join(['name = "cell"', 'description = ""', 'task = "usb"', "[robot]", robot, "[[parameter]]",
+                               *lines, "shared = false\n"]))
+    peak_n = SimulatedRobot("usb", 20, 10, cell=cell).insert(0.5).peak_force_n
+    same = SimulatedRobot("usb", 20, 10, cell={"task.friction.plug_socket": 0.3}).insert(0.5).peak_force_n
+    assert peak_n == pytest.approx(same, rel=1e-3)
+    assert peak_n != pytest.approx(SimulatedRobot("usb", 20, 10).insert(0.5).peak_force_n, rel=1e-2)

@@ -54,7 +54,8 @@ def test_it_begins_with_the_probe_and_names_every_log(out):
     folder = found.log.stem
     assert first == [f"{folder}/probe.csv", "20", "10", "", "probe"] and robot.probes == 1
     assert [float(line[3]) for line in rest] == robot.offsets
-    assert rest[0] == [f"{folder}/001.csv", "20", "10", "0", "inserted"] and {line[4] for line in rest} == {"inserted", "3"}
+    assert rest[0] == [f"{folder}/001.csv", "20", "10", "0", "inserted"]
+    assert {line[4] for line in rest} == {"inserted", "3"}
     for log, *_, offset, _ in rest:
         assert float((out.parent / log).read_text().split()[1]) == float(offset)
     # Measured today, it is neither measured nor probed again.
@@ -110,8 +111,10 @@ def test_a_probe_that_cannot_be_is_refused_before_the_robot_moves(out):
     out.with_name("runs.csv").write_text("file,what\n")
     with pytest.raises(fo.InputError, match="runs.csv: line 1: begins with file,what, not log,infill"):
         measure_window(robot, out=out, **FINGER)
-    out.with_name("runs.csv").write_text("\n".join([
-        "log,infill_density_percent,infill_direction_deg,offset_mm,outcome", "bench-ket8-20-10-2026-01-02/001.csv,20,10,0,inserted", ""]))
+    out.with_name("runs.csv").write_text(
+        "log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n"
+        "bench-ket8-20-10-2026-01-02/001.csv,20,10,0,inserted\n"
+    )
     with pytest.raises(fo.InputError, match="which is not of usb; measure each task into a folder of its own"):
         measure_window(robot, out=out, **FINGER)
     assert robot.offsets == []
@@ -213,7 +216,8 @@ def test_a_cell_file_is_what_the_robot_hides(tmp_path):
     robot = (Path(__file__).parents[2] / "robots" / "servo.toml").read_text()
     row = {"name": "friction", "sets": "task.friction.plug_socket", "as": "factor", "scale": "log", "source": "hidden"}
     numbers = {"value": 1.5, "sd": 0.1, "low": 0.5, "high": 2.0}
-    lines = [f'{key} = "{value}"' for key, value in row.items()] + [f"{key} = {value}" for key, value in numbers.items()]
+    lines = [f'{key} = "{value}"' for key, value in row.items()]
+    lines += [f"{key} = {value}" for key, value in numbers.items()]
     cell = tmp_path / "cell.toml"
     cell.write_text("\n".join(['name = "cell"', 'description = ""', 'task = "usb"', "[robot]", robot, "[[parameter]]",
                                *lines, "shared = false\n"]))

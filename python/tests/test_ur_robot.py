@@ -151,14 +151,15 @@ def test_a_probe_slides_where_it_met_the_face(example, capsys, tmp_path):
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == ["above", "down", *["slide"] * 4, "up"]
     wire = Face(face)
-    robot = example.URRobot("nowhere", task, taught, surface_m=-0.01, face=face, dry_run=False, control=wire, receive=wire)
+    at = {"surface_m": -0.01, "face": face, "dry_run": False}
+    robot = example.URRobot("nowhere", task, taught, **at, control=wire, receive=wire)
     robot.probe(tmp_path / "probe.csv")
     assert wire.recorded == [(str(tmp_path / "probe.csv"), example.RECORDED), "stopped"]
     assert len(wire.moves) == 7 and wire.pose[2] == pytest.approx(0.3)
     heights = [pose[2] for pose in wire.poses[2:6]]
     assert heights == pytest.approx([0.296] * 4)
     nothing = Wire(face)
-    robot = example.URRobot("nowhere", task, taught, surface_m=-0.01, face=face, dry_run=False, control=nothing, receive=nothing)
+    robot = example.URRobot("nowhere", task, taught, **at, control=nothing, receive=nothing)
     with pytest.raises(RuntimeError, match="no face within 10 mm"):
         robot.probe(tmp_path / "probe.csv")
     assert nothing.recorded[-1] == "stopped"

@@ -23,6 +23,9 @@ from finger_opt.robot import Attempt
 RECORDED = ["timestamp", "actual_TCP_pose", "actual_TCP_force", "target_TCP_pose"]
 ACCELERATION_M_S2 = 0.5
 RETREAT_M_S = 0.02
+#: The probe: how hard it presses, how far it slides along y, how fast, and how far below its start it looks
+#: for the face.
+PROBE_N, PROBE_M, PROBE_M_S, PROBE_DEPTH_M = 5.0, 0.008, 0.005, 0.01
 
 
 class DryRun(RuntimeError):
@@ -46,6 +49,8 @@ class URRobot:
     ``taught`` is the pose (x, y, z, rx, ry, rz; m, rad) of the TCP at the start that inserts; ``surface_m`` the
     height of the TCP above it, along ``out_of_socket``, at which the tip touches the socket's top (below 0).
     ``jaws`` and ``out_of_socket`` are the task's y and z in the base's frame. ``force_limit_n`` ends a move.
+    ``face`` is the pose of the TCP at which the plug stands upright, a few mm above a flat face beside the
+    opening: there :meth:`probe` tells the friction.
     """
 
     host: str
@@ -54,6 +59,7 @@ class URRobot:
     surface_m: float
     jaws: Sequence[float] = (0.0, 1.0, 0.0)
     out_of_socket: Sequence[float] = (0.0, 0.0, 1.0)
+    face: Sequence[float] | None = None
     force_limit_n: float = 60.0
     touch_n: float = 5.0
     dry_run: bool = True
@@ -75,10 +81,11 @@ class URRobot:
             self.control = rtde_control.RTDEControlInterface(self.host)
             self.receive = rtde_receive.RTDEReceiveInterface(self.host)
 
-    def pose(self, shift_mm: np.ndarray) -> list[float]:
+    def pose(self, shift_mm: np.ndarray, taught: Sequence[float] | None = None) -> list[float]:
         """The taught pose, shifted in the task's frame."""
-        place = np.array(self.taught[:3], float) + self.axes @ shift_mm / 1000.0
-        return [*place.tolist(), *self.taught[3:]]
+        taught = self.taught if taught is None else taught
+        place = np.array(taught[:3], float) + self.axes @ np.asarray(shift_mm, float) / 1000.0
+        return [*place.tolist(), *taught[3:]]
 
     def program(self, offset_mm: float) -> list[Move]:
         """The moves of an attempt: to the shifted start, then the phases of the task's strategy."""
@@ -91,18 +98,47 @@ class URRobot:
             moves.append(Move(phase.name, self.pose(at), phase.speed_mm_per_s / 1000.0, limit))
         return moves
 
+    def probe_program(self, height_m: float = -PROBE_DEPTH_M) -> list[Move]:
+        """The moves of the probe; it slides at that height above ``face``: where the plug met the face."""
+        if self.face is None:
+            raise ValueError("face: teach a pose above the flat face beside the opening")
+        half, height = 500.0 * PROBE_M, 1000.0 * height_m
+        above, down = [0.0, -half, 0.0], [0.0, -half, -1000.0 * PROBE_DEPTH_M]
+        moves = [Move("above", self.pose(above, self.face), RETREAT_M_S, self.touch_n),
+                 Move("down", self.pose(down, self.face), PROBE_M_S, PROBE_N)]
+        # The height is held, and the force changes: both of its components stand in the log.
+        for y in (half, -half, half, -half):
+            moves.append(Move("slide", self.pose([0.0, y, height], self.face), PROBE_M_S, 4.0 * PROBE_N))
+        return [*moves, Move("up", self.pose(above, self.face), RETREAT_M_S, self.force_limit_n)]
+
+    def probe(self, log: Path) -> None:
+        """Slides on the flat face beside the opening; with ``dry_run`` prints the moves and raises :class:`DryRun`."""
+        above, down, *_ = moves = self.probe_program()
+        self.check(moves)
+        if self.guarded(above) >= above.force_n:
+            raise RuntimeError("something is in the way to the face")
+        self.control.zeroFtSensor()
+        time.sleep(0.2)
+        self.receive.startFileRecording(str(log), RECORDED)
+        try:
+            # In the air, before and after, the log shows what the sensor says without a contact.
+            time.sleep(0.2)
+            if self.guarded(down) < down.force_n:
+                raise RuntimeError(f"no face within {1000.0 * PROBE_DEPTH_M:g} mm below its start")
+            met = np.array(self.receive.getActualTCPPose()[:3]) - np.array(self.face[:3], float)
+            *slides, up = self.probe_program(float(self.axes[:, 2] @ met))[2:]
+            caught = any(self.guarded(slide) >= slide.force_n for slide in slides)
+            self.guarded(up)
+            time.sleep(0.2)
+        finally:
+            self.receive.stopFileRecording()
+        if caught:
+            raise RuntimeError("the plug catches on the face; teach another place")
+
     def insert(self, offset_mm: float, log: Path | None = None) -> Attempt:
         """One attempt; with ``dry_run`` it prints the moves and raises :class:`DryRun`."""
-        moves = self.program(offset_mm)
-        if self.dry_run:
-            for move in moves:
-                where = ", ".join(f"{number:+.4f}" for number in move.pose)
-                print(f"{move.name:<12} to [{where}] at {move.speed_m_s:.3f} m/s, until {move.force_n:g} N")
-            raise DryRun("nothing moved; give dry_run=False once these moves are right")
-        for move in moves:
-            if not self.control.isPoseWithinSafetyLimits(move.pose):
-                raise RuntimeError(f"{move.name}: {move.pose} is outside the safety limits")
-        start, *phases = moves
+        start, *phases = moves = self.program(offset_mm)
+        self.check(moves)
         if self.guarded(start) >= start.force_n:
             raise RuntimeError("something is in the way to the start")
         self.control.zeroFtSensor()
@@ -122,6 +158,17 @@ class URRobot:
                 self.receive.stopFileRecording()
         self.retreat()
         return Attempt(inserted, failure, depth_mm, peak, log)
+
+    def check(self, moves: list[Move]) -> None:
+        """Whether the robot may go there; with ``dry_run`` prints the moves and raises."""
+        if self.dry_run:
+            for move in moves:
+                where = ", ".join(f"{number:+.4f}" for number in move.pose)
+                print(f"{move.name:<12} to [{where}] at {move.speed_m_s:.3f} m/s, until {move.force_n:g} N")
+            raise DryRun("nothing moved; give dry_run=False once these moves are right")
+        for move in moves:
+            if not self.control.isPoseWithinSafetyLimits(move.pose):
+                raise RuntimeError(f"{move.name}: {move.pose} is outside the safety limits")
 
     def guarded(self, move: Move) -> float:
         """Moves until the pose or the force is reached; gives the largest force, N."""
@@ -159,9 +206,11 @@ class URRobot:
 
 
 if __name__ == "__main__":
-    robot = URRobot("192.168.0.10", fo.Task.from_toml("usb"), (0.4, -0.2, 0.3, 0.0, 3.1416, 0.0), surface_m=-0.0104)
-    try:
-        # With dry_run=False: finger_opt.robot.measure_window(robot, task=robot.task, density=20, direction=10)
-        robot.insert(-0.5)
-    except DryRun as reason:
-        print(reason)
+    robot = URRobot("192.168.0.10", fo.Task.from_toml("usb"), (0.4, -0.2, 0.3, 0.0, 3.1416, 0.0), surface_m=-0.0104,
+                    face=(0.43, -0.2, 0.3, 0.0, 3.1416, 0.0))
+    # With dry_run=False: finger_opt.robot.measure_window(robot, task=robot.task, density=20, direction=10, probe=True)
+    for moves in (lambda: robot.probe(Path("probe.csv")), lambda: robot.insert(-0.5)):
+        try:
+            moves()
+        except DryRun as reason:
+            print(reason)

@@ -225,4 +225,8 @@ fn a_sheet_has_a_page_for_each_finger_and_a_picture_of_each_outcome() {
     let page = folder.read("sheet.html");
     assert_eq!((page.matches("<section>").count(), page.matches("<img ").count()), (3, 5));
     assert!(page.contains("--density 30 --direction 0") && page.contains("12.0 mm below"));
+    // The probe comes before the starts.
+    let [probe, starts] =
+        ["First the probe", "Which starts"].map(|title| page.find(title).unwrap());
+    assert!(probe < starts && page.contains("with 5 N and slide it 8 mm along y"));
 }

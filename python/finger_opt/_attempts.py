@@ -45,6 +45,8 @@ class Attempts:
     def __init__(self, path: Path, settings: dict[str, Any]) -> None:
         """Begins the file, or goes on where it ends; a line that was cut off does not count."""
         self.path, self.tried = path, list[Tried]()
+        #: The log of the probe, if it was made.
+        self.probed: Path | None = None
         text = path.read_bytes() if path.exists() else b""
         whole = text[: text.rfind(b"\n") + 1]
         lines = list(self._lines(whole))
@@ -62,8 +64,12 @@ class Attempts:
             self._append(settings)
             _sync_folder(path.parent)
         for number, line in enumerate(lines[1:], 2):
-            if "stopped" not in line:
+            if "probed" in line:
+                self.probed = Path(line["probed"])
+            elif "stopped" not in line:
                 self.tried.append(self._read(line, number))
+        #: How many attempts the file has, also those that do not count any more.
+        self.made = len(self.tried)
         # A start that never inserted was taught anew since.
         if not any(one.attempt.inserted for one in self.counted() if one.offset_mm == 0.0):
             self.tried = []
@@ -95,10 +101,16 @@ class Attempts:
         fields["log"] = None if tried.attempt.log is None else str(tried.attempt.log)
         self._append(fields)
         self.tried.append(tried)
+        self.made += 1
 
-    def stopped(self, offset_mm: float, why: str) -> None:
-        """Writes down why there is no attempt from a start."""
-        self._append({"stopped": why, "offset_mm": offset_mm})
+    def add_probe(self, log: Path) -> None:
+        """Appends that the probe was made, as its log tells."""
+        self._append({"probed": str(log)})
+        self.probed = log
+
+    def stopped(self, what: float | str, why: str) -> None:
+        """Writes down why there is no attempt from a start, mm, or no probe."""
+        self._append({"stopped": why, **({} if isinstance(what, str) else {"offset_mm": what})})
 
     def _append(self, fields: dict[str, Any]) -> None:
         self._file.write(dumps(fields).encode() + b"\n")

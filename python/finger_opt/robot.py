@@ -11,7 +11,7 @@ import math
 import os
 import threading
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from numbers import Real
@@ -23,11 +23,12 @@ import numpy as np
 from ._attempts import Attempt, Attempts, Tried
 from ._bench import Bench
 from ._ends import INTERVAL, Gap, Search, Side, Window
-from ._measure import trial
 from ._native import InputError, RunError
+from ._runs import Runs
+from ._simulated import SimulatedRobot
 from ._task import Given
 
-__all__ = ["Attempt", "Gap", "Measurement", "Robot", "SimulatedRobot", "measure_window"]
+__all__ = ["Attempt", "Gap", "Measurement", "Probing", "Robot", "SimulatedRobot", "measure_window"]
 
 #: How long an attempt may take unless the robot says otherwise (``timeout_s``), s.
 TIMEOUT_S = 120.0
@@ -46,6 +47,15 @@ class Robot(Protocol):
     def insert(self, offset_mm: float, log: Path | None = None) -> Attempt:
         """Tries to insert from the taught start shifted by ``offset_mm`` along y, the direction in which the
         jaws close; records force and pose in ``log``, if it can; leaves the robot ready for the next."""
+        ...
+
+
+class Probing(Robot, Protocol):
+    """A robot that can also tell the friction."""
+
+    def probe(self, log: Path) -> None:
+        """Sets the plug down on the flat face beside the opening, slides it slowly back and forth along y, and
+        records force and pose in ``log``; leaves the robot ready for the first attempt."""
         ...
 
 
@@ -83,40 +93,6 @@ class Measurement:
         return round(self.positive_mm - self.negative_mm, 2)
 
 
-class SimulatedRobot:
-    """A robot that is simulated: for rehearsals, notebooks and tests.
-
-    Task, density (percent), direction (degrees) and ``engine`` are those of :func:`finger_opt.trial`. ``cell``
-    is what the robot hides: settings of that function (``{"robot": "ur5e", "task.friction.plug_socket": 0.3}``),
-    or the name or path of a robot file. ``noise`` is the width, mm, over which the probability to insert goes
-    from 90 to 10 % at an end: each start is off by a logistic error, drawn with ``seed``.
-    """
-
-    def __init__(
-        self,
-        task: Given,
-        density: float,
-        direction: float,
-        engine: str | None = None,
-        cell: Mapping[str, Any] | str | os.PathLike[str] | None = None,
-        noise: float = 0.0,
-        seed: int = 0,
-    ) -> None:
-        if not 0.0 <= noise <= 100.0:
-            raise InputError(f"noise: is {noise}; it is a width in mm, 0 to 100")
-        hidden = dict(cell) if isinstance(cell, Mapping) else {"robot": cell}
-        self._finger = {"task": task, "density": density, "direction": direction}
-        self._settings = {"engine": engine, **hidden}
-        self._scale, self._drawn = noise / (2.0 * math.log(9.0)), np.random.default_rng(seed)
-
-    def insert(self, offset_mm: float, log: Path | None = None) -> Attempt:
-        """Simulates the insertion; nothing is recorded."""
-        offset_mm += self._scale * float(self._drawn.logistic())
-        ended = trial(**self._finger, offset_mm=offset_mm, **self._settings)
-        inserted = ended["outcome"] == "inserted"
-        return Attempt(inserted, ended["failure"], ended["depth_mm"], ended["peak_force_n"])
-
-
 def measure_window(
     robot: Robot,
     *,
@@ -129,6 +105,7 @@ def measure_window(
     density: float,
     direction: float,
     attempts_max: int = 60,
+    probe: bool = False,
 ) -> Measurement:
     """Measures the tolerance window of a finger with a robot, and adds it to the measurement file ``out``.
 
@@ -143,16 +120,25 @@ def measure_window(
     Each attempt is on the disk, in a file beside ``out``, before the next begins: the same call goes on
     there after whatever ended it. A window that was measured today is not measured again.
 
+    With ``probe``, for which the robot is a :class:`Probing` one, it begins with the probe. The logs of probe and
+    attempts, as far as the robot records and it is known how they ended, are lines of ``runs.csv`` beside
+    ``out``, which all fingers measured into that folder share: what ``optimize identify`` reads.
+
     Raises :class:`InputError` for wrong arguments, before the robot moves, and :class:`RunError` if the
     robot raises, takes longer than its ``timeout_s``, reports what cannot be (three times in a row; once it is
     marked and tried again), or if the taught start does not insert.
     """
     search = _checked(Search(step_mm, resolution_mm, limit_mm, repeats), attempts_max)
+    if probe and not callable(getattr(robot, "probe", None)):
+        raise InputError(f"probe: {type(robot).__name__} has no method probe(log); give it one, or probe=False")
     bench = Bench(Path(out), task, density, direction)
     attempts = bench.attempts(search)
     ended = bench.written(attempts.settings["date"])
     try:
-        course = _Course(robot, search, attempts, bench.task.success.depth_mm)
+        runs = Runs(bench.out.parent, bench.task.name, bench.finger, attempts)
+        course = _Course(robot, search, attempts, runs, bench.task.success.depth_mm)
+        if probe and attempts.probed is None:
+            course.probe()
         measured = course.run(0 if ended else attempts_max)
     finally:
         attempts.close()
@@ -179,8 +165,8 @@ def _checked(search: Search, attempts_max: int) -> Search:
 class _Course:
     """The attempts of one measurement, one after the other."""
 
-    def __init__(self, robot: Robot, search: Search, attempts: Attempts, depth_mm: float) -> None:
-        self.robot, self.search, self.attempts, self.depth_mm = robot, search, attempts, depth_mm
+    def __init__(self, robot: Robot, search: Search, attempts: Attempts, runs: Runs, depth_mm: float) -> None:
+        self.robot, self.search, self.attempts, self.runs, self.depth_mm = robot, search, attempts, runs, depth_mm
 
     def run(self, attempts_max: int) -> Measurement:
         in_doubt = 0
@@ -192,6 +178,7 @@ class _Course:
                 break
             done = self.attempt(offset)
             self.attempts.add(done)
+            self.runs.add(done)
             in_doubt = in_doubt + 1 if done.doubt else 0
             if in_doubt == DOUBTFUL:
                 raise self.stopped(offset, f"{DOUBTFUL} attempts in a row cannot be: {done.doubt}")
@@ -200,19 +187,18 @@ class _Course:
             raise self.stopped(0.0, why + "`optimize measure add --not-measurable`")
         return self.measurement(window, settled=offset is None)
 
+    def probe(self) -> None:
+        """The probe; the robot is one that can."""
+        log = self.asked("probe", "probe", lambda log: (self.robot.probe(log), log)[1])
+        if not (log.is_file() and log.stat().st_size):
+            raise self.stopped("probe", f"the robot recorded nothing in {log}")
+        self.attempts.add_probe(log)
+        self.runs.add_probe(log)
+
     def attempt(self, offset: float) -> Tried:
         """One attempt, and whether it can be believed."""
-        folder = self.attempts.path.with_suffix("")
-        folder.mkdir(exist_ok=True)
-        log = folder / f"{len(self.attempts.tried) + 1:03}.csv"
-        try:
-            done = self.in_time(offset, log)
-        except Exception as error:
-            raise self.stopped(offset, f"the robot raised {type(error).__name__}: {error}") from error
-        finally:
-            # Of use only to a robot that records.
-            with suppress(OSError):
-                folder.rmdir()
+        name = f"{self.attempts.made + 1:03}"
+        done = self.asked(offset, name, lambda log: self.robot.insert(offset, log))
         if not isinstance(done, Attempt):
             raise self.stopped(offset, f"the robot returned {done!r}, which is no Attempt")
         doubt = self.doubt(done)
@@ -221,19 +207,32 @@ class _Course:
             done = Attempt(done.inserted is True, None, *finite, done.log)
         return Tried(offset, done, doubt)
 
-    def in_time(self, offset: float, log: Path) -> Any:
+    def asked(self, what: float | str, name: str, ask: Callable[[Path], Any]) -> Any:
+        """What the robot answers, given where to record; the measurement stops if it raises."""
+        folder = self.attempts.path.with_suffix("")
+        folder.mkdir(exist_ok=True)
+        try:
+            return self.in_time(lambda: ask(folder / f"{name}.csv"))
+        except Exception as error:
+            raise self.stopped(what, f"the robot raised {type(error).__name__}: {error}") from error
+        finally:
+            # Of use only to a robot that records.
+            with suppress(OSError):
+                folder.rmdir()
+
+    def in_time(self, ask: Callable[[], Any]) -> Any:
         """What the robot returns, or raises; itself an error if that takes too long."""
         limit = float(getattr(self.robot, "timeout_s", TIMEOUT_S))
         ended: list[tuple[Any, BaseException | None]] = []
 
-        def insert() -> None:
+        def answer() -> None:
             try:
-                ended.append((self.robot.insert(offset, log), None))
+                ended.append((ask(), None))
             except BaseException as error:
                 ended.append((None, error))
 
         # A thread that hangs does not keep the process.
-        thread = threading.Thread(target=insert, daemon=True)
+        thread = threading.Thread(target=answer, daemon=True)
         thread.start()
         thread.join(limit)
         if not ended:
@@ -257,10 +256,11 @@ class _Course:
             return f"inserted at a depth of {done.depth_mm:g} mm; the task counts from {self.depth_mm:g} mm on"
         return None
 
-    def stopped(self, offset: float, why: str) -> RunError:
-        self.attempts.stopped(offset, why)
+    def stopped(self, what: float | str, why: str) -> RunError:
+        """The error that stops the measurement at a start, mm, or at what else was asked of the robot."""
+        self.attempts.stopped(what, why)
         kept = f"what was measured is in {self.attempts.path}; the same call goes on there"
-        return RunError(f"start {offset:+g} mm: {why}\n{kept}")
+        return RunError(f"{what if isinstance(what, str) else f'start {what:+g} mm'}: {why}\n{kept}")
 
     def measurement(self, window: Window, settled: bool) -> Measurement:
         counted = self.attempts.counted()

@@ -78,7 +78,7 @@ class Wire:
     """Both interfaces of a robot that is at once where it is sent, over a socket that ends 8 mm deep."""
 
     def __init__(self, pose):
-        self.pose, self.moves, self.recorded = list(pose), [], []
+        self.pose, self.moves, self.poses, self.recorded = list(pose), [], [], []
 
     def isPoseWithinSafetyLimits(self, pose):
         return True
@@ -90,6 +90,7 @@ class Wire:
         assert asynchronous
         self.pose = list(pose)
         self.moves.append((speed, acceleration))
+        self.poses.append(list(pose))
 
     def getAsyncOperationProgress(self):
         return -1
@@ -116,3 +117,49 @@ def test_an_attempt_moves_asks_records_and_comes_back(example, tmp_path):
     assert (done.inserted, done.failure, done.depth_mm) == (False, 3, pytest.approx(20.0))
     assert wire.recorded == [(str(tmp_path / "001.csv"), example.RECORDED), "stopped"]
     assert len(wire.moves) == 8 and wire.pose[2] == pytest.approx(0.3)
+
+
+class Face(Wire):
+    """The same above a face that is met 4 mm below: a move there is stopped by the force."""
+
+    def getAsyncOperationProgress(self):
+        return 1 if self.pose[2] < 0.296 else -1
+
+    def isProtectiveStopped(self):
+        return False
+
+    isEmergencyStopped = isProtectiveStopped
+
+    def getActualTCPForce(self):
+        return [0.0, 1.0, 6.0, 0.0, 0.0, 0.0]
+
+    def stopL(self, deceleration):
+        self.pose[2] = 0.296
+
+
+def test_a_probe_slides_where_it_met_the_face(example, capsys, tmp_path):
+    import finger_opt as fo
+    from finger_opt.robot import measure_window
+
+    taught, face = (0.4, -0.2, 0.3, 0.0, 3.14, 0.0), (0.43, -0.2, 0.3, 0.0, 3.14, 0.0)
+    task = fo.Task.from_toml("usb")
+    with pytest.raises(ValueError, match="face: teach a pose"):
+        example.URRobot("nowhere", task, taught, surface_m=-0.01).probe(tmp_path / "probe.csv")
+    dry = example.URRobot("nowhere", task, taught, surface_m=-0.01, face=face)
+    with pytest.raises(fo.RunError, match="nothing moved"):
+        measure_window(dry, task="usb", density=20, direction=10, out=tmp_path / "bench.csv", probe=True)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == ["above", "down", *["slide"] * 4, "up"]
+    wire = Face(face)
+    at = {"surface_m": -0.01, "face": face, "dry_run": False}
+    robot = example.URRobot("nowhere", task, taught, **at, control=wire, receive=wire)
+    robot.probe(tmp_path / "probe.csv")
+    assert wire.recorded == [(str(tmp_path / "probe.csv"), example.RECORDED), "stopped"]
+    assert len(wire.moves) == 7 and wire.pose[2] == pytest.approx(0.3)
+    heights = [pose[2] for pose in wire.poses[2:6]]
+    assert heights == pytest.approx([0.296] * 4)
+    nothing = Wire(face)
+    robot = example.URRobot("nowhere", task, taught, **at, control=nothing, receive=nothing)
+    with pytest.raises(RuntimeError, match="no face within 10 mm"):
+        robot.probe(tmp_path / "probe.csv")
+    assert nothing.recorded[-1] == "stopped"

@@ -4,6 +4,7 @@ use super::elements::{inert, styled};
 use input::units::{DEG, MM};
 use insertion::outcome::Outcome;
 use insertion::task::Task;
+use insertion::trial::Probe;
 use maud::{Markup, html};
 
 /// Boxes in a row: starts outward, or near an end.
@@ -51,6 +52,7 @@ fn how(task: &Task, pictures: &[Picture]) -> Markup {
             (format!("{:.1}", task.strategy.tilt / DEG)) "°. Teach the start near there from which the plug inserts "
             "three times of three: this is 0. Shifts are along y, in which the jaws close; + is away from the wall that "
             "the search moves to. Keep grasp, speeds, plug and socket the same for all fingers." }
+        (probe())
         h2 { "Which starts, in which order" }
         ol {
             li { "From 0 in steps of 0.5 mm to -, until two neighbouring starts fail; then the same to +." }
@@ -63,6 +65,21 @@ fn how(task: &Task, pictures: &[Picture]) -> Markup {
         p { "At rest after the push the tip is at least " (format!("{depth:.1}")) " mm below the socket's top, the plug leans by "
             "at most " (format!("{tilt:.1}")) "°, and both fingers still hold it. Write + for inserted, else the class:" }
         div.pictures { @for picture in pictures { (drawn(picture)) } }
+    }
+}
+
+/// What tells the friction, before the first insertion with a finger.
+fn probe() -> Markup {
+    let Probe { force, stroke, speed, slides } = Probe::USUAL;
+    let [stroke, speed] = [stroke, speed].map(|length| length / MM);
+    html! {
+        h2 { "First the probe, once with each finger" }
+        p { "Hold the plug upright over the flat face beside the opening. Start a log of time, force, pose and commanded "
+            "pose, 125 Hz or more, while the plug is in the air. Press it on the face with " (force) " N and slide it "
+            (stroke) " mm along y, forth and back, " (slides / 2) " times, at " (speed) " mm/s. Stop if it catches. Lift it "
+            "off, then end the log. Log each insertion, too: every log is a line of runs.csv (log, "
+            "infill_density_percent, infill_direction_deg, offset_mm, outcome; outcome: probe, inserted or the class), "
+            "which optimize identify reads." }
     }
 }
 
@@ -82,7 +99,7 @@ fn drawn(Picture { outcome, svg, task }: &Picture) -> Markup {
 fn boxes(task: &Task, name: &str, (density, direction): (f64, f64)) -> Markup {
     html! {
         h1 { (task.name) ": infill density " (density) " %, direction " (direction) "°" }
-        p.line { "Date" i {} "Finger no." i {} "Start taught at" i {} "Start 0, 3 of 3" i {} }
+        p.line { "Date" i {} "Finger no." i {} "Log of the probe" i {} "Start taught at" i {} "Start 0, 3 of 3" i {} }
         @for (title, sign) in [("-", -1), ("+", 1)] {
             h2 { "Outward to " (title) ", mm" }
             table {

@@ -14,7 +14,7 @@ raise :class:`InputError` (a ``ValueError``), what fails while it runs :class:`R
 from typing import Any
 
 from ._measure import (
-    CaptureMap, Evaluation, Levers, Trial, capture_map, evaluate, levers, stiffness, trial,
+    CaptureMap, Evaluation, Levers, Trial, capture_map, evaluate, identify, levers, stiffness, trial,
 )
 from ._native import InputError, RunError, __version__
 from ._optimizer import Optimizer, Point
@@ -39,6 +39,7 @@ __all__ = [
     "capture_map",
     "evaluate",
     "import_parts",
+    "identify",
     "levers",
     "load_study",
     "perform",

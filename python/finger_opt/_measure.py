@@ -120,6 +120,26 @@ def evaluate(
     return Evaluation(json.loads(found))
 
 
+def identify(
+    task: Given,
+    runs: str | os.PathLike[str],
+    out: str | os.PathLike[str] | None = None,
+    *,
+    frame: str | os.PathLike[str] | None = None,
+    report: str | os.PathLike[str] | None = None,
+    **settings: Any,
+) -> Record:
+    """Tells from a robot's logs what its cell is like, as ``optimize identify`` does, and writes it to ``out``.
+
+    ``runs`` is the table of the logs that :func:`finger_opt.robot.measure_window` writes, ``frame`` the task's
+    frame in the robot's base, of logs that are not in the task's frame; ``report`` a page to write. ``unknowns``
+    of the result are the numbers of the cell, ``value`` and ``sd`` as identified. The rest is as for
+    :func:`evaluate`.
+    """
+    found = _native.identify(sources(task), runs=runs, out=out, frame=frame, report=report, **settings)
+    return Record(json.loads(found))
+
+
 def levers(
     task: Given,
     density: float | None = None,

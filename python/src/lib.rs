@@ -31,6 +31,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("RunError", py.get_type::<errors::RunError>())?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
     module.add_function(wrap_pyfunction!(measure::evaluate, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::identify, module)?)?;
     module.add_function(wrap_pyfunction!(measure::levers, module)?)?;
     module.add_function(wrap_pyfunction!(measure::trial, module)?)?;
     module.add_function(wrap_pyfunction!(measure::capture_map, module)?)?;

@@ -5,7 +5,8 @@ use crate::keywords::{Keywords, Name, TaskWord, wrong};
 use finger_opt::cli;
 use finger_opt::report;
 use finger_opt::session::{
-    EvaluateRequest, LeversRequest, MapRequest, StiffnessRequest, TaskFile, TrialRequest,
+    EvaluateRequest, IdentifyRequest, LeversRequest, MapRequest, StiffnessRequest, TaskFile,
+    TrialRequest,
 };
 use finger_opt::session::{read_space, read_task};
 use input::shipped::Source;
@@ -110,6 +111,29 @@ pub fn levers<'py>(
     Ok(report::levers::json(&found).to_string())
 }
 
+/// What logs say of their cell, as JSON.
+#[pyfunction]
+#[pyo3(signature = (tasks, /, **settings))]
+pub fn identify<'py>(
+    py: Python<'py>,
+    tasks: Vec<TaskWord>,
+    settings: Option<&Bound<'py, PyDict>>,
+) -> PyResult<String> {
+    let words = Keywords::new(py, settings)?;
+    let request = IdentifyRequest {
+        setup: words.setup(tasks)?,
+        runs: words.take("runs")?.unwrap_or_default(),
+        frame: words.take("frame")?,
+        out: words.take("out")?,
+        report: words.take("report")?,
+        priors: words.text("priors")?.unwrap_or_else(|| "bench".to_owned()),
+        seed: words.take("seed")?.unwrap_or(0),
+    };
+    words.finish()?;
+    let done = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
+    Ok(report::identify::json(&done).to_string())
+}
+
 /// JSON of the trial, and by name the columns of its course: little-endian float64.
 #[pyfunction]
 #[pyo3(signature = (tasks, /, **settings))]
@@ -127,6 +151,8 @@ pub fn trial<'py>(
         every_s: words.take("every_s")?,
         film: words.film()?,
         svg: words.take("svg")?,
+        log: words.take("log")?,
+        probe: words.flag("probe")?,
     };
     words.finish()?;
     let done = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;

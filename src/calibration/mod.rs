@@ -24,4 +24,3 @@ pub(crate) mod subject;
 pub(crate) mod table;
 #[cfg(test)]
 mod tests;
-

@@ -9,6 +9,7 @@ pub mod evaluate;
 mod executor;
 mod export;
 mod finger;
+mod identify;
 mod levers;
 mod manual;
 pub mod map;
@@ -145,6 +146,11 @@ enum Command {
         after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
     )]
     Calibrate(calibrate::Arguments),
+    #[command(
+        after_help = "Example: optimize identify --task usb --runs runs.csv --out cell.toml \
+                            --report identify.html"
+    )]
+    Identify(identify::Arguments),
     #[command(after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2")]
     Next(next::Arguments),
     #[command(subcommand, after_help = "Example: optimize measure check published")]
@@ -249,6 +255,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
         Some(Command::Levers(arguments)) => levers::run(&arguments),
         Some(Command::Calibrate(arguments)) => calibrate::run(&arguments),
+        Some(Command::Identify(arguments)) => identify::run(&arguments),
         Some(Command::Next(arguments)) => next::run(&arguments),
         Some(Command::Measure(arguments)) => measure::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),

@@ -43,7 +43,9 @@ pub struct Remark {
 impl std::fmt::Display for Remark {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.lines {
-            Some([from, to]) if from != to => write!(f, "{}: lines {from} to {to}: {}", self.file, self.text),
+            Some([from, to]) if from != to => {
+                write!(f, "{}: lines {from} to {to}: {}", self.file, self.text)
+            }
             Some([line, _]) => write!(f, "{}: line {line}: {}", self.file, self.text),
             None => write!(f, "{}: {}", self.file, self.text),
         }

@@ -22,7 +22,9 @@ pub struct Misfit {
 /// Of each phase and component of the force.
 pub fn misfits(compared: &[Compared]) -> Vec<Misfit> {
     let phases = [(Phase::Search, "search"), (Phase::Push, "push")];
-    let each = phases.into_iter().flat_map(|phase| FORCES.into_iter().enumerate().map(move |axis| (phase, axis)));
+    let each = phases
+        .into_iter()
+        .flat_map(|phase| FORCES.into_iter().enumerate().map(move |axis| (phase, axis)));
     each.map(|((phase, name), (axis, force))| {
         let mut sums = [(0.0, 0.0); 2];
         for one in compared {
@@ -31,7 +33,8 @@ pub fn misfits(compared: &[Compared]) -> Vec<Misfit> {
                 let predicted = one.logged.predicted(replayed);
                 let all = data.iter().zip(predicted).zip(one.logged.phases()).enumerate();
                 for (i, ((datum, predicted), of)) in all {
-                    if of == phase && i % one.logged.each() == axis
+                    if of == phase
+                        && i % one.logged.each() == axis
                         && let Some(predicted) = predicted
                     {
                         sum.0 += ((datum.value - predicted) / datum.sd).powi(2);

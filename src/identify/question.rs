@@ -22,6 +22,8 @@ use std::sync::atomic::AtomicBool;
 pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, alike: 10.0, seed: 0 };
 /// Factor on the deviations that the smoother leaves, from the coverage on synthetic cells.
 pub const INFLATION: f64 = 1.0;
+/// Most attempts of a finger that are replayed: more of them tell little more.
+const EACH: usize = 5;
 /// An unknown that keeps so much of its prior's deviation is left at it.
 const UNTOLD: f64 = 0.8;
 const FRICTION: &str = "task.friction.plug_socket";
@@ -105,7 +107,7 @@ impl Question<'_> {
     /// # Errors
     /// If a prior sets what cannot be.
     pub fn answer(&self) -> Result<Identified, Impossible> {
-        let attempts: Vec<Logged> = self.runs.iter().filter_map(Logged::new).collect();
+        let attempts = chosen(self.runs.iter().filter_map(Logged::new).collect());
         let curves: Vec<Curves> = attempts.iter().map(|one| one.curves.clone()).collect();
         let flange = [0, 1, 2].map(|axis| formulas::flange(&curves, axis));
         let probes = self.probes();
@@ -197,7 +199,8 @@ impl Question<'_> {
             return own.clone();
         }
         let n = known.len() as f64;
-        let ratio = |(i, axis): &(usize, &Flange)| libm::log(axis.stiffness.mean / base.stiffness[*i]);
+        let ratio =
+            |(i, axis): &(usize, &Flange)| libm::log(axis.stiffness.mean / base.stiffness[*i]);
         let factor = libm::exp(known.iter().map(ratio).sum::<f64>() / n);
         let mut servo = Servo {
             stiffness: base.stiffness.map(|k| k * factor),
@@ -224,14 +227,20 @@ impl Question<'_> {
             let axes = flange.iter().flatten();
             let shares = axes.clone().map(|axis| axis.stiffness.sd / axis.stiffness.mean);
             let sd = shares.fold(0.0, f64::max);
-            let source = "force over how far the TCP is behind its target; the values are the robot's";
+            let source =
+                "force over how far the TCP is behind its target; the values are the robot's";
             let factor = Parameter { way: Way::Factor, low: 0.5, high: 2.0, ..prior.clone() };
             return axes.count().gt(&0).then(|| with(&factor, 1.0, sd, source));
         }
         if key.ends_with("preload_mm") {
             let Estimate { mean, sd } = preload?;
             let sd = (sd / MM).max(0.01);
-            return Some(with(prior, mean / MM, sd, "where the target stopped, and where it was sent"));
+            return Some(with(
+                prior,
+                mean / MM,
+                sd,
+                "where the target stopped, and where it was sent",
+            ));
         }
         if key.starts_with(STRATEGY) && key.ends_with("move_mm.y") {
             let stroke = |one: &Logged| {
@@ -240,11 +249,13 @@ impl Question<'_> {
                 Some((target[to].y - target[from].y) / MM)
             };
             let strokes: Vec<f64> = attempts.iter().filter_map(stroke).collect();
-            let mean = (!strokes.is_empty()).then(|| strokes.iter().sum::<f64>() / strokes.len() as f64)?;
+            let mean = (!strokes.is_empty())
+                .then(|| strokes.iter().sum::<f64>() / strokes.len() as f64)?;
             return Some(with(prior, mean, 0.01, "commanded from the touch to the push"));
         }
         if key == FRICTION {
-            let said: Vec<Estimate> = probes.iter().filter_map(|(_, found)| found.coefficient).collect();
+            let said: Vec<Estimate> =
+                probes.iter().filter_map(|(_, found)| found.coefficient).collect();
             let n = said.len() as f64;
             let mean = (n > 0.0).then(|| said.iter().map(|one| one.mean).sum::<f64>() / n)?;
             let scatter = said.iter().map(|one| (one.mean - mean).powi(2)).sum::<f64>() / n;
@@ -285,6 +296,19 @@ impl Question<'_> {
         let compared = each.map(|((logged, before), after)| Compared { logged, before, after });
         Ok(compared.collect())
     }
+}
+
+/// At most [`EACH`] attempts of each finger, from starts that are spread evenly; fingers together.
+fn chosen(mut all: Vec<Logged>) -> Vec<Logged> {
+    let key = |one: &Logged| one.design.labelled();
+    all.sort_by(|a, b| key(a).cmp(&key(b)).then(a.offset.total_cmp(&b.offset)));
+    let fingers = all.chunk_by(|a, b| a.design == b.design);
+    let of = |alike: &[Logged]| -> Vec<Logged> {
+        let count = alike.len().min(EACH);
+        let place = |i: usize| if count > 1 { i * (alike.len() - 1) / (count - 1) } else { 0 };
+        (0..count).map(|i| alike[place(i)].clone()).collect()
+    };
+    fingers.flat_map(of).collect()
 }
 
 /// A flange that all axes are told of: what is left is a wrist and a gripper, as of `robots/servo.toml`.
@@ -369,7 +393,9 @@ fn advice(row: &Parameter) -> &'static str {
         Target::Number(_) | Target::Tilting | Target::Centre => {
             "starts at both ends of the window, where the plug turns in the grasp"
         }
-        Target::Edges | Target::Chamfer => "starts 0.2 mm inside and outside of both ends of the window",
+        Target::Edges | Target::Chamfer => {
+            "starts 0.2 mm inside and outside of both ends of the window"
+        }
         Target::Clearance => "measure plug and opening with a caliper",
         Target::Stiffness => "press the finger with a weight: `optimize finger --sheet`",
     }

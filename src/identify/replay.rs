@@ -4,6 +4,7 @@ use super::curves::{Curves, STEP_S};
 use super::log::{Ended, Run};
 use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
+use input::units::MM;
 use insertion::evaluation::cell::Parameter;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::{Impossible, Template};
@@ -11,7 +12,6 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::trial::{Course, Grasp, Path};
-use input::units::MM;
 use nalgebra::Vector3;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -78,7 +78,8 @@ impl Logged {
 
     /// The phase of each datum.
     pub fn phases(&self) -> impl Iterator<Item = Phase> + '_ {
-        let phase = |bin: Range<usize>| if bin.start < self.push { Phase::Search } else { Phase::Push };
+        let phase =
+            |bin: Range<usize>| if bin.start < self.push { Phase::Search } else { Phase::Push };
         self.bins().flat_map(move |bin| std::iter::repeat_n(phase(bin), self.each()))
     }
 
@@ -114,7 +115,8 @@ impl Logged {
             }
             let [mine, other] =
                 [&self.curves.force, &replayed.force].map(|force| mean(force, &bin));
-            let differ = mine.norm().min(other.norm()) < LOST_N && mine.norm().max(other.norm()) > HAD_N;
+            let differ =
+                mine.norm().min(other.norm()) < LOST_N && mine.norm().max(other.norm()) > HAD_N;
             apart = if differ { apart + 1 } else { 0 };
             over = apart >= EVENT;
             let poses = off.iter().take(self.each() / 6).map(|off| mean(off, &bin));

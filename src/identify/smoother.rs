@@ -135,8 +135,10 @@ impl Linear {
         let z = centred(DMatrix::from_fn(unknowns, count, |i, j| members[j][i]));
         let d = centred(known.predicted.clone());
         // A hair of a ridge: members that have come together would leave nothing to divide by.
-        let gram = &z * z.transpose() + DMatrix::identity(unknowns, unknowns) * (1e-9 * count as f64);
-        let inverse = gram.clone().try_inverse().unwrap_or_else(|| DMatrix::zeros(unknowns, unknowns));
+        let gram =
+            &z * z.transpose() + DMatrix::identity(unknowns, unknowns) * (1e-9 * count as f64);
+        let inverse =
+            gram.clone().try_inverse().unwrap_or_else(|| DMatrix::zeros(unknowns, unknowns));
         let slopes = &d * z.transpose() * &inverse;
         let left = &d - &slopes * &z;
         let freedom = (count.saturating_sub(unknowns + 1)).max(1) as f64;
@@ -179,7 +181,8 @@ impl Linear {
             let innovation = DVector::from_fn(known.data.len(), |i, _| {
                 let sd = self.variances[i].sqrt();
                 let noise: f64 = random.sample(StandardNormal);
-                let clipped = (known.data[i].value - predicted[i]).clamp(-CLIPPED * sd, CLIPPED * sd);
+                let clipped =
+                    (known.data[i].value - predicted[i]).clamp(-CLIPPED * sd, CLIPPED * sd);
                 clipped + factor.sqrt() * sd * noise
             });
             let step = &gain * innovation;
@@ -217,9 +220,8 @@ mod tests {
                 Datum { value: 0.4 - 0.8 * at(i) + 0.5 * noise, sd: 0.5 }
             })
             .collect();
-        let predict = |z: &[f64]| {
-            Ok::<_, Infallible>((0..20).map(|i| Some(z[0] + at(i) * z[1])).collect())
-        };
+        let predict =
+            |z: &[f64]| Ok::<_, Infallible>((0..20).map(|i| Some(z[0] + at(i) * z[1])).collect());
         let settings = Settings { members: 400, ..SETTINGS };
         let found = smooth(2, &data, settings, predict).unwrap();
         let (mut a, mut b) = (DMatrix::<f64>::identity(2, 2), DVector::zeros(2));

@@ -137,3 +137,8 @@ fn short(value: f64) -> String {
     let digits = (2.0 - value.abs().max(1e-3).log10().floor()).clamp(0.0, 4.0);
     format!("{value:.0$}", digits as usize)
 }
+
+/// Placeholder of the page.
+pub fn html(done: &IdentifyDone) -> String {
+    text(done)
+}

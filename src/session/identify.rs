@@ -7,8 +7,10 @@ use super::request::SetupRequest;
 use super::{Failure, Setup};
 use crate::identify::check::{Remark, remarks};
 use crate::identify::frame::Frame;
-use crate::identify::question::{IdentifyDone, Identified, Question};
+use crate::identify::question::{Identified, IdentifyDone, Question};
 use crate::identify::runs;
+use crate::report::identify::html;
+use crate::study::write_file;
 use input::files::{self, LARGEST_INPUT};
 use input::shipped::PRIORS;
 use input::units::N_PER_MM;
@@ -30,6 +32,12 @@ pub struct IdentifyRequest {
     /// task's frame
     #[arg(long, value_name = "FILE.toml")]
     pub frame: Option<PathBuf>,
+    /// Write the cell, for --cell, --priors and --uncertainty
+    #[arg(long, value_name = "FILE.toml")]
+    pub out: Option<PathBuf>,
+    /// Write a page with the curves, measured and simulated, and the table of numbers
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
     /// Bounds of what the logs may not tell: bench, or the path of a file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
     pub priors: String,
@@ -66,8 +74,21 @@ impl IdentifyRequest {
         };
         let found = question.answer().map_err(Failure::input)?;
         not_stopped(stop)?;
-        let cell = cell(&setup, &found, runs.len());
-        Ok(IdentifyDone { task: template.task.name.clone(), remarks, found, cell })
+        let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
+        let done = IdentifyDone { task: template.task.name.clone(), remarks, found, cell };
+        if let Some(path) = &self.out {
+            let text = toml::to_string(&done.cell).map_err(|error| Failure::Run(error.into()))?;
+            write_file(path, &text)?;
+        }
+        if let Some(path) = &self.report {
+            write_file(path, &html(&done))?;
+        }
+        Ok(done)
+    }
+
+    /// Files that it writes.
+    pub fn written(&self) -> impl Iterator<Item = &PathBuf> {
+        self.out.iter().chain(&self.report)
     }
 }
 

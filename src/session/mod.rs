@@ -41,6 +41,7 @@ mod trial;
 mod tune;
 mod unusable;
 
+pub use crate::identify::question::IdentifyDone;
 pub use around::Around;
 pub use calibration::{BenchRequest, CalibrateRequest, Calibrated, HowCalibrated};
 pub use evaluate::{EvaluateRequest, Evaluated};
@@ -50,7 +51,6 @@ pub use film::FilmRequest;
 pub use finger::{Chosen, FingerRequest};
 pub use guided::{Guided, NotTaken, Order, perform};
 pub use how::{CacheRequest, EffortRequest, RunRequest};
-pub use crate::identify::question::IdentifyDone;
 pub use identify::IdentifyRequest;
 pub use import::{ImportRequest, ImportedTask};
 pub use levers::LeversRequest;

@@ -6,12 +6,12 @@ use ask_tell::stream::stream;
 use finger_opt::identify::log::{Log, Moment, of_samples};
 use finger_opt::session::Failure;
 use finger_opt::study::write_file;
+use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::outcome::Outcome;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Course, Grasp, Probe, Rig, Sample};
-use input::units::MM;
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -28,7 +28,8 @@ const DRIFT_N: f64 = 1.0;
 /// Mass of what hangs on the sensor, kg.
 const TOOL_KG: f64 = 1.0;
 /// A robot that stands upright at this place: its logs are in the task's frame already.
-const FRAME: &str = "origin_mm = [400.0, 0.0, 100.0]\naxis_angle_rad = [0.0, 0.0, 0.0]\ntool_mass_kg = 1.0\n";
+const FRAME: &str =
+    "origin_mm = [400.0, 0.0, 100.0]\naxis_angle_rad = [0.0, 0.0, 0.0]\ntool_mass_kg = 1.0\n";
 
 /// Writes the logs of a cell into a folder, with `runs.csv` and `frame.toml`.
 ///
@@ -87,9 +88,8 @@ fn word(outcome: Outcome) -> String {
 /// Adds what the sensor carries, its noise, bias and drift.
 fn sensed(log: &mut Log, cell: u64, number: u64) {
     let mut random = stream(cell, number, "sensor");
-    let mut normal = |sd: f64| {
-        Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal))
-    };
+    let mut normal =
+        |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
     let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
     let places: Vec<Vector3<f64>> = log.moments.iter().map(|moment| moment.position).collect();
     let last = places.len() - 1;

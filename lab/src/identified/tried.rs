@@ -34,13 +34,14 @@ pub fn identify(
     folder: &Path,
 ) -> Result<(Tried, IdentifyDone), Failure> {
     let task = cell.template.task.name.clone();
-    let setup = SetupRequest { tasks: vec![TaskSource::Named(task.clone())], ..SetupRequest::default() };
+    let setup =
+        SetupRequest { tasks: vec![TaskSource::Named(task.clone())], ..SetupRequest::default() };
     let request = IdentifyRequest {
         setup,
         runs: folder.join("runs.csv"),
         frame: Some(folder.join("frame.toml")),
         priors: "bench".to_owned(),
-        seed: 0,
+        ..IdentifyRequest::default()
     };
     let done = request.run(&NEVER)?;
     let rows: Vec<&Parameter> = done.cell.of(&task).collect();
@@ -71,7 +72,8 @@ pub fn identify(
         Ok(Some([known.range, mm, known.nominal]))
     };
     let designs = published::designs();
-    let fingers: Vec<[f64; 2]> = designs.iter().map(|d| [d.density_percent, d.direction_deg]).collect();
+    let fingers: Vec<[f64; 2]> =
+        designs.iter().map(|d| [d.density_percent, d.direction_deg]).collect();
     let others: Vec<_> = fingers.into_iter().filter(|finger| !LOGGED.contains(finger)).collect();
     let ranges = others.par_iter().map(range).collect::<Result<Vec<_>, Failure>>()?;
     let ranges = ranges.into_iter().flatten().collect();
@@ -87,7 +89,8 @@ pub fn table(all: &[Tried]) -> String {
         " --- |".repeat(10)
     );
     for one in all {
-        let hidden = one.hidden.iter().map(|[is, found, sd]| format!("{is:.3}, {found:.3} ± {sd:.3}"));
+        let hidden =
+            one.hidden.iter().map(|[is, found, sd]| format!("{is:.3}, {found:.3} ± {sd:.3}"));
         let hidden: Vec<String> = hidden.collect();
         let judged = [2, 1].map(|way| {
             let pairs: Vec<(f64, f64)> = one.ranges.iter().map(|row| (row[0], row[way])).collect();

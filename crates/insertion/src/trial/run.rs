@@ -67,12 +67,7 @@ impl EngineRig {
         Ok(EngineRig { task, robot: Arc::new(mounted), engine })
     }
 
-    fn prepare<'a>(
-        &self,
-        engine: &dyn Engine,
-        grasp: Grasp<'a>,
-        filmed: bool,
-    ) -> Prepared<'a> {
+    fn prepare<'a>(&self, engine: &dyn Engine, grasp: Grasp<'a>, filmed: bool) -> Prepared<'a> {
         let mut attempt = self.attempt(engine, &self.task, grasp);
         attempt.recorder = filmed.then(Recorder::default);
         let end = attempt.prepare();

@@ -6,17 +6,17 @@
 //! 4. `touch`: where the tool touches, and the force before.
 //! 5. `check`: what is wrong with a log, before anything is fitted to it.
 
-pub mod check;
-pub mod curves;
-pub mod formulas;
-pub mod frame;
+pub(crate) mod check;
+pub(crate) mod curves;
+pub(crate) mod formulas;
+pub(crate) mod frame;
 pub mod log;
-pub mod misfit;
-pub mod question;
-pub mod read;
-pub mod replay;
-pub mod runs;
-pub mod smoother;
+pub(crate) mod misfit;
+pub(crate) mod question;
+pub(crate) mod read;
+pub(crate) mod replay;
+pub(crate) mod runs;
+pub(crate) mod smoother;
 #[cfg(test)]
 mod tests;
-pub mod touch;
+pub(crate) mod touch;

@@ -2,9 +2,9 @@
 # Makes every figure under results/reference from the present sources, and notes which sources
 # those were (scripts/stale.sh). The one entry; parts can be named:
 #
-#     scripts/reference.sh                          all parts but the last five
+#     scripts/reference.sh                          all parts but the last six
 #     scripts/reference.sh validation               one part
-#     scripts/reference.sh landscapes firm settled maps peers   what it leaves out unless named
+#     scripts/reference.sh landscapes firm settled maps identify peers   what it leaves out unless named
 #
 # Landscapes are recorded functions that optimizers are measured on, not figures of the
 # present model: renewing them means renewing all of results/reference/optimizers.md. Peers
@@ -310,6 +310,22 @@ maps() {
     record maps "$folder"/*
 }
 
+# Hidden cells in MuJoCo, identified from their logs: an hour and more; needs `lab` with the feature mujoco.
+identify() {
+    local folder="$reference/identify" half
+    cargo build --release -p lab --features mujoco
+    mkdir -p "$folder"
+    "$lab" identify truth --cells 1..20 --out "$folder/truth.csv" > "$folder/truth.md"
+    "$lab" identify logs --cells 1..20 --truth "$folder/truth.csv" --logs "$work/logs"
+    for half in 1..10 11..20; do
+        echo "Cells $half"
+        echo
+        "$lab" identify try --cells "$half" --truth "$folder/truth.csv" --logs "$work/logs"
+        echo
+    done > "$folder/table.md"
+    record windows "$folder"/*
+}
+
 peers() {
     local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv"
     local landscapes=() task
@@ -325,8 +341,8 @@ peers() {
 }
 
 for part in ${*:-$parts}; do
-    case " $parts landscapes firm settled maps peers " in
+    case " $parts landscapes firm settled maps identify peers " in
         *" $part "*) echo "== $part" >&2; "$part" ;;
-        *) echo "no part is called $part; there are: $parts landscapes firm settled maps peers" >&2; exit 2 ;;
+        *) echo "no part is called $part; there are: $parts landscapes firm settled maps identify peers" >&2; exit 2 ;;
     esac
 done

@@ -1,6 +1,6 @@
 //! What is wrong with a log, in sentences for who recorded it, before anything is fitted to it.
 
-pub use super::touch::{bias, touch};
+pub use super::touch::touch;
 
 use super::log::{Ended, Log, Moment, Run};
 use super::read::median_gap;

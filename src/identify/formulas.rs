@@ -10,7 +10,7 @@ const REACH: usize = 5;
 /// Delays of the force that are tried, points: up to 30 ms.
 const DELAYS: usize = 15;
 /// Least standard deviation that is believed, as a share: a robot is no ideal spring.
-const FLOOR: f64 = 0.02;
+const FLOOR: f64 = 0.04;
 
 /// One axis of a soft flange: F = -k e - c e' + m a, with e how far the TCP is behind its target and m
 /// its mass less that which the sensor carries.
@@ -57,7 +57,16 @@ pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
     })
 }
 
-/// Sums of products over one attempt, each column less its mean: the bias of the sensor is left out.
+/// A column less its line: the bias of the sensor, and its drift.
+fn level(column: DVector<f64>) -> DVector<f64> {
+    let count = column.len() as f64;
+    let middle = 0.5 * (count - 1.0);
+    let times = DVector::from_fn(column.len(), |i, _| i as f64 - middle);
+    let (mean, slope) = (column.mean(), column.dot(&times) / times.norm_squared());
+    column.add_scalar(-mean) - times * slope
+}
+
+/// Sums of products over one attempt, each column less its line.
 struct Sums {
     products: DMatrix<f64>,
     with_force: DVector<f64>,
@@ -78,9 +87,7 @@ impl Sums {
         let behind: Vec<Vector3<f64>> = target.iter().zip(&tcp).map(|(to, at)| to - at).collect();
         let (rate, acceleration) = (rates(&behind), accelerations(&tcp));
         let column = |values: &[Vector3<f64>], from: usize, sign: f64| {
-            let column = DVector::from_fn(count, |i, _| sign * values[i + from][axis]);
-            let mean = column.mean();
-            column.add_scalar(-mean)
+            level(DVector::from_fn(count, |i, _| sign * values[i + from][axis]))
         };
         let columns = [(&behind, -1.0), (&rate, -1.0), (&acceleration, 1.0)];
         let columns = columns.map(|(values, sign)| column(values, 0, sign));
@@ -149,6 +156,10 @@ pub struct Friction {
     pub coefficient: Option<Estimate>,
 }
 
+/// How far above the face the part has left it, m.
+const LIFTED: f64 = 1e-3;
+/// Share of the highest speed along y from which on it slides.
+const MOVING: f64 = 0.4;
 /// Least part of a slide, s.
 const SLIDE_S: f64 = 0.3;
 /// Normal force below which there is no contact, N.
@@ -160,18 +171,19 @@ const FRICTION_FLOOR: f64 = 0.04;
 
 /// Friction from a probe along y, with the drift of the sensor taken out by the air before and after it.
 pub fn friction(probe: &Curves) -> Option<Friction> {
-    let force = undrifted(probe)?;
     let moved = probe.target.as_ref().unwrap_or(&probe.tcp);
     let speed: Vec<f64> = rates(&smoothed(moved, REACH)).iter().map(|rate| rate.y).collect();
     let fastest = speed.iter().map(|v| v.abs()).fold(0.0, f64::max);
+    let moving = |i: usize| speed[i].abs() > MOVING * fastest;
+    let force = undrifted(probe, moving)?;
     let sliding = |sign: f64| {
-        let on = |i: usize| sign * speed[i] > 0.4 * fastest && force[i].z > CONTACT_N;
+        let on = |i: usize| sign * speed[i] > MOVING * fastest && force[i].z > CONTACT_N;
         runs_of(speed.len(), on)
     };
     let least = (SLIDE_S / STEP_S) as usize;
     let each = |sign: f64| -> Vec<Slide> {
         let long = sliding(sign).into_iter().filter(|range| range.len() >= least);
-        long.map(|range| slide(&force, range)).collect()
+        long.map(|range| slide(&force, sign, range)).collect()
     };
     let [forth, back] = [1.0, -1.0].map(each);
     let angle = |slides: &[Slide]| {
@@ -189,35 +201,39 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
     (!slides.is_empty()).then_some(Friction { slides, coefficient })
 }
 
-/// The force less a line through what the sensor shows in the air before and after the contact.
-fn undrifted(probe: &Curves) -> Option<Vec<Vector3<f64>>> {
-    let force = smoothed(&probe.force, 2 * REACH);
-    let touching = |i: &usize| force[*i].z > CONTACT_N;
-    let first = (0..force.len()).find(touching)?;
-    let last = (0..force.len()).rfind(touching)?;
-    let free = 5 * REACH;
+/// The force less a line through what the sensor shows in the air before and after the contact: where
+/// the TCP is higher than where it slides.
+fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vector3<f64>>> {
+    let on: Vec<f64> =
+        (0..probe.tcp.len()).filter(|&i| sliding(i)).map(|i| probe.tcp[i].z).collect();
+    let face = (!on.is_empty()).then(|| on.iter().sum::<f64>() / on.len() as f64)?;
+    let in_air = |i: &usize| probe.tcp[*i].z > face + LIFTED;
+    let first = (0..probe.tcp.len()).take_while(in_air).count();
+    let last = (0..probe.tcp.len()).rev().take_while(in_air).count();
     let air = |range: Range<usize>| {
         let middle = 0.5 * (range.start + range.end) as f64;
         let forces = &probe.force[range];
         let count = forces.len() as f64;
-        (forces.len() > REACH).then(|| (middle, forces.iter().sum::<Vector3<f64>>() / count))
+        (forces.len() > 4 * REACH).then(|| (middle, forces.iter().sum::<Vector3<f64>>() / count))
     };
-    let before = air(0..first.saturating_sub(free))?;
-    let after = air((last + free).min(force.len())..force.len()).unwrap_or(before);
+    let before = air(0..first)?;
+    let after = air(probe.tcp.len() - last..probe.tcp.len()).unwrap_or(before);
     let slope = match after.0 > before.0 {
         true => (after.1 - before.1) / (after.0 - before.0),
         false => Vector3::zeros(),
     };
+    let force = smoothed(&probe.force, 2 * REACH);
     let less = |(i, force): (usize, Vector3<f64>)| force - before.1 - slope * (i as f64 - before.0);
     Some(force.into_iter().enumerate().map(less).collect())
 }
 
-fn slide(force: &[Vector3<f64>], range: Range<usize>) -> Slide {
+fn slide(force: &[Vector3<f64>], sign: f64, range: Range<usize>) -> Slide {
     let ratio = |from: f64, to: f64| {
         let place = |share: f64| range.start + (share * range.len() as f64) as usize;
         let part = &force[place(from)..place(to)];
         let sum: Vector3<f64> = part.iter().sum();
-        (sum.y / sum.z).abs()
+        // Friction acts against the slide.
+        -sign * sum.y / sum.z
     };
     let (middle, last) = (ratio(0.5, 0.7), ratio(0.75, 0.95));
     Slide { ratio: last, rising: last > (1.0 + RISING) * middle }

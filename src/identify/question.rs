@@ -26,7 +26,14 @@ pub const INFLATION: f64 = 1.0;
 const EACH: usize = 5;
 /// An unknown that keeps so much of its prior's deviation is left at it.
 const UNTOLD: f64 = 0.8;
+/// How much the axes of a flange differ from the robot file's proportions, as a share.
+const ALIKE: f64 = 0.2;
+/// Least standard deviation of a preload, mm: a touch is felt some ms late.
+const PRELOAD_MM: f64 = 0.02;
 const FRICTION: &str = "task.friction.plug_socket";
+/// What the curves would have to give way to: other numbers' errors end in these two, which a weight on
+/// the finger and the grip tell better.
+const NOT_FITTED: [&str; 2] = ["task.friction.finger_plug", "finger.stiffness"];
 const STRATEGY: &str = "task.strategy.";
 
 /// What is asked.
@@ -52,6 +59,8 @@ pub enum From {
     Fit,
     /// These logs cannot tell it.
     Prior,
+    /// Not fitted: as in the files.
+    Files,
 }
 
 /// A number of the cell before and after.
@@ -112,14 +121,15 @@ impl Question<'_> {
         let flange = [0, 1, 2].map(|axis| formulas::flange(&curves, axis));
         let probes = self.probes();
         let preload = formulas::preload(&curves);
-        let robot = self.robot(&flange);
+        let (robot, flange_sd) = self.robot(&flange);
         let (mut fitted, mut rest) = (Vec::new(), Vec::new());
         for prior in self.rows() {
-            let known = self.known(&prior, &flange, preload, &probes, &attempts);
+            let known = self.known(&prior, flange_sd, preload, &probes, &attempts);
             let read = prior.sets.key().starts_with(STRATEGY) || prior.sets == Target::Flange;
             match (known, read) {
                 (Some(known), true) => rest.push(told(prior, known, From::Formula)),
                 (None, true) => rest.push(untold(prior, None)),
+                _ if NOT_FITTED.contains(&prior.sets.key()) => rest.push(self.assumed(prior)),
                 (known, false) => fitted.push((prior, known)),
             }
         }
@@ -141,6 +151,25 @@ impl Question<'_> {
             .collect();
         let compared = self.compared(&replay, attempts, &unknowns)?;
         Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared })
+    }
+
+    /// A row that is not fitted, at the number of the files, with the deviation of its prior.
+    fn assumed(&self, prior: Parameter) -> Unknown {
+        let own = match &prior.sets {
+            Target::Number(key) => self.evaluator.number(self.template, key),
+            _ => Some(1.0),
+        };
+        let value = prior.value.or(own).unwrap_or_else(|| prior.middle());
+        let value = value.clamp(prior.low, prior.high);
+        let width = match prior.scale {
+            Scale::Log => value * libm::log(prior.high / prior.low),
+            Scale::Linear => prior.high - prior.low,
+        };
+        let sd = prior.sd.unwrap_or(width / 12.0_f64.sqrt());
+        let source = "not fitted: as in the files, with the width of its prior".to_owned();
+        let posterior = Parameter { value: Some(value), sd: Some(sd), source, ..prior.clone() };
+        let advice = Some(advice(&prior));
+        Unknown { prior, posterior, left: None, from: From::Files, advice }
     }
 
     fn probes(&self) -> Vec<(String, Friction)> {
@@ -185,56 +214,65 @@ impl Question<'_> {
         self.priors.of(&template.task.name).filter(|row| has(row)).map(as_value).collect()
     }
 
-    /// The robot with the axes that the logs tell; rotations in proportion to the translations' mean.
-    fn robot(&self, flange: &[Option<Flange>; 3]) -> Robot {
+    /// The robot with what the logs tell of its axes: each is the robot file's times a factor, and the
+    /// factors of axes that are told badly follow the others. Rotations follow all of them.
+    fn robot(&self, flange: &[Option<Flange>; 3]) -> (Robot, Option<f64>) {
         let own = &self.evaluator.robot;
-        let known: Vec<(usize, &Flange)> =
-            flange.iter().enumerate().filter_map(|(i, axis)| Some((i, axis.as_ref()?))).collect();
+        let told = flange.iter().flatten().count();
         let base = match own.drive {
             Drive::Servo(servo) => servo,
-            _ if known.len() == 3 => SOFT,
-            _ => return own.clone(),
+            _ if told == 3 => SOFT,
+            _ => return (own.clone(), None),
         };
-        if known.is_empty() {
-            return own.clone();
-        }
-        let n = known.len() as f64;
-        let ratio =
-            |(i, axis): &(usize, &Flange)| libm::log(axis.stiffness.mean / base.stiffness[*i]);
-        let factor = libm::exp(known.iter().map(ratio).sum::<f64>() / n);
-        let mut servo = Servo {
-            stiffness: base.stiffness.map(|k| k * factor),
-            rotational_stiffness: base.rotational_stiffness.map(|k| k * factor),
-            ..base
+        let axis = |i: usize| {
+            let stiffness = flange[i].as_ref()?.stiffness;
+            Some((libm::log(stiffness.mean / base.stiffness[i]), stiffness.sd / stiffness.mean))
         };
-        for (i, axis) in &known {
-            servo.stiffness[*i] = axis.stiffness.mean;
+        let axes = [0, 1, 2].map(axis);
+        let weight = |sd: f64| 1.0 / (sd * sd + ALIKE * ALIKE);
+        let sums = axes
+            .iter()
+            .flatten()
+            .fold((0.0, 0.0), |(sum, all), (log, sd)| (sum + weight(*sd) * log, all + weight(*sd)));
+        if told == 0 {
+            return (own.clone(), None);
         }
-        Robot { name: "identified".to_owned(), drive: Drive::Servo(servo), ..own.clone() }
+        let common = sums.0 / sums.1;
+        let each = axes.map(|axis| match axis {
+            None => common,
+            Some((log, sd)) => {
+                let (own, others) = (1.0 / (sd * sd), 1.0 / (ALIKE * ALIKE));
+                (own * log + others * common) / (own + others)
+            }
+        });
+        let sd = axes.iter().flatten().map(|(_, sd)| *sd).fold(f64::INFINITY, f64::min);
+        let mut servo = base;
+        for (stiffness, log) in servo.stiffness.iter_mut().zip(each) {
+            *stiffness *= libm::exp(log);
+        }
+        servo.rotational_stiffness = base.rotational_stiffness.map(|k| k * libm::exp(common));
+        let name = "identified".to_owned();
+        (Robot { name, drive: Drive::Servo(servo), ..own.clone() }, Some(sd))
     }
 
     /// A row as formulas tell it, if they do.
     fn known(
         &self,
         prior: &Parameter,
-        flange: &[Option<Flange>; 3],
+        flange: Option<f64>,
         preload: Option<Estimate>,
         probes: &[(String, Friction)],
         attempts: &[Logged],
     ) -> Option<Parameter> {
         let key = prior.sets.key();
         if prior.sets == Target::Flange {
-            let axes = flange.iter().flatten();
-            let shares = axes.clone().map(|axis| axis.stiffness.sd / axis.stiffness.mean);
-            let sd = shares.fold(0.0, f64::max);
-            let source =
-                "force over how far the TCP is behind its target; the values are the robot's";
+            let source = "force over how far the TCP is behind its target; [robot] has the values";
             let factor = Parameter { way: Way::Factor, low: 0.5, high: 2.0, ..prior.clone() };
-            return axes.count().gt(&0).then(|| with(&factor, 1.0, sd, source));
+            return flange.map(|sd| with(&factor, 1.0, sd, source));
         }
         if key.ends_with("preload_mm") {
             let Estimate { mean, sd } = preload?;
-            let sd = (sd / MM).max(0.01);
+            let sd = (sd / MM).max(PRELOAD_MM);
             return Some(with(
                 prior,
                 mean / MM,
@@ -389,6 +427,9 @@ fn advice(row: &Parameter) -> &'static str {
         }
         Target::Number(key) if key.ends_with("preload_mm") => {
             "record target_TCP_pose: the preload is how far the target goes beyond the touch"
+        }
+        Target::Number(key) if NOT_FITTED.contains(&key.as_str()) => {
+            "pull the plug out of the closed grip: half of the force over the grip force"
         }
         Target::Number(_) | Target::Tilting | Target::Centre => {
             "starts at both ends of the window, where the plug turns in the grasp"

@@ -108,6 +108,7 @@ pub fn text(done: &IdentifyDone) -> String {
             From::Formula => "formula",
             From::Fit => "fit",
             From::Prior => "these logs do not tell",
+            From::Files => "not fitted",
         };
         text += &format!("{:<29} {bounds:<16} {value:<16} {from}\n", posterior.name);
     }

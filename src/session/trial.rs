@@ -106,13 +106,13 @@ impl TrialRequest {
         let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
         let filmed = self.film.record(&*rig, specimen, offset_mm, stop)?;
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
-        let logged_s = self.log.as_ref().map(|_| STEP_S);
-        let (trial, samples) = match (logged_s.or(self.every_s), filmed) {
+        let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
                 let rig = setup.evaluator.rig(specimen, None, 1.0).map_err(Failure::input)?;
                 let probed = rig.follow(grasp, Course::Probe(Probe::USUAL), STEP_S);
                 probed.into_iter().next().ok_or_else(undriven)?
             }
+            _ if self.log.is_some() => rig.hold(grasp).logged(offset, STEP_S),
             (None, Some(recording)) => (recording.trial, Vec::new()),
             (every_s, _) => rig.hold(grasp).sampled(offset, every_s),
         };

@@ -54,7 +54,7 @@ pub fn write(
             let (samples, outcome) = match offset_mm {
                 None => probe(&*rig, grasp)?,
                 Some(mm) => {
-                    let (trial, samples) = rig.hold(grasp).sampled(mm * MM, Some(EVERY_S));
+                    let (trial, samples) = rig.hold(grasp).logged(mm * MM, EVERY_S);
                     (samples, word(trial.outcome))
                 }
             };

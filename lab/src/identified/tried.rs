@@ -80,7 +80,27 @@ pub fn identify(
     Ok((Tried { cell: cell.number, hidden, ranges }, done))
 }
 
-/// One line of the table for each cell, in Markdown.
+/// Half of the width of an 80 % interval, in standard deviations.
+const EIGHTY: f64 = 1.2816;
+
+impl Tried {
+    /// Mean error of the ranges, mm, and their order, in the nominal and in the identified cell.
+    fn judged(&self) -> [(f64, f64); 2] {
+        [2, 1].map(|way| {
+            let pairs: Vec<(f64, f64)> = self.ranges.iter().map(|row| (row[0], row[way])).collect();
+            let errors: Vec<f64> = pairs.iter().map(|(a, b)| (a - b).abs()).collect();
+            (mean(&errors).unwrap_or(f64::NAN), spearman(&pairs).unwrap_or(f64::NAN))
+        })
+    }
+
+    /// By what factor a hidden number is missed.
+    fn off(&self, which: usize) -> f64 {
+        let [is, found, _] = self.hidden[which];
+        (found / is - 1.0).abs()
+    }
+}
+
+/// One line for each cell, and what is counted over all, in Markdown.
 pub fn table(all: &[Tried]) -> String {
     let names = HIDDEN.map(|(_, name)| format!("{name}: hidden, found")).join(" | ");
     let mut text = format!(
@@ -89,20 +109,41 @@ pub fn table(all: &[Tried]) -> String {
         " --- |".repeat(10)
     );
     for one in all {
-        let hidden =
-            one.hidden.iter().map(|[is, found, sd]| format!("{is:.3}, {found:.3} ± {sd:.3}"));
-        let hidden: Vec<String> = hidden.collect();
-        let judged = [2, 1].map(|way| {
-            let pairs: Vec<(f64, f64)> = one.ranges.iter().map(|row| (row[0], row[way])).collect();
-            let errors: Vec<f64> = pairs.iter().map(|(a, b)| (a - b).abs()).collect();
-            (mean(&errors).unwrap_or(f64::NAN), spearman(&pairs).unwrap_or(f64::NAN))
+        let hidden = one.hidden.iter().map(|[is, found, sd]| match sd.is_nan() {
+            true => format!("{is:.3}, not told"),
+            false => format!("{is:.3}, {found:.3} ± {sd:.3}"),
         });
-        let [(before, order), (after, ordered)] = judged;
+        let hidden: Vec<String> = hidden.collect();
+        let [(before, order), (after, ordered)] = one.judged();
         text += &format!(
             "| {} | {} | {before:.2} | {after:.2} | {order:+.2} | {ordered:+.2} |\n",
             one.cell,
             hidden.join(" | ")
         );
     }
-    text
+    let count = |good: &dyn Fn(&Tried) -> bool| all.iter().filter(|one| good(one)).count();
+    let halved = count(&|one| one.judged()[1].0 <= 0.5 * one.judged()[0].0);
+    let ordered = count(&|one| {
+        let [(_, before), (_, after)] = one.judged();
+        after >= 0.9 || after >= before + 0.2
+    });
+    let told = || all.iter().flat_map(|one| &one.hidden).filter(|row| !row[2].is_nan());
+    // Of numbers that are all above 0 and drawn over their logarithms.
+    let inside = told().filter(|[is, found, sd]| (is / found).ln().abs() <= EIGHTY * sd / found);
+    let errors = |way: usize| {
+        let each: Vec<f64> = all.iter().map(|one| one.judged()[way].0).collect();
+        mean(&each).unwrap_or(f64::NAN)
+    };
+    text + &format!(
+        "\n{} cells. Friction within 15 %: {}; stiffness of the robot along z within 10 %: {}. 80 % intervals \
+         hold {} of {} hidden numbers that were told. Mean error of the ranges {:.2} mm, in the nominal cell \
+         {:.2} mm; at most half in {halved}; Spearman at least 0.9, or 0.2 higher, in {ordered}.\n",
+        all.len(),
+        count(&|one| one.off(0) <= 0.15),
+        count(&|one| one.off(1) <= 0.10),
+        inside.count(),
+        told().count(),
+        errors(1),
+        errors(0),
+    )
 }

@@ -98,6 +98,10 @@ impl Grasped for Moved<Box<dyn Grasped + '_>> {
     fn sampled(&self, shift: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
         self.rig.sampled(shift + offset(self.by), every_s)
     }
+
+    fn logged(&self, shift: f64, every_s: f64) -> (Trial, Vec<Sample>) {
+        self.rig.logged(shift + offset(self.by), every_s)
+    }
 }
 
 #[cfg(test)]

@@ -233,7 +233,8 @@ impl<'a> Attempt<'a> {
         self.rest(rest)
     }
 
-    fn rest(&mut self, time: f64) -> Result<(), Stop> {
+    /// Waits, s.
+    pub fn rest(&mut self, time: f64) -> Result<(), Stop> {
         self.coarsely(|attempt| (0..attempt.steps(time)).try_for_each(|_| attempt.step()))
     }
 

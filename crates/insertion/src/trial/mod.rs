@@ -150,6 +150,11 @@ pub trait Grasped: Send + Sync {
     /// One trial with the start shifted by `offset` metres along y; sampled each `every_s` seconds.
     fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>);
 
+    /// The same after a rest in which a robot zeroes its sensor, sampled from there on: what it logs.
+    fn logged(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
+        self.sampled(offset, Some(every_s))
+    }
+
     /// The trial alone.
     fn trial(&self, offset: f64) -> Trial {
         self.sampled(offset, None).0

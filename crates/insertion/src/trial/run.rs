@@ -92,6 +92,8 @@ impl EngineRig {
     }
 }
 
+/// Rest before a logged attempt, s.
+const ZEROED_S: f64 = 0.2;
 /// Half of the width of the plate that is probed, m: no plug gets near its rim.
 const PLATE: f64 = 0.1;
 
@@ -109,7 +111,7 @@ impl Rig for EngineRig {
     }
 
     fn record(&self, grasp: Grasp<'_>, offset: f64) -> Option<Recording> {
-        let (trial, _, frames) = self.ready(grasp, true).watched(offset, None);
+        let (trial, _, frames) = self.ready(grasp, true).watched(offset, None, 0.0);
         Some(Recording::new(trial, frames))
     }
 
@@ -156,7 +158,12 @@ struct Ready<'a> {
 
 impl Grasped for Ready<'_> {
     fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
-        let (trial, samples, _) = self.watched(offset, every_s);
+        let (trial, samples, _) = self.watched(offset, every_s, 0.0);
+        (trial, samples)
+    }
+
+    fn logged(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
+        let (trial, samples, _) = self.watched(offset, Some(every_s), ZEROED_S);
         (trial, samples)
     }
 }
@@ -165,13 +172,14 @@ impl Grasped for Ready<'_> {
 type Watched = (Trial, Vec<Sample>, Vec<Frame>);
 
 impl Ready<'_> {
-    fn watched(&self, offset: f64, every_s: Option<f64>) -> Watched {
-        let first = self.prepared.watched(offset, every_s);
+    fn watched(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Watched {
+        let first = self.prepared.watched(offset, every_s, rest_s);
         if first.0.outcome != Outcome::Diverged {
             return first;
         }
         let again = || self.rig.prepare(&*self.rig.engine.halved(), self.grasp, self.filmed);
-        let (trial, samples, frames) = self.halved.get_or_init(again).watched(offset, every_s);
+        let (trial, samples, frames) =
+            self.halved.get_or_init(again).watched(offset, every_s, rest_s);
         (Trial { retried: true, ..trial }, samples, frames)
     }
 }
@@ -191,7 +199,7 @@ impl<'a> Prepared<'a> {
         self.descended.get_or_init(|| self.attempt.descended()).as_ref()
     }
 
-    fn watched(&self, offset: f64, every_s: Option<f64>) -> Watched {
+    fn watched(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Watched {
         let seen = every_s.is_some() || self.attempt.recorder.is_some();
         let mut attempt =
             if seen { None } else { self.descended() }.unwrap_or(&self.attempt).shifted(offset);
@@ -199,7 +207,8 @@ impl<'a> Prepared<'a> {
         if let Some(recorder) = &mut attempt.recorder {
             recorder.seen(&attempt.socket);
         }
-        let end = self.end.and_then(|()| attempt.search_and_assemble());
+        let end = self.end.and_then(|()| attempt.rest(rest_s));
+        let end = end.and_then(|()| attempt.search_and_assemble());
         let samples = attempt.trace.take().map_or_else(Vec::new, |trace| trace.samples);
         let frames = attempt.recorder.take().map_or_else(Vec::new, |recorder| recorder.frames);
         (attempt.result(end), samples, frames)
@@ -305,7 +314,7 @@ mod tests {
             assert!(speed != slow || ready.descended().is_some());
             // A trial with samples goes all the way by itself.
             for offset in [-2.5e-3, 0.0, 4e-3] {
-                let trial = ready.watched(offset, None).0;
+                let trial = ready.watched(offset, None, 0.0).0;
                 assert_eq!(trial, ready.watched(offset, Some(1e-3)).0, "{speed} at {offset} m");
             }
         }

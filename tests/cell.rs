@@ -96,7 +96,7 @@ fn a_study_in_a_cell_goes_on_from_its_copy() {
     let folder = Studies::new();
     let file = folder.file("cell.toml", cell(&friction(0.3)));
     folder.study("s", 4, &["--cell", &file]).succeeds();
-    assert_eq!(folder.read("s/inputs/cell"), folder.read("cell.toml"));
+    assert_eq!(folder.read("s/inputs/cell.toml"), folder.read("cell.toml"));
     folder.file("cell.toml", cell(&friction(0.35)));
     folder.study("s", 8, &["--cell", &file]).fails(2, &["input_sha256.cell"]);
     folder.resume("s").succeeds();

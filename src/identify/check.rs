@@ -1,10 +1,8 @@
 //! What is wrong with a log, in sentences for who recorded it, before anything is fitted to it.
 
-pub use super::touch::touch;
-
 use super::log::{Ended, Log, Moment, Run};
 use super::read::median_gap;
-use super::touch::{Air, after, air, any_touch, mean};
+use super::touch::{Air, after, air, any_touch, mean, touch};
 use input::units::{DEG, MM};
 use insertion::outcome::FailureClass;
 use insertion::task::Task;

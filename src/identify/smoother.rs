@@ -48,7 +48,8 @@ pub struct Smoothed {
     pub compared: f64,
 }
 
-/// Residuals count at most so many standard deviations: one event at another time is no ten.
+/// Residuals count at most so many standard deviations, of the datum and among the members together: one event
+/// at another time is no ten, but what all members are far from has to draw them.
 const CLIPPED: f64 = 3.0;
 /// A coordinate stays within so many standard deviations of the prior.
 const FARTHEST: f64 = 3.0;
@@ -176,13 +177,18 @@ impl Linear {
             return members.to_vec();
         };
         let gain = covariance * weighed;
+        let farthest: Vec<f64> = known
+            .predicted
+            .row_iter()
+            .zip(self.variances.iter())
+            .map(|(row, variance)| CLIPPED * (row.variance() + variance).sqrt())
+            .collect();
         let each = members.iter().zip(known.predicted.column_iter());
         let update = |(member, predicted): (&Coordinates, nalgebra::DVectorView<'_, f64>)| {
             let innovation = DVector::from_fn(known.data.len(), |i, _| {
                 let sd = self.variances[i].sqrt();
                 let noise: f64 = random.sample(StandardNormal);
-                let clipped =
-                    (known.data[i].value - predicted[i]).clamp(-CLIPPED * sd, CLIPPED * sd);
+                let clipped = (known.data[i].value - predicted[i]).clamp(-farthest[i], farthest[i]);
                 clipped + factor.sqrt() * sd * noise
             });
             let step = &gain * innovation;

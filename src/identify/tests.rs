@@ -1,6 +1,7 @@
-use super::check::{self, Remark, bias, touch};
+use super::check::{self, Remark};
 use super::frame::Frame;
 use super::log::{Ended, Log, Moment, Run, Target};
+use super::touch::{bias, touch};
 use super::{read, runs};
 use ask_tell::stream::stream;
 use input::shipped::TASKS;

@@ -3,7 +3,7 @@
 use super::log::{Log, Moment, Target};
 use input::units::{DEG, MM};
 use insertion::trial::{Path, Sample, Tcp};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 /// Time between two points, s: 500 Hz.
 pub const STEP_S: f64 = 2e-3;
@@ -73,6 +73,19 @@ impl Curves {
             (i as f64 * STEP_S, Tcp { position: *position, tilt })
         };
         Path::new(commanded.iter().enumerate().map(place))
+    }
+
+    /// The same along the axes of the tilted tool: those of the springs of a soft flange.
+    pub fn in_tool(&self) -> Self {
+        let tilt = self.tilt.first().copied().unwrap_or(0.0);
+        let turn = UnitQuaternion::from_scaled_axis(-tilt * Vector3::x());
+        let turned = |all: &Vec<Vector3<f64>>| all.iter().map(|one| turn * one).collect();
+        Curves {
+            tcp: turned(&self.tcp),
+            target: self.target.as_ref().map(turned),
+            force: turned(&self.force),
+            tilt: self.tilt.clone(),
+        }
     }
 
     /// Where the target was stopped because a touch was felt: its place among the points.

@@ -28,9 +28,10 @@ pub struct Flange {
     pub explained: f64,
 }
 
-/// The flange along an axis, 0 x to 2 z, by least squares over attempts; its error is that of leaving out
+/// The flange along an axis of the tool, 0 x to 2 z, by least squares over attempts; its error is that of leaving out
 /// one attempt at a time. `None` without targets, or where no force moves the robot.
 pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
+    let all: Vec<Curves> = all.iter().map(Curves::in_tool).collect();
     let fits = (0..=DELAYS).filter_map(|delay| {
         let sums: Vec<Sums> = all.iter().filter_map(|one| Sums::of(one, axis, delay)).collect();
         let fit = solve(sums.iter())?;

@@ -1,13 +1,18 @@
 use super::check::{self, Remark};
+use super::curves::{Curves, STEP_S};
 use super::frame::Frame;
 use super::log::{Ended, Log, Moment, Run, Target};
 use super::touch::{bias, touch};
 use super::{read, runs};
 use ask_tell::stream::stream;
-use input::shipped::TASKS;
-use input::units::{DEG, MM};
+use input::shipped::{ROBOTS, TASKS};
+use input::units::{DEG, MM, N_PER_MM};
+use insertion::finger::Finger;
+use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
+use insertion::trial::{Course, Grasp};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -236,4 +241,26 @@ fn a_table_of_runs_names_logs_beside_it() {
     std::fs::File::create(&log).unwrap().set_len(1 << 30).unwrap();
     let error = of("a.csv,20,10,0,inserted").unwrap_err();
     assert!(error.contains("longer than 67108864 bytes"), "{error}");
+}
+
+/// The path holds what the robot made of the touch, too: followed, it makes the same attempt.
+#[test]
+fn an_attempt_along_its_own_path_is_the_same_attempt() {
+    let file = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap();
+    let (task, robot) = (usb(), Robot::parse(file.text, file.file).unwrap());
+    let finger = Finger::new(2.0 * N_PER_MM, 10.0 * N_PER_MM).shaped(&task.finger, 0.0);
+    let rig = EngineKind::Direct.rig(&task, &robot, &finger, 1.0).unwrap();
+    for offset in [0.0, 8.0 * MM] {
+        let (trial, samples) = rig.hold(Grasp::of(&finger)).sampled(offset, Some(STEP_S));
+        let measured = Curves::of_samples(&samples, 0.0);
+        let path = measured.path().unwrap();
+        assert!(path.push() > 0.1 && path.push() < path.duration(), "{}", path.push());
+        let mut followed = rig.follow(Grasp::of(&finger), Course::Paths(&[&path]), STEP_S);
+        let (again, samples) = followed.remove(0);
+        assert_eq!(again.outcome, trial.outcome);
+        let replayed = Curves::of_samples(&samples, 0.0);
+        let each = measured.force.iter().zip(&replayed.force);
+        let apart = each.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(apart < 1.0, "{offset}: {apart} N");
+    }
 }

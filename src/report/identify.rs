@@ -107,7 +107,7 @@ pub fn text(done: &IdentifyDone) -> String {
         let from = match from {
             From::Formula => "formula",
             From::Fit => "fit",
-            From::Prior => "these logs do not tell",
+            From::Prior => "not told",
             From::Files => "not fitted",
         };
         text += &format!("{:<29} {bounds:<16} {value:<16} {from}\n", posterior.name);

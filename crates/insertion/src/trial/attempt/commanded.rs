@@ -96,7 +96,8 @@ impl Attempt<'_> {
         self.trace = Some(Trace::new(every_s));
         self.stage = Stage::Search;
         let push = path.push();
-        for i in 1..=self.steps(path.duration()) {
+        // The first sample is at the end of the first step, and has the path's first place.
+        for i in 0..=self.steps(path.duration()) {
             let time = i as f64 * self.world.step_s();
             if time > push && self.stage == Stage::Search {
                 self.end_phase("search");

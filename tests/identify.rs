@@ -1,0 +1,87 @@
+//! `optimize identify`: hidden numbers, found again from the logs of their attempts.
+
+mod common;
+
+use common::{Studies, optimize_line};
+use input::shipped::ROBOTS;
+use serde_json::Value;
+
+/// Priors of two numbers, so that few replays are enough.
+const FEW: &str = "name = \"few\"\ndescription = \"of a test\"\n\
+    [[parameter]]\nname = \"friction\"\nsets = \"task.friction.plug_socket\"\nas = \"factor\"\n\
+    scale = \"log\"\nlow = 0.5\nhigh = 2.0\nshared = false\nsource = \"made up\"\n\
+    [[parameter]]\nname = \"flange\"\nsets = \"robot.stiffness_n_per_mm\"\nas = \"factor\"\n\
+    scale = \"log\"\nlow = 0.4\nhigh = 10.0\nshared = true\nsource = \"made up\"\n";
+
+/// Twice as stiff as the robot `servo`, N/mm.
+const STIFF: [f64; 3] = [20.0, 20.0, 40.0];
+
+/// Logs two fingers' probes and attempts from three starts each, and their table; gives its path.
+fn logged(folder: &Studies) -> String {
+    let servo = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap().text;
+    let stiff = servo.replace("[10.0, 10.0, 20.0]", &format!("{STIFF:?}"));
+    assert_ne!(stiff, servo);
+    let robot = folder.file("stiff.toml", stiff);
+    let mut runs = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n".to_owned();
+    for density in [10, 30] {
+        for (i, offset) in ["-2", "0", "2", ""].into_iter().enumerate() {
+            let name = format!("{density}-{i}.csv");
+            let what =
+                if offset.is_empty() { "--probe".into() } else { format!("--offset-mm {offset}") };
+            let line = format!(
+                "trial --task usb --density {density} --direction 0 --robot {robot} {what} --json \
+                 --set task.friction.plug_socket=0.3 --log {}",
+                folder.word(&name)
+            );
+            let found = optimize_line(&line).json();
+            let outcome = match (offset, &found["failure"]) {
+                ("", _) => "probe".to_owned(),
+                (_, Value::Null) => "inserted".to_owned(),
+                (_, class) => class.to_string(),
+            };
+            runs += &format!("{name},{density},0,{offset},{outcome}\n");
+        }
+    }
+    folder.file("runs.csv", runs)
+}
+
+#[test]
+fn what_was_hidden_is_found_and_goes_into_every_command() {
+    let folder = Studies::new();
+    let runs = logged(&folder);
+    let priors = folder.file("few.toml", FEW);
+    let (cell, again) = (folder.word("cell.toml"), folder.word("again.toml"));
+    let identify = format!("identify --task usb --runs {runs} --priors {priors} --json --out");
+    let found = optimize_line(&format!("{identify} {cell}")).json();
+    for (axis, stiff) in ["x", "y", "z"].into_iter().zip(STIFF) {
+        let is = found["robot"][axis]["stiffness_n_per_mm"].as_f64().unwrap();
+        assert!((is / stiff - 1.0).abs() < 0.1, "{axis}: {is} for {stiff}");
+    }
+    let friction =
+        found["unknowns"].as_array().unwrap().iter().find(|one| one["name"] == "friction");
+    let friction = friction.unwrap();
+    let value = friction["value"].as_f64().unwrap();
+    assert!((value / 0.3 - 1.0).abs() < 0.1 && friction["from"] == "formula", "{friction}");
+
+    assert_eq!(optimize_line(&format!("{identify} {again} --seed 0")).json(), found);
+    assert_eq!(folder.read("again.toml"), folder.read("cell.toml"));
+
+    let evaluate = format!("evaluate --task usb --density 20 --direction 10 --json --cell {cell}");
+    let with = optimize_line(&evaluate).json();
+    assert_eq!(with["cell"], "cell");
+    optimize_line(&format!("{evaluate} --robot servo")).fails(2, &["--cell holds a robot"]);
+}
+
+#[test]
+fn a_bad_log_is_named_and_nothing_is_written() {
+    let folder = Studies::new();
+    let runs = logged(&folder);
+    let bad = folder.read("30-1.csv");
+    let line = bad.lines().nth(99).unwrap();
+    let (most, _) = line.rsplit_once(',').unwrap();
+    folder.file("30-1.csv", bad.replace(line, &format!("{most},NaN")));
+    let (cell, page) = (folder.word("cell.toml"), folder.word("page.html"));
+    let identify = format!("identify --task usb --runs {runs} --out {cell} --report {page}");
+    optimize_line(&identify).fails(2, &["30-1.csv: line 100: target_z_mm", "is no finite number"]);
+    assert!(!folder.dir("cell.toml").exists() && !folder.dir("page.html").exists());
+}

@@ -135,6 +135,8 @@ fn estimate(values: &[f64], floor: f64) -> Option<Estimate> {
 /// One slide of a probe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slide {
+    /// Whether it goes along y, or back.
+    pub forth: bool,
     /// Tangential force over normal force where it slides.
     pub ratio: f64,
     /// Whether the ratio went on rising: then the part turned in the grasp, and slid little or not at all.
@@ -171,7 +173,7 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
     let least = (SLIDE_S / STEP_S) as usize;
     let each = |sign: f64| -> Vec<Slide> {
         let long = sliding(sign).into_iter().filter(|range| range.len() >= least);
-        long.map(|range| slide(&force, range)).collect()
+        long.map(|range| slide(&force, range, sign > 0.0)).collect()
     };
     let [forth, back] = [1.0, -1.0].map(each);
     let angle = |slides: &[Slide]| {
@@ -212,7 +214,7 @@ fn undrifted(probe: &Curves) -> Option<Vec<Vector3<f64>>> {
     Some(force.into_iter().enumerate().map(less).collect())
 }
 
-fn slide(force: &[Vector3<f64>], range: Range<usize>) -> Slide {
+fn slide(force: &[Vector3<f64>], range: Range<usize>, forth: bool) -> Slide {
     let ratio = |from: f64, to: f64| {
         let place = |share: f64| range.start + (share * range.len() as f64) as usize;
         let part = &force[place(from)..place(to)];
@@ -220,7 +222,7 @@ fn slide(force: &[Vector3<f64>], range: Range<usize>) -> Slide {
         (sum.y / sum.z).abs()
     };
     let (middle, last) = (ratio(0.5, 0.7), ratio(0.75, 0.95));
-    Slide { ratio: last, rising: last > (1.0 + RISING) * middle }
+    Slide { forth, ratio: last, rising: last > (1.0 + RISING) * middle }
 }
 
 /// The runs of neighbours for which something holds.

@@ -18,5 +18,5 @@ pub mod replay;
 pub mod runs;
 pub mod smoother;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 pub mod touch;

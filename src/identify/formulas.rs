@@ -143,6 +143,8 @@ fn estimate(values: &[f64], floor: f64) -> Option<Estimate> {
 /// One slide of a probe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slide {
+    /// Whether it goes along y, or back.
+    pub forth: bool,
     /// Tangential force over normal force where it slides.
     pub ratio: f64,
     /// Whether the ratio went on rising: then the part turned in the grasp, and slid little or not at all.
@@ -237,7 +239,7 @@ fn slide(force: &[Vector3<f64>], sign: f64, range: Range<usize>) -> Slide {
         -sign * sum.y / sum.z
     };
     let (middle, last) = (ratio(0.5, 0.7), ratio(0.75, 0.95));
-    Slide { ratio: last, rising: last > (1.0 + RISING) * middle }
+    Slide { forth: sign > 0.0, ratio: last, rising: last > (1.0 + RISING) * middle }
 }
 
 /// The runs of neighbours for which something holds.

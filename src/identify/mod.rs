@@ -18,5 +18,5 @@ pub(crate) mod replay;
 pub(crate) mod runs;
 pub(crate) mod smoother;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 pub(crate) mod touch;

@@ -24,7 +24,7 @@ fn usb() -> Task {
 
 /// Down at 20 mm/s onto a face at 45 mm and 0.4 mm into it, 5 mm aside and 13 mm down, at 500 Hz;
 /// stiffness 50 N/mm, friction 0.2, so much noise and drift, N. The touch is at 0.3 s.
-fn made(noise: f64, drift: f64) -> Log {
+pub(crate) fn made(noise: f64, drift: f64) -> Log {
     let mut random = stream(1, 0, "log");
     let mut normal = || -> f64 { random.sample(StandardNormal) };
     let moments = (0..600).map(|i| {

@@ -58,6 +58,20 @@ pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> Markup {
     }
 }
 
+/// A table whose rows a phone shows below each other, each cell with its heading.
+pub(super) fn stacked(head: &[&str], rows: &[Vec<Markup>]) -> Markup {
+    html! {
+        table.stacked {
+            thead { tr { @for name in head { th { (name) } } } }
+            tbody {
+                @for row in rows {
+                    tr { @for (name, cell) in head.iter().zip(row) { td data-of=(name) { (cell) } } }
+                }
+            }
+        }
+    }
+}
+
 /// A drawn plot; a reader that cannot see it gets `label`.
 pub(super) fn figure(svg: &str, label: &str, caption: &str) -> Markup {
     html! {

@@ -92,7 +92,7 @@ impl EngineRig {
     }
 }
 
-/// Rest before a logged attempt, s.
+/// Rest before a logged attempt, and once more as the first part of its log, s.
 const ZEROED_S: f64 = 0.2;
 /// Half of the width of the plate that is probed, m: no plug gets near its rim.
 const PLATE: f64 = 0.1;
@@ -203,11 +203,13 @@ impl<'a> Prepared<'a> {
         let seen = every_s.is_some() || self.attempt.recorder.is_some();
         let mut attempt =
             if seen { None } else { self.descended() }.unwrap_or(&self.attempt).shifted(offset);
+        // A sensor is zeroed once the robot is still.
+        let end = self.end.and_then(|()| attempt.rest(rest_s));
         attempt.trace = every_s.map(Trace::new);
         if let Some(recorder) = &mut attempt.recorder {
             recorder.seen(&attempt.socket);
         }
-        let end = self.end.and_then(|()| attempt.rest(rest_s));
+        let end = end.and_then(|()| attempt.rest(rest_s));
         let end = end.and_then(|()| attempt.search_and_assemble());
         let samples = attempt.trace.take().map_or_else(Vec::new, |trace| trace.samples);
         let frames = attempt.recorder.take().map_or_else(Vec::new, |recorder| recorder.frames);

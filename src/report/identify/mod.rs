@@ -1,9 +1,15 @@
-//! What the logs of attempts said of their cell, as JSON and text.
+//! What the logs of attempts said of their cell, as JSON, text and a page.
+
+mod page;
+#[cfg(test)]
+mod tests;
+
+pub use page::html;
 
 use crate::answer::words::number;
 use crate::identify::formulas::Flange;
-use crate::identify::misfit::misfits;
-use crate::identify::question::{From, IdentifyDone, Unknown};
+use crate::identify::misfit::{Misfit, misfits};
+use crate::identify::question::{Compared, From, IdentifyDone, Unknown};
 use input::units::{MM, N_PER_MM};
 use serde_json::{Value, json};
 
@@ -104,13 +110,7 @@ pub fn text(done: &IdentifyDone) -> String {
             Some((value, sd)) => format!("{} ± {}", short(value), short(sd)),
             None => "as before".to_owned(),
         };
-        let from = match from {
-            From::Formula => "formula",
-            From::Fit => "fit",
-            From::Prior => "not told",
-            From::Files => "not fitted",
-        };
-        text += &format!("{:<29} {bounds:<16} {value:<16} {from}\n", posterior.name);
+        text += &format!("{:<29} {bounds:<16} {value:<16} {}\n", posterior.name, origin(*from));
     }
     for Unknown { posterior, advice, .. } in &found.unknowns {
         if let Some(advice) = advice {
@@ -124,22 +124,36 @@ pub fn text(done: &IdentifyDone) -> String {
             100.0 * found.smoothed.compared
         );
     }
-    for one in misfits(&found.compared).iter().filter(|one| one.after > 3.0) {
-        text += &format!(
-            "warning: the model cannot make these curves: phase {}, {}: off by {:.1} deviations\n",
-            one.phase, one.axis, one.after
-        );
+    for one in unmodelled(&found.compared) {
+        text += &format!("warning: {one}\n");
     }
     text
+}
+
+/// Where a value comes from, in words.
+fn origin(from: From) -> &'static str {
+    match from {
+        From::Formula => "formula",
+        From::Fit => "fit",
+        From::Prior => "not told",
+        From::Files => "not fitted",
+    }
+}
+
+/// A sentence on each phase and force that stays off with what was identified.
+fn unmodelled(compared: &[Compared]) -> Vec<String> {
+    let off = misfits(compared).into_iter().filter(|one| one.after > 3.0);
+    let words = |one: Misfit| {
+        let Misfit { phase, axis, after, .. } = one;
+        format!(
+            "the model cannot make these curves: phase {phase}, {axis}: off by {after:.1} deviations"
+        )
+    };
+    off.map(words).collect()
 }
 
 /// Three digits.
 fn short(value: f64) -> String {
     let digits = (2.0 - value.abs().max(1e-3).log10().floor()).clamp(0.0, 4.0);
     format!("{value:.0$}", digits as usize)
-}
-
-/// Placeholder of the page.
-pub fn html(done: &IdentifyDone) -> String {
-    text(done)
 }

@@ -28,8 +28,8 @@ pub struct IdentifyRequest {
     /// Table of the logs: log, infill_density_percent, infill_direction_deg, offset_mm, outcome
     #[arg(long, value_name = "FILE.csv")]
     pub runs: PathBuf,
-    /// Task's frame in the robot's base, sign of the force, mass of the tool; not needed of logs in the
-    /// task's frame
+    /// Task's frame in the robot's base: origin_mm and axis_angle_rad, as a pendant shows them; force_sign = 1
+    /// or -1, tool_mass_kg; and upright_axis_angle_rad of the TCP, gravity_compensated = false if need be
     #[arg(long, value_name = "FILE.toml")]
     pub frame: Option<PathBuf>,
     /// Write the cell, for --cell, --priors and --uncertainty

@@ -21,7 +21,7 @@ use std::sync::atomic::AtomicBool;
 /// Ten members to each unknown; four rounds; neighbours over 0.1 s err together.
 pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, alike: 10.0, seed: 0 };
 /// Factor on the deviations that the smoother leaves, from the coverage on synthetic cells.
-pub const INFLATION: f64 = 1.0;
+pub const INFLATION: f64 = 1.4;
 /// Most attempts of a finger that are replayed: more of them tell little more.
 const EACH: usize = 5;
 /// An unknown that keeps so much of its prior's deviation is left at it.
@@ -393,7 +393,7 @@ fn fit(prior: &Parameter, known: Option<&Parameter>, smoothed: &Smoothed, i: usi
         // What was measured by itself is not bent to make up for what the model lacks elsewhere.
         return Unknown { left, ..told(prior.clone(), known.clone(), From::Formula) };
     }
-    if INFLATION * sd > UNTOLD {
+    if sd > UNTOLD {
         return untold(prior.clone(), left);
     }
     let row = prior;

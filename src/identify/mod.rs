@@ -8,6 +8,7 @@
 
 pub(crate) mod check;
 pub(crate) mod curves;
+pub(crate) mod flange;
 pub(crate) mod formulas;
 pub(crate) mod frame;
 pub mod log;
@@ -20,3 +21,4 @@ pub(crate) mod smoother;
 #[cfg(test)]
 pub(crate) mod tests;
 pub(crate) mod touch;
+pub(crate) mod unknown;

@@ -2,38 +2,33 @@
 
 use super::check::Remark;
 use super::curves::Curves;
+use super::flange;
 use super::formulas::{self, Flange, Friction};
 use super::log::{Ended, Run};
 use super::replay::{Logged, Replay};
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
-use input::units::{MM, N_PER_MM};
+use super::unknown::{From, Unknown, advice, fit, told, untold, values, with};
+use input::units::MM;
 use insertion::evaluation::cell::{Parameter, Priors, Target, Way};
 use insertion::evaluation::evaluator::Evaluator;
-use insertion::evaluation::normal_share;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::outcome::Outcome;
-use insertion::robot::{Drive, Robot, Servo};
+use insertion::robot::Robot;
 use insertion::space::Scale;
 use insertion::surrogate::Estimate;
 use std::sync::atomic::AtomicBool;
 
 /// Ten members to each unknown; four rounds; neighbours over 0.1 s err together.
 pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, alike: 10.0, seed: 0 };
-/// Factor on the deviations that the smoother leaves, from the coverage on synthetic cells.
-pub const INFLATION: f64 = 1.4;
 /// Most attempts of a finger that are replayed: more of them tell little more.
 const EACH: usize = 5;
-/// An unknown that keeps so much of its prior's deviation is left at it.
-const UNTOLD: f64 = 0.8;
-/// How much the axes of a flange differ from the robot file's proportions, as a share.
-const ALIKE: f64 = 0.2;
 /// Least standard deviation of a preload, mm: a touch is felt some ms late.
 const PRELOAD_MM: f64 = 0.02;
-const FRICTION: &str = "task.friction.plug_socket";
+pub(super) const FRICTION: &str = "task.friction.plug_socket";
 /// What the curves would have to give way to: other numbers' errors end in these two, which a weight on
 /// the finger and the grip tell better.
-const NOT_FITTED: [&str; 2] = ["task.friction.finger_plug", "finger.stiffness"];
+pub(super) const NOT_FITTED: [&str; 2] = ["task.friction.finger_plug", "finger.stiffness"];
 const STRATEGY: &str = "task.strategy.";
 
 /// What is asked.
@@ -47,34 +42,6 @@ pub struct Question<'a> {
     pub tool_mass: f64,
     pub seed: u64,
     pub stop: &'a AtomicBool,
-}
-
-/// Source of a value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum From {
-    /// Read from the logs by a formula.
-    Formula,
-    /// Fitted to the curves of the logs.
-    Fit,
-    /// These logs cannot tell it.
-    Prior,
-    /// Not fitted: as in the files.
-    Files,
-}
-
-/// A number of the cell before and after.
-#[derive(Debug, Clone)]
-pub struct Unknown {
-    /// The prior's row.
-    pub prior: Parameter,
-    /// The same, with what the logs say.
-    pub posterior: Parameter,
-    /// The prior's deviation that the logs were expected to leave, and did leave, as shares of it.
-    pub left: Option<[f64; 2]>,
-    pub from: From,
-    /// The attempt that would tell it, if these do not.
-    pub advice: Option<&'static str>,
 }
 
 /// An attempt, measured and simulated.
@@ -121,7 +88,7 @@ impl Question<'_> {
         let flange = [0, 1, 2].map(|axis| formulas::flange(&curves, axis));
         let probes = self.probes();
         let preload = formulas::preload(&curves);
-        let (robot, flange_sd) = self.robot(&flange);
+        let (robot, flange_sd) = flange::told(&self.evaluator.robot, &flange);
         let (mut fitted, mut rest) = (Vec::new(), Vec::new());
         for prior in self.rows() {
             let known = self.known(&prior, flange_sd, preload, &probes, &attempts);
@@ -212,47 +179,6 @@ impl Question<'_> {
             }
         };
         self.priors.of(&template.task.name).filter(|row| has(row)).map(as_value).collect()
-    }
-
-    /// The robot with what the logs tell of its axes: each is the robot file's times a factor, and the
-    /// factors of axes that are told badly follow the others. Rotations follow all of them.
-    fn robot(&self, flange: &[Option<Flange>; 3]) -> (Robot, Option<f64>) {
-        let own = &self.evaluator.robot;
-        let told = flange.iter().flatten().count();
-        let base = match own.drive {
-            Drive::Servo(servo) => servo,
-            _ if told == 3 => SOFT,
-            _ => return (own.clone(), None),
-        };
-        let axis = |i: usize| {
-            let stiffness = flange[i].as_ref()?.stiffness;
-            Some((libm::log(stiffness.mean / base.stiffness[i]), stiffness.sd / stiffness.mean))
-        };
-        let axes = [0, 1, 2].map(axis);
-        let weight = |sd: f64| 1.0 / (sd * sd + ALIKE * ALIKE);
-        let sums = axes
-            .iter()
-            .flatten()
-            .fold((0.0, 0.0), |(sum, all), (log, sd)| (sum + weight(*sd) * log, all + weight(*sd)));
-        if told == 0 {
-            return (own.clone(), None);
-        }
-        let common = sums.0 / sums.1;
-        let each = axes.map(|axis| match axis {
-            None => common,
-            Some((log, sd)) => {
-                let (own, others) = (1.0 / (sd * sd), 1.0 / (ALIKE * ALIKE));
-                (own * log + others * common) / (own + others)
-            }
-        });
-        let sd = axes.iter().flatten().map(|(_, sd)| *sd).fold(f64::INFINITY, f64::min);
-        let mut servo = base;
-        for (stiffness, log) in servo.stiffness.iter_mut().zip(each) {
-            *stiffness *= libm::exp(log);
-        }
-        servo.rotational_stiffness = base.rotational_stiffness.map(|k| k * libm::exp(common));
-        let name = "identified".to_owned();
-        (Robot { name, drive: Drive::Servo(servo), ..own.clone() }, Some(sd))
     }
 
     /// A row as formulas tell it, if they do.
@@ -347,97 +273,4 @@ fn chosen(mut all: Vec<Logged>) -> Vec<Logged> {
         (0..count).map(|i| alike[place(i)].clone()).collect()
     };
     fingers.flat_map(of).collect()
-}
-
-/// A flange that all axes are told of: what is left is a wrist and a gripper, as of `robots/servo.toml`.
-const SOFT: Servo = Servo {
-    stiffness: [10.0 * N_PER_MM; 3],
-    rotational_stiffness: [400.0; 3],
-    mass: 2.0,
-    inertia: 0.01,
-    damping_ratio: 1.0,
-};
-
-/// The values of rows at these standard normal coordinates.
-fn values<'a>(rows: &[&'a Parameter], z: &[f64]) -> Vec<(&'a Parameter, f64)> {
-    rows.iter().zip(z).map(|(row, &z)| (*row, row.at(normal_share(z)))).collect()
-}
-
-/// A row with a value, within its bounds, which give way to a measurement.
-fn with(row: &Parameter, value: f64, sd: f64, source: &str) -> Parameter {
-    Parameter {
-        value: Some(value),
-        sd: Some(sd),
-        low: row.low.min(value - 3.0 * sd).max(if row.low > 0.0 { 0.2 * value } else { f64::MIN }),
-        high: row.high.max(value + 3.0 * sd),
-        source: source.to_owned(),
-        ..row.clone()
-    }
-}
-
-fn told(prior: Parameter, posterior: Parameter, from: From) -> Unknown {
-    Unknown { prior, posterior, left: None, from, advice: None }
-}
-
-fn untold(prior: Parameter, left: Option<[f64; 2]>) -> Unknown {
-    let advice = advice(&prior);
-    Unknown { posterior: prior.clone(), prior, left, from: From::Prior, advice: Some(advice) }
-}
-
-/// An unknown after the fit.
-fn fit(prior: &Parameter, known: Option<&Parameter>, smoothed: &Smoothed, i: usize) -> Unknown {
-    let z: Vec<f64> = smoothed.members.iter().map(|member| member[i]).collect();
-    let (mean, sd) = moments(&z);
-    let left = Some([smoothed.expected_sd[i], INFLATION * sd]);
-    if let Some(known) = known {
-        // What was measured by itself is not bent to make up for what the model lacks elsewhere.
-        return Unknown { left, ..told(prior.clone(), known.clone(), From::Formula) };
-    }
-    if sd > UNTOLD {
-        return untold(prior.clone(), left);
-    }
-    let row = prior;
-    let at = |z: &f64| row.at(normal_share(mean + INFLATION * (z - mean)));
-    let log = row.scale == Scale::Log;
-    let drawn: Vec<f64> = z.iter().map(at).map(|v| if log { libm::log(v) } else { v }).collect();
-    let (mean, sd) = moments(&drawn);
-    let (value, sd) = if log { (libm::exp(mean), sd * libm::exp(mean)) } else { (mean, sd) };
-    let posterior = Parameter {
-        value: Some(value.clamp(row.low, row.high)),
-        sd: Some(sd),
-        source: "curves of the attempts".to_owned(),
-        ..row.clone()
-    };
-    Unknown { left, ..told(prior.clone(), posterior, From::Fit) }
-}
-
-fn moments(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    (mean, variance.sqrt())
-}
-
-/// The attempt that would tell a number.
-fn advice(row: &Parameter) -> &'static str {
-    match &row.sets {
-        Target::Flange => "record target_TCP_pose beside actual_TCP_pose",
-        Target::Number(key) if key == FRICTION => {
-            "a probe: slide 8 mm along y and back at 5 mm/s and 5 N on a flat face"
-        }
-        Target::Number(key) if key.ends_with("preload_mm") => {
-            "record target_TCP_pose: the preload is how far the target goes beyond the touch"
-        }
-        Target::Number(key) if NOT_FITTED.contains(&key.as_str()) => {
-            "pull the plug out of the closed grip: half of the force over the grip force"
-        }
-        Target::Number(_) | Target::Tilting | Target::Centre => {
-            "starts at both ends of the window, where the plug turns in the grasp"
-        }
-        Target::Edges | Target::Chamfer => {
-            "starts 0.2 mm inside and outside of both ends of the window"
-        }
-        Target::Clearance => "measure plug and opening with a caliper",
-        Target::Stiffness => "press the finger with a weight: `optimize finger --sheet`",
-    }
 }

@@ -9,7 +9,8 @@ pub use page::html;
 use crate::answer::words::number;
 use crate::identify::formulas::Flange;
 use crate::identify::misfit::{Misfit, misfits};
-use crate::identify::question::{Compared, From, IdentifyDone, Unknown};
+use crate::identify::question::{Compared, IdentifyDone};
+use crate::identify::unknown::{From, Unknown};
 use input::units::{MM, N_PER_MM};
 use serde_json::{Value, json};
 

@@ -317,7 +317,11 @@ mod tests {
             // A trial with samples goes all the way by itself.
             for offset in [-2.5e-3, 0.0, 4e-3] {
                 let trial = ready.watched(offset, None, 0.0).0;
-                assert_eq!(trial, ready.watched(offset, Some(1e-3), 0.0).0, "{speed} at {offset} m");
+                assert_eq!(
+                    trial,
+                    ready.watched(offset, Some(1e-3), 0.0).0,
+                    "{speed} at {offset} m"
+                );
             }
         }
     }

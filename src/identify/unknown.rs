@@ -124,6 +124,8 @@ pub(super) fn advice(row: &Parameter) -> &'static str {
             "starts 0.2 mm inside and outside of both ends of the window"
         }
         Target::Clearance => "measure plug and opening with a caliper",
-        Target::Stiffness => "press the finger with a weight: `optimize finger --sheet`",
+        Target::Stiffness => {
+            "press the finger with a weight, as its sheet says (`optimize export finger --format sheet`)"
+        }
     }
 }

@@ -12,6 +12,7 @@ use crate::identify::misfit::{Misfit, misfits};
 use crate::identify::question::{Compared, IdentifyDone};
 use crate::identify::unknown::{From, Unknown};
 use input::units::{MM, N_PER_MM};
+use insertion::surrogate::Estimate;
 use serde_json::{Value, json};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -95,23 +96,19 @@ pub fn text(done: &IdentifyDone) -> String {
     text += &format!("task          {}\n", done.task);
     for (axis, flange) in AXES.into_iter().zip(&found.flange) {
         let words = match flange {
-            Some(Flange { stiffness, .. }) => format!(
-                "{} ± {}",
-                number(stiffness.mean / N_PER_MM, 2, "N/mm"),
-                number(stiffness.sd / N_PER_MM, 2, "N/mm")
-            ),
+            Some(Flange { stiffness: Estimate { mean, sd }, .. }) => {
+                format!("{:.2} ± {}", mean / N_PER_MM, number(sd / N_PER_MM, 2, "N/mm"))
+            }
             None => "not told by these logs".to_owned(),
         };
         text += &format!("robot, {axis}      {words}\n");
     }
-    text += "\nnumber                        prior            identified       from\n";
+    text += "\nnumber                        prior                identified         from\n";
     for Unknown { prior, posterior, from, .. } in &found.unknowns {
-        let bounds = format!("{} to {}", short(prior.low), short(prior.high));
-        let value = match posterior.value.zip(posterior.sd) {
-            Some((value, sd)) => format!("{} ± {}", short(value), short(sd)),
-            None => "as before".to_owned(),
-        };
-        text += &format!("{:<29} {bounds:<16} {value:<16} {}\n", posterior.name, origin(*from));
+        let told = posterior.value.is_some();
+        let [before, after] = [prior, posterior].map(page::amount);
+        let after = if told { after } else { "as before".to_owned() };
+        text += &format!("{:<29} {before:<20} {after:<18} {}\n", posterior.name, origin(*from));
     }
     for Unknown { posterior, advice, .. } in &found.unknowns {
         if let Some(advice) = advice {

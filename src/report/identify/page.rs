@@ -129,7 +129,7 @@ fn unknown(one: &Unknown) -> Vec<Markup> {
 }
 
 /// Value and deviation of a row, or its bounds, with the unit.
-fn amount(row: &Parameter) -> String {
+pub(super) fn amount(row: &Parameter) -> String {
     let (sign, unit) = match (row.way, &row.sets) {
         (Way::Factor, _) => ("× ", ""),
         (_, Target::Tilting) => ("", " N m/rad"),

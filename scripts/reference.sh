@@ -315,7 +315,7 @@ identify() {
     local folder="$reference/identify" half
     cargo build --release -p lab --features mujoco
     mkdir -p "$folder"
-    "$lab" identify truth --cells 1..20 --out "$folder/truth.csv" > "$folder/truth.md"
+    "$lab" identify truth --cells 1..20 --out "$folder/truth.csv" > "$work/truth.md"
     "$lab" identify logs --cells 1..20 --truth "$folder/truth.csv" --logs "$work/logs"
     for half in 1..10 11..20; do
         echo "Cells $half"

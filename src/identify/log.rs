@@ -11,6 +11,8 @@ use std::fmt::Write as _;
 pub const FEWEST: usize = 50;
 /// Most moments: half an hour at 500 Hz, 0.1 GB.
 pub const MOST: usize = 1_000_000;
+/// Longest log, s: curves are made of it at even times, however far apart its moments are.
+pub const LONGEST_S: f64 = 600.0;
 
 /// Header of [`Log::csv`] without targets: time, TCP and force on the tool, in the task's frame.
 pub const COLUMNS: [&str; 8] = ["t_s", "x_mm", "y_mm", "z_mm", "tilt_deg", "fx_n", "fy_n", "fz_n"];
@@ -117,6 +119,12 @@ impl Log {
             if let Some(problem) = wrong {
                 return Err(LogError::Line(file.to_owned(), moment.line, problem));
             }
+        }
+        let lasts = moments[moments.len() - 1].time_s - moments[0].time_s;
+        if lasts > LONGEST_S {
+            return whole(format!(
+                "lasts {lasts:.0} s; an attempt lasts {LONGEST_S} s at most: cut the log, or mend its clock"
+            ));
         }
         Ok(Log { file: file.to_owned(), moments })
     }

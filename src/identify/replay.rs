@@ -1,7 +1,7 @@
 //! The logged attempts in the simulator, along their commanded paths, and what of both is compared.
 
 use super::curves::{Curves, STEP_S};
-use super::log::{Ended, Run};
+use super::log::{Ended, Log, Moment, Run};
 use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
 use input::units::MM;
@@ -16,6 +16,8 @@ use nalgebra::Vector3;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
+/// Air before the touch that is replayed, s.
+const AIR_S: f64 = 0.5;
 /// Points that make one datum: 10 ms.
 const POINTS: usize = 5;
 /// Error of a force that the model does not know: drift of the sensor, N, and share of the force.
@@ -55,8 +57,13 @@ impl Logged {
     /// `None` of an attempt that touches nothing, or of a probe.
     pub fn new(run: &Run) -> Option<Self> {
         let touched = touch(&run.log).filter(|_| run.ended != Ended::Probe)?;
-        let curves = Curves::of_log(&run.log, bias(&run.log));
-        let since = run.log.moments[touched].time_s - run.log.moments[0].time_s;
+        let touched_s = run.log.moments[touched].time_s;
+        let before = |moment: &Moment| moment.time_s < touched_s - AIR_S;
+        // A minute in the air would be simulated, and tells nothing.
+        let from = run.log.moments.partition_point(before);
+        let log = Log::new(&run.log.file, run.log.moments[from..].to_vec()).ok()?;
+        let curves = Curves::of_log(&log, bias(&run.log));
+        let since = touched_s - log.moments[0].time_s;
         let path = curves.path()?;
         Some(Logged {
             file: run.log.file.clone(),

@@ -68,25 +68,30 @@ pub fn smooth<E: Send>(
     let mut members: Vec<Coordinates> = (0..count)
         .map(|_| (0..unknowns).map(|_| random.sample(StandardNormal)).collect())
         .collect();
-    let (mut misfit, mut expected_sd) = (Vec::new(), Vec::new());
-    for round in 0..=settings.rounds {
-        let predicted: Vec<Predicted> =
-            members.par_iter().map(|member| predict(member)).collect::<Result<_, E>>()?;
-        let known = Known::of(data, &predicted);
-        misfit.push(known.misfit());
-        if round == settings.rounds {
-            let compared = known.data.len() as f64 / data.len().max(1) as f64;
-            return Ok(Smoothed { members, expected_sd, misfit, compared });
-        }
+    // One member, if there is nothing to fit: it shows how far off the model is.
+    let rounds = if unknowns == 0 { 0 } else { settings.rounds };
+    if unknowns == 0 {
+        members = vec![Vec::new()];
+    }
+    let ask = |members: &[Coordinates]| -> Result<Known, E> {
+        let predicted = members.par_iter().map(|member| predict(member));
+        Ok(Known::of(data, &predicted.collect::<Result<Vec<Predicted>, E>>()?))
+    };
+    let mut known = ask(&members)?;
+    let (mut misfit, mut expected_sd) = (vec![known.misfit()], Vec::new());
+    for round in 0..rounds {
         let linear = Linear::of(&members, &known);
         if round == 0 {
             expected_sd = linear.expected_sd(settings.alike);
         }
         let mut random = stream(settings.seed, round as u64 + 1, "perturbed data");
-        let rounds = settings.rounds as f64;
-        members = linear.updated(&members, &known, rounds * settings.alike, &mut random);
+        let factor = settings.rounds as f64 * settings.alike;
+        members = linear.updated(&members, &known, factor, &mut random);
+        known = ask(&members)?;
+        misfit.push(known.misfit());
     }
-    unreachable!("the last round returns")
+    let compared = known.data.len() as f64 / data.len().max(1) as f64;
+    Ok(Smoothed { members, expected_sd, misfit, compared })
 }
 
 /// The data that count, and what each member predicts of them: the mean of the others where it is silent.
@@ -249,6 +254,14 @@ mod tests {
             assert!((found.expected_sd[i] / known - 1.0).abs() < 0.1);
         }
         assert!(found.misfit[4] < found.misfit[0] && found.compared == 1.0);
+    }
+
+    #[test]
+    fn with_nothing_to_fit_the_misfit_is_known_all_the_same() {
+        let data = [Datum { value: 3.0, sd: 1.5 }; 4];
+        let predict = |_: &[f64]| Ok::<_, Infallible>(vec![Some(0.0); 4]);
+        let found = smooth(0, &data, SETTINGS, predict).unwrap();
+        assert_eq!((found.misfit, found.compared), (vec![2.0], 1.0));
     }
 
     #[test]

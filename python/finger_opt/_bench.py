@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from ._attempts import Attempts, newest
 from ._ends import Search
-from ._native import InputError, RunError, __version__
+from ._native import InputError, StudyError, __version__
 from ._task import Given, Task
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ class Bench:
             if getattr(measured, key) is not None:
                 cells[key] = str(getattr(measured, key))
         cells |= {"peak_force_n": f"{measured.peak_force_n:.1f}", "date": date, "note": _note(measured)}
-        self.add(self.out, cells, RunError)
+        self.add(self.out, cells, StudyError)
 
     def add(self, file: Path, cells: dict[str, str], error: type[Exception]) -> None:
         task = self.named

@@ -190,8 +190,8 @@ class Course:
             ) from error
         self.submit(proposal, work)
 
-    def stopped(self, why: str) -> _native.RunError:
-        return _native.RunError(f"{why}\n{self.study.hint()}")
+    def stopped(self, why: str) -> _native.StudyError:
+        return _native.StudyError(f"{why}\n{self.study.hint()}")
 
 
 def named(error: BaseException) -> str:

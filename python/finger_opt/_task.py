@@ -10,6 +10,7 @@ from typing import Any, Union
 
 from . import _native
 from ._json import dumps
+from ._words import TaskName
 
 
 class Fields:
@@ -126,7 +127,7 @@ class Task(Fields):
 
 
 #: A task: a shipped name, the path of a task file, or the task itself.
-Given = Union[str, "os.PathLike[str]", Task]
+Given = Union[TaskName, str, "os.PathLike[str]", Task]
 
 
 def sources(task: Given | Iterable[Given]) -> list[str | os.PathLike[str] | tuple[str, str]]:

@@ -214,7 +214,7 @@ def named(name: str) -> Iterator[Executor]:
         try:
             client = Client("tcp:" + rest, timeout=10)
         except OSError as error:
-            raise _native.RunError(f"--executor {name}: no scheduler answers there: {error}") from None
+            raise _native.StudyError(f"--executor {name}: no scheduler answers there: {error}") from None
         with client:
             yield client.get_executor()
     else:
@@ -238,7 +238,7 @@ def main(words: list[str]) -> int:
         text, unusable = run_open(asked.open, executor, not asked.quiet, None, 10)
     show(text)
     if unusable is not None:
-        raise _native.RunError(unusable)
+        raise _native.StudyError(unusable)
     return 0
 
 
@@ -252,7 +252,7 @@ def show(text: str) -> None:
     except BrokenPipeError:
         pass
     except OSError as error:
-        raise _native.RunError(f"cannot write the output: {error}") from None
+        raise _native.StudyError(f"cannot write the output: {error}") from None
 
 
 def let_go(stream: TextIO | None) -> None:
@@ -296,7 +296,7 @@ def command() -> int:
         return main(sys.argv[1:])
     except KeyboardInterrupt:
         return 1
-    except (_native.InputError, _native.RunError) as error:
+    except (_native.InputError, _native.StudyError) as error:
         say(f"error: {error}\n")
         return 2 if isinstance(error, _native.InputError) else 1
     finally:

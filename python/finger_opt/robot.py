@@ -23,7 +23,7 @@ import numpy as np
 from ._attempts import Attempt, Attempts, Tried
 from ._bench import Bench
 from ._ends import INTERVAL, Gap, Search, Side, Window
-from ._native import InputError, RunError
+from ._native import InputError, StudyError
 from ._runs import Runs
 from ._simulated import SimulatedRobot
 from ._task import Given
@@ -124,7 +124,7 @@ def measure_window(
     attempts, as far as the robot records and it is known how they ended, are lines of ``runs.csv`` beside
     ``out``, which all fingers measured into that folder share: what ``optimize identify`` reads.
 
-    Raises :class:`InputError` for wrong arguments, before the robot moves, and :class:`RunError` if the
+    Raises :class:`InputError` for wrong arguments, before the robot moves, and :class:`StudyError` if the
     robot raises, takes longer than its ``timeout_s``, reports what cannot be (three times in a row; once it is
     marked and tried again), or if the taught start does not insert.
     """
@@ -256,11 +256,11 @@ class _Course:
             return f"inserted at a depth of {done.depth_mm:g} mm; the task counts from {self.depth_mm:g} mm on"
         return None
 
-    def stopped(self, what: float | str, why: str) -> RunError:
+    def stopped(self, what: float | str, why: str) -> StudyError:
         """The error that stops the measurement at a start, mm, or at what else was asked of the robot."""
         self.attempts.stopped(what, why)
         kept = f"what was measured is in {self.attempts.path}; the same call goes on there"
-        return RunError(f"{what if isinstance(what, str) else f'start {what:+g} mm'}: {why}\n{kept}")
+        return StudyError(f"{what if isinstance(what, str) else f'start {what:+g} mm'}: {why}\n{kept}")
 
     def measurement(self, window: Window, settled: bool) -> Measurement:
         counted = self.attempts.counted()

@@ -1,0 +1,111 @@
+"""What every call has in common: its keywords are checked, and those that were given go on to the library."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import inspect
+import os
+import types
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from numbers import Integral, Real
+from typing import Any, Literal, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from ._native import InputError
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def checked(call: Callable[P, R]) -> Callable[P, R]:
+    """Refuses keywords that there are not, with the one that was meant, and values of a wrong type by name."""
+    signature = inspect.signature(call)
+    hints: dict[str, Any] = {}
+
+    @functools.wraps(call)
+    def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
+        for name in kwargs:
+            if name not in signature.parameters:
+                raise TypeError(f"{call.__name__}() got an unexpected keyword argument '{name}'{_meant(name, signature)}")
+        try:
+            given = signature.bind(*args, **kwargs).arguments
+        except TypeError as error:
+            raise TypeError(f"{call.__name__}() {error}") from None
+        if not hints:
+            hints.update(get_type_hints(call))
+        for name, value in given.items():
+            _check(name, value, hints.get(name, Any))
+        return call(*args, **kwargs)
+
+    return wrapper
+
+
+def given(words: Mapping[str, Any], *without: str) -> dict[str, Any]:
+    """The words of a call that say something: all but these, and those that are ``None`` or ``False``."""
+    left_out = {"self", "cls", *without}
+    return {name: value for name, value in words.items() if name not in left_out and value is not None and value is not False}
+
+
+def _meant(name: str, signature: inspect.Signature) -> str:
+    near = difflib.get_close_matches(name, signature.parameters, 1)
+    return f"; did you mean `{near[0]}`?" if near else f"; there are {', '.join(signature.parameters)}"
+
+
+def _check(name: str, value: object, hint: Any) -> None:
+    if not _fits(value, hint):
+        several = isinstance(value, (list, tuple, np.ndarray)) and name in ("density", "direction")
+        more = "; fo.sweep takes several" if several else ""
+        raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {type(value).__name__}{more}")
+    words = _words(hint)
+    if isinstance(value, str) and words and value not in words:
+        near = difflib.get_close_matches(value, words, 1)
+        meant = f"; did you mean `{near[0]}`?" if near else ""
+        raise InputError(f"{name}: `{value}` is none of {', '.join(words)}{meant}")
+
+
+def _words(hint: Any) -> tuple[str, ...]:
+    """The words, if nothing but these and ``None`` is right."""
+    if get_origin(hint) in (Union, types.UnionType):
+        rest = [one for one in get_args(hint) if one is not type(None)]
+        return _words(rest[0]) if len(rest) == 1 else ()
+    return get_args(hint) if get_origin(hint) is Literal else ()
+
+
+def _fits(value: object, hint: Any) -> bool:
+    origin, args = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return any(_fits(value, one) for one in args)
+    if origin is Literal:
+        return isinstance(value, str)
+    if hint in (float, int):
+        number = isinstance(value, Real if hint is float else Integral)
+        return number and not isinstance(value, (bool, np.bool_))
+    if origin is tuple:
+        whole = isinstance(value, (list, tuple, np.ndarray)) and (args[-1] is Ellipsis or len(value) == len(args))
+        return whole and all(_fits(one, args[0]) for one in value)  # type: ignore[union-attr]
+    kind = origin if isinstance(origin, type) else hint
+    if not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
+        return True
+    return isinstance(value, kind) and not (isinstance(value, str) and kind in _SEVERAL)
+
+
+#: What text is not, though it has letters one after the other.
+_SEVERAL = (Iterable, Sequence)
+
+
+def _named(hint: Any) -> list[str]:
+    """What is right, in words."""
+    origin, args = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return list(dict.fromkeys(name for one in args for name in _named(one)))
+    if origin is Literal:
+        return [", ".join(repr(word) for word in args)]
+    if origin is tuple and args[-1] is not Ellipsis:
+        return [f"{len(args)} of {_named(args[0])[0]}"]
+    known = {float: "a number", int: "a whole number", bool: "True or False", str: "text", os.PathLike: "a path",
+             type(None): "None"}
+    if origin is not None and origin is not os.PathLike:
+        return ["a mapping" if issubclass(origin, Mapping) else "several"]
+    return [known.get(origin or hint, getattr(hint, "__name__", str(hint)))]

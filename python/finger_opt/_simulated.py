@@ -20,7 +20,7 @@ class SimulatedRobot:
     """A robot that is simulated: for rehearsals, notebooks and tests.
 
     Task, density (percent), direction (degrees) and ``engine`` are those of :func:`finger_opt.trial`. ``cell``
-    is what the robot hides: words of that function (``{"robot": "ur5e", "set": {"task.friction.plug_socket": 0.3}}``),
+    is what the robot hides: words of that function and numbers (``{"robot": "ur5e", "task.friction.plug_socket": 0.3}``),
     the name or path of a robot file, or the path of a ``cell.toml``. ``noise`` is the width, mm, over which the
     probability to insert goes from 90 to 10 % at an end: each start is off by a logistic error, which no log
     shows. The forces in the logs have white noise of standard deviation ``force_noise_n`` and a drift that
@@ -85,7 +85,9 @@ class SimulatedRobot:
 def _hidden(cell: Mapping[str, Any] | StrPath | None) -> dict[str, Any]:
     """The settings of a trial that a cell is."""
     if cell is None or isinstance(cell, Mapping):
-        return dict(cell or {})
+        words = {name: value for name, value in (cell or {}).items() if "." not in name}
+        numbers = {name: value for name, value in (cell or {}).items() if "." in name}
+        return {**words, "set": {**words.get("set", {}), **numbers}}
     path = Path(cell)
     # A robot file has no unknowns.
     unknowns = path.suffix == ".toml" and path.is_file() and "[[parameter]]" in path.read_text(encoding="utf-8")

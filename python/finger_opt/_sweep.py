@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import itertools
-import os
+from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import Executor, Future
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._call import checked, given
-from ._run import LOOK, Performer, workers_of
+from ._run import workers_of
 from ._task import Given, sources
 from ._words import Engine, FingerModel, RobotName, SpaceName, Start, StrPath
 
@@ -22,8 +22,12 @@ if TYPE_CHECKING:
 
 #: A number or several.
 Several = Union[float, Sequence[float], "NDArray[Any]"]
-#: Rows that are measured, and written, at a time.
-CHUNK = 2000
+#: Columns by name.
+Columns = dict[str, "NDArray[Any]"]
+#: Rows that are measured, and written, at a time; of an executor, those of one piece of work.
+CHUNK, PART = 2000, 64
+#: What is counted, so no fraction: a class of 1 to 4, -1 for a simulation that diverged, none where none is met.
+COUNTED = ("failure_negative", "failure_positive", "trials")
 
 
 @checked
@@ -74,4 +78,90 @@ def sweep(
 
     The rest, and what is raised, is as for :func:`evaluate`. Ctrl-C ends it; with a cache nothing is lost.
     """
-    raise NotImplementedError
+    words = given(locals(), "task", "density", "direction", "set", "grid", "out", "executor", "workers")
+    rows = _rows({"density": density, "direction": direction, **(set or {})}, grid)
+    tasks = sources(task)
+    if executor is None:
+        chunks = (chunk for one in tasks for chunk in _measured(one, rows, words))
+    else:
+        chunks = _handed_out(executor, workers or workers_of(executor), tasks, rows, words)
+    frames = _written(chunks, out) if out is not None else [_frame(chunk) for chunk in chunks]
+    from ._frame import pandas
+
+    return pandas().concat(frames, ignore_index=True)
+
+
+def _rows(given: Mapping[str, Several], grid: bool) -> dict[str, list[float]]:
+    """The designs, a column for each number."""
+    columns = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in given.items()}
+    for name, values in columns.items():
+        if values.ndim != 1 or not len(values) or not np.isfinite(values).all():
+            raise _native.InputError(f"{name}: has to be a number or a list of numbers, all finite, at least one")
+    if grid:
+        meshed = np.meshgrid(*columns.values(), indexing="ij")
+        return {name: values.ravel().tolist() for name, values in zip(columns, meshed, strict=True)}
+    length = max(len(values) for values in columns.values())
+    for name, values in columns.items():
+        if len(values) not in (1, length):
+            raise _native.InputError(f"{name}: has {len(values)} values where others have {length}; give one or all")
+    return {name: np.broadcast_to(values, length).tolist() for name, values in columns.items()}
+
+
+def _measured(task: Any, rows: dict[str, list[float]], words: Mapping[str, Any]) -> Iterator[Columns]:
+    """The rows with their windows, in their order."""
+    measuring = _native.Sweep([task], rows, **words)
+    while (chunk := measuring.next_chunk(CHUNK)) is not None:
+        numbers, texts = chunk
+        found: Columns = {name: np.asarray(column, dtype=object) for name, column in texts.items()}
+        yield found | {name: np.frombuffer(column, dtype="<f8") for name, column in numbers.items()}
+
+
+def _part(task: Any, rows: dict[str, list[float]], words: dict[str, Any]) -> list[Columns]:
+    """The unit of work of an executor."""
+    return list(_measured(task, rows, {**words, "threads": 1, "no_cache": True}))
+
+
+def _handed_out(
+    executor: Executor | Any, workers: int, tasks: Iterable[Any], rows: dict[str, list[float]], words: dict[str, Any]
+) -> Iterator[Columns]:
+    """The same, measured elsewhere; twice as many pieces of work are out as there are workers."""
+    count = len(rows["density"])
+    parts = (
+        (task, {name: values[at : at + PART] for name, values in rows.items()})
+        for task in tasks for at in range(0, count, PART)
+    )
+    words = {name: value for name, value in words.items() if name not in ("threads", "cache", "no_cache")}
+    out: deque[Future[list[Columns]]] = deque()
+    try:
+        for task, part in itertools.chain(parts, itertools.repeat((None, None), 2 * workers)):
+            if task is not None:
+                out.append(executor.submit(_part, task, part, words))
+            if len(out) >= 2 * workers or (task is None and out):
+                yield from out.popleft().result()
+    finally:
+        for future in out:
+            future.cancel()
+
+
+def _frame(chunk: Columns) -> pandas.DataFrame:
+    from ._frame import pandas
+
+    counted = {name: "Int64" for name in COUNTED if name in chunk}
+    return pandas().DataFrame(chunk).astype(counted)
+
+
+def _written(chunks: Iterator[Columns], file: StrPath) -> list[pandas.DataFrame]:
+    """Writes the rows as they come; gives the columns without rows."""
+    from ._frame import pyarrow
+
+    arrow, writer, empty = pyarrow(), None, list[Any]()
+    try:
+        for chunk in chunks:
+            table = arrow.Table.from_pandas(_frame(chunk), preserve_index=False)
+            if writer is None:
+                writer, empty = arrow.parquet.ParquetWriter(str(file), table.schema), [_frame(chunk).iloc[:0]]
+            writer.write_table(table)
+    finally:
+        if writer is not None:
+            writer.close()
+    return empty

@@ -5,9 +5,24 @@ from typing import Any
 
 __version__: str
 
-class InputError(ValueError): ...
-class RunError(RuntimeError): ...
-class Refused(RunError): ...
+class InputError(ValueError):
+    file: str | None
+    key: str | None
+    line: int | None
+
+class TaskError(InputError): ...
+
+class StudyError(RuntimeError):
+    file: str | None
+    key: str | None
+    line: int | None
+
+class Refused(StudyError): ...
+
+class Interrupted(KeyboardInterrupt):
+    file: str | None
+    key: str | None
+    line: int | None
 
 #: Names by commas, a path, or what to call a task file in messages, and its text.
 _Tasks = list[str | os.PathLike[str] | tuple[str, str]]
@@ -15,6 +30,7 @@ _Tasks = list[str | os.PathLike[str] | tuple[str, str]]
 _Name = str | os.PathLike[str]
 
 def main(arguments: list[str]) -> int: ...
+def commands() -> str: ...
 def evaluate(tasks: _Tasks, /, **settings: Any) -> str: ...
 def identify(tasks: _Tasks, /, **settings: Any) -> str: ...
 def levers(tasks: _Tasks, /, **settings: Any) -> str: ...

@@ -1,11 +1,12 @@
 //! Keyword arguments on their way into requests.
 
-use crate::errors::InputError;
+use crate::errors::{InputError, placed};
 use clap::ValueEnum;
 use finger_opt::session::{
     CacheRequest, EffortRequest, FilmRequest, FingerModelRequest, FingerRequest, RepeatRequest,
     RunRequest, SetupRequest, TaskSource,
 };
+use input::Place;
 use input::shipped::Source;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -226,7 +227,8 @@ impl<'py> Keywords<'py> {
 
 /// Error for a wrong value of a keyword.
 pub fn wrong(name: &str, problem: impl ToString) -> PyErr {
-    InputError::new_err(format!("{name}: {}", problem.to_string()))
+    let error = InputError::new_err(format!("{name}: {}", problem.to_string()));
+    placed(Place::default().key(name), error)
 }
 
 fn extracted<'py, T: FromPyObject<'py>>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<T> {

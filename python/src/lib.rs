@@ -22,14 +22,19 @@ fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     u8::from(code != ExitCode::SUCCESS) * if code == ExitCode::from(2) { 2 } else { 1 }
 }
 
+/// The commands of `optimize` with their options, as JSON.
+#[pyfunction]
+fn commands() -> String {
+    cli::commands().to_string()
+}
+
 /// The extension module.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    let py = module.py();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("InputError", py.get_type::<errors::InputError>())?;
-    module.add("RunError", py.get_type::<errors::RunError>())?;
+    errors::register(module)?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
+    module.add_function(wrap_pyfunction!(commands, module)?)?;
     module.add_function(wrap_pyfunction!(measure::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(measure::identify, module)?)?;
     module.add_function(wrap_pyfunction!(measure::levers, module)?)?;
@@ -44,7 +49,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(measure::task_text, module)?)?;
     module.add_class::<optimizer::Session>()?;
     module.add_class::<insertion::Insertion>()?;
-    module.add("Refused", py.get_type::<errors::Refused>())?;
     module.add_function(wrap_pyfunction!(study::perform, module)?)?;
     module.add_function(wrap_pyfunction!(study::source_sha256, module)?)?;
     module.add_function(wrap_pyfunction!(study::study, module)?)?;

@@ -1,6 +1,6 @@
 //! Evaluations, trials, stiffness and task files.
 
-use crate::errors::{InputError, not_forked, raise};
+use crate::errors::{InputError, StudyError, not_forked, raise, signalled};
 use crate::keywords::{Keywords, Name, TaskWord, wrong};
 use finger_opt::cli;
 use finger_opt::report;
@@ -56,12 +56,12 @@ pub fn watched<T: Send>(
                 match receiver.recv_timeout(LOOK) {
                     Ok(done) => return signal.map(|()| done),
                     Err(RecvTimeoutError::Timeout) if signal.is_ok() => {
-                        signal = Python::with_gil(|py| py.check_signals());
+                        signal = Python::with_gil(|py| py.check_signals()).map_err(signalled);
                         stop.fetch_or(signal.is_err(), Ordering::SeqCst);
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => {
-                        return Err(crate::errors::RunError::new_err("the simulation broke off"));
+                        return Err(StudyError::new_err("the simulation broke off"));
                     }
                 }
             }

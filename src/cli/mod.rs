@@ -31,7 +31,7 @@ pub mod trial;
 mod words;
 
 use crate::session::Failure;
-pub use manual::reference;
+pub use manual::{commands, reference};
 pub use task::import::json as imported_json;
 use terminal::{print, print_json, say};
 

@@ -2,6 +2,7 @@
 
 use super::plan::{self, PlanError};
 use input::units::MM;
+use input::{Place, Placed};
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
 use insertion::task::{
@@ -101,6 +102,15 @@ pub enum DraftError {
     /// No strategy can be derived.
     #[error(transparent)]
     Plan(#[from] PlanError),
+}
+
+impl Placed for DraftError {
+    fn place(&self) -> Place {
+        match self {
+            DraftError::TooShort(option, ..) => Place::option(option),
+            DraftError::Plan(_) => Place::default(),
+        }
+    }
 }
 
 /// Task without shapes: friction, grasp force and fingers as in the shipped tasks, or as in `like`.

@@ -58,11 +58,11 @@ pub fn stiffness_data(path: Option<&str>, finger: &PrintedFinger) -> Result<Sour
                 find(&beside.join(named).to_string_lossy())
             }
         },
-        (None, None) => Err(Failure::usage(format!(
-            "{}: no `measured` names a table of its measured fingers; give one there or by \
+        (None, None) => Err(Failure::in_file(
+            &finger.file,
+            "no `measured` names a table of its measured fingers; give one there or by \
              --stiffness-data: one finger is enough",
-            finger.file
-        ))),
+        )),
     }
 }
 
@@ -88,6 +88,6 @@ pub fn surrogate(data: &Source, finger: &PrintedFinger) -> Result<Model, Failure
     let measurements = stiffness::parse(&data.text, &data.file).map_err(Failure::input)?;
     surrogate::fit(&measurements, finger).map_err(|error| match error {
         SurrogateError::Finger(error) => Failure::input(error),
-        error => Failure::usage(format!("{}: {error}", data.file)),
+        error => Failure::in_file(&data.file, error),
     })
 }

@@ -242,7 +242,7 @@ impl ImportRequest {
 
 fn bodies(path: &Path, file: &str) -> Result<Vec<Body>, Failure> {
     let unreadable =
-        |error: std::io::Error| Failure::usage(format!("{file}: cannot read the mesh: {error}"));
+        |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
     read(&bytes, file).map_err(Failure::input)

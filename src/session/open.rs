@@ -174,7 +174,7 @@ impl OpenStudy {
         };
         report::write(&dir, &record, &setup.evaluator.surrogate)?;
         if interrupted() {
-            return Err(Failure::running(format!("interrupted; {}", resume_hint(study))));
+            return Err(Failure::Interrupted(Some(resume_hint(study))));
         }
         Ok(Ended { dir, record, ending, known, unusable, how: how.clone() })
     }
@@ -233,7 +233,7 @@ fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
 }
 
 pub(super) fn bad_config(error: impl std::fmt::Display) -> Failure {
-    Failure::usage(format!("study.toml: {error}"))
+    Failure::in_file("study.toml", error)
 }
 
 /// The failure, and how to go on after it where the journal is as it was written.

@@ -1,13 +1,14 @@
 //! Task and space files: read, checked, tried.
 
-use super::Failure;
 use super::files::{find, robot};
 use super::tune::mended;
+use super::{Failure, TaskSource};
 use crate::calibration::published::three;
 use crate::connector::check::{Problem, problems};
 use crate::connector::nominal;
 use crate::tune::{Stage, Tuned};
-use input::shipped::{SPACES, STIFFNESS, Source, TASKS};
+use input::Place;
+use input::shipped::{SPACES, STIFFNESS, Source};
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
@@ -29,7 +30,7 @@ pub struct TaskFile {
 impl TaskFile {
     /// Checks the text of a task file.
     pub fn parse(source: Source) -> Result<Self, Failure> {
-        let task = Task::parse(&source.text, &source.file).map_err(Failure::input)?;
+        let task = Task::parse(&source.text, &source.file).map_err(Failure::task)?;
         Ok(TaskFile { source, task })
     }
 
@@ -41,15 +42,15 @@ impl TaskFile {
 
     /// The task file with these fields, checked; `file` is what messages call it.
     pub fn of_fields(file: &str, fields: &serde_json::Value) -> Result<Self, Failure> {
-        let text =
-            toml::to_string(fields).map_err(|error| Failure::usage(format!("{file}: {error}")))?;
+        let text = toml::to_string(fields)
+            .map_err(|error| Failure::task(Place::file(file).fault(error.to_string())))?;
         TaskFile::parse(Source { file: file.to_owned(), text })
     }
 }
 
 /// The task of that name, or of the file at that path.
 pub fn read_task(name: &str) -> Result<TaskFile, Failure> {
-    TaskFile::parse(find("task", TASKS, name)?)
+    TaskFile::parse(TaskSource::Named(name.to_owned()).read()?)
 }
 
 /// The space of that name, or of the file at that path.

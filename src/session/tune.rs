@@ -7,6 +7,7 @@ use crate::connector::check::problems;
 use crate::connector::{picture, rewrite};
 use crate::study::write_file;
 use crate::tune::{Bench, Effort, Stage, Tuned, tune};
+use input::Place;
 use input::shipped::Source;
 use insertion::evaluation::Window;
 use insertion::finger::Finger;
@@ -66,7 +67,8 @@ impl TuneRequest {
         if let Some(problem) = problems(&file.task).first() {
             let (file, key, text) = (&file.source.file, &problem.key, &problem.problem);
             let more = "`optimize task check` says what would be right";
-            return Err(Failure::usage(format!("{file}: {key}: {text}; {more}")));
+            let problem = format!("{text}; {more}");
+            return Err(Failure::task(Place::file(file).key(key).fault(problem)));
         }
         let robot = robot(&self.robot)?;
         let bench = bench(&file.task, &robot, self.engine, stop)?;

@@ -8,7 +8,7 @@ from typing import Literal
 from ._result import REST, Result
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Measured(Result):
     """A finger like it that was measured on a robot."""
 
@@ -17,7 +17,7 @@ class Measured(Result):
     range_mm: float | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Trust(Result):
     """How far the answer is to be trusted: calibrated on measurements, with published ones at hand, or simulated."""
 
@@ -31,7 +31,7 @@ class Trust(Result):
     error_percent_on_shipped_tasks: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StartAdvice(Result):
     """The window about the taught start, mm, and whether to teach it elsewhere."""
 
@@ -42,7 +42,7 @@ class StartAdvice(Result):
     advice: str | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Safe(Result):
     """The finger of the set that was measured, else that with the least force; ``loss_mm``: what it loses."""
 
@@ -53,7 +53,7 @@ class Safe(Result):
     loss_mm: float | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class AsGood(Result):
     """The designs that lose less than a bench can tell."""
 
@@ -67,7 +67,7 @@ class AsGood(Result):
     safe: Safe | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class NextStep(Result):
     """A command to go on with, and why."""
 
@@ -75,7 +75,7 @@ class NextStep(Result):
     why: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Answer(Result):
     """What to do, as ``answer`` of ``--json``.
 
@@ -99,7 +99,7 @@ class Answer(Result):
         return self.card
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class OnBench(Result):
     """What the finger is expected to do on the bench: 80 % of such ranges lie between low and high."""
 
@@ -111,7 +111,7 @@ class OnBench(Result):
     failure_positive: int | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Recommended(Result):
     """The recommended design: ``values`` by key; the *firm* window is that which inserts in all repeats.
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import pandas
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Known(Result):
     """How much of a task was measured: lines, ranges, ranges known from below, single measurements."""
 
@@ -29,7 +29,7 @@ class Known(Result):
     repeats: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MeasurementCheck(Result):
     """A measurement file in which nothing looks wrong."""
 
@@ -127,7 +127,7 @@ def measuring_sheet(task: StrPath, fingers: Sequence[tuple[float, float]], out: 
     _native.measuring_sheet(os.fspath(task), [(float(a), float(b)) for a, b in fingers], os.fspath(out))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class LeftOut(Result):
     """A measured finger, predicted without it: 80 % of such ranges lie between low and high."""
 
@@ -138,7 +138,7 @@ class LeftOut(Result):
     high_mm: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Prediction(Result):
     """What a finger is expected to do on the bench: 80 % of such ranges lie between low and high."""
 
@@ -153,7 +153,7 @@ class Prediction(Result):
     failure_positive: int | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Calibrated(Result):
     """The predictions for a task, and how far they are to be trusted: fingers left out of the fit."""
 
@@ -170,7 +170,7 @@ class Calibrated(Result):
     predictions: tuple[Prediction, ...] = field(repr=False)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Parameter(Result):
     """What nobody measured: 10, 50 and 90 % points before and after; ``moved``: the measurements say something."""
 
@@ -185,7 +185,7 @@ class Parameter(Result):
     moved: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Together(Result):
     """Two parameters that the measurements do not tell apart."""
 
@@ -193,7 +193,7 @@ class Together(Result):
     correlation: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Calibration(Result):
     """What every finger does on the bench, from simulation and measurements."""
 
@@ -254,7 +254,7 @@ def calibrate(
     return Calibration.from_json(json.loads(_native.calibrate(tasks, **given(locals(), "task", "tasks"))))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Print(Result):
     """A finger to print next: 80 % of such ranges lie between low and high."""
 
@@ -266,7 +266,7 @@ class Print(Result):
     reason: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Advice(Result):
     """Which fingers to print next; ``stop``: none is worth its print."""
 

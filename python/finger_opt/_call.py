@@ -34,7 +34,7 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
         except TypeError as error:
             raise TypeError(f"{call.__name__}() {error}") from None
         if not hints:
-            hints.update(get_type_hints(call))
+            hints.update(_hints(call))
         for name, value in given.items():
             _check(name, value, hints.get(name, Any))
         return call(*args, **kwargs)
@@ -46,6 +46,22 @@ def given(words: Mapping[str, Any], *without: str) -> dict[str, Any]:
     """The words of a call that say something: all but these, and those that are ``None`` or ``False``."""
     left_out = {"self", "cls", *without}
     return {name: value for name, value in words.items() if name not in left_out and value is not None and value is not False}
+
+
+def wrong(key: str, problem: str) -> InputError:
+    """The error of a wrong value."""
+    error = InputError(f"{key}: {problem}")
+    error.key = key
+    return error
+
+
+def _hints(call: Callable[..., Any]) -> dict[str, Any]:
+    """The types of its parameters. What it gives may be of a module that is not imported."""
+
+    def parameters() -> None: ...
+
+    parameters.__annotations__ = {name: hint for name, hint in call.__annotations__.items() if name != "return"}
+    return get_type_hints(parameters, call.__globals__)
 
 
 def _meant(name: str, signature: inspect.Signature) -> str:
@@ -62,7 +78,7 @@ def _check(name: str, value: object, hint: Any) -> None:
     if isinstance(value, str) and words and value not in words:
         near = difflib.get_close_matches(value, words, 1)
         meant = f"; did you mean `{near[0]}`?" if near else ""
-        raise InputError(f"{name}: `{value}` is none of {', '.join(words)}{meant}")
+        raise wrong(name, f"`{value}` is none of {', '.join(words)}{meant}")
 
 
 def _words(hint: Any) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from ._task import Given, Task, sources
 from ._words import Engine, Outcome, RobotName, StrPath
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Problem(Result):
     """What is wrong at a key of a task file, and what would be right."""
 
@@ -22,7 +22,7 @@ class Problem(Result):
     remedy: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Nominal(Result):
     """How the insertion from the nominal start ends with a finger of medium stiffness."""
 
@@ -37,7 +37,7 @@ class Nominal(Result):
     explanation: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Step(Result):
     """A strategy that was tried: the ranges with a soft, a medium and a stiff finger, mm."""
 
@@ -48,7 +48,7 @@ class Step(Result):
     turned_least_range_mm: float | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TaskCheck(Result):
     """What is wrong with a task, and how its nominal start ends; a notebook draws plug, socket and search path."""
 
@@ -68,7 +68,7 @@ class TaskCheck(Result):
         return self.svg + super()._repr_html_()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class NewTask(Result):
     """A task file that was written, and its check."""
 
@@ -138,7 +138,7 @@ def check_task(
     return TaskCheck.from_json({**json.loads(text), "svg": picture})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TunedFinger(Result):
     """The window with one of three fingers, mm from the start."""
 
@@ -149,7 +149,7 @@ class TunedFinger(Result):
     range_mm: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Strategy(Result):
     """Start and tilt of a search, and the windows with a soft, a medium and a stiff finger."""
 
@@ -158,7 +158,7 @@ class Strategy(Result):
     fingers: tuple[TunedFinger, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class By(Result):
     """What made the strategy."""
 
@@ -166,7 +166,7 @@ class By(Result):
     what: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Kept(Result):
     """The least range that is kept under a change of the cell, mm."""
 
@@ -174,7 +174,7 @@ class Kept(Result):
     least_range_mm: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Nearest(Result):
     """The trial that came nearest, where none inserted."""
 
@@ -185,7 +185,7 @@ class Nearest(Result):
     plug_and_socket_part: tuple[str, str] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Tuned(Result):
     """A start and a strategy by which a connector inserts, or what was tried in vain."""
 

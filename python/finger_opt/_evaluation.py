@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 End = Union[int, Literal["diverged"]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Springs(Result):
     """The stiffness of a finger, N/mm, with standard deviations; ``inside_hull``: within what was measured."""
 
@@ -32,7 +32,7 @@ class Springs(Result):
     inside_hull: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Window(Result):
     """How far the start may be off along y, mm, before the insertion fails, and how it fails.
 
@@ -80,7 +80,7 @@ class Window(Result):
     robust_trials: int | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Bands(Result):
     """Where repeats end differently: the widths of the bands at both ends, mm (``None``: more than 2)."""
 
@@ -90,7 +90,7 @@ class Bands(Result):
     unsure_inside_mm: tuple[float, ...]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Subject(Result):
     """Which finger was simulated on which task."""
 
@@ -110,7 +110,7 @@ class Subject(Result):
     stiffness: Springs
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Evaluation(Window, Subject):
     """The tolerance window of one finger on one task; see :class:`Window`."""
 

@@ -13,7 +13,7 @@ from ._task import Given, sources
 from ._words import Engine, FingerModel, Outcome, RobotName, SpaceName, Start, StrPath
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Remark(Result):
     """What is odd in a log, at which lines; what is ``serious`` spoils the result."""
 
@@ -23,7 +23,7 @@ class Remark(Result):
     serious: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Flange(Result):
     """The robot along one axis: a spring, a damper and a mass behind a delay; ``explained`` of its motion."""
 
@@ -35,7 +35,7 @@ class Flange(Result):
     explained: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Slide(Result):
     """A slide of a probe: tangential over normal force; one on which it keeps rising does not count."""
 
@@ -43,7 +43,7 @@ class Slide(Result):
     rising: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Probe(Result):
     """The friction that a probe tells."""
 
@@ -53,7 +53,7 @@ class Probe(Result):
     slides: tuple[Slide, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Unknown(Result):
     """A number of the cell, before (``prior_low`` to ``prior_high``) and after (``value`` and ``sd``)."""
 
@@ -75,7 +75,7 @@ class Unknown(Result):
     advice: str | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Replayed(Result):
     """An attempt that was simulated along its commanded path, before and after the fit."""
 
@@ -85,7 +85,7 @@ class Replayed(Result):
     outcome_after: Outcome
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Misfit(Result):
     """How far a simulated component of the force is from the measured one, in standard deviations (root mean
     square), before and after the fit."""
@@ -96,7 +96,7 @@ class Misfit(Result):
     after: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Cell(Result):
     """What logs say of the cell that they come from."""
 

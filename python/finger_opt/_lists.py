@@ -9,7 +9,7 @@ from . import _native
 from ._result import Result
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Named(Result):
     """What has a name."""
 
@@ -17,7 +17,7 @@ class Named(Result):
     description: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Tasks(Result):
     """Tasks, search spaces and sets of errors that are shipped."""
 
@@ -26,7 +26,7 @@ class Tasks(Result):
     uncertainties: tuple[Named, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class RobotModel(Result):
     """A robot, and the cell that it stands for."""
 
@@ -40,7 +40,7 @@ class RobotModel(Result):
     source: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Robots(Result):
     """The robots that are shipped, and the text of a file for one's own."""
 

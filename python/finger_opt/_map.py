@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes as Drawing
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Axis(Result):
     """An axis of a map: from ``low`` to ``high`` by ``step``, in ``unit``."""
 
@@ -31,7 +31,7 @@ class Axis(Result):
     step: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class CaptureMap(Subject):
     """How insertions of one finger end over two errors of the start.
 
@@ -94,7 +94,7 @@ def capture_map(
     return CaptureMap.from_json({**json.loads(text), "svg": picture})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Taught(Result):
     """The range, mm, from a start that was taught by this shift along y, mm."""
 
@@ -102,7 +102,7 @@ class Taught(Result):
     taught_start_mm: float | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Lever(Result):
     """One number of task or cell, moved to ``low`` and to ``high`` (in ``unit``), with the range at both, mm
     (``None``: nothing inserts)."""
@@ -119,7 +119,7 @@ class Lever(Result):
     range_mm: tuple[float | None, float | None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Levers(Result):
     """What moves the range of one finger, the largest first; ``infill_range_mm`` is what its infill moves."""
 

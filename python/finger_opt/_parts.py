@@ -22,7 +22,7 @@ from ._words import Engine, StrPath
 Along = Literal["x", "-x", "y", "-y", "z", "-z"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Imported(Result):
     """A task made of parts, as ``optimize task import --json`` says it."""
 

@@ -17,7 +17,7 @@ T = TypeVar("T", bound="Result")
 REST: dict[str, bool] = {"rest": True}
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class Result:
     """Fields carry the names and units of ``--json``; a notebook shows them."""
 
@@ -29,6 +29,11 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """The fields as plain lists, numbers and texts, without what there is not."""
         return _plain_fields(self)
+
+    def __repr__(self) -> str:
+        shown = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self) if field.repr)
+        inner = ", ".join(f"{name}={value!r}" for name, value in shown if value is not None)
+        return f"{type(self).__name__}({inner})"
 
     def _repr_html_(self) -> str:
         return _table(self)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes as Drawing
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Fit(Result):
     """A model of the stiffness along one axis, and its errors for designs left out."""
 
@@ -28,7 +28,7 @@ class Fit(Result):
     used: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Used(Result):
     """The model that is used along one axis."""
 
@@ -37,7 +37,7 @@ class Used(Result):
     sd_widening: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StiffnessModel(Result):
     """How well models of the stiffness fit the measured designs."""
 
@@ -88,7 +88,7 @@ def stiffness(
     return Springs.from_json(json.loads(_native.predict(density, direction, stiffness_data=stiffness_data)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Pad(Result):
     """What a force on the pad sees: in the plane of the finger, y towards the part, z up."""
 
@@ -103,7 +103,7 @@ class Pad(Result):
     stiffness_matrix: tuple[tuple[float, ...], ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Across(Result):
     """Stiffness out of the plane of the finger."""
 
@@ -112,7 +112,7 @@ class Across(Result):
     about_z_nm_per_rad: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Finger(Result):
     """A printed finger, computed from its ribs; a notebook draws it at rest and under a force on its pad."""
 

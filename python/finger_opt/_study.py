@@ -249,7 +249,7 @@ def load_study(
     return Study(_native.resume(os.fspath(folder), **given(locals(), "folder")))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Quartiles(Result):
     """Quartiles over seeds; none where too few got there."""
 
@@ -258,7 +258,7 @@ class Quartiles(Result):
     q75: float | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Compared(Result):
     """An optimizer: how many evaluations it needs to come near the best known."""
 
@@ -270,7 +270,7 @@ class Compared(Result):
     best_so_far_mm: tuple[Quartiles, ...] = field(repr=False)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison(Result):
     """Optimizers over studies of the same task and objective."""
 
@@ -304,7 +304,7 @@ def compare(
     return Comparison.from_json({**json.loads(text), "svg": picture})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Factor(Result):
     """An input from ``low`` to ``high``: its share of the variance by itself (``first``) and with others."""
 
@@ -319,7 +319,7 @@ class Factor(Result):
     total_high: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sensitivity(Result):
     """Which input matters, most first."""
 

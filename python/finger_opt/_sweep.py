@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     import pandas
 
 #: A number or several.
-Several = Union[float, Sequence[float], "NDArray[Any]"]
+Several = Union[float, Sequence[float], NDArray[Any]]
 #: Columns by name.
-Columns = dict[str, "NDArray[Any]"]
+Columns = dict[str, NDArray[Any]]
 #: Rows that are measured, and written, at a time; of an executor, those of one piece of work.
 CHUNK, PART = 2000, 64
 #: What is counted, so no fraction: a class of 1 to 4, -1 for a simulation that diverged, none where none is met.

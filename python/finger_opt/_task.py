@@ -127,7 +127,7 @@ class Task(Fields):
 
 
 #: A task: a shipped name, the path of a task file, or the task itself.
-Given = Union[TaskName, str, "os.PathLike[str]", Task]
+Given = Union[TaskName, str, os.PathLike[str], Task]
 
 
 def sources(task: Given | Iterable[Given]) -> list[str | os.PathLike[str] | tuple[str, str]]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PhaseEnd(Result):
     """The end of a phase of the search: the plug's tip in the task frame, mm."""
 
@@ -63,7 +63,7 @@ class Series:
         return cls(phase=found["phase"].astype(np.int64), **rest, **shaped)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Trial(Subject):
     """One simulated insertion: how it ended, how its phases ended, and its course as ``series``."""
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Literal, Union
 
 #: A name of a file, or a path of any kind.
-StrPath = Union[str, "os.PathLike[str]"]
+StrPath = Union[str, os.PathLike[str]]
 #: Shipped tasks.
 TaskName = Literal["ket8", "ket12", "rj45", "usb"]
 #: Shipped search spaces.

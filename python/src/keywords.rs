@@ -43,6 +43,16 @@ impl FromPyObject<'_> for TaskWord {
     }
 }
 
+impl TaskWord {
+    /// The one task.
+    pub fn one(self) -> PyResult<TaskSource> {
+        let Ok([task]) = <[TaskSource; 1]>::try_from(self.0) else {
+            return Err(wrong("task", "give one task"));
+        };
+        Ok(task)
+    }
+}
+
 /// The keywords of a call: each is taken by whoever knows it, and what is left is unknown. `None` and
 /// `False` are as good as nothing.
 pub struct Keywords<'py>(Bound<'py, PyDict>);
@@ -83,6 +93,16 @@ impl<'py> Keywords<'py> {
     /// A value, if it is given.
     pub fn take<T: FromPyObject<'py>>(&self, name: &str) -> PyResult<Option<T>> {
         self.value(name)?.map(|value| extracted(name, &value)).transpose()
+    }
+
+    /// A value that has to be given.
+    pub fn need<T: FromPyObject<'py>>(&self, name: &str) -> PyResult<T> {
+        self.take(name)?.ok_or_else(|| wrong(name, "is missing"))
+    }
+
+    /// A value as a file has it.
+    pub fn written(&self, name: &str) -> PyResult<Option<String>> {
+        Ok(self.words(name)?.pop())
     }
 
     /// A number, if it is given; `True` is the usual one.
@@ -171,8 +191,8 @@ impl<'py> Keywords<'py> {
         })
     }
 
-    /// The finger; numbers of task and finger stand in `set`, or under their own keys, which have a dot.
-    pub fn finger(&self) -> PyResult<FingerRequest> {
+    /// Numbers of task and finger: they stand in `set`, or under their own keys, which have a dot.
+    pub fn set(&self) -> PyResult<Vec<(String, f64)>> {
         let mut set = Vec::new();
         for name in self.0.keys().iter().filter_map(|name| name.extract::<String>().ok()) {
             if name.contains('.') {
@@ -184,12 +204,17 @@ impl<'py> Keywords<'py> {
             let number = extracted(&name, &number)?;
             set.push((name, number));
         }
+        Ok(set)
+    }
+
+    /// The finger.
+    pub fn finger(&self) -> PyResult<FingerRequest> {
         Ok(FingerRequest {
             density: self.take("density")?,
             direction: self.take("direction")?,
             stiffness_compliance: self.take("stiffness_compliance")?,
             stiffness_assembly: self.take("stiffness_assembly")?,
-            set,
+            set: self.set()?,
         })
     }
 
@@ -204,7 +229,11 @@ impl<'py> Keywords<'py> {
 
     /// Recordings asked for of a trial.
     pub fn film(&self) -> PyResult<FilmRequest> {
-        Ok(FilmRequest { record: self.take("record")?, plot: self.take("plot")? })
+        Ok(FilmRequest {
+            record: self.take("record")?,
+            plot: self.take("plot")?,
+            page: self.flag("film")?,
+        })
     }
 
     /// How a study is run.

@@ -2,6 +2,7 @@
 //! the package in `finger_opt/` gives both their Python shape.
 #![forbid(unsafe_code)]
 
+mod commands;
 mod errors;
 mod import;
 mod insertion;
@@ -23,8 +24,8 @@ fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
 }
 
 /// The commands of `optimize` with their options, as JSON.
-#[pyfunction]
-fn commands() -> String {
+#[pyfunction(name = "commands")]
+fn command_list() -> String {
     cli::commands().to_string()
 }
 
@@ -34,7 +35,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     errors::register(module)?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
-    module.add_function(wrap_pyfunction!(commands, module)?)?;
+    module.add_function(wrap_pyfunction!(command_list, module)?)?;
     module.add_function(wrap_pyfunction!(measure::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(measure::identify, module)?)?;
     module.add_function(wrap_pyfunction!(measure::levers, module)?)?;
@@ -47,6 +48,22 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(measure::task, module)?)?;
     module.add_function(wrap_pyfunction!(measure::task_fields, module)?)?;
     module.add_function(wrap_pyfunction!(measure::task_text, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::finger, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::new_task, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::check_task, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::tune_task, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::compare, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::calibrate, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::next_print, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::sensitivity, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::export_finger, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::export_mjcf, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::measurements, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::add_measurement, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::measuring_sheet, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::report_of, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::robots, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::tasks, module)?)?;
     module.add_class::<optimizer::Session>()?;
     module.add_class::<insertion::Insertion>()?;
     module.add_function(wrap_pyfunction!(study::perform, module)?)?;

@@ -11,7 +11,17 @@ use serde_json::Value;
 use std::ffi::OsString;
 use std::path::Path;
 
+pub use super::calibrate::written as calibration;
+pub use super::compare::compared;
+pub use super::export::finger as export_finger;
+pub use super::finger::drawn as finger;
+pub use super::measure::{add, check as measured};
+pub use super::next::json as advice;
+pub use super::robots::json as robots;
 pub use super::study::{Shown, warned};
+pub use super::task::{check as task_check, new as task_new, tune as task_tune};
+pub use super::tasks::listed as shipped;
+pub use crate::calibration::experiments::{COLUMNS, NOT_MEASURABLE};
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]

@@ -127,15 +127,14 @@ impl ImportRequest {
         }
         let mut found = self.found(say)?;
         not_stopped(stop)?;
-        let (task, tuned) = begun(found.imported.task, self.engine)?;
+        let (task, tuned) = begun(found.imported.task, self.engine, stop)?;
         found.imported.task = task;
-        not_stopped(stop)?;
         let written = TaskFile::parse(Source {
             file: out.display().to_string(),
             text: write::task(&found.imported.task, &self.notes(&found)),
         })?;
         write_file(out, &written.source.text)?;
-        let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine)?;
+        let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
         let Found { imported, unit, along, said, inward } = found;
         Ok(ImportedTask { imported, unit, along, said, inward, tuned, checked })
     }

@@ -61,7 +61,7 @@ pub use open::{Ended, OpenStudy};
 pub use repeat::RepeatRequest;
 pub use report::{PAGE, rewrite};
 pub use request::{DEFAULT_ROBOT, FingerModelRequest, SetupRequest, TaskSource};
-pub use ribs::{PrintRequest, RibsRequest, StiffnessRequest};
+pub use ribs::{PrintRequest, Ribs, RibsRequest, StiffnessRequest};
 pub use robots::{ForCell, robots};
 pub use sensitivity::SensitivityRequest;
 pub use setup::Setup;

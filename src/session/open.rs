@@ -18,6 +18,7 @@ use insertion::evaluation::tolerance::Search;
 use insertion::outcome::Outcome;
 use insertion::space::label;
 use insertion::task::StartRule;
+use insertion::trial::NEVER;
 use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -80,7 +81,7 @@ impl OpenStudy {
             let given = task.strategy.rule == StartRule::Given;
             if given
                 && record.evaluations.is_empty()
-                && let (_, trial) = nominal_start(task, robot, *engine)?
+                && let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?
                 && trial.outcome != Outcome::Inserted
             {
                 let (name, ends) = (&task.name, outcome(trial.outcome));

@@ -35,10 +35,13 @@ pub struct RibsRequest {
     pub set: Vec<(String, f64)>,
 }
 
+/// The ribs, the stiffness that they give, and that of the model of measured fingers.
+pub type Ribs = (Geometry, FingerStiffness, Option<Prediction>);
+
 impl RibsRequest {
     /// The ribs, the stiffness that they give, and that of the model of measured fingers, if there is
     /// one for this infill and `set` changes no shape.
-    pub fn run(&self) -> Result<(Geometry, FingerStiffness, Option<Prediction>), Failure> {
+    pub fn run(&self) -> Result<Ribs, Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
                 "--set {key}: sets no number of a finger file, as finger.skin.thickness_mm does"

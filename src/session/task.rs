@@ -1,5 +1,6 @@
 //! Task and space files: read, checked, tried.
 
+use super::failure::not_stopped;
 use super::files::{find, robot};
 use super::tune::mended;
 use super::{Failure, TaskSource};
@@ -15,8 +16,9 @@ use insertion::robot::Robot;
 use insertion::space::Space;
 use insertion::stiffness;
 use insertion::task::Task;
-use insertion::trial::Trial;
 use insertion::trial::engine::EngineKind;
+use insertion::trial::{Grasp, Trial};
+use std::sync::atomic::AtomicBool;
 
 /// A task file that was read.
 #[derive(Debug, Clone)]
@@ -73,7 +75,12 @@ pub struct TaskCheck {
 
 impl TaskCheck {
     /// Checks a task file with the robot of that name.
-    pub fn of(source: Source, robot_name: &str, engine: EngineKind) -> Result<Self, Failure> {
+    pub fn of(
+        source: Source,
+        robot_name: &str,
+        engine: EngineKind,
+        stop: &AtomicBool,
+    ) -> Result<Self, Failure> {
         let task = match Task::parse(&source.text, &source.file) {
             Ok(task) => task,
             Err(error) => {
@@ -84,7 +91,7 @@ impl TaskCheck {
         let problems = problems(&task);
         let nominal = match problems.is_empty() {
             true => {
-                let (finger, trial) = nominal_start(&task, &robot(robot_name)?, engine)?;
+                let (finger, trial) = nominal_start(&task, &robot(robot_name)?, engine, stop)?;
                 let explanation = nominal::explain(&task, &trial);
                 Some((finger, trial, explanation))
             }
@@ -97,11 +104,16 @@ impl TaskCheck {
 impl TaskCheck {
     /// Stages of `task tune` until one mends a nominal start that fails; `None` if it inserts, or if
     /// problems come first.
-    pub fn mend(&self, robot_name: &str, engine: EngineKind) -> Result<Option<Tuned>, Failure> {
+    pub fn mend(
+        &self,
+        robot_name: &str,
+        engine: EngineKind,
+        stop: &AtomicBool,
+    ) -> Result<Option<Tuned>, Failure> {
         let fails = |(_, trial, _): &(Finger, Trial, String)| trial.outcome != Outcome::Inserted;
         match (&self.task, &self.nominal) {
             (Some(task), Some(nominal)) if fails(nominal) => {
-                mended(task, robot_name, engine, Stage::Search).map(Some)
+                mended(task, (robot_name, engine), Stage::Search, stop).map(Some)
             }
             _ => Ok(None),
         }
@@ -113,11 +125,14 @@ pub(super) fn nominal_start(
     task: &Task,
     robot: &Robot,
     engine: EngineKind,
+    stop: &AtomicBool,
 ) -> Result<(Finger, Trial), Failure> {
     let finger = medium()?;
     let shaped = finger.shaped(&task.finger, 0.0);
     let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
-    Ok((finger, rig.grasp(&shaped).trial(0.0)))
+    let trial = rig.hold(Grasp { stop, ..Grasp::of(&shaped) }).trial(0.0);
+    not_stopped(stop)?;
+    Ok((finger, trial))
 }
 
 /// The shipped measured finger of medium compliance stiffness.

@@ -19,52 +19,50 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Known(Result):
-    """How much of a task was measured: lines, ranges, ranges known from below, single measurements."""
+class Line(Result):
+    """A line of a measurement file: a finger, its ``values`` by key, and what was measured of it, mm and N."""
 
+    line: int
     task: str
-    lines: int
-    ranges: int
-    bounds: int
+    values: dict[str, float] = field(metadata=REST)
+    negative_mm: float | None
+    positive_mm: float | None
+    range_mm: float | None
+    failure_negative: int | None
+    failure_positive: int | None
     repeats: int
-
-
-@dataclass(frozen=True, repr=False)
-class MeasurementCheck(Result):
-    """A measurement file in which nothing looks wrong."""
-
-    file: str
-    lines: int
-    tasks: tuple[Known, ...]
+    peak_force_n: float | None
+    date: str | None
+    note: str | None
 
 
 class Measurements:
     """A file of measurements from the bench, or ``"published"``: those of the publication.
 
     >>> import finger_opt as fo
-    >>> fo.Measurements("published").check().lines
+    >>> len(fo.Measurements("published").check())
     44
     """
 
     def __init__(self, file: StrPath = "measurements.csv", *, tasks: Iterable[StrPath] = ()) -> None:
         """``tasks`` are files of one's own tasks that its lines name without a comment line."""
         self.file = os.fspath(file)
-        self._tasks = [os.fspath(task) for task in tasks]
+        self._tasks: list[StrPath] = [os.fspath(task) for task in tasks]
 
-    def check(self) -> MeasurementCheck:
-        """Looks for units that look wrong, windows without the start, lines given twice, unknown tasks.
+    def check(self) -> tuple[Line, ...]:
+        """The lines, once nothing looks wrong: units, windows without the start, lines given twice, unknown tasks.
 
         Raises:
-            InputError: What is wrong, with the line.
+            InputError: What is wrong, with its line.
         """
         found = json.loads(_native.measurements(self.file, self._tasks))
-        return MeasurementCheck.from_json({key: found[key] for key in ("file", "lines", "tasks")})
+        return tuple(Line.from_json(line) for line in found["lines"])
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """A row for each line, with the columns of the file."""
+        """A row for each line, checked, with the columns of the file."""
         from ._frame import pandas
 
-        return pandas().DataFrame(json.loads(_native.measurements(self.file, self._tasks))["rows"])
+        return pandas().DataFrame([line.to_dict() for line in self.check()])
 
     @checked
     def add(
@@ -84,8 +82,8 @@ class Measurements:
         date: str | None = None,
         note: str | None = None,
         set: Numbers | None = None,
-    ) -> None:
-        """Adds a line, as ``optimize measure add`` does; the file need not exist.
+    ) -> int:
+        """Adds a line, as ``optimize measure add`` does; the file need not exist. Gives how many it has then.
 
         Args:
             task: A shipped name, or the path of a task file.
@@ -106,7 +104,7 @@ class Measurements:
         Raises:
             InputError: A line that looks wrong; nothing is added.
         """
-        _native.add_measurement(self.file, os.fspath(task), **given(locals(), "task"))
+        return _native.add_measurement(self.file, **given(locals()))
 
     def __repr__(self) -> str:
         return f"<Measurements {self.file}>"

@@ -8,9 +8,9 @@ from typing import Literal
 
 from . import _native
 from ._call import checked, given
-from ._result import Result
+from ._result import Result, save
 from ._task import Given, Task, sources
-from ._words import Engine, Outcome, RobotName, StrPath
+from ._words import Engine, Outcome, RobotName, StrPath, TaskName
 
 
 @dataclass(frozen=True, repr=False)
@@ -111,7 +111,10 @@ def new_task(
         InputError: Dimensions that cannot be, or a file that is there already.
         Interrupted: Ctrl-C.
     """
-    return NewTask.from_json(json.loads(_native.new_task(name, **given(locals(), "name"))))
+    words = given(locals(), "name", "plug", "round", "body")
+    sizes = {"plug": plug, "round": round, "body": body}
+    words |= {key: "x".join(f"{length:.10g}" for length in size) for key, size in sizes.items() if size is not None}
+    return NewTask.from_json(json.loads(_native.new_task(name, **words)))
 
 
 @checked
@@ -134,7 +137,8 @@ def check_task(
         InputError: A file that cannot be read. What is wrong in it is a result, not an error.
         Interrupted: Ctrl-C.
     """
-    text, picture = _native.check_task(sources(task), **given(locals(), "task"))
+    text, picture = _native.check_task(sources(task)[0], **given(locals(), "task", "svg"))
+    save(picture, svg)
     return TaskCheck.from_json({**json.loads(text), "svg": picture})
 
 
@@ -200,15 +204,11 @@ class Tuned(Result):
     kept: tuple[Kept, ...]
     nearest: Nearest | None
     out: str | None
-    svg: str = field(default="", repr=False)
-
-    def _repr_html_(self) -> str:
-        return self.svg or super()._repr_html_()
 
 
 @checked
 def tune_task(
-    task: Given,
+    task: TaskName | StrPath,
     *,
     robot: RobotName | StrPath = "servo",
     engine: Engine = "direct",
@@ -220,7 +220,7 @@ def tune_task(
     """Finds a start and a strategy by which a connector inserts, as ``optimize task tune`` does, within a minute.
 
     Args:
-        task: The path of a task file, which is written anew, or with ``out`` any task.
+        task: The path of a task file, which is written anew, or with ``out`` a shipped name, too.
         robot: Robot: a name or a file.
         engine: Contact engine.
         seed: Seed of the search.
@@ -232,5 +232,4 @@ def tune_task(
         InputError: A task that cannot be used; :class:`TaskError` if its file is wrong.
         Interrupted: Ctrl-C.
     """
-    text, picture = _native.tune_task(sources(task), **given(locals(), "task"))
-    return Tuned.from_json({**json.loads(text), "svg": picture})
+    return Tuned.from_json(json.loads(_native.tune_task(task, **given(locals(), "task"))))

@@ -45,9 +45,10 @@ def export_finger(
     Raises:
         InputError: A value or a file that cannot be used.
     """
+    words = given(locals(), "study")
     folder = study.path if isinstance(study, Study) else study
-    written = json.loads(_native.export_finger(folder, **given(locals(), "study", "folder")))
-    return tuple(Path(file) for file in written["written"])
+    found = json.loads(_native.export_finger(**words, **({} if folder is None else {"dir": folder})))
+    return tuple(Path(file) for file in (found["out"], *found["beside"]))
 
 
 @checked
@@ -72,5 +73,4 @@ def export_mjcf(
 
     ``out`` is the file. The rest, and what is raised, is as for :func:`evaluate`.
     """
-    written = json.loads(_native.export_mjcf(sources(task), **given(locals(), "task")))
-    return Path(written["written"][0])
+    return Path(json.loads(_native.export_mjcf(sources(task), **given(locals(), "task")))["out"])

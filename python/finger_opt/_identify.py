@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from . import _native
@@ -112,6 +112,13 @@ class Cell(Result):
     compared_share: float
     phases: tuple[Misfit, ...]
     attempts: tuple[Replayed, ...]
+    #: The page with the curves, measured and simulated.
+    page: str = field(repr=False)
+
+    def _repr_html_(self) -> str:
+        from ._drawn import framed
+
+        return framed(self.page)
 
 
 @checked
@@ -145,4 +152,5 @@ def identify(
 
     The rest, and what is raised, is as for :func:`evaluate`; an :class:`InputError` names the line of a log.
     """
-    return Cell.from_json(json.loads(_native.identify(sources(task), **given(locals(), "task"))))
+    text, page = _native.identify(sources(task), **given(locals(), "task"))
+    return Cell.from_json({**json.loads(text), "page": page})

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._call import checked, given
 from ._evaluation import Subject
-from ._result import Result
+from ._result import Result, save
 from ._task import Given, sources
 from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
 
@@ -169,5 +169,6 @@ def levers(
 
     Words, numbers and what is raised are as for :func:`evaluate`.
     """
-    text, picture = _native.levers(sources(task), **given(locals(), "task"))
+    text, picture = _native.levers(sources(task), **given(locals(), "task", "svg"))
+    save(picture, svg)
     return Levers.from_json({**json.loads(text), "svg": picture})

@@ -138,7 +138,7 @@ def stiffness(found: StiffnessModel, ax: Axes | None) -> Axes:
     axes = _axes(ax, height=4.2)
     density, direction = np.linspace(10.0, 30.0, 21), np.linspace(0.0, 40.0, 21)
     values = np.array([
-        [predicted(float(x), float(y), stiffness_data=found.stiffness_data).compliance_n_per_mm for x in density]
+        [predicted(float(x), float(y), stiffness_data=found.stiffness_data, finger=found.finger).compliance_n_per_mm for x in density]
         for y in direction
     ])
     filled = axes.contourf(density, direction, values, levels=14, cmap="viridis")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import html
+import os
 import types
 from collections.abc import Mapping
 from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -37,6 +38,13 @@ class Result:
 
     def _repr_html_(self) -> str:
         return _table(self)
+
+
+def save(text: str, file: str | os.PathLike[str] | None) -> None:
+    """Writes a drawing, if a file is named."""
+    if file is not None:
+        with open(file, "w", encoding="utf-8") as written:
+            written.write(text)
 
 
 @functools.cache

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, overload
 from . import _native
 from ._call import checked, given
 from ._evaluation import Springs
-from ._result import Result
+from ._result import Result, save
 from ._words import Numbers, StrPath
 
 if TYPE_CHECKING:
@@ -44,8 +44,11 @@ class StiffnessModel(Result):
     designs: int
     models: tuple[Fit, ...]
     used: dict[str, Used]
-    #: What it was fitted to, if not to the shipped measurements.
+    #: What it was fitted to, if not to the shipped measurements, and of which finger.
     stiffness_data: str | None = None
+    finger: str = "finray9"
+    #: The measurements, and what the models make of them.
+    svg: str = field(default="", repr=False)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the stiffness in the compliance direction over density and direction; gives the axes."""
@@ -53,17 +56,23 @@ class StiffnessModel(Result):
 
         return drawn(self, ax)
 
+    def _repr_html_(self) -> str:
+        return self.svg
+
 
 @overload
-def stiffness(*, stiffness_data: StrPath | None = None) -> StiffnessModel: ...
+def stiffness(*, stiffness_data: StrPath | None = None, finger: StrPath = "finray9") -> StiffnessModel: ...
 @overload
-def stiffness(density: float, direction: float, *, stiffness_data: StrPath | None = None) -> Springs: ...
+def stiffness(
+    density: float, direction: float, *, stiffness_data: StrPath | None = None, finger: StrPath = "finray9"
+) -> Springs: ...
 @checked
 def stiffness(
     density: float | None = None,
     direction: float | None = None,
     *,
     stiffness_data: StrPath | None = None,
+    finger: StrPath = "finray9",
 ) -> StiffnessModel | Springs:
     """The stiffness predicted for an infill, or, without one, how well the models fit, as ``optimize stiffness``.
 
@@ -75,17 +84,19 @@ def stiffness(
         density: Infill density, percent.
         direction: Infill direction, degrees.
         stiffness_data: CSV file of one's own measurements, in place of the shipped ones.
+        finger: Finger file of the finger that was measured.
 
     Raises:
         InputError: A value or a file that cannot be used.
     """
     if density is None and direction is None:
-        found = json.loads(_native.stiffness(stiffness_data=stiffness_data))
+        text, picture = _native.stiffness(stiffness_data=stiffness_data, finger=finger)
         data = None if stiffness_data is None else str(stiffness_data)
-        return StiffnessModel.from_json({**found, "stiffness_data": data})
+        found = {**json.loads(text), "stiffness_data": data, "finger": str(finger), "svg": picture}
+        return StiffnessModel.from_json(found)
     if density is None or direction is None:
         raise _native.InputError("give density and direction, or neither")
-    return Springs.from_json(json.loads(_native.predict(density, direction, stiffness_data=stiffness_data)))
+    return Springs.from_json(json.loads(_native.predict(density, direction, stiffness_data=stiffness_data, finger=finger)))
 
 
 @dataclass(frozen=True, repr=False)
@@ -162,5 +173,6 @@ def finger(
     Raises:
         InputError: A value or a file that cannot be used.
     """
-    text, picture = _native.finger(**given(locals()))
+    text, picture = _native.finger(**given(locals(), "svg"))
+    save(picture, svg)
     return Finger.from_json({**json.loads(text), "svg": picture})

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from . import _native
 from ._answer import Answer, Recommended
 from ._call import checked, given
-from ._result import Result
+from ._result import Result, save
 from ._run import run_open
 from ._task import Given, sources
 from ._words import (
@@ -152,7 +152,7 @@ class Study:
 
     def report(self) -> str:
         """Writes tables and plots again, as ``optimize report`` does; gives the path of the page."""
-        return json.loads(_native.report(self.path))["report"]
+        return json.loads(_native.report(self.path))["page"]
 
     def _open(self, workers: int | None) -> _native.Guided:
         return self._asked.open(workers)
@@ -299,8 +299,9 @@ def compare(
     Raises:
         InputError: Studies that cannot be compared, or what is no study.
     """
-    folders = [study.path if isinstance(study, Study) else os.fspath(study) for study in studies]
-    text, picture = _native.compare(folders, **given(locals(), "studies", "folders"))
+    folders: list[StrPath] = [study.path if isinstance(study, Study) else os.fspath(study) for study in studies]
+    text, picture = _native.compare(folders, **given({"html": html}))
+    save(picture, svg)
     return Comparison.from_json({**json.loads(text), "svg": picture})
 
 
@@ -364,5 +365,6 @@ def sensitivity(
 
     The rest, and what is raised, is as for :func:`evaluate`.
     """
-    text, picture = _native.sensitivity(sources(task), **given(locals(), "task"))
+    text, picture = _native.sensitivity(sources(task), **given(locals(), "task", "svg"))
+    save(picture, svg)
     return Sensitivity.from_json({**json.loads(text), "svg": picture})

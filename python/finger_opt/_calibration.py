@@ -15,7 +15,7 @@ from ._task import Given, sources
 from ._words import Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
 
 if TYPE_CHECKING:
-    import pandas
+    from pandas import DataFrame
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Measurements:
 
     def __init__(self, file: StrPath = "measurements.csv", *, tasks: Iterable[StrPath] = ()) -> None:
         """``tasks`` are files of one's own tasks that its lines name without a comment line."""
-        self.file = os.fspath(file)
+        self.file: str = os.fspath(file)
         self._tasks = [os.fspath(task) for task in tasks]
 
     def check(self) -> MeasurementCheck:
@@ -60,11 +60,12 @@ class Measurements:
         found = json.loads(_native.measurements(self.file, self._tasks))
         return MeasurementCheck.from_json({key: found[key] for key in ("file", "lines", "tasks")})
 
-    def to_dataframe(self) -> pandas.DataFrame:
+    def to_dataframe(self) -> DataFrame:
         """A row for each line, with the columns of the file."""
         from ._frame import pandas
 
-        return pandas().DataFrame(json.loads(_native.measurements(self.file, self._tasks))["rows"])
+        frame: DataFrame = pandas().DataFrame(json.loads(_native.measurements(self.file, self._tasks))["rows"])
+        return frame
 
     @checked
     def add(
@@ -201,12 +202,13 @@ class Calibration(Result):
     parameters: tuple[Parameter, ...]
     not_told_apart: tuple[Together, ...]
 
-    def to_dataframe(self) -> pandas.DataFrame:
+    def to_dataframe(self) -> DataFrame:
         """A row for each finger and task, as ``predictions`` has it."""
         from ._frame import pandas
 
         rows = [{"task": one.task, **each.to_dict()} for one in self.tasks for each in one.predictions]
-        return pandas().DataFrame(rows)
+        frame: DataFrame = pandas().DataFrame(rows)
+        return frame
 
     def _repr_html_(self) -> str:
         from ._drawn import calibration

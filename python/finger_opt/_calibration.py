@@ -15,7 +15,7 @@ from ._task import Given, sources
 from ._words import Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
 
 if TYPE_CHECKING:
-    import pandas
+    from pandas import DataFrame
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,7 +46,7 @@ class Measurements:
 
     def __init__(self, file: StrPath = "measurements.csv", *, tasks: Iterable[StrPath] = ()) -> None:
         """``tasks`` are files of one's own tasks that its lines name without a comment line."""
-        self.file = os.fspath(file)
+        self.file: str = os.fspath(file)
         self._tasks: list[StrPath] = [os.fspath(task) for task in tasks]
 
     def check(self) -> tuple[Line, ...]:
@@ -58,11 +58,12 @@ class Measurements:
         found = json.loads(_native.measurements(self.file, self._tasks))
         return tuple(Line.from_json(line) for line in found["lines"])
 
-    def to_dataframe(self) -> pandas.DataFrame:
+    def to_dataframe(self) -> DataFrame:
         """A row for each line, checked, with the columns of the file."""
         from ._frame import pandas
 
-        return pandas().DataFrame([line.to_dict() for line in self.check()])
+        frame: DataFrame = pandas().DataFrame([line.to_dict() for line in self.check()])
+        return frame
 
     @checked
     def add(
@@ -199,12 +200,13 @@ class Calibration(Result):
     parameters: tuple[Parameter, ...]
     not_told_apart: tuple[Together, ...]
 
-    def to_dataframe(self) -> pandas.DataFrame:
+    def to_dataframe(self) -> DataFrame:
         """A row for each finger and task, as ``predictions`` has it."""
         from ._frame import pandas
 
         rows = [{"task": one.task, **each.to_dict()} for one in self.tasks for each in one.predictions]
-        return pandas().DataFrame(rows)
+        frame: DataFrame = pandas().DataFrame(rows)
+        return frame
 
     def _repr_html_(self) -> str:
         from ._drawn import calibration

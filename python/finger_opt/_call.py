@@ -7,9 +7,9 @@ import functools
 import inspect
 import os
 import types
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from numbers import Integral, Real
-from typing import Any, Literal, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, ParamSpec, TypeGuard, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -71,8 +71,7 @@ def _meant(name: str, signature: inspect.Signature) -> str:
 
 def _check(name: str, value: object, hint: Any) -> None:
     if not _fits(value, hint):
-        several = isinstance(value, (list, tuple, np.ndarray)) and name in ("density", "direction")
-        more = "; fo.sweep takes several" if several else ""
+        more = "; fo.sweep takes several" if name in ("density", "direction") and _several(value) else ""
         raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {type(value).__name__}{more}")
     words = _words(hint)
     if isinstance(value, str) and words and value not in words:
@@ -89,6 +88,10 @@ def _words(hint: Any) -> tuple[str, ...]:
     return get_args(hint) if get_origin(hint) is Literal else ()
 
 
+def _several(value: object) -> TypeGuard[Collection[object]]:
+    return isinstance(value, (list, tuple, np.ndarray))
+
+
 def _fits(value: object, hint: Any) -> bool:
     origin, args = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
@@ -99,8 +102,9 @@ def _fits(value: object, hint: Any) -> bool:
         number = isinstance(value, Real if hint is float else Integral)
         return number and not isinstance(value, (bool, np.bool_))
     if origin is tuple:
-        whole = isinstance(value, (list, tuple, np.ndarray)) and (args[-1] is Ellipsis or len(value) == len(args))
-        return whole and all(_fits(one, args[0]) for one in value)  # type: ignore[union-attr]
+        if not _several(value) or (args[-1] is not Ellipsis and len(value) != len(args)):
+            return False
+        return all(_fits(one, args[0]) for one in value)
     kind = origin if isinstance(origin, type) else hint
     if not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
         return True

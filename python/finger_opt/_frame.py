@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import Any
 
 
@@ -17,8 +18,7 @@ def pandas() -> Any:
 def pyarrow() -> Any:
     """The module pyarrow, with its Parquet."""
     try:
-        import pyarrow
-        import pyarrow.parquet
+        importlib.import_module("pyarrow.parquet")
+        return importlib.import_module("pyarrow")
     except ImportError:
         raise ImportError("Parquet needs pyarrow: pip install 'finger-opt[parquet]'") from None
-    return pyarrow

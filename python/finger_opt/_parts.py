@@ -150,7 +150,7 @@ def _without(unneeded: list[str], bodies: dict[Path, list[Body]]) -> dict[Path, 
     """The bodies of each file without those that are not needed."""
     for name in unneeded:
         if not any(name in body.names for found in bodies.values() for body in found):
-            raise InputError(f"leave_out: no body is called `{name}`; there are {_step.listed(sum(bodies.values(), []))}")
+            raise InputError(f"leave_out: no body is called `{name}`; there are {_step.listed(sum(bodies.values(), list[Body]()))}")
     left = {file: [body for body in found if body.names.isdisjoint(unneeded)] for file, found in bodies.items()}
     for file, found in left.items():
         if not found:

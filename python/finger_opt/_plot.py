@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from ._trial import Trial
 
 
-def _axes(ax: Axes | None, width: float = 6.4, height: float = 3.6) -> Any:
-    """The axes given, or new ones. Any: matplotlib's own types are partial."""
+def _axes(ax: Axes | None, width: float = 6.4, height: float = 3.6) -> Axes:
+    """The axes given, or new ones."""
     if ax is not None:
         return ax
     try:
@@ -80,7 +80,7 @@ def surface(study: Study, ax: Axes | None) -> Axes:
     axes = _axes(ax, height=4.2)
     frame = study.to_dataframe()
     keys = ("infill_density_percent", "infill_direction_deg")
-    dots = axes.scatter(*(frame[key] for key in keys), c=frame["range_mm"], cmap="viridis", s=28)
+    dots = axes.scatter(frame[keys[0]], frame[keys[1]], c=frame["range_mm"], cmap="viridis", s=28)
     axes.figure.colorbar(dots, ax=axes, label="tolerable range, mm")
     best = study.best
     if best is not None and all(key in best.values for key in keys):

@@ -12,6 +12,8 @@ from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from ._json import is_list, is_numpy, is_table, is_tuple
+
 T = TypeVar("T", bound="Result")
 
 #: Marks the field that takes all keys which are no fields: the parameters of a design, which the space names.
@@ -53,7 +55,8 @@ def _hints(cls: type[Any]) -> dict[str, Any]:
 
 
 def _built(cls: type[T], fields: Mapping[str, Any]) -> T:
-    hints, names, values = _hints(cls), set[str](), dict[str, Any]()
+    kind: Any = cls
+    hints, names, values = _hints(kind), set[str](), dict[str, Any]()
     rest = next((field.name for field in dataclasses.fields(cls) if field.metadata.get("rest")), None)
     for field in dataclasses.fields(cls):
         # A word of Python has a stroke behind it.
@@ -102,11 +105,11 @@ def _plain_fields(result: Result) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     if isinstance(value, Result):
         return _plain_fields(value)
-    if isinstance(value, (list, tuple)):
-        return [_plain(one) for one in value]  # pyright: ignore[reportUnknownVariableType]
-    if isinstance(value, dict):
-        return {key: _plain(one) for key, one in value.items()}  # pyright: ignore[reportUnknownVariableType]
-    return value.tolist() if isinstance(value, np.ndarray) else value
+    if is_list(value) or is_tuple(value):
+        return [_plain(one) for one in value]
+    if is_table(value):
+        return {key: _plain(one) for key, one in value.items()}
+    return value.tolist() if is_numpy(value) else value
 
 
 def _table(result: Result) -> str:
@@ -122,11 +125,9 @@ def _cell(value: Any) -> str:
     """A value in a table: what is long is counted."""
     if isinstance(value, float):
         return f"{value:.6g}"
-    if isinstance(value, dict):
-        items: dict[str, Any] = value
-        return ", ".join(f"{html.escape(key)} {_cell(one)}" for key, one in items.items())
-    if isinstance(value, list):
-        ones: list[Any] = value
-        shown = ", ".join(_cell(one) for one in ones[:8])
-        return f"{shown} .. {len(ones)} in all" if len(ones) > 8 else shown
+    if is_table(value):
+        return ", ".join(f"{html.escape(key)} {_cell(one)}" for key, one in value.items())
+    if is_list(value):
+        shown = ", ".join(_cell(one) for one in value[:8])
+        return f"{shown} .. {len(value)} in all" if len(value) > 8 else shown
     return html.escape(str(value))

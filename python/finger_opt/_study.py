@@ -21,8 +21,8 @@ from ._words import (
 )
 
 if TYPE_CHECKING:
-    import pandas
     from matplotlib.axes import Axes as Drawing
+    from pandas import DataFrame
 
 
 class Study:
@@ -38,7 +38,7 @@ class Study:
 
     def __init__(self, asked: _native.Asked) -> None:
         #: The folder.
-        self.path = os.fspath(asked.folder())
+        self.path: str = os.fspath(asked.folder())
         self._asked = asked
 
     @classmethod
@@ -152,7 +152,8 @@ class Study:
 
     def report(self) -> str:
         """Writes tables and plots again, as ``optimize report`` does; gives the path of the page."""
-        return json.loads(_native.report(self.path))["page"]
+        written: dict[str, str] = json.loads(_native.report(self.path))
+        return written["page"]
 
     def _open(self, workers: int | None) -> _native.Guided:
         return self._asked.open(workers)
@@ -166,7 +167,8 @@ class Study:
     @property
     def config(self) -> dict[str, Any]:
         """What was asked for, as ``study.toml`` keeps it."""
-        return json.loads(self._read().config())
+        config: dict[str, Any] = json.loads(self._read().config())
+        return config
 
     @property
     def best(self) -> Recommended | None:
@@ -187,11 +189,12 @@ class Study:
         """Whether the search has ended because no design is expected to gain ``indifference_mm``."""
         return self._begun() and self._read().settled()
 
-    def to_dataframe(self) -> pandas.DataFrame:
+    def to_dataframe(self) -> DataFrame:
         """A row for each evaluation; the columns of ``evaluations.csv``, with their units."""
         from ._frame import pandas
 
-        return pandas().read_csv(io.StringIO(self._read().table()))
+        frame: DataFrame = pandas().read_csv(io.StringIO(self._read().table()))
+        return frame
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the objective over the evaluations, and the best so far; gives the axes."""

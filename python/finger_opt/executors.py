@@ -13,7 +13,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
@@ -79,10 +79,10 @@ def tied(alive: Connection) -> None:
 
 
 @contextmanager
-def apart() -> Iterator[None]:
+def apart() -> Generator[None, None, None]:
     """Processes that begin meanwhile get no Ctrl-C, and import nothing from the user's folder."""
     masked = hasattr(signal, "pthread_sigmask")
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT]) if masked else set()
+    before: set[int | signal.Signals] = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT]) if masked else set()
     # Later versions are told by PYTHONSAFEPATH.
     folder = os.getcwd() if sys.version_info < (3, 11) else None
     if folder is not None:
@@ -183,7 +183,7 @@ def needs(extra: str, module: str) -> str:
 
 
 @contextmanager
-def named(name: str) -> Iterator[Executor]:
+def named(name: str) -> Generator[Executor, None, None]:
     """The executor of this name."""
     scheme, colon, rest = name.partition(":")
     if scheme in ("processes", "slurm"):
@@ -265,11 +265,15 @@ def let_go(stream: TextIO | None) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
+def nothing(*_: object) -> None:
+    """What a signal does that changes nothing."""
+
+
 def stop_once(*_: object) -> None:
     """Ends the study as Ctrl-C does; who asks again changes nothing."""
     for name in STOPS:
         # Not SIG_IGN: of a signal that came meanwhile Python would complain.
-        signal.signal(name, lambda *_: None)
+        signal.signal(name, nothing)
     raise KeyboardInterrupt
 
 

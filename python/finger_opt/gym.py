@@ -70,7 +70,7 @@ class InsertionEnv(gymnasium.Env[Floats, Floats]):
     Task, finger and the other words are those of :func:`finger_opt.trial`.
     """
 
-    metadata = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": []}
 
     @checked
     def __init__(
@@ -104,8 +104,8 @@ class InsertionEnv(gymnasium.Env[Floats, Floats]):
         self._offset, self._distance, self._ended = 0.0, 0.0, True
         self._speed = float(speed_mm_per_s)
         bound = np.full(3, speed_mm_per_s, dtype=np.float32)
-        self.action_space = gymnasium.spaces.Box(-bound, bound)
-        self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (9,), dtype=np.float32)
+        self.action_space: gymnasium.spaces.Space[Floats] = gymnasium.spaces.Box(-bound, bound)
+        self.observation_space: gymnasium.spaces.Space[Floats] = gymnasium.spaces.Box(-np.inf, np.inf, (9,), dtype=np.float32)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -119,7 +119,7 @@ class InsertionEnv(gymnasium.Env[Floats, Floats]):
         return observation, info
 
     def step(
-        self, action: Floats | Sequence[float]
+        self, action: NDArray[np.floating[Any]] | Sequence[float]
     ) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
         """Commands a velocity (3), mm/s, for 1 ms."""
         if self._ended:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from ._result import REST, Result
+from ._result import DRAWN, REST, Result
 
 
 @dataclass(frozen=True, repr=False)
@@ -93,7 +93,7 @@ class Answer(Result):
     as_good: AsGood | None
     next: NextStep
     #: The card of the study's page.
-    card: str = field(default="", repr=False)
+    card: str = field(default="", repr=False, metadata=DRAWN)
 
     def _repr_html_(self) -> str:
         return self.card

@@ -106,7 +106,7 @@ def _fits(value: object, hint: Any) -> bool:
             return False
         return all(_fits(one, args[0]) for one in value)
     kind = origin if isinstance(origin, type) else hint
-    if not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
+    if hint is Any or not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
         return True
     return isinstance(value, kind) and not (isinstance(value, str) and kind in _SEVERAL)
 

@@ -8,7 +8,7 @@ from typing import Literal
 
 from . import _native
 from ._call import checked, given
-from ._result import Result, save
+from ._result import DRAWN, Result, save
 from ._task import Given, Task, sources
 from ._words import Engine, Outcome, RobotName, StrPath, TaskName
 
@@ -57,7 +57,7 @@ class TaskCheck(Result):
     nominal: Nominal | None
     #: By what a task that does not insert would, if by anything.
     mended_by: Step | None = None
-    svg: str = field(default="", repr=False)
+    svg: str = field(default="", repr=False, metadata=DRAWN)
 
     @property
     def inserts(self) -> bool:

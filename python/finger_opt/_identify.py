@@ -8,7 +8,7 @@ from typing import Literal
 
 from . import _native
 from ._call import checked, given
-from ._result import Result
+from ._result import DRAWN, Result
 from ._task import Given, sources
 from ._words import Engine, FingerModel, Outcome, RobotName, SpaceName, Start, StrPath
 
@@ -113,7 +113,7 @@ class Cell(Result):
     phases: tuple[Misfit, ...]
     attempts: tuple[Replayed, ...]
     #: The page with the curves, measured and simulated.
-    page: str = field(repr=False)
+    page: str = field(repr=False, metadata=DRAWN)
 
     def _repr_html_(self) -> str:
         from ._drawn import framed

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._call import checked, given
 from ._evaluation import Subject
-from ._result import Result, save
+from ._result import DRAWN, Result, save
 from ._task import Given, sources
 from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
 
@@ -50,7 +50,7 @@ class CaptureMap(Subject):
     area: float
     area_unit: str
     taught_start_mm: float | None = None
-    svg: str = field(repr=False)
+    svg: str = field(repr=False, metadata=DRAWN)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the outcomes; gives the axes."""
@@ -133,7 +133,7 @@ class Levers(Result):
     left_out: tuple[str, ...]
     #: Windows that were simulated.
     windows: int
-    svg: str = field(default="", repr=False)
+    svg: str = field(default="", repr=False, metadata=DRAWN)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the ranges at both ends of each lever; gives the axes."""

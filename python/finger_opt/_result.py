@@ -18,6 +18,8 @@ T = TypeVar("T", bound="Result")
 
 #: Marks the field that takes all keys which are no fields: the parameters of a design, which the space names.
 REST: dict[str, bool] = {"rest": True}
+#: Marks what ``--json`` does not have: drawings, pages, arrays.
+DRAWN: dict[str, bool] = {"drawn": True}
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -97,7 +99,7 @@ def _plain_fields(result: Result) -> dict[str, Any]:
         value = getattr(result, field.name)
         if field.metadata.get("rest"):
             found.update(value)
-        elif value is not None:
+        elif value is not None and not field.metadata.get("drawn"):
             found[field.name.rstrip("_")] = _plain(value)
     return found
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, overload
 from . import _native
 from ._call import checked, given
 from ._evaluation import Springs
-from ._result import Result, save
+from ._result import DRAWN, Result, save
 from ._words import Numbers, StrPath
 
 if TYPE_CHECKING:
@@ -45,10 +45,10 @@ class StiffnessModel(Result):
     models: tuple[Fit, ...]
     used: dict[str, Used]
     #: What it was fitted to, if not to the shipped measurements, and of which finger.
-    stiffness_data: str | None = None
-    finger: str = "finray9"
+    stiffness_data: str | None = field(default=None, metadata=DRAWN)
+    finger: str = field(default="finray9", metadata=DRAWN)
     #: The measurements, and what the models make of them.
-    svg: str = field(default="", repr=False)
+    svg: str = field(default="", repr=False, metadata=DRAWN)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the stiffness in the compliance direction over density and direction; gives the axes."""
@@ -61,7 +61,9 @@ class StiffnessModel(Result):
 
 
 @overload
-def stiffness(*, stiffness_data: StrPath | None = None, finger: StrPath = "finray9") -> StiffnessModel: ...
+def stiffness(
+    *, stiffness_data: StrPath | None = None, finger: StrPath = "finray9", svg: StrPath | None = None
+) -> StiffnessModel: ...
 @overload
 def stiffness(
     density: float, direction: float, *, stiffness_data: StrPath | None = None, finger: StrPath = "finray9"
@@ -73,6 +75,7 @@ def stiffness(
     *,
     stiffness_data: StrPath | None = None,
     finger: StrPath = "finray9",
+    svg: StrPath | None = None,
 ) -> StiffnessModel | Springs:
     """The stiffness predicted for an infill, or, without one, how well the models fit, as ``optimize stiffness``.
 
@@ -85,12 +88,14 @@ def stiffness(
         direction: Infill direction, degrees.
         stiffness_data: CSV file of one's own measurements, in place of the shipped ones.
         finger: Finger file of the finger that was measured.
+        svg: Write the drawing, without an infill.
 
     Raises:
         InputError: A value or a file that cannot be used.
     """
     if density is None and direction is None:
         text, picture = _native.stiffness(stiffness_data=stiffness_data, finger=finger)
+        save(picture, svg)
         data = None if stiffness_data is None else str(stiffness_data)
         found = {**json.loads(text), "stiffness_data": data, "finger": str(finger), "svg": picture}
         return StiffnessModel.from_json(found)
@@ -138,7 +143,7 @@ class Finger(Result):
     pad: Pad
     pad_and_roof: Pad
     across: Across
-    svg: str = field(default="", repr=False)
+    svg: str = field(default="", repr=False, metadata=DRAWN)
 
     def _repr_html_(self) -> str:
         return self.svg

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from . import _native
 from ._answer import Answer, Recommended
 from ._call import checked, given
-from ._result import Result, save
+from ._result import DRAWN, Result, save
 from ._run import run_open
 from ._task import Given, sources
 from ._words import (
@@ -282,7 +282,7 @@ class Comparison(Result):
     best_known_mm: float
     target_mm: float
     optimizers: tuple[Compared, ...]
-    svg: str = field(default="", repr=False)
+    svg: str = field(default="", repr=False, metadata=DRAWN)
 
     def _repr_html_(self) -> str:
         return self.svg
@@ -333,7 +333,7 @@ class Sensitivity(Result):
     diverged: int
     nominal_start_fails: int
     factors: tuple[Factor, ...]
-    svg: str = field(default="", repr=False)
+    svg: str = field(default="", repr=False, metadata=DRAWN)
 
     def _repr_html_(self) -> str:
         return self.svg

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._call import checked, given
 from ._evaluation import Subject
-from ._result import Result
+from ._result import DRAWN, Result
 from ._task import Given, sources
 from ._words import Engine, FingerModel, Numbers, Outcome, RobotName, SpaceName, Start, StrPath
 
@@ -82,9 +82,9 @@ class Trial(Subject):
     taught_start_mm: float | None = None
     #: With ``repeat``: how many ended so.
     repeats: dict[str, int] | None = None
-    series: Series = field(repr=False)
+    series: Series = field(repr=False, metadata=DRAWN)
     #: The film as HTML, if it was asked for.
-    film: str | None = field(default=None, repr=False)
+    film: str | None = field(default=None, repr=False, metadata=DRAWN)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the contact force over time, with the phases; gives the axes."""
@@ -98,10 +98,8 @@ class Trial(Subject):
             raise _native.InputError("replay: needs a trial that was made with film=True")
         return Film(self.film)
 
-    def to_dict(self) -> dict[str, object]:
-        """The fields that ``--json`` prints: without series and film."""
-        fields = super().to_dict()
-        return {name: value for name, value in fields.items() if name not in ("series", "film")}
+    def _repr_html_(self) -> str:
+        return super()._repr_html_() if self.film is None else self.replay()._repr_html_()
 
 
 @dataclass(frozen=True)

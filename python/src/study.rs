@@ -5,7 +5,7 @@ use crate::keywords::{Keywords, TaskWord};
 use crate::measure::{interruptible, released, watched};
 use finger_opt::cli::call;
 use finger_opt::report;
-use finger_opt::session::{self, AnyStudy, NotTaken, Order, POLISH, ResumeRequest, StudyRequest};
+use finger_opt::session::{self, AnyStudy, Failure, NotTaken, Order, POLISH, ResumeRequest, StudyRequest};
 use finger_opt::study::{Ending, SOURCES, StudyRecord, evaluations_csv};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -41,7 +41,12 @@ pub fn perform<'py>(
 ) -> PyResult<Bound<'py, PyBytes>> {
     let work = work.to_vec();
     let done = watched(py, &stop.0, || session::perform(&work, worker, &stop.0))?;
-    Ok(PyBytes::new(py, &done.map_err(raise)?))
+    // Ended by `stop`: nobody pressed Ctrl-C here.
+    let failed = |failure| match failure {
+        Failure::Interrupted(_) => StudyError::new_err(failure.to_string()),
+        failure => raise(failure),
+    };
+    Ok(PyBytes::new(py, &done.map_err(failed)?))
 }
 
 /// SHA-256 of the sources of this build.

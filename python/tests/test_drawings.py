@@ -46,7 +46,7 @@ def test_a_study_draws_its_course_and_its_designs(fake, tmp_path, axes):
 def test_a_film_plays_by_itself(tmp_path):
     trial = fo.trial("usb", 20, 10, film=True)
     page = trial.replay()
-    assert "<script" in page.html and "http" not in page.html.replace("http://www.w3.org", "")
+    assert "<script" in page.html and "://" not in page.html.replace("http://www.w3.org", "")
     assert "sandbox" in page._repr_html_() and "<script" not in page._repr_html_()
     page.save(tmp_path / "film.html")
     with pytest.raises(fo.InputError, match="film=True"):

@@ -32,7 +32,7 @@ def test_an_evaluation_has_the_bits_of_the_command_line(command_json):
 def test_levers_have_the_bits_of_the_command_line(command_json, fake):
     there = command_json("levers", "--task", "usb", "--density", "20", "--direction", "10", "--engine", "fake")
     here = fo.levers("usb", density=20, direction=10, **fake)
-    assert {key: value for key, value in here.to_dict().items() if key != "svg"} == there
+    assert here.to_dict() == there
     assert here.svg.startswith("<svg") and here.base.range_mm == fo.evaluate("usb", 20, 10, start="taught", **fake).range_mm
     assert here.windows <= 20 and {lever.name for lever in here.levers} >= {"tilt", "grip force"}
 
@@ -63,7 +63,7 @@ def test_a_capture_map_is_that_of_the_command_line(command_json, fake):
     words = ("map", "--task", "usb", "--density", "20", "--direction", "10", "--engine", "fake")
     there = command_json(*words, "--axes", "y,yaw")
     here = fo.capture_map("usb", 20, 10, axes="y,yaw", **fake)
-    assert {key: value for key, value in here.to_dict().items() if key != "svg"} == there
+    assert here.to_dict() == there
     assert here.outcomes.shape == here.simulated.shape
     assert here.simulated.sum() == here.trials <= 300
     first, second = here.axes
@@ -135,7 +135,7 @@ def test_ctrl_c_ends_a_long_call():
         "fo.evaluate('usb', 20, 10, uncertainty='typical')\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=100)
-    assert "KeyboardInterrupt" in done.stderr
+    assert "finger_opt.Interrupted" in done.stderr
 
 
 def test_other_threads_go_on_during_a_long_call():

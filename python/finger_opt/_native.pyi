@@ -83,6 +83,7 @@ class Insertion:
     def step(self, velocity_mm_per_s: list[float]) -> _Stand: ...
 
 class Sweep:
+    known: int
     def __init__(self, tasks: _Tasks, /, **settings: Any) -> None: ...
     def measure(
         self, columns: dict[str, list[float]]

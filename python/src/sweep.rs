@@ -37,6 +37,12 @@ impl Sweep {
         Ok(Sweep(sweep.map_err(raise)?))
     }
 
+    /// How many windows were in the cache.
+    #[getter]
+    fn known(&self) -> u64 {
+        self.0.known()
+    }
+
     /// The windows of fingers, each of a row of these columns: `density`, `direction`, numbers of task
     /// and finger by their keys.
     fn measure<'py>(

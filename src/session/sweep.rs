@@ -30,6 +30,11 @@ impl Sweep {
         Ok(Sweep { setup, search: windows.search(), plan, cache, pool })
     }
 
+    /// How many windows were in the cache.
+    pub fn known(&self) -> u64 {
+        self.cache.as_ref().map_or(0, Cache::found)
+    }
+
     /// Measures these fingers, in their order.
     pub fn measure(
         &self,

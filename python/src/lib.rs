@@ -10,6 +10,7 @@ mod keywords;
 mod measure;
 mod optimizer;
 mod study;
+mod sweep;
 
 use finger_opt::cli;
 use pyo3::prelude::*;
@@ -66,6 +67,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(commands::tasks, module)?)?;
     module.add_class::<optimizer::Session>()?;
     module.add_class::<insertion::Insertion>()?;
+    module.add_class::<sweep::Sweep>()?;
     module.add_function(wrap_pyfunction!(study::perform, module)?)?;
     module.add_function(wrap_pyfunction!(study::source_sha256, module)?)?;
     module.add_function(wrap_pyfunction!(study::study, module)?)?;

@@ -69,6 +69,22 @@ pub fn watched<T: Send>(
     })
 }
 
+/// How windows are measured, of no finger yet.
+pub fn windows(words: &Keywords<'_>, tasks: Vec<TaskWord>) -> PyResult<EvaluateRequest> {
+    let seed = words.take("seed")?;
+    let request = EvaluateRequest {
+        setup: words.setup(tasks)?,
+        walk: words.flag("walk")?,
+        uncertainty: words.text("uncertainty")?,
+        seed: seed.unwrap_or(0),
+        ..EvaluateRequest::default()
+    };
+    match seed.is_some() && request.uncertainty.is_none() {
+        true => Err(wrong("seed", "goes with uncertainty")),
+        false => Ok(request),
+    }
+}
+
 /// The window of a finger, as JSON.
 #[pyfunction]
 #[pyo3(signature = (tasks, /, **settings))]
@@ -78,20 +94,12 @@ pub fn evaluate<'py>(
     settings: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<String> {
     let words = Keywords::new(py, settings)?;
-    let seed = words.take("seed")?;
     let request = EvaluateRequest {
-        setup: words.setup(tasks)?,
         finger: words.finger()?,
-        walk: words.flag("walk")?,
-        uncertainty: words.text("uncertainty")?,
-        seed: seed.unwrap_or(0),
         repeat: words.repeat()?,
-        by_ribs: false,
+        ..windows(&words, tasks)?
     };
     words.finish()?;
-    if seed.is_some() && request.uncertainty.is_none() {
-        return Err(wrong("seed", "goes with uncertainty"));
-    }
     let found = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
     Ok(cli::evaluate::json(&found).to_string())
 }

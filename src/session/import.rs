@@ -1,6 +1,6 @@
 //! A task from meshes of a plug and its socket.
 
-use super::failure::not_stopped;
+use super::failure::{not_stopped, within};
 use super::{DEFAULT_ROBOT, Failure, TaskCheck, TaskFile, begun, read_task};
 use crate::connector::draft::DENSITY;
 use crate::connector::mesh::import::{Along, COARSEST, Imported, Jaws, Request, Unit, import};
@@ -120,6 +120,7 @@ impl ImportRequest {
 
     /// Imports the meshes, writes the task's file and checks it; `say` gets progress messages.
     pub fn run(&self, say: &dyn Fn(&str), stop: &AtomicBool) -> Result<ImportedTask, Failure> {
+        within("--resolution", self.resolution, &(COARSEST..=FINEST))?;
         let out = &self.out;
         if out.exists() {
             let file = out.display();

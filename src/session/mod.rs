@@ -34,6 +34,7 @@ mod setup;
 mod sheet;
 mod standing;
 mod study;
+mod sweep;
 mod task;
 #[cfg(test)]
 mod tests;
@@ -68,6 +69,7 @@ pub use setup::Setup;
 pub use sheet::SheetRequest;
 pub use standing::Standing;
 pub use study::{AnyStudy, POLISH, ResumeRequest, StudyRequest};
+pub use sweep::Sweep;
 pub use task::{TaskCheck, TaskFile, read_space, read_task};
 pub use trial::{Insertion, SceneRequest, TrialDone, TrialRequest};
 pub use tune::{TuneDone, TuneRequest, begun};

@@ -14,6 +14,7 @@ use insertion::finger::file::{FingerFile, is_shape};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::{Model, Prediction};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Which finger to compute.
 #[derive(Debug, Clone, clap::Args)]
@@ -172,7 +173,7 @@ impl Default for StiffnessRequest {
 
 impl StiffnessRequest {
     /// Fits the model.
-    pub fn model(&self) -> Result<Model, Failure> {
+    pub fn model(&self) -> Result<Arc<Model>, Failure> {
         let finger = printed_finger(&self.finger)?;
         surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)
     }

@@ -99,7 +99,7 @@ impl Setup {
         let finger = fingers.source.iter().map(|source| (FINGER.to_owned(), source));
         let sources = roles.chain(others).chain(finger);
         let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
-        let surrogate = Arc::new(surrogate(stiffness_source, &fingers.measured_finger()?)?);
+        let surrogate = surrogate(stiffness_source, &fingers.measured_finger()?)?;
         let fingers = fingers.made();
         let evaluator = Evaluator { surrogate, fingers, templates, robot, engine, cell: None };
         fit_together(&evaluator, &space, &space_source.file)?;
@@ -278,7 +278,7 @@ fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
 }
 
 /// The stiffness model of a study, from the copies in its folder.
-pub(super) fn surrogate_of(inputs: &Inputs) -> Result<Model, Failure> {
+pub(super) fn surrogate_of(inputs: &Inputs) -> Result<Arc<Model>, Failure> {
     let finger = Fingers::parse(finger_input(inputs)?)?.measured_finger()?;
     surrogate(&input(inputs, STIFFNESS_DATA)?, &finger)
 }

@@ -147,3 +147,25 @@ fn failures_say_where() {
     let wrong = evaluate(usb(), middle(), once);
     assert_eq!(wrong, (false, String::new(), None, Some("repeat".to_owned())));
 }
+
+#[test]
+fn a_sweep_measures_what_evaluate_does_in_its_order_and_keeps_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let cache = CacheRequest { dir: Some(dir.path().to_owned()), off: false };
+    let run = RunRequest { threads: Some(3), cache, ..RunRequest::default() };
+    let windows = EvaluateRequest { setup: usb(), walk: true, ..Default::default() };
+    let finger = |density| FingerRequest { density: Some(density), ..middle() };
+    let fingers = [12.0, 30.0, 17.0].map(finger);
+    let sweep = Sweep::new(&windows, &run).unwrap();
+    for _ in 0..2 {
+        let found = sweep.measure(&fingers, &NEVER).unwrap();
+        for (finger, found) in fingers.iter().zip(found) {
+            let alone = EvaluateRequest { finger: finger.clone(), ..windows.clone() };
+            assert_eq!(found.evaluation, alone.run(&NEVER).unwrap().evaluation);
+        }
+    }
+    assert_eq!(sweep.known(), 3);
+    let wrong = refused(sweep.measure(&[finger(20.0), finger(99.0)], &NEVER));
+    assert!(wrong.contains("--density 99"), "{wrong}");
+    assert!(sweep.measure(&fingers, &AtomicBool::new(true)).is_err());
+}

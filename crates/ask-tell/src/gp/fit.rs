@@ -41,6 +41,17 @@ pub fn fit(
     warm: Option<&Hyperparameters>,
     effort: FitEffort,
 ) -> Hyperparameters {
+    fit_until(x, y, noise_floor, warm, (effort, &|| false))
+}
+
+/// The same; soon after `stopped` says so it ends, with what is worthless.
+pub fn fit_until(
+    x: &[Vec<f64>],
+    y: &[f64],
+    noise_floor: f64,
+    warm: Option<&Hyperparameters>,
+    (effort, stopped): (FitEffort, &dyn Fn() -> bool),
+) -> Hyperparameters {
     let d = x.first().map_or(0, Vec::len);
     let mode: Vec<f64> = priors(d).into_iter().map(|(mean, _)| mean).collect();
     let bound = |pick: fn((f64, f64)) -> f64| {
@@ -61,6 +72,9 @@ pub fn fit(
         starts.extend([mode.clone(), shifted(-1.0, -5.0), shifted(1.0, -12.0)]);
     }
     let negated = |theta: &[f64]| {
+        if stopped() {
+            return None;
+        }
         let theta = Hyperparameters::from_slice(theta);
         let (value, gradient) = log_posterior(x, y, noise_floor, &theta)?;
         Some((-value, gradient.iter().map(|g| -g).collect()))

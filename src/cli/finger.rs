@@ -39,7 +39,7 @@ pub struct Arguments {
 fn load(text: &str) -> Result<[f64; 2], String> {
     let number = |part: &str| part.trim().parse::<f64>().ok();
     let force = text.split_once(',').and_then(|(y, z)| Some([number(y)?, number(z)?]));
-    let fits = |[y, z]: &[f64; 2]| (1e-3..=LARGEST_LOAD_N).contains(&y.hypot(*z));
+    let fits = |[y, z]: &[f64; 2]| (1e-3..=LARGEST_LOAD_N).contains(&libm::hypot(*y, *z));
     force
         .filter(fits)
         .ok_or_else(|| format!("is no force y,z of 0.001 to {LARGEST_LOAD_N} N; as -5,0"))

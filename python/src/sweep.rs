@@ -63,6 +63,8 @@ impl Sweep {
         for name in names.into_iter().filter(|name| !WORDS.contains(&name.as_str())) {
             let number = |row: &BTreeMap<String, Value>| match row.get(name) {
                 Some(Value::Bool(flag)) => f64::from(u8::from(*flag)),
+                // A simulation that diverged, as in a capture map.
+                Some(Value::String(_)) => -1.0,
                 value => value.and_then(Value::as_f64).unwrap_or(f64::NAN),
             };
             let bytes: Vec<u8> = rows.iter().map(number).flat_map(f64::to_le_bytes).collect();

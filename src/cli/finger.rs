@@ -43,7 +43,7 @@ fn load(text: &str) -> Result<[f64; 2], String> {
 }
 
 fn fitting([y, z]: [f64; 2]) -> Result<[f64; 2], String> {
-    match (1e-3..=LARGEST_LOAD_N).contains(&y.hypot(z)) {
+    match (1e-3..=LARGEST_LOAD_N).contains(&libm::hypot(y, z)) {
         true => Ok([y, z]),
         false => Err(format!("is no force y,z of 0.001 to {LARGEST_LOAD_N} N; as -5,0")),
     }

@@ -224,7 +224,12 @@ impl Question<'_> {
             let mean = (n > 0.0).then(|| said.iter().map(|one| one.mean).sum::<f64>() / n)?;
             let scatter = said.iter().map(|one| (one.mean - mean).powi(2)).sum::<f64>() / n;
             let sd = said.iter().map(|one| one.sd).sum::<f64>() / n;
-            return Some(with(prior, mean, sd.hypot(scatter.sqrt()), "probe: slides both ways"));
+            return Some(with(
+                prior,
+                mean,
+                libm::hypot(sd, scatter.sqrt()),
+                "probe: slides both ways",
+            ));
         }
         None
     }

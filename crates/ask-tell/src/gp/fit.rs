@@ -92,7 +92,7 @@ mod tests {
     fn the_axis_that_matters_gets_the_shorter_length() {
         let x: Vec<Vec<f64>> =
             (0..40).map(|i| vec![f64::from(i) / 39.0, f64::from(i * 17 % 40) / 39.0]).collect();
-        let y: Vec<f64> = x.iter().map(|p| (9.0 * p[0]).sin() * 1.4).collect();
+        let y: Vec<f64> = x.iter().map(|p| libm::sin(9.0 * p[0]) * 1.4).collect();
         let effort = FitEffort { evaluations: 60, restarts: true };
         let theta = fit(&x, &y, 1e-8, None, effort);
         assert!(theta.log_length[0] + 1.0 < theta.log_length[1], "{theta:?}");

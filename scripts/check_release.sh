@@ -49,8 +49,8 @@ study sources "$program"
 mkdir "$scratch/root"
 tar xzf dist/finger-opt-*-musl.tar.gz -C "$scratch" --wildcards '*/optimize' --strip-components 1
 mv "$scratch/optimize" "$scratch/root"
-root=(chroot)
-if [ "$(id -u)" -ne 0 ]; then root=(unshare --map-root-user chroot); fi
+root=("$(PATH=$PATH:/usr/sbin command -v chroot)")
+if [ "$(id -u)" -ne 0 ]; then root=("$(command -v unshare)" --map-root-user "${root[@]}"); fi
 alone() { env -i "${root[@]}" "$scratch/root" /optimize "$@"; }
 if "${root[@]}" "$scratch/root" /bin/true 2> /dev/null; then failed "the folder is not empty"; fi
 alone --version
@@ -73,14 +73,17 @@ for minor in 10 11 12 13 14 15; do
 done
 [ ${#pythons[@]} -gt 0 ] || failed "no CPython 3.10 or later"
 block "import finger_opt as fo" > "$scratch/readme.py"
-imported() { for _ in 1 2 3; do "$1" -c 'import finger_opt'; done; }
+# The best of five imports, s: other work on the machine does not count.
+imported() { for _ in 1 2 3 4 5; do TIMEFORMAT=%R; { time "$1" -c 'import finger_opt'; } 2>&1; done | sort -n | head -n 1; }
 for python in $(printf '%s\n' "${pythons[0]}" "${pythons[-1]}" | uniq); do
     name=wheel-$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
     venv=$scratch/venv-$name
     "$python" -m venv "$venv"
     within 20 "$name: pip install" "$venv/bin/pip" install -q "$wheel"
     "$venv/bin/python" -c 'import finger_opt; print("finger_opt", finger_opt.__version__)'
-    within 0.9 "$name: three imports" imported "$venv/bin/python"
+    seconds=$(imported "$venv/bin/python")
+    echo "$name: import $seconds s (limit 0.3 s)"
+    if awk -v s="$seconds" 'BEGIN { exit s <= 0.3 }'; then failed "importing finger_opt takes too long"; fi
     "$venv/bin/pip" install -q "$wheel[pandas]"
     (cd "$scratch" && rm -rf rj45-study && within 60 "$name: README's Python lines" "$venv/bin/python" readme.py)
     "$venv/bin/optimize" --version

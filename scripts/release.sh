@@ -17,8 +17,8 @@ mkdir -p "${CARGO_TARGET_DIR:-target}"
 target=$(realpath "${CARGO_TARGET_DIR:-target}")
 venv=$target/release-venv
 static=x86_64-unknown-linux-musl
-missing() { echo "scripts/release.sh: $1" >&2; exit 1; }
-# Sets `name` to NAME-VERSION of what is built.
+# Exit code 3: nothing can be built here.
+missing() { echo "scripts/release.sh: $1" >&2; exit 3; }
 name=finger-opt-$(cargo metadata --no-deps --offline --locked --format-version 1 | python3 -c \
     'import json, sys; print(next(p["version"] for p in json.load(sys.stdin)["packages"] if p["name"] == "finger-opt"))')
 
@@ -26,7 +26,6 @@ commit=$(git rev-parse HEAD) || missing "no git clone: a release names its commi
 if [ -n "$(git status --porcelain --untracked-files=no)" ]; then
     echo "scripts/release.sh: changes that are not committed go into this release of $commit" >&2
 fi
-# Of rustup; a Rust of a distribution may have the target without it.
 if ! [ -d "$(rustc --print target-libdir --target $static)" ]; then
     missing "Rust's library for $static is missing: rustup target add $static"
 fi
@@ -59,6 +58,6 @@ pack -C "$scratch" "$name-$static" > "dist/$name-$static.tar.gz"
 # The sources as git has them, and the commit in place of what `git archive` would put there.
 git ls-files -z | tar --null -c -T - | tar x -C "$scratch" --one-top-level=source
 echo "$commit" > "$scratch/source/COMMIT"
-(cd "$scratch/source/python" && "$venv/bin/maturin" sdist --out "$OLDPWD/dist")
+(cd "$scratch/source/python" && "$venv/bin/maturin" sdist --out "$OLDPWD/dist" 2>&1 | grep Built)
 
 (cd dist && sha256sum -- * > SHA256SUMS && ls -l && cat SHA256SUMS)

@@ -37,7 +37,7 @@ mkdir dist
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# The same bytes from the same commit and compiler: no time, no path of this machine.
+# The same bytes from the same commit, compiler and folder.
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH CARGO_TARGET_DIR=$target CARGO_PROFILE_RELEASE_STRIP=symbols
 export RUSTFLAGS="--remap-path-prefix=$PWD=finger-opt --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}/registry/src=registry"
@@ -48,6 +48,9 @@ program=$target/$static/release/optimize
 folder=$scratch/$name-$static
 mkdir -p "$folder/completions" "$folder/man"
 cp "$program" LICENSE-APACHE LICENSE-MIT README.md CHANGELOG.md "$folder"
+# The libraries inside; those of the workspace name a folder.
+cargo tree --locked -p finger-opt -e normal --target $static --prefix none --format '{p}: {l} {r}' |
+    sed '/(\/.*)/d; s/ (\*)$//' | sort -u > "$folder/LICENSES-OF-LIBRARIES"
 for shell in bash zsh fish; do "$program" completions $shell > "$folder/completions/optimize.$shell"; done
 "$program" man > "$folder/man/optimize.1"
 pack -C "$scratch" "$name-$static" > "dist/$name-$static.tar.gz"
@@ -58,6 +61,6 @@ pack -C "$scratch" "$name-$static" > "dist/$name-$static.tar.gz"
 # The sources as git has them, and the commit in place of what `git archive` would put there.
 git ls-files -z | tar --null -c -T - | tar x -C "$scratch" --one-top-level=source
 echo "$commit" > "$scratch/source/COMMIT"
-(cd "$scratch/source/python" && "$venv/bin/maturin" sdist --out "$OLDPWD/dist" 2>&1 | grep Built)
+(cd "$scratch/source/python" && CARGO_TERM_QUIET=true "$venv/bin/maturin" sdist --out "$OLDPWD/dist")
 
 (cd dist && sha256sum -- * > SHA256SUMS && ls -l && cat SHA256SUMS)

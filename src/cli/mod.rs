@@ -50,6 +50,7 @@ use std::process::ExitCode;
 #[command(
     name = "optimize",
     version,
+    long_version = env!("FINGER_OPT_VERSION"),
     subcommand_negates_reqs = true,
     arg_required_else_help = true,
     args_conflicts_with_subcommands = true,

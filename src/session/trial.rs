@@ -62,7 +62,7 @@ pub struct TrialRequest {
     #[arg(long, value_name = "FILE.csv")]
     pub log: Option<PathBuf>,
     /// In place of an insertion, slide the part on a flat plate: 8 mm along y and back at 5 N, for `identify`
-    #[arg(long, requires = "log", conflicts_with_all = ["repeats", "svg", "record", "plot"])]
+    #[arg(long, requires = "log", conflicts_with_all = ["repeat", "svg", "record", "plot"])]
     pub probe: bool,
     /// Draw plug, fingertips and socket at the end of each phase
     #[arg(long, value_name = "FILE.svg")]

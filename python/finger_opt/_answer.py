@@ -115,7 +115,7 @@ class OnBench(Result):
 class Recommended(Result):
     """The recommended design: ``values`` by key; the *firm* window is that which inserts in all repeats.
 
-    Of several objectives it is the first of the front, whose ``objectives`` are values by key.
+    Of several objectives it is the first of the front, with its ``objectives`` by key.
     """
 
     values: dict[str, float]
@@ -127,6 +127,7 @@ class Recommended(Result):
     firm_negative_mm: float | None = None
     firm_positive_mm: float | None = None
     peak_force_n: float | None = None
+    objectives: dict[str, float] | None = None
     tasks: tuple[str, ...] | None = None
     #: With ``measurements``.
     bench: OnBench | None = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
+import os
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
@@ -28,6 +28,12 @@ Columns = dict[str, NDArray[Any]]
 CHUNK, PART = 2000, 64
 #: What is counted, so no fraction: a class of 1 to 4, -1 for a simulation that diverged, none where none is met.
 COUNTED = ("failure_negative", "failure_positive", "trials")
+#: The first columns; the rest follows by name.
+FIRST = ("task", "infill_density_percent", "infill_direction_deg", "range_mm", "negative_mm", "positive_mm",
+         "failure_negative", "failure_positive", "peak_force_n", "slip_mm", "nominal")
+#: A task as the library takes it, and designs: a column for each number.
+Task = Union[str, os.PathLike[str], tuple[str, str]]
+Rows = dict[str, list[float]]
 
 
 @checked
@@ -91,7 +97,7 @@ def sweep(
     return pandas().concat(frames, ignore_index=True)
 
 
-def _rows(given: Mapping[str, Several], grid: bool) -> dict[str, list[float]]:
+def _rows(given: Mapping[str, Several], grid: bool) -> Rows:
     """The designs, a column for each number."""
     columns = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in given.items()}
     for name, values in columns.items():
@@ -107,37 +113,43 @@ def _rows(given: Mapping[str, Several], grid: bool) -> dict[str, list[float]]:
     return {name: np.broadcast_to(values, length).tolist() for name, values in columns.items()}
 
 
-def _measured(task: Any, rows: dict[str, list[float]], words: Mapping[str, Any]) -> Iterator[Columns]:
+def _measured(task: Task, rows: Rows, words: Mapping[str, Any]) -> Iterator[Columns]:
     """The rows with their windows, in their order."""
-    measuring = _native.Sweep([task], rows, **words)
-    while (chunk := measuring.next_chunk(CHUNK)) is not None:
-        numbers, texts = chunk
+    measuring = _native.Sweep([task], **words)
+    for at in range(0, len(rows["density"]), CHUNK):
+        numbers, texts = measuring.measure({name: values[at : at + CHUNK] for name, values in rows.items()})
         found: Columns = {name: np.asarray(column, dtype=object) for name, column in texts.items()}
-        yield found | {name: np.frombuffer(column, dtype="<f8") for name, column in numbers.items()}
+        found |= {name: np.frombuffer(column, dtype="<f8") for name, column in numbers.items()}
+        # The clock is no result.
+        yield {name: found[name] for name in sorted(found, key=_place) if name != "wall_s"}
 
 
-def _part(task: Any, rows: dict[str, list[float]], words: dict[str, Any]) -> list[Columns]:
+def _place(name: str) -> tuple[int, str]:
+    """What a reader looks for stands first."""
+    return (FIRST.index(name) if name in FIRST else len(FIRST), name)
+
+
+def _part(task: Task, rows: Rows, words: dict[str, Any]) -> list[Columns]:
     """The unit of work of an executor."""
     return list(_measured(task, rows, {**words, "threads": 1, "no_cache": True}))
 
 
 def _handed_out(
-    executor: Executor | Any, workers: int, tasks: Iterable[Any], rows: dict[str, list[float]], words: dict[str, Any]
+    executor: Executor | Any, workers: int, tasks: Iterable[Task], rows: Rows, words: dict[str, Any]
 ) -> Iterator[Columns]:
     """The same, measured elsewhere; twice as many pieces of work are out as there are workers."""
     count = len(rows["density"])
-    parts = (
-        (task, {name: values[at : at + PART] for name, values in rows.items()})
-        for task in tasks for at in range(0, count, PART)
-    )
+    parts = [(task, at) for task in tasks for at in range(0, count, PART)]
     words = {name: value for name, value in words.items() if name not in ("threads", "cache", "no_cache")}
     out: deque[Future[list[Columns]]] = deque()
     try:
-        for task, part in itertools.chain(parts, itertools.repeat((None, None), 2 * workers)):
-            if task is not None:
-                out.append(executor.submit(_part, task, part, words))
-            if len(out) >= 2 * workers or (task is None and out):
+        for task, at in parts:
+            if len(out) >= 2 * workers:
                 yield from out.popleft().result()
+            part = {name: values[at : at + PART] for name, values in rows.items()}
+            out.append(executor.submit(_part, task, part, words))
+        while out:
+            yield from out.popleft().result()
     finally:
         for future in out:
             future.cancel()

@@ -7,7 +7,8 @@ use crate::answer::Answer;
 use crate::session::{AnyStudy, Around, Ended};
 use crate::study::StudyRecord;
 use clap::{Args, Parser};
-use serde_json::Value;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::Path;
 
@@ -84,7 +85,10 @@ pub fn best(record: &StudyRecord) -> Value {
     let recommended = recommended::json(&Answer::of(record))["recommended"].take();
     match (recommended.is_null(), record.front().first()) {
         (true, Some(first)) if record.config.objective.single().is_none() => {
-            summary::recorded_json(record, first)
+            let score = first.score.iter().flat_map(|score| score.values.clone());
+            let objectives = record.config.objective.keys().into_iter().zip(score);
+            let objectives: BTreeMap<_, _> = objectives.collect();
+            json!({"values": first.design, "evaluation": first.index, "objectives": objectives})
         }
         _ => recommended,
     }

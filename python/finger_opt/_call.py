@@ -79,6 +79,9 @@ def _several(value: object) -> TypeGuard[Collection[object]]:
 
 def _fits(value: object, hint: Any) -> bool:
     origin, args = get_origin(hint), get_args(hint)
+    # A class of its own since Python 3.11.
+    if hint is Any:
+        return True
     if origin in (Union, types.UnionType):
         return any(_fits(value, one) for one in args)
     if origin is Literal:

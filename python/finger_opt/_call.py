@@ -79,9 +79,6 @@ def _several(value: object) -> TypeGuard[Collection[object]]:
 
 def _fits(value: object, hint: Any) -> bool:
     origin, args = get_origin(hint), get_args(hint)
-    # A class of its own since Python 3.11.
-    if hint is Any:
-        return True
     if origin in (Union, types.UnionType):
         return any(_fits(value, one) for one in args)
     if origin is Literal:
@@ -94,7 +91,7 @@ def _fits(value: object, hint: Any) -> bool:
             return False
         return all(_fits(one, args[0]) for one in value)
     kind = origin if isinstance(origin, type) else hint
-    if not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
+    if hint is Any or not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
         return True
     return isinstance(value, kind) and not (isinstance(value, str) and kind in _SEVERAL)
 

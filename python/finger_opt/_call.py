@@ -65,8 +65,9 @@ def _hints(call: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _meant(name: str, signature: inspect.Signature) -> str:
-    near = difflib.get_close_matches(name, signature.parameters, 1)
-    return f"; did you mean `{near[0]}`?" if near else f"; there are {', '.join(signature.parameters)}"
+    names = [one for one in signature.parameters if one not in ("self", "cls")]
+    near = difflib.get_close_matches(name, names, 1)
+    return f"; did you mean `{near[0]}`?" if near else f"; there are {', '.join(names)}"
 
 
 def _check(name: str, value: object, hint: Any) -> None:

@@ -6,10 +6,11 @@ import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral
-from typing import Any, TypeGuard
+from typing import Any, Literal, TypeGuard
 
 from . import _native
 from ._json import dumps
+from ._words import OptimizerName, SpaceName, StrPath
 
 
 class Point(dict[str, float]):
@@ -44,11 +45,11 @@ class Optimizer:
 
     def __init__(
         self,
-        space: str | os.PathLike[str] | Mapping[str, Sequence[float]] | Iterable[Mapping[str, Any]],
-        optimizer: str = "gp",
+        space: SpaceName | StrPath | Mapping[str, Sequence[float]] | Iterable[Mapping[str, Any]],
+        optimizer: OptimizerName = "gp",
         seed: int = 0,
         *,
-        direction: str = "maximize",
+        direction: Literal["maximize", "minimize"] = "maximize",
         batch: int | None = None,
     ) -> None:
         if isinstance(space, (str, os.PathLike)):

@@ -10,7 +10,7 @@ from typing import Any, Union
 
 from . import _native
 from ._json import dumps, is_list, is_table
-from ._words import TaskName
+from ._words import StrPath, TaskName
 
 
 class Fields:
@@ -121,7 +121,7 @@ class Task(Fields):
         return type(self), (self.file, self.to_toml())
 
     @classmethod
-    def from_toml(cls, source: str | os.PathLike[str]) -> Task:
+    def from_toml(cls, source: TaskName | StrPath) -> Task:
         """The task of a shipped name (``"usb"``), of the file at a path, or of a TOML text."""
         if isinstance(source, str) and "\n" in source:
             return cls("task", source)

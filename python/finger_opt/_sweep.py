@@ -18,7 +18,7 @@ from ._task import Given, sources
 from ._words import Engine, FingerModel, RobotName, SpaceName, Start, StrPath
 
 if TYPE_CHECKING:
-    import pandas
+    from pandas import DataFrame
 
 #: A number or several.
 Several = Union[float, Sequence[float], NDArray[Any]]
@@ -59,7 +59,7 @@ def sweep(
     threads: int | None = None,
     cache: StrPath | None = None,
     no_cache: bool = False,
-) -> pandas.DataFrame:
+) -> DataFrame:
     """Measures the windows of many fingers in parallel: lists in, a table out with a row for each.
 
     >>> import finger_opt as fo
@@ -87,6 +87,7 @@ def sweep(
     words = given(locals(), "task", "density", "direction", "set", "grid", "out", "executor", "workers")
     rows = _rows({"density": density, "direction": direction, **(set or {})}, grid)
     tasks = sources(task)
+    chunks: Iterator[Columns]
     if executor is None:
         chunks = (chunk for one in tasks for chunk in _measured(one, rows, words))
     else:
@@ -94,7 +95,8 @@ def sweep(
     frames = _written(chunks, out) if out is not None else [_frame(chunk) for chunk in chunks]
     from ._frame import pandas
 
-    return pandas().concat(frames, ignore_index=True)
+    table: DataFrame = pandas().concat(frames, ignore_index=True)
+    return table
 
 
 def _rows(given: Mapping[str, Several], grid: bool) -> Rows:
@@ -155,23 +157,26 @@ def _handed_out(
             future.cancel()
 
 
-def _frame(chunk: Columns) -> pandas.DataFrame:
+def _frame(chunk: Columns) -> DataFrame:
     from ._frame import pandas
 
     counted = {name: "Int64" for name in COUNTED if name in chunk}
-    return pandas().DataFrame(chunk).astype(counted)
+    frame: DataFrame = pandas().DataFrame(chunk).astype(counted)
+    return frame
 
 
-def _written(chunks: Iterator[Columns], file: StrPath) -> list[pandas.DataFrame]:
+def _written(chunks: Iterator[Columns], file: StrPath) -> list[DataFrame]:
     """Writes the rows as they come; gives the columns without rows."""
     from ._frame import pyarrow
 
-    arrow, writer, empty = pyarrow(), None, list[Any]()
+    arrow, writer = pyarrow(), None
+    empty: list[DataFrame] = []
     try:
         for chunk in chunks:
             table = arrow.Table.from_pandas(_frame(chunk), preserve_index=False)
             if writer is None:
-                writer, empty = arrow.parquet.ParquetWriter(str(file), table.schema), [_frame(chunk).iloc[:0]]
+                writer = arrow.parquet.ParquetWriter(str(file), table.schema)
+                empty = [_frame(chunk).iloc[:0]]
             writer.write_table(table)
     finally:
         if writer is not None:

@@ -31,7 +31,7 @@ def test_rows_tasks_and_further_numbers(fake):
     assert table["task.friction.plug_socket"].tolist() == [0.2, 0.3, 0.2, 0.3]
     one = fo.evaluate("rj45", 20, 30, set={"task.friction.plug_socket": 0.3}, **fake)
     assert table.range_mm.iloc[3] == one.range_mm
-    with pytest.raises(fo.InputError, match="direction: has 3 values where others have 2"):
+    with pytest.raises(fo.InputError, match="density: has 2 values where others have 3; give one or all"):
         fo.sweep("usb", [10, 20], [1, 2, 3], grid=False, **fake)
     with pytest.raises(fo.InputError, match="density: has to be a number or a list of numbers"):
         fo.sweep("usb", [float("nan")], 3, **fake)

@@ -62,10 +62,7 @@ from ._export import export_finger as export_finger, export_mjcf as export_mjcf
 from ._identify import Cell as Cell, identify as identify
 from ._lists import robots as robots, tasks as tasks
 from ._map import CaptureMap as CaptureMap, Levers as Levers, capture_map as capture_map, levers as levers
-from ._native import (
-    InputError as InputError, Interrupted as Interrupted, StudyError as StudyError, TaskError as TaskError,
-    __version__ as __version__,
-)
+from ._native import __version__ as __version__
 from ._optimizer import Optimizer as Optimizer, Point as Point
 from ._parts import Imported as Imported, import_parts as import_parts
 from ._run import perform as perform
@@ -79,6 +76,9 @@ from ._study import (
 from ._sweep import sweep as sweep
 from ._task import Task as Task
 from ._trial import Film as Film, Series as Series, Trial as Trial, trial as trial
+from .errors import (
+    InputError as InputError, Interrupted as Interrupted, StudyError as StudyError, TaskError as TaskError,
+)
 
 if TYPE_CHECKING:
     from . import gym as gym
@@ -95,4 +95,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted(name for name in [*globals(), "gym", "robot"] if not name.startswith("_") and name != "TYPE_CHECKING")
+    return sorted(name for name in {*globals(), "gym", "robot"} if not name.startswith("_") and name != "TYPE_CHECKING")

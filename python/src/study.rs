@@ -5,7 +5,9 @@ use crate::keywords::{Keywords, TaskWord};
 use crate::measure::{interruptible, released, watched};
 use finger_opt::cli::call;
 use finger_opt::report;
-use finger_opt::session::{self, AnyStudy, Failure, NotTaken, Order, POLISH, ResumeRequest, StudyRequest};
+use finger_opt::session::{
+    self, AnyStudy, Failure, NotTaken, Order, POLISH, ResumeRequest, StudyRequest,
+};
 use finger_opt::study::{Ending, SOURCES, StudyRecord, evaluations_csv};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};

@@ -39,8 +39,9 @@ def window(found: Evaluation, ax: Axes | None) -> Axes:
     y = len(axes.patches)
     axes.barh(y, high - low, left=low, height=0.6, color=COLOURS[0])
     for at, end, side in ((low, found.failure_negative, "right"), (high, found.failure_positive, "left")):
-        axes.annotate(textwrap.fill(ending(end).replace("class ", "class\u00a0"), 20), (at, y), (4 if side == "left" else -4, 0), textcoords="offset points",
-                      ha=side, va="center", fontsize=8, color=colour(end))
+        text = textwrap.fill(ending(end).replace("class ", "class\u00a0"), 20)
+        axes.annotate(text, (at, y), (4 if side == "left" else -4, 0), textcoords="offset points", ha=side, va="center",
+                      fontsize=8, color=colour(end))
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     axes.set_yticks([*axes.get_yticks(), y] if y else [y], [*(tick.get_text() for tick in axes.get_yticklabels()), label] if y else [label])
     reach = max(2.2 * max(-low, high, 1.0), *(abs(edge) for edge in axes.get_xlim()))
@@ -117,10 +118,12 @@ def outcomes(found: CaptureMap, ax: Axes | None) -> Axes:
                     norm=BoundaryNorm(np.arange(-1.5, 5.0), colours.N), alpha=0.85)
     names = {-1: "diverged", 0: "inserted", **CLASSES}
     met = [number for number in numbers if (found.outcomes == number).any()]
-    axes.legend(handles=[Patch(color=COLOURS[number], label=names[number]) for number in met], loc="upper right", fontsize=7)
+    axes.legend(handles=[Patch(color=COLOURS[number], label=names[number]) for number in met], loc="upper left",
+                bbox_to_anchor=(1.0, 1.0), frameon=False)
     axes.plot(0, 0, "+", color="white", markersize=10)
-    axes.set(xlabel=f"{found.axes[0].name}, {found.axes[0].unit}", ylabel=f"{found.axes[1].name}, {found.axes[1].unit}",
-             title=f"{found.task}: {found.area:.3g} {found.area_unit} insert")
+    names = [f"error of the start in {axis.name}, {axis.unit}" for axis in found.axes]
+    axes.set(xlabel=names[0], ylabel=names[1],
+             title=f"{found.task}: {found.area:.3g} {found.area_unit.replace('mm2', 'mm²')} insert")
     return axes
 
 

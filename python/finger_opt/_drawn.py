@@ -67,7 +67,7 @@ def window(found: Evaluation) -> str:
 def framed(page: str) -> str:
     """A page within a page, whose scripts touch nothing around it."""
     return (
-        f"<iframe srcdoc=\"{html.escape(page)}\" sandbox='allow-scripts' style='width:100%;height:520px;border:0'></iframe>"
+        f"<iframe srcdoc=\"{html.escape(page)}\" sandbox='allow-scripts' style='width:100%;height:700px;border:0'></iframe>"
     )
 
 

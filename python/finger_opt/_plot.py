@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,8 +38,10 @@ def window(found: Evaluation, ax: Axes | None) -> Axes:
     label = f"{found.task}, {finger(found.infill_density_percent, found.infill_direction_deg)}"
     y = len(axes.patches)
     axes.barh(y, high - low, left=low, height=0.6, color=COLOURS[0])
-    axes.text(low, y, f"{ending(found.failure_negative)}  ", ha="right", va="center", color=colour(found.failure_negative))
-    axes.text(high, y, f"  {ending(found.failure_positive)}", ha="left", va="center", color=colour(found.failure_positive))
+    for at, end, side in ((low, found.failure_negative, "right"), (high, found.failure_positive, "left")):
+        text = textwrap.fill(ending(end).replace("class ", "class\u00a0"), 20)
+        axes.annotate(text, (at, y), (4 if side == "left" else -4, 0), textcoords="offset points", ha=side, va="center",
+                      fontsize=8, color=colour(end))
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     axes.set_yticks([*axes.get_yticks(), y] if y else [y], [*(tick.get_text() for tick in axes.get_yticklabels()), label] if y else [label])
     reach = max(2.2 * max(-low, high, 1.0), *(abs(edge) for edge in axes.get_xlim()))
@@ -50,17 +54,25 @@ def force(trial: Trial, ax: Axes | None) -> Axes:
     """The contact force over time; a stroke where a phase ends."""
     axes = _axes(ax)
     series = trial.series
-    axes.plot(series.time_s, np.linalg.norm(series.force_n, axis=1), color=COLOURS[0], linewidth=1.0)
-    top = axes.get_ylim()[1]
+    line = axes.plot(series.time_s, np.linalg.norm(series.force_n, axis=1), color=COLOURS[0], linewidth=1.0)[0]
+    # Room above for the names of the phases, none below.
+    line.sticky_edges.y.append(0.0)
+    axes.margins(y=0.2)
     begin = float(series.time_s[0]) if len(series.time_s) else 0.0
     for phase in trial.phases:
         if phase.time_s > begin:
             axes.axvline(phase.time_s, color="0.7", linewidth=0.6)
-            axes.text(phase.time_s, top, f"{phase.name} ", rotation=90, ha="right", va="top", fontsize=7, color="0.35")
+            axes.text(phase.time_s, 0.98, phase.name, transform=axes.get_xaxis_transform(), rotation=90, ha="right", va="top",
+                      fontsize=7, color="0.35")
     outcome = trial.outcome if trial.failure is None else CLASSES[trial.failure]
     axes.set(xlabel="time, s", ylabel="force of the socket on the plug, N",
              title=f"{trial.task}, start {trial.offset_mm:+g} mm: {outcome}")
     return axes
+
+
+def _named(study: Study) -> str:
+    """The study's folder, without those that it is in."""
+    return os.path.basename(os.path.abspath(study.path))
 
 
 def convergence(study: Study, ax: Axes | None) -> Axes:
@@ -70,7 +82,7 @@ def convergence(study: Study, ax: Axes | None) -> Axes:
     values = frame["range_mm"].to_numpy(dtype=float)
     axes.plot(np.arange(1, len(values) + 1), values, ".", color="0.6", label="evaluation")
     axes.step(np.arange(1, len(values) + 1), np.fmax.accumulate(values), where="post", color=COLOURS[0], label="best so far")
-    axes.set(xlabel="evaluation", ylabel="tolerable range, mm", title=study.path)
+    axes.set(xlabel="evaluation", ylabel="tolerable range, mm", title=_named(study))
     axes.legend(loc="lower right")
     return axes
 
@@ -86,8 +98,9 @@ def surface(study: Study, ax: Axes | None) -> Axes:
     if best is not None and all(key in best.values for key in keys):
         axes.plot(*(best.values[key] for key in keys), "o", markersize=13, markerfacecolor="none", color=COLOURS[3],
                   label="recommended")
-        axes.legend(loc="upper right")
-    axes.set(xlabel="infill density, percent", ylabel="infill direction, degrees", title=study.path)
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), frameon=False)
+    axes.set(xlabel="infill density, percent", ylabel="infill direction, degrees")
+    axes.set_title(_named(study), loc="left")
     return axes
 
 
@@ -105,10 +118,12 @@ def outcomes(found: CaptureMap, ax: Axes | None) -> Axes:
                     norm=BoundaryNorm(np.arange(-1.5, 5.0), colours.N), alpha=0.85)
     names = {-1: "diverged", 0: "inserted", **CLASSES}
     met = [number for number in numbers if (found.outcomes == number).any()]
-    axes.legend(handles=[Patch(color=COLOURS[number], label=names[number]) for number in met], loc="upper right", fontsize=7)
+    axes.legend(handles=[Patch(color=COLOURS[number], label=names[number]) for number in met], loc="upper left",
+                bbox_to_anchor=(1.0, 1.0), frameon=False)
     axes.plot(0, 0, "+", color="white", markersize=10)
-    axes.set(xlabel=f"{found.axes[0].name}, {found.axes[0].unit}", ylabel=f"{found.axes[1].name}, {found.axes[1].unit}",
-             title=f"{found.task}: {found.area:.3g} {found.area_unit} insert")
+    names = [f"error of the start in {axis.name}, {axis.unit}" for axis in found.axes]
+    axes.set(xlabel=names[0], ylabel=names[1],
+             title=f"{found.task}: {found.area:.3g} {found.area_unit.replace('mm2', 'mm²')} insert")
     return axes
 
 
@@ -118,12 +133,13 @@ def tornado(found: Levers, ax: Axes | None) -> Axes:
     base = found.base.range_mm or 0.0
     rows = list(reversed(found.levers))
     for y, lever in enumerate(rows):
-        for end, value, fill in zip(lever.range_mm, (lever.low, lever.high), ("#9cc3e6", COLOURS[0]), strict=True):
+        ends = zip(lever.range_mm, (lever.low, lever.high), (y + 0.2, y - 0.2), ("#9cc3e6", COLOURS[0]), strict=True)
+        for end, value, place, fill in ends:
             reach = end or 0.0
-            axes.barh(y, reach - base, left=base, height=0.6, color=fill)
-            text = f"{value:g}" if isinstance(value, float) else str(value)
-            axes.text(reach, y, f" {text} " if reach >= base else f"{text} ", va="center",
-                      ha="left" if reach >= base else "right", fontsize=7)
+            axes.barh(place, reach - base, left=base, height=0.4, color=fill)
+            axes.annotate(f"{value:g}" if isinstance(value, float) else str(value), (reach, place),
+                          (3 if reach >= base else -3, 0), textcoords="offset points", va="center",
+                          ha="left" if reach >= base else "right", fontsize=7)
     axes.set_yticks(range(len(rows)), [f"{lever.name}{f', {lever.unit}' if lever.unit else ''}" for lever in rows], fontsize=8)
     axes.axvline(base, color="0.3", linewidth=0.8)
     axes.set(xlabel="tolerable range, mm", title=found.sentence)

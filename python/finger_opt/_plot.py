@@ -13,7 +13,7 @@ from ._drawn import CLASSES, COLOURS, colour, ending, finger
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ._evaluation import Evaluation
+    from ._evaluation import End, Evaluation
     from ._map import CaptureMap, Levers
     from ._springs import StiffnessModel
     from ._study import Study
@@ -38,7 +38,10 @@ def window(found: Evaluation, ax: Axes | None) -> Axes:
     label = f"{found.task}, {finger(found.infill_density_percent, found.infill_direction_deg)}"
     y = len(axes.patches)
     axes.barh(y, high - low, left=low, height=0.6, color=COLOURS[0])
-    for at, end, side in ((low, found.failure_negative, "right"), (high, found.failure_positive, "left")):
+    ends: list[tuple[float, End | None, str]] = [
+        (low, found.failure_negative, "right"), (high, found.failure_positive, "left"),
+    ]
+    for at, end, side in ends:
         text = textwrap.fill(ending(end).replace("class ", "class\u00a0"), 20)
         axes.annotate(text, (at, y), (4 if side == "left" else -4, 0), textcoords="offset points", ha=side, va="center",
                       fontsize=8, color=colour(end))
@@ -121,8 +124,8 @@ def outcomes(found: CaptureMap, ax: Axes | None) -> Axes:
     axes.legend(handles=[Patch(color=COLOURS[number], label=names[number]) for number in met], loc="upper left",
                 bbox_to_anchor=(1.0, 1.0), frameon=False)
     axes.plot(0, 0, "+", color="white", markersize=10)
-    names = [f"error of the start in {axis.name}, {axis.unit}" for axis in found.axes]
-    axes.set(xlabel=names[0], ylabel=names[1],
+    labels = [f"error of the start in {axis.name}, {axis.unit}" for axis in found.axes]
+    axes.set(xlabel=labels[0], ylabel=labels[1],
              title=f"{found.task}: {found.area:.3g} {found.area_unit.replace('mm2', 'mm²')} insert")
     return axes
 

@@ -13,10 +13,16 @@ from several shifted starts, and fits the distribution to the best quarter.
 from __future__ import annotations
 
 import sys
+from collections.abc import Generator
 
 import numpy as np
+from numpy.typing import NDArray
 
 import finger_opt as fo
+
+Floats = NDArray[np.float64]
+#: What is observed.
+Seen = NDArray[np.float32]
 
 #: Preload mm, back mm, side mm, speed mm/s: the task's, and how far to look at first.
 FIRST = np.array([0.3, 5.0, 10.0, 80.0])
@@ -25,22 +31,21 @@ LOWEST = np.array([0.0, 0.5, 1.0, 20.0])
 SHIFTS_MM = (-2.0, 0.0, 2.0)
 
 
-def moves(numbers):
+def moves(numbers: Floats) -> Generator[Floats, Seen, None]:
     """Velocities, mm/s, each for 1 ms; takes observations."""
     preload, back, side, speed = numbers
     observation = yield np.array([0.0, 0.0, -20.0])
     while np.linalg.norm(observation[6:]) < 0.05:
         observation = yield np.array([0.0, 0.0, -20.0])
-    for way in ([0, 0, -preload], [back, 0, 0], [-back, 0, 0], [0, -side, 0], [0, 0, -20]):
-        way = np.array(way, dtype=float)
-        length = max(np.linalg.norm(way), 1e-9)
+    for way in np.array([[0, 0, -preload], [back, 0, 0], [-back, 0, 0], [0, -side, 0], [0, 0, -20]]):
+        length = max(float(np.linalg.norm(way)), 1e-9)
         for _ in range(round(1000 * length / speed)):
             yield way / length * speed
         for _ in range(30):
             yield np.zeros(3)
 
 
-def episode(env, numbers, shift_mm):
+def episode(env: fo.gym.InsertionEnv, numbers: Floats, shift_mm: float) -> tuple[float, str | None]:
     """Sum of the rewards, and how it ended."""
     env.reset(options={"offset_mm": shift_mm})
     plan, total = moves(numbers), 0.0
@@ -57,19 +62,19 @@ def episode(env, numbers, shift_mm):
             return total - 10.0, info["outcome"]
 
 
-def score(env, numbers):
+def score(env: fo.gym.InsertionEnv, numbers: Floats) -> tuple[float, int]:
     """Mean reward over the shifts, and how many of them insert."""
     found = [episode(env, numbers, shift) for shift in SHIFTS_MM]
-    return np.mean([total for total, _ in found]), sum(end == "inserted" for _, end in found)
+    return float(np.mean([total for total, _ in found])), sum(end == "inserted" for _, end in found)
 
 
-def learn(env, generations, candidates, seed=0):
+def learn(env: fo.gym.InsertionEnv, generations: int, candidates: int, seed: int = 0) -> Floats:
     """The best numbers found; says on the way how good they are."""
     draw = np.random.default_rng(seed)
-    mean, spread = FIRST.copy(), SPREAD.copy()
+    mean, spread = FIRST, SPREAD
     best = (score(env, FIRST)[0], FIRST)
     for generation in range(generations):
-        tried = np.maximum(draw.normal(mean, spread, (candidates, 4)), LOWEST)
+        tried: Floats = np.maximum(draw.normal(mean, spread, (candidates, 4)), LOWEST)
         scores = [score(env, numbers)[0] for numbers in tried]
         elite = tried[np.argsort(scores)[::-1][: max(2, candidates // 4)]]
         mean, spread = elite.mean(axis=0), elite.std(axis=0) + 0.05 * SPREAD
@@ -78,7 +83,7 @@ def learn(env, generations, candidates, seed=0):
     return best[1]
 
 
-def main(generations=8, candidates=16):
+def main(generations: int = 8, candidates: int = 16) -> None:
     env = fo.gym.InsertionEnv("usb", density=20, direction=10)
     learned = learn(env, generations, candidates)
     for name, numbers in (("the task's search", FIRST), ("the learned one", learned)):

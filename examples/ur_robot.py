@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 import finger_opt as fo
 from finger_opt.robot import Attempt
@@ -75,13 +76,13 @@ class URRobot:
             raise ValueError("jaws and out_of_socket are directions of length 1, at right angles")
         self.axes = np.column_stack([np.cross(y, z), y, z])
         if not self.dry_run and self.control is None:
-            import rtde_control
-            import rtde_receive
+            import rtde_control  # pyright: ignore[reportMissingImports]
+            import rtde_receive  # pyright: ignore[reportMissingImports]
 
             self.control = rtde_control.RTDEControlInterface(self.host)
             self.receive = rtde_receive.RTDEReceiveInterface(self.host)
 
-    def pose(self, shift_mm: np.ndarray, taught: Sequence[float] | None = None) -> list[float]:
+    def pose(self, shift_mm: ArrayLike, taught: Sequence[float] | None = None) -> list[float]:
         """The taught pose, shifted in the task's frame."""
         taught = self.taught if taught is None else taught
         place = np.array(taught[:3], float) + self.axes @ np.asarray(shift_mm, float) / 1000.0
@@ -114,6 +115,7 @@ class URRobot:
     def probe(self, log: Path) -> None:
         """Slides on the flat face beside the opening; with ``dry_run`` prints the moves and raises :class:`DryRun`."""
         above, down, *_ = moves = self.probe_program()
+        assert self.face is not None
         self.check(moves)
         if self.guarded(above) >= above.force_n:
             raise RuntimeError("something is in the way to the face")

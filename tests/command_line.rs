@@ -329,8 +329,14 @@ fn every_help_shows_an_example_and_the_shell_and_man_are_served() {
         let example = format!("Example: optimize {command}");
         assert!(help.succeeds().contains(&example), "{command}: {}", help.stdout);
     }
-    assert!(optimize_line("completions bash").succeeds().contains("_optimize"));
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(optimize(&["completions", shell]).succeeds().contains("optimize"), "{shell}");
+    }
     assert!(optimize(&["man"]).succeeds().starts_with(".ie"));
+    let short = format!("optimize {}", env!("CARGO_PKG_VERSION"));
+    assert_eq!(optimize_line("-V").succeeds().trim_end(), short);
+    let long = optimize_line("--version").succeeds().trim_end().to_owned();
+    assert!(long.starts_with(&format!("{short} (")) && long.contains(", sources "), "{long}");
     optimize(&["task"]).fails(2, &["new", "show", "check", "import"]);
     for (old, new) in [
         ("check", "`lab check`"),

@@ -48,6 +48,18 @@ fn the_documents_can_be_read_in_an_evening() {
     assert!(words(&pages("docs/notes")) <= 14_000);
 }
 
+#[test]
+fn changelog_and_citation_are_of_this_version() {
+    let version = env!("CARGO_PKG_VERSION");
+    let changelog = std::fs::read_to_string(root().join("CHANGELOG.md")).unwrap();
+    let heading = changelog.lines().find_map(|line| line.strip_prefix("## ")).unwrap();
+    let (made, date) = heading.split_once(" (").unwrap_or((heading, ""));
+    assert_eq!(made, version, "first section of CHANGELOG.md");
+    let citation = std::fs::read_to_string(root().join("CITATION.cff")).unwrap();
+    let released = format!("\nversion: {version}\ndate-released: {}", date.trim_end_matches(')'));
+    assert!(citation.contains(&released), "CITATION.cff lacks {released}");
+}
+
 /// `RENEW=1 cargo test --release --test documents` writes the page again.
 #[test]
 fn the_command_reference_is_what_the_program_says() {

@@ -42,7 +42,7 @@ fn a_solid_is_closed_and_has_area_times_depth() {
     let plain = [(10.0, 0.0), (18.0, 20.0), (30.0, 40.0), (25.0, -30.0)];
     let block = "[holes.block]\nlength_mm = 12.0\nwidth_mm = 24.0\noverlap_mm = 1.5\n";
     // The block with its holes, mm3: of polygons of 32 corners.
-    let hole = 16.0 * 1.6f64.powi(2) * (360f64 / 32.0).to_radians().sin();
+    let hole = 16.0 * 1.6f64.powi(2) * libm::sin((360f64 / 32.0).to_radians());
     let [across, along] = [24.0, 13.5].map(|deep| 13.5 * 24.0 * 12.0 - 2.0 * deep * hole);
     let holes = [("depth", "width", "", 0.0), ("width", "length", block, across)];
     let holes = holes.into_iter().chain([("length", "width", block, along)]);
@@ -178,10 +178,10 @@ fn middle_layer(folder: &Path, file: &str, more: &[&str]) -> Vec<Line> {
 /// Positions of the lines of a direction across them, mm: one for all within 0.6 mm. Only lines in
 /// the ribbed part count.
 fn ribs(lines: &[Line], direction_deg: f64) -> Vec<f64> {
-    let (sin, cos) = direction_deg.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(direction_deg.to_radians());
     let start = lines.iter().map(|line| line[0].min(line[2])).fold(f64::MAX, f64::min);
     let across = lines.iter().filter_map(|&[x, y, to_x, to_y]| {
-        let length = (to_x - x).hypot(to_y - y);
+        let length = libm::hypot(to_x - x, to_y - y);
         let turned = ((to_x - x) * cos - (to_y - y) * sin).abs() / length;
         let ribbed = (x + to_x) / 2.0 - start < 52.8 - 10.75 - 0.5;
         (length > 0.3 && turned < 0.03 && ribbed).then_some(x * cos - y * sin)

@@ -420,13 +420,13 @@ fn moment_that_turns(task: &Task, finger: &Finger) -> f64 {
 fn a_held_key_turns_at_the_moment_of_its_pressed_patch() {
     let mut task = task("ket8");
     let [a, b] = [3.5f64, 4.2];
-    let part = |a: f64, b: f64| a * a / (6.0 * b) * (b / a).asinh();
-    let lever = a.hypot(b) / 3.0 + part(a, b) + part(b, a);
+    let part = |a: f64, b: f64| a * a / (6.0 * b) * libm::asinh(b / a);
+    let lever = libm::hypot(a, b) / 3.0 + part(a, b) + part(b, a);
     let limit = 2.0 * task.friction.finger_plug * task.grip.force;
     let tipped = finger(2.6, 45.0);
     let flush = Finger { rcc: -tipped.pad.middle(task.grip.shoulder()), ..tipped };
     let radius = moment_that_turns(&task, &flush) / limit / MM;
-    assert!((radius / 30f64.hypot(a.hypot(b)) - 1.0).abs() < 0.03, "{radius} mm");
+    assert!((radius / libm::hypot(30.0, libm::hypot(a, b)) - 1.0).abs() < 0.03, "{radius} mm");
     task.friction.finger_torsion = PadTorsion::Patch;
     for (finger, lever) in [(flush, lever), (tipped, 7.0 / 4.0)] {
         let found = moment_that_turns(&task, &finger) / limit / MM;

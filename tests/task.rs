@@ -438,7 +438,7 @@ fn turned(outline: &[[f64; 2]], flats: usize) -> Surface {
 fn lathed(outline: &[[f64; 2]], flats: usize) -> Vec<[Point3<f64>; 3]> {
     let at = |[radius, z]: [f64; 2], flat: usize| {
         let turn = (flat % flats) as f64 / flats as f64 * std::f64::consts::TAU;
-        Point3::new(radius * turn.cos(), radius * turn.sin(), z)
+        Point3::new(radius * libm::cos(turn), radius * libm::sin(turn), z)
     };
     let mut triangles = Vec::new();
     for (i, &low) in outline.iter().enumerate() {
@@ -483,7 +483,7 @@ fn a_hollow_curved_socket_is_approximated_and_measured() {
     let bowl = || {
         let ring = |i: usize| {
             let polar = i as f64 / 130.0 * std::f64::consts::FRAC_PI_2;
-            [5.0 * polar.cos(), -5.0 * polar.sin()]
+            [5.0 * libm::cos(polar), -5.0 * libm::sin(polar)]
         };
         let mut outline = vec![[0.0, -8.0], [8.0, -8.0], [8.0, 0.0]];
         outline.extend((0..130).map(ring));

@@ -5,14 +5,13 @@ from __future__ import annotations
 import csv
 import datetime
 import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from . import _native
 from ._attempts import Attempts, newest
 from ._ends import Search
-from ._native import InputError, RunError, __version__
+from ._native import InputError, StudyError, __version__
 from ._task import Given, Task
 
 if TYPE_CHECKING:
@@ -86,7 +85,7 @@ class Bench:
             if getattr(measured, key) is not None:
                 cells[key] = str(getattr(measured, key))
         cells |= {"peak_force_n": f"{measured.peak_force_n:.1f}", "date": date, "note": _note(measured)}
-        self.add(self.out, cells, RunError)
+        self.add(self.out, cells, StudyError)
 
     def add(self, file: Path, cells: dict[str, str], error: type[Exception]) -> None:
         task = self.named
@@ -96,14 +95,10 @@ class Bench:
             own.write_text(self.task.to_toml(), encoding="utf-8")
             task = str(own)
         density, direction = self.finger.values()
-        words = ["--task", task, "--density", density, "--direction", direction]
-        words += [f"--{key.replace('_', '-')}={value}" for key, value in cells.items()]
-        code = "import sys; from finger_opt._shell import main; sys.exit(main())"
-        command = [sys.executable, "-c", code, "measure", "add", str(file), *words]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            said = done.stderr.strip().removeprefix("error: ").replace(str(file), str(self.out))
-            raise error(said or f"{self.out}: `optimize measure add` ended with {done.returncode}")
+        try:
+            _native.add_measurement(file, task=task, density=density, direction=direction, **cells)
+        except (InputError, StudyError) as failed:
+            raise error(str(failed).replace(str(file), str(self.out))) from None
 
 
 def _note(measured: Measurement) -> str:

@@ -6,6 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
 
 #: Prior of an end's width, over which the probability to insert goes from 90 to 10 %: log-normal, by its
 #: median, mm, and the factor that is a standard deviation. The prior of its place is uniform, from the
@@ -18,9 +21,9 @@ GAP, TAKEN = 0.02, 10.0
 #: What the intervals hold.
 INTERVAL = 0.95
 
-_WIDTHS_MM = WIDTH_MM * WIDTH_FACTOR ** np.linspace(-2.5, 2.5, 13)
+_WIDTHS_MM: Floats = WIDTH_MM * WIDTH_FACTOR ** np.linspace(-2.5, 2.5, 13, dtype=np.float64)
 #: The logistic's scale for 1 mm from 10 to 90 %.
-_SCALE = 1.0 / (2.0 * np.log(9.0))
+_SCALE = 1.0 / (2.0 * float(np.log(9.0)))
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,7 @@ class Side:
     #: Starts and whether they inserted, in the order of the attempts.
     tried: Iterable[tuple[float, bool]]
     #: Runs of starts that are gaps.
-    gaps: list[list[float]] = field(default_factory=list)
+    gaps: list[list[float]] = field(default_factory=list[list[float]])
     #: A start in or beyond what may be a gap: to be tried once more.
     doubtful: float | None = None
 
@@ -77,28 +80,30 @@ class Side:
                 tally.inserted += inserted
                 tally.failed += not inserted
         spacing = search.resolution_mm / 5.0
-        self.grid = np.arange(0.0, search.limit_mm + search.step_mm, spacing)
+        self.grid: Floats = np.arange(0.0, search.limit_mm + search.step_mm, spacing, dtype=np.float64)
         widths = np.exp(-0.5 * (np.log(_WIDTHS_MM / WIDTH_MM) / np.log(WIDTH_FACTOR)) ** 2)
-        self._prior = np.log(widths / widths.sum() / len(self.grid))[None, :]
+        self._prior: Floats = np.log(widths / widths.sum() / len(self.grid))[None, :]
         self._find_gaps()
         left_out = {start for run in self.gaps for start in run}
         log = self._log(left_out)
         joint = np.exp(log - log.max())
-        self.joint = joint / joint.sum()
-        self.place = self.joint.sum(axis=1)
+        self.joint: Floats = joint / joint.sum()
+        self.place: Floats = self.joint.sum(axis=1)
 
-    def _inserts(self, starts: np.ndarray) -> np.ndarray:
+    def _inserts(self, starts: Floats) -> Floats:
         """Probability to insert from these starts, for each place and width of the end."""
         away = (self.grid[None, :, None] - starts[:, None, None]) / (_SCALE * _WIDTHS_MM)
-        return LAPSE + (1.0 - 2.0 * LAPSE) / (1.0 + np.exp(-np.clip(away, -50.0, 50.0)))
+        inserts: Floats = LAPSE + (1.0 - 2.0 * LAPSE) / (1.0 + np.exp(-np.clip(away, -50.0, 50.0)))
+        return inserts
 
-    def _log(self, left_out: set[float]) -> np.ndarray:
+    def _log(self, left_out: set[float]) -> Floats:
         """Logarithm of prior times likelihood, without the attempts from some starts."""
         kept = {start: tally for start, tally in self.tallies.items() if start not in left_out}
         inserts = self._inserts(np.array(list(kept)))
         inserted = np.array([tally.inserted for tally in kept.values()])[:, None, None]
         failed = np.array([tally.failed for tally in kept.values()])[:, None, None]
-        return self._prior + (inserted * np.log(inserts) + failed * np.log1p(-inserts)).sum(axis=0)
+        log: Floats = self._prior + (inserted * np.log(inserts) + failed * np.log1p(-inserts)).sum(axis=0)
+        return log
 
     def _find_gaps(self) -> None:
         """Takes for a gap what fails within the window, where one end alone would hardly do that."""
@@ -176,7 +181,7 @@ class Side:
         step, search = self.search.resolution_mm, self.search
         low = max(0, int((self.quantile(0.01) - search.step_mm) / step))
         high = min(self.quantile(0.99) + search.step_mm, search.limit_mm)
-        starts = np.arange(low, int(high / step + 1e-9) + 1) * step
+        starts: Floats = step * np.arange(low, int(high / step + 1e-9) + 1, dtype=np.float64)
         if not len(starts):
             return search.limit_mm
         given = np.einsum("sbw,bw->sb", self._inserts(starts), self.joint)
@@ -185,12 +190,12 @@ class Side:
         return round(float(starts[np.argmax(information)]), 6)
 
 
-def _total(log: np.ndarray) -> float:
+def _total(log: Floats) -> float:
     top = log.max()
     return float(top + np.log(np.exp(log - top).sum()))
 
 
-def _entropy(share: np.ndarray) -> np.ndarray:
+def _entropy(share: Floats) -> Floats:
     share = np.clip(share, 1e-12, 1.0 - 1e-12)
     return -(share * np.log(share) + (1.0 - share) * np.log1p(-share))
 
@@ -212,11 +217,11 @@ class Window:
         """The next start, mm; none when both ends are known, or the taught start does not insert."""
         if not self.inserts:
             return 0.0 if len(self.start) < self.search.repeats else None
-        for find in (Side.walk, lambda side: side.doubtful):
-            for side in self.sides:
-                start = find(side)
-                if start is not None:
-                    return side.sign * start
+        walked = [(side.sign, side.walk()) for side in self.sides]
+        doubtful = [(side.sign, side.doubtful) for side in self.sides]
+        for sign, start in (*walked, *doubtful):
+            if start is not None:
+                return sign * start
         unsettled = [side for side in self.sides if not side.settled]
         if not unsettled:
             return None

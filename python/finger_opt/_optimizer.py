@@ -6,10 +6,11 @@ import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral
-from typing import Any
+from typing import Any, Literal, TypeGuard
 
 from . import _native
 from ._json import dumps
+from ._words import OptimizerName, SpaceName, StrPath
 
 
 class Point(dict[str, float]):
@@ -20,6 +21,10 @@ class Point(dict[str, float]):
     def __init__(self, id: int, values: Mapping[str, float]) -> None:
         super().__init__(values)
         self.id = id
+
+
+def _by_name(space: object) -> TypeGuard[Mapping[str, Sequence[float]]]:
+    return isinstance(space, Mapping)
 
 
 class Optimizer:
@@ -40,20 +45,21 @@ class Optimizer:
 
     def __init__(
         self,
-        space: str | os.PathLike[str] | Mapping[str, Sequence[float]] | Iterable[Mapping[str, Any]],
-        optimizer: str = "gp",
+        space: SpaceName | StrPath | Mapping[str, Sequence[float]] | Iterable[Mapping[str, Any]],
+        optimizer: OptimizerName = "gp",
         seed: int = 0,
         *,
-        direction: str = "maximize",
+        direction: Literal["maximize", "minimize"] = "maximize",
         batch: int | None = None,
     ) -> None:
         if isinstance(space, (str, os.PathLike)):
             parameters = json.loads(_native.space(space))
-        elif isinstance(space, Mapping):
+        elif _by_name(space):
             keys = ("low", "high", "step")
             parameters = [{"name": name, **dict(zip(keys, bounds))} for name, bounds in space.items()]
         else:
-            parameters = [dict(parameter) for parameter in space]
+            several: Any = space
+            parameters = [dict(parameter) for parameter in several]
         header = {
             "parameters": parameters,
             "optimizer": optimizer,
@@ -77,10 +83,11 @@ class Optimizer:
         self, points: Point | int | Iterable[Point | int], values: float | None | Iterable[float | None]
     ) -> None:
         """The values of points (or of their ids), in any order; ``None`` for a failed one."""
+        numbers: Any = values
         if isinstance(points, (Point, int, Integral)):
-            points, values = [points], [values]  # type: ignore[list-item]
+            points, numbers = [points], [values]
         ids = [point.id if isinstance(point, Point) else int(point) for point in points]
-        told = [None if value is None else float(value) for value in values]  # type: ignore[union-attr]
+        told = [None if value is None else float(value) for value in numbers]
         if len(ids) != len(told):
             raise _native.InputError(f"tell: {len(told)} values for {len(ids)} points")
         answer = self._say({"tell": [{"id": i, "value": v} for i, v in zip(ids, told)]})

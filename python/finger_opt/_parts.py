@@ -3,49 +3,110 @@
 from __future__ import annotations
 
 import json
-import os
 import tempfile
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Union
+from typing import Any, Literal
 
 from . import _native, _step
-from ._measure import Record
+from ._call import checked
+from ._connector import Step, TaskCheck
 from ._native import InputError
+from ._result import Result
 from ._step import Body
+from ._task import Task
+from ._words import Engine, StrPath
 
-_Path = Union[str, "os.PathLike[str]"]
-
-
-class Imported(Record):
-    """A task from parts: ``out`` (its file), ``plug_parts``, ``socket_parts``, ``clearance_mm``, ``warning``,
-    ``check`` (what is wrong with it, and how its nominal start ends), as ``optimize task import --json``."""
+#: Where the plug points.
+Along = Literal["x", "-x", "y", "-y", "z", "-z"]
 
 
+@dataclass(frozen=True, repr=False)
+class Imported(Result):
+    """A task made of parts, as ``optimize task import --json`` says it."""
+
+    #: Its file.
+    out: str
+    parts: int
+    plug_parts: int
+    socket_parts: int
+    #: Whether the convex parts are the shapes, not hulls about them.
+    plug_exact: bool
+    socket_exact: bool
+    #: How far the parts reach into the clearance.
+    largest_intrusion_mm: float
+    intrusion_of: str
+    intrusion_at_mm: tuple[float, float, float]
+    unit: str
+    insert_along: str
+    jaws: str
+    #: What was found from the shapes, and why.
+    found: tuple[str, ...]
+    clearance_mm: float
+    clearance_x_mm: float
+    clearance_y_mm: float
+    chamfer_x_mm: float
+    chamfer_y_mm: float
+    chamfer_depth_mm: float
+    #: What the fingers hold: width, height, length.
+    body_mm: tuple[float, float, float]
+    resolution: int
+    resolution_needed: int | None
+    plug_was_inward: bool
+    socket_was_inward: bool
+    warning: str | None
+    #: The strategy that was found for it, if it needed one.
+    tuned: Step | None
+    #: What is wrong with it, and how its nominal start ends.
+    check: TaskCheck
+
+    @property
+    def task(self) -> Task:
+        """The task of the file."""
+        return Task.from_toml(self.out)
+
+
+@checked
 def import_parts(
-    plug: _Path,
-    socket: _Path | None = None,
+    plug: StrPath,
+    socket: StrPath | None = None,
     *,
-    out: _Path,
-    unit: str | None = None,
-    insert_along: str | None = None,
-    jaws: str | None = None,
+    out: StrPath,
+    unit: Literal["mm", "in", "m"] | None = None,
+    insert_along: Along | None = None,
+    jaws: Literal["x", "y", "z"] | None = None,
     plug_body: str | None = None,
     socket_body: str | None = None,
     leave_out: str | Iterable[str] = (),
-    like: _Path | None = None,
+    like: StrPath | None = None,
+    resolution: int | None = None,
     tolerance_mm: float = 0.01,
-    engine: str | None = None,
+    engine: Engine = "direct",
 ) -> Imported:
-    """Writes a task file, ``out``, from STL, OBJ or STEP files of a plug and its socket.
+    """Writes a task file from STL, OBJ or STEP files of a plug and its socket, as ``optimize task import`` does.
 
-    ``unit`` (``"mm"``, ``"in"``, ``"m"``), ``insert_along`` (``"-z"``), ``jaws`` (``"y"``) and ``like`` (a task)
-    are the words of ``optimize task import``. ``plug_body`` and ``socket_body`` name a body, a part or an
-    assembly of their file; if ``plug`` holds both, what one of them leaves is the other.
+    STEP (``.step``, ``.stp``) needs Open Cascade: ``pip install 'finger-opt[step]'``. Units and the places of
+    parts are those of the file.
 
-    STEP (``.step``, ``.stp``) needs Open Cascade: ``pip install 'finger_opt[step]'``. Units and the places of
-    parts are those of the file. Facets keep within ``tolerance_mm`` of the surface. What is called as in
-    ``leave_out`` is left out: pins, a thread.
+    Args:
+        plug: File of the plug, or of both.
+        socket: File of the socket.
+        out: Task file to write.
+        unit: Unit of the files; found from the shapes unless given.
+        insert_along: Where the plug points in its file.
+        jaws: Along what the jaws close.
+        plug_body: A body, a part or an assembly of the file; if it holds both, what it leaves is the socket.
+        socket_body: The same for the socket.
+        leave_out: Bodies of a STEP file to leave out: pins, a thread.
+        like: Task whose grip and moves are taken.
+        resolution: Voxels along the longest side, where shapes are approximated by hulls.
+        tolerance_mm: How far facets may be off the surface of a STEP file, mm.
+        engine: Contact engine that tries the nominal start.
+
+    Raises:
+        InputError: A file that cannot be used, or shapes of which no task can be made.
+        Interrupted: Ctrl-C.
     """
     files = [Path(file) for file in (plug, socket) if file is not None]
     steps = [file for file in files if _step.is_step(file)]
@@ -68,10 +129,11 @@ def import_parts(
     elif steps:
         names = [plug_body, socket_body]
         sides = [_called(file, bodies[file], name) if file in steps else file for file, name in zip(files, names)]
-    settings = {
+    settings: dict[str, Any] = {
         "plug_body": None if files[0] in steps else plug_body,
         "socket_body": None if files[-1] in steps else socket_body,
         "unit": unit, "insert_along": insert_along, "jaws": jaws, "like": like, "engine": engine,
+        "resolution": resolution,
         "names": (str(files[0]), str(files[-1])),
     }
     with tempfile.TemporaryDirectory() as folder:
@@ -81,14 +143,14 @@ def import_parts(
         ]
         given = {name: value for name, value in settings.items() if value is not None}
         measured = _native.import_parts(meshes[0], meshes[1] if len(meshes) > 1 else None, out, **given)
-    return Imported(json.loads(measured))
+    return Imported.from_json(json.loads(measured))
 
 
 def _without(unneeded: list[str], bodies: dict[Path, list[Body]]) -> dict[Path, list[Body]]:
     """The bodies of each file without those that are not needed."""
     for name in unneeded:
         if not any(name in body.names for found in bodies.values() for body in found):
-            raise InputError(f"leave_out: no body is called `{name}`; there are {_step.listed(sum(bodies.values(), []))}")
+            raise InputError(f"leave_out: no body is called `{name}`; there are {_step.listed(sum(bodies.values(), list[Body]()))}")
     left = {file: [body for body in found if body.names.isdisjoint(unneeded)] for file, found in bodies.items()}
     for file, found in left.items():
         if not found:

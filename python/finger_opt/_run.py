@@ -46,7 +46,7 @@ def workers_of(executor: Any) -> int:
     """How many tasks an executor runs at a time, as far as it can be known."""
     client = getattr(executor, "_client", None)
     if client is not None and hasattr(client, "ncores"):
-        return max(1, sum(client.ncores().values()))
+        return max(1, int(sum(client.ncores().values())))
     return int(getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
 
 
@@ -79,7 +79,7 @@ class Progress:
         self.live = terminal() or "ipykernel" in sys.modules
         self.last = float("-inf") if self.live else time.monotonic()
 
-    def show(self, study: Any, ended: bool = False) -> None:
+    def show(self, study: _native.Guided, ended: bool = False) -> None:
         """The line, if it is time for it: twice a second where it can be written over."""
         now = time.monotonic()
         if not self.shown or not (ended or now - self.last > (0.5 if self.live else 10.0)):
@@ -92,7 +92,7 @@ class Progress:
 
 
 def run_open(
-    begin: Callable[[int | None], Any],
+    begin: Callable[[int | None], _native.Guided],
     executor: Any | None,
     progress: bool,
     workers: int | None,
@@ -124,7 +124,7 @@ class Course:
     """The work that is out, and how often each was lost."""
 
     def __init__(
-        self, study: Any, executor: Any, performer: Performer, retries: int, progress: Progress
+        self, study: _native.Guided, executor: Any, performer: Performer, retries: int, progress: Progress
     ) -> None:
         self.study = study
         self.executor = executor
@@ -190,8 +190,8 @@ class Course:
             ) from error
         self.submit(proposal, work)
 
-    def stopped(self, why: str) -> _native.RunError:
-        return _native.RunError(f"{why}\n{self.study.hint()}")
+    def stopped(self, why: str) -> _native.StudyError:
+        return _native.StudyError(f"{why}\n{self.study.hint()}")
 
 
 def named(error: BaseException) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,16 +10,17 @@ from typing import Any
 import numpy as np
 
 from ._attempts import Attempt
-from ._measure import trial
 from ._native import InputError
 from ._task import Given
+from ._trial import trial
+from ._words import Engine, StrPath
 
 
 class SimulatedRobot:
     """A robot that is simulated: for rehearsals, notebooks and tests.
 
     Task, density (percent), direction (degrees) and ``engine`` are those of :func:`finger_opt.trial`. ``cell``
-    is what the robot hides: settings of that function (``{"robot": "ur5e", "task.friction.plug_socket": 0.3}``),
+    is what the robot hides: words of that function and numbers (``{"robot": "ur5e", "task.friction.plug_socket": 0.3}``),
     the name or path of a robot file, or the path of a ``cell.toml``. ``noise`` is the width, mm, over which the
     probability to insert goes from 90 to 10 % at an end: each start is off by a logistic error, which no log
     shows. The forces in the logs have white noise of standard deviation ``force_noise_n`` and a drift that
@@ -32,8 +32,8 @@ class SimulatedRobot:
         task: Given,
         density: float,
         direction: float,
-        engine: str | None = None,
-        cell: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+        engine: Engine = "direct",
+        cell: Mapping[str, Any] | StrPath | None = None,
         noise: float = 0.0,
         seed: int = 0,
         *,
@@ -44,8 +44,8 @@ class SimulatedRobot:
                                   ("force_drift_n", force_drift_n, "a force in N")):
             if not 0.0 <= value <= 100.0:
                 raise InputError(f"{name}: is {value}; it is {unit}, 0 to 100")
-        self._finger = {"task": task, "density": density, "direction": direction}
-        self._settings = {"engine": engine, **_hidden(cell)}
+        self._finger: dict[str, Any] = {"task": task, "density": density, "direction": direction}
+        self._settings: dict[str, Any] = {"engine": engine, **_hidden(cell)}
         self._scale, self._drawn = noise / (2.0 * math.log(9.0)), np.random.default_rng(seed)
         # Of its own: the logs change no attempt.
         self._sensor = np.random.default_rng([seed, 1])
@@ -59,8 +59,7 @@ class SimulatedRobot:
         ended = trial(**self._finger, offset_mm=offset_mm + error_mm, log=log, **self._settings)
         if log is not None:
             self._sense(log, error_mm)
-        inserted = ended["outcome"] == "inserted"
-        return Attempt(inserted, ended["failure"], ended["depth_mm"], ended["peak_force_n"], log)
+        return Attempt(ended.outcome == "inserted", ended.failure, ended.depth_mm, ended.peak_force_n, log)
 
     def probe(self, log: Path) -> None:
         """Simulates slow slides along y on a flat face, and records them in ``log``."""
@@ -83,10 +82,12 @@ class SimulatedRobot:
         np.savetxt(log, rows, fmt="%.7g", delimiter=",", header=header, comments="")
 
 
-def _hidden(cell: Mapping[str, Any] | str | os.PathLike[str] | None) -> dict[str, Any]:
+def _hidden(cell: Mapping[str, Any] | StrPath | None) -> dict[str, Any]:
     """The settings of a trial that a cell is."""
     if cell is None or isinstance(cell, Mapping):
-        return dict(cell or {})
+        words = {name: value for name, value in (cell or {}).items() if "." not in name}
+        numbers = {name: value for name, value in (cell or {}).items() if "." in name}
+        return {**words, "set": {**words.get("set", {}), **numbers}}
     path = Path(cell)
     # A robot file has no unknowns.
     unknowns = path.suffix == ".toml" and path.is_file() and "[[parameter]]" in path.read_text(encoding="utf-8")

@@ -16,8 +16,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._native import InputError
+
+Floats = NDArray[np.float64]
 
 #: What installs the reader.
 INSTALL = "pip install 'finger_opt[step]'"
@@ -54,7 +57,7 @@ class Body:
     #: All that it may be called by: its own name, its product and the assemblies that it is in.
     names: frozenset[str]
     #: Corners, mm, shape (n, 3, 3), counter-clockwise from outside.
-    triangles: np.ndarray
+    triangles: Floats
 
 
 def is_step(path: str | os.PathLike[str]) -> bool:
@@ -162,15 +165,15 @@ def _products(glb: bytes) -> list[Body]:
     length = int.from_bytes(glb[12:16], "little")
     scene: dict[str, Any] = json.loads(glb[20:20 + length])
     data = glb[28 + length:]
-    kinds = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
+    kinds: dict[int, type[Any]] = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 
-    def numbers(accessor: dict[str, Any]) -> np.ndarray:
+    def numbers(accessor: dict[str, Any]) -> NDArray[Any]:
         view = scene["bufferViews"][accessor["bufferView"]]
         start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
         count = accessor["count"] * {"SCALAR": 1, "VEC3": 3}[accessor["type"]]
         return np.frombuffer(data, kinds[accessor["componentType"]], count, start)
 
-    def triangles(mesh: dict[str, Any]) -> np.ndarray:
+    def triangles(mesh: dict[str, Any]) -> Floats:
         corners = [np.empty((0, 3))]
         for one in mesh.get("primitives", []):
             # 4 are triangles; curves are something else.
@@ -179,18 +182,19 @@ def _products(glb: bytes) -> list[Body]:
                 corners.append(points[numbers(scene["accessors"][one["indices"]])].astype(float))
         return np.concatenate(corners)
 
-    found = []
+    found: list[Body] = []
 
-    def visit(node: dict[str, Any], above: list[str], place: np.ndarray) -> None:
+    def visit(node: dict[str, Any], above: list[str], place: Floats) -> None:
         if node.keys() & {"translation", "rotation", "scale"}:
             raise InputError("this version of cascadio places parts in an unknown way: pip install cascadio==0.1.1")
-        place = place @ np.reshape(node.get("matrix", np.eye(4)), (4, 4), order="F")
-        mesh = scene["meshes"][node["mesh"]] if "mesh" in node else {}
-        own = [name for name in (mesh.get("name"), node.get("name")) if name and not NAMELESS.match(name)]
+        own_place: Floats = np.reshape(node.get("matrix", np.eye(4)), (4, 4), order="F")
+        place = place @ own_place
+        mesh: dict[str, Any] = scene["meshes"][node["mesh"]] if "mesh" in node else {}
+        own: list[str] = [name for name in (mesh.get("name"), node.get("name")) if name and not NAMELESS.match(name)]
         names = [*above, *own]
         if mesh:
             # The file is in m.
-            placed = 1e3 * (triangles(mesh) @ place[:3, :3].T + place[:3, 3])
+            placed = 1e3 * (triangles(mesh) @ np.transpose(place[:3, :3]) + place[:3, 3])
             found.append(Body(own[-1] if own else "body", frozenset(names), placed.reshape(-1, 3, 3)))
         for child in node.get("children", []):
             visit(scene["nodes"][child], names, place)
@@ -207,10 +211,10 @@ def _pieces(product: Body) -> list[Body]:
         return []
     _, corners = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
     faces = corners.reshape(-1, 3)
-    label = np.arange(faces.max() + 1)
+    label: NDArray[np.intp] = np.arange(int(faces.max()) + 1, dtype=np.intp)
     while True:
-        before = label.copy()
-        for corner in faces.T:
+        before = np.copy(label)
+        for corner in np.transpose(faces):
             np.minimum.at(label, corner, before[faces].min(axis=1))
         label = label[label]
         if np.array_equal(label, before):
@@ -223,7 +227,7 @@ def _numbered(bodies: list[Body]) -> list[Body]:
     """The bodies, those of one name with a number behind it."""
     many = Counter(body.name for body in bodies)
     seen: Counter[str] = Counter()
-    numbered = []
+    numbered: list[Body] = []
     for body in bodies:
         seen[body.name] += 1
         name = f"{body.name} {seen[body.name]}" if many[body.name] > 1 else body.name

@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Union
 
 from . import _native
-from ._json import dumps
+from ._json import dumps, is_list, is_table
+from ._words import StrPath, TaskName
 
 
 class Fields:
@@ -20,20 +21,26 @@ class Fields:
 
     __slots__ = ("_changed", "_table")
 
-    def __init__(self, table: Any, changed: Any) -> None:
+    #: What the file holds: a table (a dict), or several (a list of dicts).
+    _table: Any
+    #: Checks what was changed.
+    _changed: Callable[[], object]
+
+    def __init__(self, table: Any, changed: Callable[[], object]) -> None:
         object.__setattr__(self, "_table", table)
         object.__setattr__(self, "_changed", changed)
 
     def _wrap(self, value: Any) -> Any:
-        tables = isinstance(value, list) and any(isinstance(one, dict) for one in value)
-        return Fields(value, self._changed) if isinstance(value, dict) or tables else value
+        tables = is_list(value) and any(is_table(one) for one in value)
+        return Fields(value, self._changed) if is_table(value) or tables else value
 
     def _place(self, key: str | int) -> Any:
-        if isinstance(self._table, list) and isinstance(key, str):
-            for place, one in enumerate(self._table):
+        tables = self._table
+        if is_list(tables) and isinstance(key, str):
+            for place, one in enumerate(tables):
                 if one.get("name") == key:
                     return place
-            names = ", ".join(str(one.get("name")) for one in self._table)
+            names = ", ".join(str(one.get("name")) for one in tables)
             raise KeyError(f"{key}: there are {names}")
         return key
 
@@ -44,7 +51,7 @@ class Fields:
         if isinstance(value, Fields):
             value = value._table
         table, place = self._table, self._place(key)
-        known = not isinstance(table, dict) or place in table
+        known = not is_table(table) or place in table
         before = table[place] if known else None
         table[place] = value
         try:
@@ -60,7 +67,7 @@ class Fields:
         return Fields, (copy.deepcopy(self._table), _unchecked)
 
     def __getattr__(self, key: str) -> Any:
-        if isinstance(self._table, dict) and key in self._table:
+        if is_table(self._table) and key in self._table:
             return self[key]
         raise AttributeError(f"no field is called `{key}`; there are {', '.join(self)}")
 
@@ -68,7 +75,7 @@ class Fields:
         self[key] = value
 
     def __iter__(self) -> Iterator[Any]:
-        if isinstance(self._table, dict):
+        if is_table(self._table):
             return iter(self._table)
         return (self._wrap(one) for one in self._table)
 
@@ -76,7 +83,7 @@ class Fields:
         return len(self._table)
 
     def __dir__(self) -> list[str]:
-        keys = list(self._table) if isinstance(self._table, dict) else []
+        keys = list(self._table) if is_table(self._table) else []
         return [*keys, *super().__dir__()]
 
     def __repr__(self) -> str:
@@ -101,6 +108,9 @@ class Task(Fields):
 
     __slots__ = ("file",)
 
+    #: What errors call it.
+    file: str
+
     def __init__(self, file: str, text: str) -> None:
         """Of the text of a task file; ``file`` is what errors call it."""
         fields = json.loads(_native.task_fields(file, text))
@@ -111,7 +121,7 @@ class Task(Fields):
         return type(self), (self.file, self.to_toml())
 
     @classmethod
-    def from_toml(cls, source: str | os.PathLike[str]) -> Task:
+    def from_toml(cls, source: TaskName | StrPath) -> Task:
         """The task of a shipped name (``"usb"``), of the file at a path, or of a TOML text."""
         if isinstance(source, str) and "\n" in source:
             return cls("task", source)
@@ -126,7 +136,7 @@ class Task(Fields):
 
 
 #: A task: a shipped name, the path of a task file, or the task itself.
-Given = Union[str, "os.PathLike[str]", Task]
+Given = Union[TaskName, str, os.PathLike[str], Task]
 
 
 def sources(task: Given | Iterable[Given]) -> list[str | os.PathLike[str] | tuple[str, str]]:

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
@@ -79,10 +79,10 @@ def tied(alive: Connection) -> None:
 
 
 @contextmanager
-def apart() -> Iterator[None]:
+def apart() -> Generator[None, None, None]:
     """Processes that begin meanwhile get no Ctrl-C, and import nothing from the user's folder."""
     masked = hasattr(signal, "pthread_sigmask")
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT]) if masked else set()
+    before: set[int | signal.Signals] = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT]) if masked else set()
     # Later versions are told by PYTHONSAFEPATH.
     folder = os.getcwd() if sys.version_info < (3, 11) else None
     if folder is not None:
@@ -183,7 +183,7 @@ def needs(extra: str, module: str) -> str:
 
 
 @contextmanager
-def named(name: str) -> Iterator[Executor]:
+def named(name: str) -> Generator[Executor, None, None]:
     """The executor of this name."""
     scheme, colon, rest = name.partition(":")
     if scheme in ("processes", "slurm"):
@@ -214,7 +214,7 @@ def named(name: str) -> Iterator[Executor]:
         try:
             client = Client("tcp:" + rest, timeout=10)
         except OSError as error:
-            raise _native.RunError(f"--executor {name}: no scheduler answers there: {error}") from None
+            raise _native.StudyError(f"--executor {name}: no scheduler answers there: {error}") from None
         with client:
             yield client.get_executor()
     else:
@@ -238,7 +238,7 @@ def main(words: list[str]) -> int:
         text, unusable = run_open(asked.open, executor, not asked.quiet, None, 10)
     show(text)
     if unusable is not None:
-        raise _native.RunError(unusable)
+        raise _native.StudyError(unusable)
     return 0
 
 
@@ -252,7 +252,7 @@ def show(text: str) -> None:
     except BrokenPipeError:
         pass
     except OSError as error:
-        raise _native.RunError(f"cannot write the output: {error}") from None
+        raise _native.StudyError(f"cannot write the output: {error}") from None
 
 
 def let_go(stream: TextIO | None) -> None:
@@ -265,11 +265,15 @@ def let_go(stream: TextIO | None) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
+def nothing(*_: object) -> None:
+    """What a signal does that changes nothing."""
+
+
 def stop_once(*_: object) -> None:
     """Ends the study as Ctrl-C does; who asks again changes nothing."""
     for name in STOPS:
         # Not SIG_IGN: of a signal that came meanwhile Python would complain.
-        signal.signal(name, lambda *_: None)
+        signal.signal(name, nothing)
     raise KeyboardInterrupt
 
 
@@ -296,7 +300,7 @@ def command() -> int:
         return main(sys.argv[1:])
     except KeyboardInterrupt:
         return 1
-    except (_native.InputError, _native.RunError) as error:
+    except (_native.InputError, _native.StudyError) as error:
         say(f"error: {error}\n")
         return 2 if isinstance(error, _native.InputError) else 1
     finally:

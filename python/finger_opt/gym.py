@@ -8,12 +8,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _native
+from ._call import checked, given
 from ._task import Given, sources
+from ._words import Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
 
 try:
     import gymnasium
@@ -31,7 +35,11 @@ END = 10.0
 OBSERVED, TIP, TILT, SLIP, DISTANCE = slice(1, 10), slice(10, 13), 13, 14, 15
 
 
-class InsertionEnv(gymnasium.Env[np.ndarray, np.ndarray]):
+#: What is observed, and what acts.
+Floats = NDArray[np.float32]
+
+
+class InsertionEnv(gymnasium.Env[Floats, Floats]):
     """Insert a part that the gripper holds in front of its socket, whose place is not quite known.
 
     An episode begins where the search of a trial begins: the part is grasped, tilted and brought
@@ -59,11 +67,12 @@ class InsertionEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     ``distance_mm`` to the seat, ``offset_mm``, ``time_s``, and ``outcome`` and ``failure`` (class
     1 to 4) as of a trial, ``None`` while it goes on.
 
-    Task, finger and ``settings`` are those of :func:`finger_opt.trial`.
+    Task, finger and the other words are those of :func:`finger_opt.trial`.
     """
 
-    metadata = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": []}
 
+    @checked
     def __init__(
         self,
         task: Given = "usb",
@@ -73,24 +82,34 @@ class InsertionEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         offset_mm: tuple[float, float] = (-1.0, 1.0),
         speed_mm_per_s: float = 100.0,
         time_limit_s: float = 2.0,
-        **settings: Any,
+        stiffness_compliance: float | None = None,
+        stiffness_assembly: float | None = None,
+        set: Numbers | None = None,
+        space: SpaceName | StrPath = "infill",
+        robot: RobotName | StrPath | None = None,
+        cell: StrPath | None = None,
+        stiffness_data: StrPath | None = None,
+        engine: Engine = "direct",
+        finger_model: FingerModel | None = None,
+        finger: StrPath = "finray9",
+        start: Start | None = None,
     ) -> None:
+        words = given(locals(), "task", "offset_mm", "speed_mm_per_s", "time_limit_s", "__class__")
         if not -1000.0 <= offset_mm[0] <= offset_mm[1] <= 1000.0:
             raise _native.InputError("offset_mm: is (from, to), mm, within 1000 of 0")
         if not (0.0 < speed_mm_per_s < float("inf") and 0.0 < time_limit_s < float("inf")):
             raise _native.InputError("speed_mm_per_s, time_limit_s: have to be above 0 and finite")
-        finger = {"density": density, "direction": direction}
-        self._insertion = _native.Insertion(sources(task), **finger, **settings)
+        self._insertion = _native.Insertion(sources(task), **words)
         self._offsets, self._limit_s = offset_mm, time_limit_s
         self._offset, self._distance, self._ended = 0.0, 0.0, True
         self._speed = float(speed_mm_per_s)
         bound = np.full(3, speed_mm_per_s, dtype=np.float32)
-        self.action_space = gymnasium.spaces.Box(-bound, bound)
-        self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (9,), dtype=np.float32)
+        self.action_space: gymnasium.spaces.Space[Floats] = gymnasium.spaces.Box(-bound, bound)
+        self.observation_space: gymnasium.spaces.Space[Floats] = gymnasium.spaces.Box(-np.inf, np.inf, (9,), dtype=np.float32)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
+    ) -> tuple[Floats, dict[str, Any]]:
         """The part at the start, with a shift drawn or given as ``options["offset_mm"]``."""
         super().reset(seed=seed)
         drawn = self.np_random.uniform(*self._offsets)
@@ -100,8 +119,8 @@ class InsertionEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         return observation, info
 
     def step(
-        self, action: np.ndarray
-    ) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        self, action: NDArray[np.floating[Any]] | Sequence[float]
+    ) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
         """Commands a velocity (3), mm/s, for 1 ms."""
         if self._ended:
             raise _native.InputError("step: the episode has ended, or was not begun; call reset()")
@@ -123,7 +142,7 @@ class InsertionEnv(gymnasium.Env[np.ndarray, np.ndarray]):
 
     def _seen(
         self, state: tuple[list[float], str | None, int | None]
-    ) -> tuple[np.ndarray, dict[str, Any]]:
+    ) -> tuple[Floats, dict[str, Any]]:
         numbers, outcome, failure = state
         info = {
             "time_s": numbers[0],

@@ -16,17 +16,19 @@ from contextlib import suppress
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeGuard, TypeVar
 
 import numpy as np
 
 from ._attempts import Attempt, Attempts, Tried
 from ._bench import Bench
 from ._ends import INTERVAL, Gap, Search, Side, Window
-from ._native import InputError, RunError
+from ._native import InputError, StudyError
 from ._runs import Runs
 from ._simulated import SimulatedRobot
 from ._task import Given
+
+T = TypeVar("T")
 
 __all__ = ["Attempt", "Gap", "Measurement", "Probing", "Robot", "SimulatedRobot", "measure_window"]
 
@@ -124,12 +126,13 @@ def measure_window(
     attempts, as far as the robot records and it is known how they ended, are lines of ``runs.csv`` beside
     ``out``, which all fingers measured into that folder share: what ``optimize identify`` reads.
 
-    Raises :class:`InputError` for wrong arguments, before the robot moves, and :class:`RunError` if the
+    Raises :class:`InputError` for wrong arguments, before the robot moves, and :class:`StudyError` if the
     robot raises, takes longer than its ``timeout_s``, reports what cannot be (three times in a row; once it is
     marked and tried again), or if the taught start does not insert.
     """
     search = _checked(Search(step_mm, resolution_mm, limit_mm, repeats), attempts_max)
-    if probe and not callable(getattr(robot, "probe", None)):
+    prober = robot if probe and _can_probe(robot) else None
+    if probe and prober is None:
         raise InputError(f"probe: {type(robot).__name__} has no method probe(log); give it one, or probe=False")
     bench = Bench(Path(out), task, density, direction)
     attempts = bench.attempts(search)
@@ -137,13 +140,17 @@ def measure_window(
     try:
         runs = Runs(bench.out.parent, bench.task.name, bench.finger, attempts)
         course = _Course(robot, search, attempts, runs, bench.task.success.depth_mm)
-        if probe and attempts.probed is None:
-            course.probe()
+        if prober is not None and attempts.probed is None:
+            course.probe(prober)
         measured = course.run(0 if ended else attempts_max)
     finally:
         attempts.close()
     bench.write(measured, attempts.settings["date"])
     return measured
+
+
+def _can_probe(robot: Robot) -> TypeGuard[Probing]:
+    return callable(getattr(robot, "probe", None))
 
 
 def _checked(search: Search, attempts_max: int) -> Search:
@@ -187,9 +194,14 @@ class _Course:
             raise self.stopped(0.0, why + "`optimize measure add --not-measurable`")
         return self.measurement(window, settled=offset is None)
 
-    def probe(self) -> None:
-        """The probe; the robot is one that can."""
-        log = self.asked("probe", "probe", lambda log: (self.robot.probe(log), log)[1])
+    def probe(self, robot: Probing) -> None:
+        """The probe, by the robot, which is one that can."""
+
+        def probed(log: Path) -> Path:
+            robot.probe(log)
+            return log
+
+        log = self.asked("probe", "probe", probed)
         if not (log.is_file() and log.stat().st_size):
             raise self.stopped("probe", f"the robot recorded nothing in {log}")
         self.attempts.add_probe(log)
@@ -203,11 +215,11 @@ class _Course:
             raise self.stopped(offset, f"the robot returned {done!r}, which is no Attempt")
         doubt = self.doubt(done)
         if doubt:
-            finite = [x if _finite(x) else 0.0 for x in (done.depth_mm, done.peak_force_n)]
-            done = Attempt(done.inserted is True, None, *finite, done.log)
+            depth, force = (x if _finite(x) else 0.0 for x in (done.depth_mm, done.peak_force_n))
+            done = Attempt(done.inserted is True, None, depth, force, done.log)
         return Tried(offset, done, doubt)
 
-    def asked(self, what: float | str, name: str, ask: Callable[[Path], Any]) -> Any:
+    def asked(self, what: float | str, name: str, ask: Callable[[Path], T]) -> T:
         """What the robot answers, given where to record; the measurement stops if it raises."""
         folder = self.attempts.path.with_suffix("")
         folder.mkdir(exist_ok=True)
@@ -220,27 +232,27 @@ class _Course:
             with suppress(OSError):
                 folder.rmdir()
 
-    def in_time(self, ask: Callable[[], Any]) -> Any:
+    def in_time(self, ask: Callable[[], T]) -> T:
         """What the robot returns, or raises; itself an error if that takes too long."""
         limit = float(getattr(self.robot, "timeout_s", TIMEOUT_S))
-        ended: list[tuple[Any, BaseException | None]] = []
+        ended: list[T] = []
+        failed: list[BaseException] = []
 
         def answer() -> None:
             try:
-                ended.append((ask(), None))
+                ended.append(ask())
             except BaseException as error:
-                ended.append((None, error))
+                failed.append(error)
 
         # A thread that hangs does not keep the process.
         thread = threading.Thread(target=answer, daemon=True)
         thread.start()
         thread.join(limit)
+        if failed:
+            raise failed[0]
         if not ended:
             raise TimeoutError(f"no answer within {limit:g} s; look at the robot before it goes on")
-        done, error = ended[0]
-        if error is not None:
-            raise error
-        return done
+        return ended[0]
 
     def doubt(self, done: Attempt) -> str | None:
         """Why an attempt cannot be as it is reported."""
@@ -256,11 +268,11 @@ class _Course:
             return f"inserted at a depth of {done.depth_mm:g} mm; the task counts from {self.depth_mm:g} mm on"
         return None
 
-    def stopped(self, what: float | str, why: str) -> RunError:
+    def stopped(self, what: float | str, why: str) -> StudyError:
         """The error that stops the measurement at a start, mm, or at what else was asked of the robot."""
         self.attempts.stopped(what, why)
         kept = f"what was measured is in {self.attempts.path}; the same call goes on there"
-        return RunError(f"{what if isinstance(what, str) else f'start {what:+g} mm'}: {why}\n{kept}")
+        return StudyError(f"{what if isinstance(what, str) else f'start {what:+g} mm'}: {why}\n{kept}")
 
     def measurement(self, window: Window, settled: bool) -> Measurement:
         counted = self.attempts.counted()

@@ -1,7 +1,9 @@
 //! Failures as exceptions, with the texts of the command line.
 
 use finger_opt::session::Failure;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use input::Place;
+use pyo3::PyTypeInfo;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -9,21 +11,46 @@ pyo3::create_exception!(
     finger_opt,
     InputError,
     PyValueError,
-    "A wrong argument or input file; the text says what would be right."
+    "A wrong argument or input file; the text says what would be right.\n\n\
+     `file`, `line` (from 1) and `key` (field, column or argument) say where, None where unknown."
 );
+pyo3::create_exception!(finger_opt, TaskError, InputError, "A wrong task file, or none.");
 pyo3::create_exception!(
     finger_opt,
-    RunError,
+    StudyError,
     PyRuntimeError,
     "Something failed while running; what was measured before is safe."
 );
-
 pyo3::create_exception!(
     finger_opt,
     Refused,
-    RunError,
+    StudyError,
     "A result that cannot be one of the work it is said to be of; nothing of it is believed."
 );
+pyo3::create_exception!(
+    finger_opt,
+    Interrupted,
+    PyKeyboardInterrupt,
+    "Ctrl-C ended it; what a study had measured before is safe."
+);
+
+/// Adds the exceptions to the module.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    for (name, class, own) in [
+        ("InputError", InputError::type_object(py), true),
+        ("TaskError", TaskError::type_object(py), false),
+        ("StudyError", StudyError::type_object(py), true),
+        ("Refused", Refused::type_object(py), false),
+        ("Interrupted", Interrupted::type_object(py), true),
+    ] {
+        for place in ["file", "key", "line"].iter().filter(|_| own) {
+            class.setattr(*place, py.None())?;
+        }
+        module.add(name, class)?;
+    }
+    Ok(())
+}
 
 /// The process that has the threads which all simulations share; 0 before there are any.
 static PROCESS: AtomicU32 = AtomicU32::new(0);
@@ -35,7 +62,7 @@ static PROCESS: AtomicU32 = AtomicU32::new(0);
 pub fn not_forked() -> PyResult<()> {
     let own = std::process::id();
     match PROCESS.compare_exchange(0, own, Ordering::SeqCst, Ordering::SeqCst) {
-        Err(other) if other != own => Err(RunError::new_err(
+        Err(other) if other != own => Err(StudyError::new_err(
             "this process was forked after finger_opt had started threads; use the spawn or \
              forkserver start method",
         )),
@@ -45,8 +72,35 @@ pub fn not_forked() -> PyResult<()> {
 
 /// The exception of a failure.
 pub fn raise(failure: Failure) -> PyErr {
-    match failure {
-        Failure::Input(error) => InputError::new_err(error.to_string()),
-        Failure::Run(error) => RunError::new_err(error.to_string()),
+    let (text, place) = (failure.to_string(), failure.place());
+    placed(
+        place,
+        match failure {
+            Failure::Input(_) => InputError::new_err(text),
+            Failure::Task(_) => TaskError::new_err(text),
+            Failure::Run(_) => StudyError::new_err(text),
+            Failure::Interrupted(_) => Interrupted::new_err(text),
+        },
+    )
+}
+
+/// An exception that says where.
+pub fn placed(place: Place, error: PyErr) -> PyErr {
+    let Place { file, line, key } = place;
+    let set = Python::with_gil(|py| {
+        let value = error.value(py);
+        file.map_or(Ok(()), |file| value.setattr("file", file))?;
+        line.map_or(Ok(()), |line| value.setattr("line", line))?;
+        key.map_or(Ok(()), |key| value.setattr("key", key))
+    });
+    // Its text says the same.
+    set.map_or_else(|other| other, |()| error)
+}
+
+/// What a signal has raised: Ctrl-C as the library has it.
+pub fn signalled(error: PyErr) -> PyErr {
+    match Python::with_gil(|py| error.get_type(py).is(&PyKeyboardInterrupt::type_object(py))) {
+        true => Interrupted::new_err("interrupted"),
+        false => error,
     }
 }

@@ -28,6 +28,7 @@ pub fn import_parts<'py>(
         insert_along: words.choice("insert_along")?,
         jaws: words.choice("jaws")?,
         like: words.text("like")?,
+        resolution: words.take("resolution")?.unwrap_or(usual.resolution),
         engine: words.choice("engine")?.unwrap_or(usual.engine),
         names: words.take("names")?,
         ..usual

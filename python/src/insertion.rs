@@ -1,7 +1,7 @@
 //! A trial that Python drives.
 
-use crate::errors::{InputError, raise};
-use crate::keywords::{Keywords, TaskWord};
+use crate::errors::raise;
+use crate::keywords::{Keywords, TaskWord, wrong};
 use crate::measure::interruptible;
 use finger_opt::session;
 use insertion::trial::State;
@@ -55,7 +55,7 @@ impl Insertion {
 fn finite(what: &str, numbers: &[f64]) -> PyResult<()> {
     match numbers.iter().all(|number| number.is_finite()) {
         true => Ok(()),
-        false => Err(InputError::new_err(format!("{what}: has to be finite"))),
+        false => Err(wrong(what, "has to be finite")),
     }
 }
 

@@ -1,11 +1,12 @@
 //! Keyword arguments on their way into requests.
 
-use crate::errors::InputError;
+use crate::errors::{InputError, placed};
 use clap::ValueEnum;
 use finger_opt::session::{
     CacheRequest, EffortRequest, FilmRequest, FingerModelRequest, FingerRequest, RepeatRequest,
     RunRequest, SetupRequest, TaskSource,
 };
+use input::Place;
 use input::shipped::Source;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -39,6 +40,16 @@ impl FromPyObject<'_> for TaskWord {
             // A path may have a comma in it.
             false => vec![TaskSource::Named(name)],
         }))
+    }
+}
+
+impl TaskWord {
+    /// The one task.
+    pub fn one(self) -> PyResult<TaskSource> {
+        let Ok([task]) = <[TaskSource; 1]>::try_from(self.0) else {
+            return Err(wrong("task", "give one task"));
+        };
+        Ok(task)
     }
 }
 
@@ -82,6 +93,16 @@ impl<'py> Keywords<'py> {
     /// A value, if it is given.
     pub fn take<T: FromPyObject<'py>>(&self, name: &str) -> PyResult<Option<T>> {
         self.value(name)?.map(|value| extracted(name, &value)).transpose()
+    }
+
+    /// A value that has to be given.
+    pub fn need<T: FromPyObject<'py>>(&self, name: &str) -> PyResult<T> {
+        self.take(name)?.ok_or_else(|| wrong(name, "is missing"))
+    }
+
+    /// A value as a file has it.
+    pub fn written(&self, name: &str) -> PyResult<Option<String>> {
+        Ok(self.words(name)?.pop())
     }
 
     /// A number, if it is given; `True` is the usual one.
@@ -170,8 +191,8 @@ impl<'py> Keywords<'py> {
         })
     }
 
-    /// The finger; numbers of task and finger stand in `set`, or under their own keys, which have a dot.
-    pub fn finger(&self) -> PyResult<FingerRequest> {
+    /// Numbers of task and finger: they stand in `set`, or under their own keys, which have a dot.
+    pub fn set(&self) -> PyResult<Vec<(String, f64)>> {
         let mut set = Vec::new();
         for name in self.0.keys().iter().filter_map(|name| name.extract::<String>().ok()) {
             if name.contains('.') {
@@ -183,12 +204,17 @@ impl<'py> Keywords<'py> {
             let number = extracted(&name, &number)?;
             set.push((name, number));
         }
+        Ok(set)
+    }
+
+    /// The finger.
+    pub fn finger(&self) -> PyResult<FingerRequest> {
         Ok(FingerRequest {
             density: self.take("density")?,
             direction: self.take("direction")?,
             stiffness_compliance: self.take("stiffness_compliance")?,
             stiffness_assembly: self.take("stiffness_assembly")?,
-            set,
+            set: self.set()?,
         })
     }
 
@@ -203,7 +229,11 @@ impl<'py> Keywords<'py> {
 
     /// Recordings asked for of a trial.
     pub fn film(&self) -> PyResult<FilmRequest> {
-        Ok(FilmRequest { record: self.take("record")?, plot: self.take("plot")? })
+        Ok(FilmRequest {
+            record: self.take("record")?,
+            plot: self.take("plot")?,
+            page: self.flag("film")?,
+        })
     }
 
     /// How a study is run.
@@ -226,7 +256,8 @@ impl<'py> Keywords<'py> {
 
 /// Error for a wrong value of a keyword.
 pub fn wrong(name: &str, problem: impl ToString) -> PyErr {
-    InputError::new_err(format!("{name}: {}", problem.to_string()))
+    let error = InputError::new_err(format!("{name}: {}", problem.to_string()));
+    placed(Place::default().key(name), error)
 }
 
 fn extracted<'py, T: FromPyObject<'py>>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<T> {

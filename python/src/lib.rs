@@ -2,6 +2,7 @@
 //! the package in `finger_opt/` gives both their Python shape.
 #![forbid(unsafe_code)]
 
+mod commands;
 mod errors;
 mod import;
 mod insertion;
@@ -9,6 +10,7 @@ mod keywords;
 mod measure;
 mod optimizer;
 mod study;
+mod sweep;
 
 use finger_opt::cli;
 use pyo3::prelude::*;
@@ -22,14 +24,19 @@ fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     u8::from(code != ExitCode::SUCCESS) * if code == ExitCode::from(2) { 2 } else { 1 }
 }
 
+/// The commands of `optimize` with their options, as JSON.
+#[pyfunction(name = "commands")]
+fn command_list() -> String {
+    cli::commands().to_string()
+}
+
 /// The extension module.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    let py = module.py();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("InputError", py.get_type::<errors::InputError>())?;
-    module.add("RunError", py.get_type::<errors::RunError>())?;
+    errors::register(module)?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
+    module.add_function(wrap_pyfunction!(command_list, module)?)?;
     module.add_function(wrap_pyfunction!(measure::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(measure::identify, module)?)?;
     module.add_function(wrap_pyfunction!(measure::levers, module)?)?;
@@ -42,9 +49,25 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(measure::task, module)?)?;
     module.add_function(wrap_pyfunction!(measure::task_fields, module)?)?;
     module.add_function(wrap_pyfunction!(measure::task_text, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::finger, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::new_task, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::check_task, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::tune_task, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::compare, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::calibrate, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::next_print, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::sensitivity, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::export_finger, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::export_mjcf, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::measurements, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::add_measurement, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::measuring_sheet, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::report_of, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::robots, module)?)?;
+    module.add_function(wrap_pyfunction!(commands::tasks, module)?)?;
     module.add_class::<optimizer::Session>()?;
     module.add_class::<insertion::Insertion>()?;
-    module.add("Refused", py.get_type::<errors::Refused>())?;
+    module.add_class::<sweep::Sweep>()?;
     module.add_function(wrap_pyfunction!(study::perform, module)?)?;
     module.add_function(wrap_pyfunction!(study::source_sha256, module)?)?;
     module.add_function(wrap_pyfunction!(study::study, module)?)?;

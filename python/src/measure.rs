@@ -1,6 +1,6 @@
 //! Evaluations, trials, stiffness and task files.
 
-use crate::errors::{InputError, not_forked, raise};
+use crate::errors::{InputError, StudyError, not_forked, raise, signalled};
 use crate::keywords::{Keywords, Name, TaskWord, wrong};
 use finger_opt::cli;
 use finger_opt::report;
@@ -56,17 +56,33 @@ pub fn watched<T: Send>(
                 match receiver.recv_timeout(LOOK) {
                     Ok(done) => return signal.map(|()| done),
                     Err(RecvTimeoutError::Timeout) if signal.is_ok() => {
-                        signal = Python::with_gil(|py| py.check_signals());
+                        signal = Python::with_gil(|py| py.check_signals()).map_err(signalled);
                         stop.fetch_or(signal.is_err(), Ordering::SeqCst);
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => {
-                        return Err(crate::errors::RunError::new_err("the simulation broke off"));
+                        return Err(StudyError::new_err("the simulation broke off"));
                     }
                 }
             }
         })
     })
+}
+
+/// How windows are measured, of no finger yet.
+pub fn windows(words: &Keywords<'_>, tasks: Vec<TaskWord>) -> PyResult<EvaluateRequest> {
+    let seed = words.take("seed")?;
+    let request = EvaluateRequest {
+        setup: words.setup(tasks)?,
+        walk: words.flag("walk")?,
+        uncertainty: words.text("uncertainty")?,
+        seed: seed.unwrap_or(0),
+        ..EvaluateRequest::default()
+    };
+    match seed.is_some() && request.uncertainty.is_none() {
+        true => Err(wrong("seed", "goes with uncertainty")),
+        false => Ok(request),
+    }
 }
 
 /// The window of a finger, as JSON.
@@ -78,47 +94,39 @@ pub fn evaluate<'py>(
     settings: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<String> {
     let words = Keywords::new(py, settings)?;
-    let seed = words.take("seed")?;
     let request = EvaluateRequest {
-        setup: words.setup(tasks)?,
         finger: words.finger()?,
-        walk: words.flag("walk")?,
-        uncertainty: words.text("uncertainty")?,
-        seed: seed.unwrap_or(0),
         repeat: words.repeat()?,
-        by_ribs: false,
+        ..windows(&words, tasks)?
     };
     words.finish()?;
-    if seed.is_some() && request.uncertainty.is_none() {
-        return Err(wrong("seed", "goes with uncertainty"));
-    }
     let found = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
     Ok(cli::evaluate::json(&found).to_string())
 }
 
-/// What would help a finger more than its infill, as JSON.
+/// What would help a finger more than its infill, as JSON and as a picture.
 #[pyfunction]
 #[pyo3(signature = (tasks, /, **settings))]
 pub fn levers<'py>(
     py: Python<'py>,
     tasks: Vec<TaskWord>,
     settings: Option<&Bound<'py, PyDict>>,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     let words = Keywords::new(py, settings)?;
     let request = LeversRequest { setup: words.setup(tasks)?, finger: words.finger()? };
     words.finish()?;
     let found = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
-    Ok(report::levers::json(&found).to_string())
+    Ok((report::levers::json(&found).to_string(), report::levers::svg(&found)))
 }
 
-/// What logs say of their cell, as JSON.
+/// What logs say of their cell, as JSON and as a page.
 #[pyfunction]
 #[pyo3(signature = (tasks, /, **settings))]
 pub fn identify<'py>(
     py: Python<'py>,
     tasks: Vec<TaskWord>,
     settings: Option<&Bound<'py, PyDict>>,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     let words = Keywords::new(py, settings)?;
     let request = IdentifyRequest {
         setup: words.setup(tasks)?,
@@ -131,17 +139,18 @@ pub fn identify<'py>(
     };
     words.finish()?;
     let done = interruptible(py, |stop| request.run(stop))?.map_err(raise)?;
-    Ok(report::identify::json(&done).to_string())
+    Ok((report::identify::json(&done).to_string(), report::identify::html(&done)))
 }
 
-/// JSON of the trial, and by name the columns of its course: little-endian float64.
+/// JSON of the trial, by name the columns of its course: little-endian float64, and the page that
+/// plays it if `film` is true.
 #[pyfunction]
 #[pyo3(signature = (tasks, /, **settings))]
 pub fn trial<'py>(
     py: Python<'py>,
     tasks: Vec<TaskWord>,
     settings: Option<&Bound<'py, PyDict>>,
-) -> PyResult<(String, Bound<'py, PyDict>)> {
+) -> PyResult<(String, Bound<'py, PyDict>, Option<String>)> {
     let words = Keywords::new(py, settings)?;
     let request = TrialRequest {
         setup: words.setup(tasks)?,
@@ -168,7 +177,7 @@ pub fn trial<'py>(
     column("tilt_deg", &|sample| vec![sample.tilt_deg])?;
     column("force_n", &|sample| sample.force_n.to_vec())?;
     column("slip_mm", &|sample| vec![sample.slip_mm])?;
-    Ok((cli::trial::json(&done).to_string(), columns))
+    Ok((cli::trial::json(&done).to_string(), columns, done.page))
 }
 
 /// The capture map of a finger, as JSON and as a picture.
@@ -192,33 +201,40 @@ pub fn capture_map<'py>(
     Ok((cli::map::json(&chosen, &map).to_string(), picture))
 }
 
-/// How well the stiffness model fits, as JSON.
+/// How well the stiffness model fits, as JSON and as a picture.
 #[pyfunction]
-#[pyo3(signature = (*, stiffness_data=None))]
-pub fn stiffness(py: Python<'_>, stiffness_data: Option<Name>) -> PyResult<String> {
-    let request = stiffness_request(stiffness_data);
+#[pyo3(signature = (*, stiffness_data=None, finger=None))]
+pub fn stiffness(
+    py: Python<'_>,
+    stiffness_data: Option<Name>,
+    finger: Option<Name>,
+) -> PyResult<(String, String)> {
+    let request = stiffness_request(stiffness_data, finger);
     let model = released(py, || request.model())?.map_err(raise)?;
-    Ok(report::stiffness::json(&model).to_string())
+    let picture = report::stiffness::svg(&model).map_err(|error| raise(error.into()))?;
+    Ok((report::stiffness::json(&model).to_string(), picture))
 }
 
 /// The stiffness predicted for an infill, density in percent and direction in degrees, as JSON.
 #[pyfunction]
-#[pyo3(signature = (density, direction, *, stiffness_data=None))]
+#[pyo3(signature = (density, direction, *, stiffness_data=None, finger=None))]
 pub fn predict(
     py: Python<'_>,
     density: f64,
     direction: f64,
     stiffness_data: Option<Name>,
+    finger: Option<Name>,
 ) -> PyResult<String> {
-    let request = stiffness_request(stiffness_data);
+    let request = stiffness_request(stiffness_data, finger);
     let predicted = released(py, || request.predict(density, direction))?.map_err(raise)?;
     Ok(json!(predicted).to_string())
 }
 
 /// The stiffness model of these measurements, or of the shipped ones.
-fn stiffness_request(stiffness_data: Option<Name>) -> StiffnessRequest {
-    let stiffness_data = stiffness_data.map(|Name(name)| name);
-    StiffnessRequest { stiffness_data, ..StiffnessRequest::default() }
+fn stiffness_request(data: Option<Name>, finger: Option<Name>) -> StiffnessRequest {
+    let usual = StiffnessRequest::default();
+    let finger = finger.map_or(usual.finger, |Name(name)| name);
+    StiffnessRequest { stiffness_data: data.map(|Name(name)| name), finger }
 }
 
 /// The parameters of a space as the first line of `ask-tell` has them, as JSON.

@@ -1,11 +1,13 @@
 //! Studies: read from their folders, and run by whoever measures.
 
-use crate::errors::{InputError, Refused, RunError, raise};
+use crate::errors::{InputError, Refused, StudyError, raise};
 use crate::keywords::{Keywords, TaskWord};
 use crate::measure::{interruptible, released, watched};
 use finger_opt::cli::call;
 use finger_opt::report;
-use finger_opt::session::{self, AnyStudy, NotTaken, Order, POLISH, ResumeRequest, StudyRequest};
+use finger_opt::session::{
+    self, AnyStudy, Failure, NotTaken, Order, POLISH, ResumeRequest, StudyRequest,
+};
 use finger_opt::study::{Ending, SOURCES, StudyRecord, evaluations_csv};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -41,7 +43,12 @@ pub fn perform<'py>(
 ) -> PyResult<Bound<'py, PyBytes>> {
     let work = work.to_vec();
     let done = watched(py, &stop.0, || session::perform(&work, worker, &stop.0))?;
-    Ok(PyBytes::new(py, &done.map_err(raise)?))
+    // Ended by `stop`: nobody pressed Ctrl-C here.
+    let failed = |failure| match failure {
+        Failure::Interrupted(_) => StudyError::new_err(failure.to_string()),
+        failure => raise(failure),
+    };
+    Ok(PyBytes::new(py, &done.map_err(failed)?))
 }
 
 /// SHA-256 of the sources of this build.
@@ -212,7 +219,7 @@ impl Guided {
         what: impl FnOnce(&mut session::Guided) -> T + Send,
     ) -> PyResult<T> {
         let done = released(py, || self.study().as_mut().map(what))?;
-        done.ok_or_else(|| RunError::new_err("the study is closed"))
+        done.ok_or_else(|| StudyError::new_err("the study is closed"))
     }
 }
 
@@ -230,7 +237,7 @@ impl Guided {
         let order = interruptible(py, |stop: &AtomicBool| {
             self.study().as_mut().map(|study| study.order(stop))
         })?;
-        let order = order.ok_or_else(|| RunError::new_err("the study is closed"))?;
+        let order = order.ok_or_else(|| StudyError::new_err("the study is closed"))?;
         Ok(match order.map_err(raise)? {
             Order::Wait => (Vec::new(), None),
             Order::Measure(work) => {
@@ -272,7 +279,7 @@ impl Guided {
         let finish =
             |stop: &AtomicBool| self.study().as_mut().map(|study| study.finish(ending, stop));
         let done = interruptible(py, finish)?;
-        let ended = done.ok_or_else(|| RunError::new_err("the study is closed"))?;
+        let ended = done.ok_or_else(|| StudyError::new_err("the study is closed"))?;
         let ended = ended.map_err(raise)?;
         let unusable = ended.unusable.as_ref().map(ToString::to_string);
         let around = interruptible(py, |stop: &AtomicBool| ended.around(stop))?.map_err(raise)?;

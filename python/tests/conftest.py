@@ -42,11 +42,18 @@ def command():
     return run
 
 
+def there(value):
+    """JSON without what there is not."""
+    if isinstance(value, dict):
+        return {key: there(one) for key, one in value.items() if one is not None}
+    return [there(one) for one in value] if isinstance(value, list) else value
+
+
 @pytest.fixture
 def command_json(command):
     def run(*words: str):
         code, out, errors = command(*words, "--json")
         assert code == 0, errors
-        return json.loads(out)
+        return there(json.loads(out))
 
     return run

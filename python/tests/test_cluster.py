@@ -140,7 +140,7 @@ def test_a_killed_scheduler_stops_the_study_which_goes_on_elsewhere(tmp_path, fa
                 scheduler.kill()
 
             threading.Thread(target=kill, daemon=True).start()
-            with pytest.raises(fo.RunError, match="continue with: optimize resume"):
+            with pytest.raises(fo.StudyError, match="continue with: optimize resume"):
                 study.run(client.get_executor(), progress=False)
     finally:
         for process in (scheduler, worker):

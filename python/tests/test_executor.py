@@ -126,7 +126,7 @@ class Deadly(Processes):
 
 def test_workers_that_are_always_lost_end_the_study(tmp_path, fake):
     study = fo.Study.create("rj45", budget=4, batch=4, out=tmp_path / "study", no_cache=True, **fake)
-    with Deadly(2) as deadly, pytest.raises(fo.RunError, match="(?s)was lost 3 times.*BrokenProcessPool.*resume"):
+    with Deadly(2) as deadly, pytest.raises(fo.StudyError, match="(?s)was lost 3 times.*BrokenProcessPool.*resume"):
         study.run(deadly, progress=False, retries=2)
 
 

@@ -49,7 +49,7 @@ def test_what_would_wait_for_threads_that_are_not_there_is_refused(what, tmp_pat
 if os.fork() == 0:
     try:
         {CALLS[what]}
-    except fo.RunError as error:
+    except fo.StudyError as error:
         print(error, flush=True)
     os._exit(0)
 os.wait()

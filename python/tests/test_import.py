@@ -43,7 +43,7 @@ def test_meshes_are_imported_as_on_the_command_line(meshes, fake, tmp_path, comm
     found, task = imported(fake, tmp_path, *meshes, unit="mm")
     words = ["--plug", str(meshes[0]), "--socket", str(meshes[1]), "--unit", "mm", "--engine", "fake"]
     same = command_json("task", "import", *words, "--out", str(tmp_path / "same.toml"))
-    assert {**found, "out": None} == {**same, "out": None}
+    assert {**found.to_dict(), "out": None} == {**same, "out": None}
     assert found.plug_exact and Path(found.out).exists()
     assert shapes(task) == shapes(fo.Task.from_toml(tmp_path / "same.toml"))
 

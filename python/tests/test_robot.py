@@ -91,7 +91,7 @@ def test_a_robot_that_raises_stops_it_and_what_was_measured_stays(out, error):
         return done
 
     robot = Steps(answer=fails)
-    with pytest.raises((fo.RunError, SystemExit)):
+    with pytest.raises((fo.StudyError, SystemExit)):
         measure_window(robot, out=out, **FINGER)
     kept = [line for line in log_of(out) if "stopped" not in line]
     assert len(kept) == 7 and not out.exists()
@@ -105,7 +105,7 @@ def test_a_robot_that_hangs_stops_it(out):
     robot = Steps(answer=lambda count, done: done if count < 4 else time.sleep(60))
     robot.timeout_s = 0.2
     begun = time.monotonic()
-    with pytest.raises(fo.RunError, match="no answer within 0.2 s"):
+    with pytest.raises(fo.StudyError, match="no answer within 0.2 s"):
         measure_window(robot, out=out, **FINGER)
     assert time.monotonic() - begun < 20
     *kept, last = log_of(out)
@@ -132,18 +132,18 @@ def test_a_lie_is_marked_and_tried_again(out, lie, said):
 
 def test_a_robot_that_keeps_lying_is_stopped(out):
     robot = Steps(answer=lambda count, done: dataclasses.replace(done, depth_mm=0.0) if done.inserted else done)
-    with pytest.raises(fo.RunError, match="3 attempts in a row cannot be"):
+    with pytest.raises(fo.StudyError, match="3 attempts in a row cannot be"):
         measure_window(robot, out=out, **FINGER)
     assert len(log_of(out)) == 4 and not out.exists()
 
 
 def test_what_is_no_attempt_stops_it(out):
-    with pytest.raises(fo.RunError, match="returned True, which is no Attempt"):
+    with pytest.raises(fo.StudyError, match="returned True, which is no Attempt"):
         measure_window(Steps(answer=lambda *_: True), out=out, **FINGER)
 
 
 def test_a_start_that_does_not_insert_is_to_be_taught_anew(out):
-    with pytest.raises(fo.RunError, match="teach another"):
+    with pytest.raises(fo.StudyError, match="teach another"):
         measure_window(Steps(low=1.0), out=out, **FINGER)
     assert not out.exists()
     assert measure_window(Steps(), out=out, **FINGER).settled
@@ -169,7 +169,7 @@ def test_what_could_not_be_written_is_refused_before_the_robot_moves(out, tmp_pa
 
 
 def test_another_search_does_not_go_on_in_the_same_log(out):
-    with pytest.raises(fo.RunError):
+    with pytest.raises(fo.StudyError):
         measure_window(Steps(answer=lambda count, done: done if count < 5 else None), out=out, **FINGER)
     with pytest.raises(fo.InputError, match="was begun with step_mm 0.5, not 0.4"):
         measure_window(Steps(), out=out, step_mm=0.4, **FINGER)
@@ -249,7 +249,7 @@ def test_a_task_of_ones_own(out, command):
 
 
 def test_a_simulated_robot_measures_what_evaluate_finds(out, fake):
-    window = fo.evaluate("usb", 20, 10, **{"task.friction.plug_socket": 0.3}, **fake)
+    window = fo.evaluate("usb", 20, 10, set={"task.friction.plug_socket": 0.3}, **fake)
     cell = {"task.friction.plug_socket": 0.3}
     found = measure_window(SimulatedRobot("usb", 20, 10, cell=cell, **fake), out=out, **FINGER)
     assert abs(found.negative_mm - window.negative_mm) < 0.15

@@ -123,7 +123,7 @@ def test_a_probe_that_cannot_be_is_refused_before_the_robot_moves(out):
 def test_a_probe_that_fails_stops_it_and_is_made_again(out):
     robot = Recording()
     robot.probe = lambda log: None
-    with pytest.raises(fo.RunError, match="^probe: the robot recorded nothing"):
+    with pytest.raises(fo.StudyError, match="^probe: the robot recorded nothing"):
         measure_window(robot, out=out, probe=True, **FINGER)
     assert [list(line) for line in log_of(out)] == [["stopped"]]
     del robot.probe

@@ -16,8 +16,8 @@ from test_study import journal
 #: How long after Ctrl-C a call may still take, s; on a machine that does nothing else 0.2 s.
 SOON_S = 5.0
 #: The way to the socket, or along it, takes a trial half a minute of simulated time.
-APPROACH = "**{'task.strategy.phase.approach.speed_mm_per_s': 0.25}"
-SIDE = "**{'task.strategy.phase.side.speed_mm_per_s': 0.25}"
+APPROACH = "set={'task.strategy.phase.approach.speed_mm_per_s': 0.25}"
+SIDE = "set={'task.strategy.phase.side.speed_mm_per_s': 0.25}"
 
 #: When Ctrl-C comes, where that is not 0.4 s: the longest way there may be takes no longer on a fast machine.
 DELAYS_S = {"insertion": 0.1}
@@ -109,6 +109,6 @@ def test_the_end_of_a_run_ends_what_it_still_performs_and_nothing_else(tmp_path,
     ended, other = Performer(), Performer()
     ended.stop.set()
     with ThreadPoolExecutor(1) as threads:
-        with pytest.raises(fo.RunError, match="interrupted"):
+        with pytest.raises(fo.StudyError, match="interrupted"):
             threads.submit(ended, work).result()
         assert threads.submit(other, work).result()

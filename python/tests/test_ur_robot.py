@@ -69,7 +69,7 @@ def test_a_dry_run_prints_the_program_and_reports_no_attempt(example, capsys, tm
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == ["start", "approach", "touch", "back", "front", "side", "assembly"]
     assert "-0.2005" in lines[0] and "0.020 m/s, until 5 N" in lines[2]
-    with pytest.raises(fo.RunError, match="nothing moved"):
+    with pytest.raises(fo.StudyError, match="nothing moved"):
         measure_window(robot, task="usb", density=20, direction=10, out=tmp_path / "bench.csv")
     assert not (tmp_path / "bench.csv").exists()
 
@@ -146,7 +146,7 @@ def test_a_probe_slides_where_it_met_the_face(example, capsys, tmp_path):
     with pytest.raises(ValueError, match="face: teach a pose"):
         example.URRobot("nowhere", task, taught, surface_m=-0.01).probe(tmp_path / "probe.csv")
     dry = example.URRobot("nowhere", task, taught, surface_m=-0.01, face=face)
-    with pytest.raises(fo.RunError, match="nothing moved"):
+    with pytest.raises(fo.StudyError, match="nothing moved"):
         measure_window(dry, task="usb", density=20, direction=10, out=tmp_path / "bench.csv", probe=True)
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == ["above", "down", *["slide"] * 4, "up"]

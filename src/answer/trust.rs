@@ -140,7 +140,7 @@ fn nearest(mut all: Vec<(Measured, Measurement)>, finger: &Recorded) -> Vec<Meas
             libm::log(found.compliance / finger.compliance.mean),
             libm::log(found.assembly / finger.assembly.mean),
         ];
-        compliance.hypot(assembly)
+        libm::hypot(compliance, assembly)
     };
     all.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     all.into_iter().take(NAMED).map(|(measured, _)| measured).collect()

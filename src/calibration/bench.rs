@@ -1,8 +1,8 @@
 //! The benches of one or several tasks: simulated, measured, and what follows from both.
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
+use ask_tell::normal::StandardNormal;
 use rand::{Rng, RngExt};
-use rand_distr::StandardNormal;
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 

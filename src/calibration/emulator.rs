@@ -4,7 +4,7 @@
 
 use super::simulation::Simulation;
 use ask_tell::SobolSequence;
-use ask_tell::gp::{FitEffort, Gp, fit};
+use ask_tell::gp::{FitEffort, Gp, fit_until};
 use insertion::evaluation::template::Impossible;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{Design, Parameter, Space};
@@ -68,7 +68,13 @@ impl Emulator {
         let dimension = space.parameters.len() + simulation.parameters.len();
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
+        let simulations = count - count / FRESH;
+        let no_fit = || CalibrationError::NoFit(task.to_owned(), simulations);
         let run = |at: Vec<f64>| {
+            if simulation.stop.load(Ordering::SeqCst) {
+                // Worthless: whoever has set it does not look at what follows.
+                return Err(no_fit());
+            }
             let (of_space, shares) = at.split_at(space.parameters.len());
             let value = |(parameter, share): (&Parameter, &f64)| {
                 (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
@@ -87,17 +93,13 @@ impl Emulator {
                 at,
             })
         };
-        let runs = points.into_par_iter().map(run).collect::<Result<Vec<Run>, Impossible>>()?;
-        let simulations = count - count / FRESH;
-        if simulation.stop.load(Ordering::SeqCst) {
-            // Worthless: whoever has set it does not look at what follows.
-            return Err(CalibrationError::NoFit(task.to_owned(), simulations));
-        }
-        Emulator::fitted(runs, simulations)
-            .ok_or_else(|| CalibrationError::NoFit(task.to_owned(), simulations))
+        let runs =
+            points.into_par_iter().map(run).collect::<Result<Vec<Run>, CalibrationError>>()?;
+        let stopped = || simulation.stop.load(Ordering::SeqCst);
+        Emulator::fitted(runs, simulations, &stopped).ok_or_else(no_fit)
     }
 
-    fn fitted(runs: Vec<Run>, simulations: usize) -> Option<Self> {
+    fn fitted(runs: Vec<Run>, simulations: usize, stopped: &dyn Fn() -> bool) -> Option<Self> {
         let (known, fresh) = runs.split_at(simulations.min(runs.len()));
         let n = known.len() as f64;
         let mean_mm = known.iter().map(|run| run.range_mm).sum::<f64>() / n;
@@ -107,7 +109,7 @@ impl Emulator {
         let y: Vec<f64> = known.iter().map(|run| (run.range_mm - mean_mm) / sd_mm).collect();
         let floor = (ROUNDING_MM / sd_mm).powi(2);
         let effort = FitEffort { evaluations: EVALUATIONS, restarts: true };
-        let process = Gp::new(&x, &y, floor, &fit(&x, &y, floor, None, effort))?;
+        let process = Gp::new(&x, &y, floor, &fit_until(&x, &y, floor, None, (effort, stopped)))?;
         let mut emulator = Emulator {
             process,
             mean_mm,
@@ -162,7 +164,7 @@ mod tests {
                 at,
             })
             .collect();
-        let emulator = Emulator::fitted(runs, 52).unwrap();
+        let emulator = Emulator::fitted(runs, 52, &|| false).unwrap();
         assert!(emulator.error_mm < 0.15, "{}", emulator.error_mm);
         let at = [0.3, 0.6, 0.2];
         assert!((emulator.range_mm(&at) - range(&at)).abs() < 0.3);

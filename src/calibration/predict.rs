@@ -2,9 +2,9 @@
 
 use super::bench::Bench;
 use super::process::{Conditioned, Finger, Hyperparameters, TERMS};
+use ask_tell::normal::{StandardNormal, chi_squared};
 use ask_tell::stream::stream;
 use rand::{Rng, RngExt};
-use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use rayon::prelude::*;
 
 /// Share of the truths that an interval is to hold.
@@ -56,7 +56,7 @@ pub fn predict(
                 Of::Truth => 0.0,
                 Of::Measurement => at.hyperparameters.noise,
             };
-            [mean, sd.hypot(noise), finger.simulated].map(|value| value * bench.scale_mm)
+            [mean, libm::hypot(sd, noise), finger.simulated].map(|value| value * bench.scale_mm)
         };
         let parts: Vec<[f64; 3]> = states.iter().map(part).collect();
         let mean =
@@ -183,10 +183,9 @@ impl Departure {
             let normal: f64 = random.sample(StandardNormal);
             sd * normal
         });
-        let chi = ChiSquared::new(FREEDOM).ok();
         let mut wave = || {
             let [a, b]: [f64; 2] = std::array::from_fn(|_| random.sample(StandardNormal));
-            let stretch = chi.map_or(1.0, |chi| chi.sample(random) / FREEDOM).sqrt();
+            let stretch = (chi_squared(FREEDOM, random) / FREEDOM).sqrt();
             let length = hyperparameters.length * stretch;
             [a / length, b / length, random.random::<f64>() * std::f64::consts::TAU]
         };

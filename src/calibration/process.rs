@@ -56,7 +56,7 @@ impl Hyperparameters {
         let at = |i: usize, (median, sd): (f64, f64)| median * libm::exp(sd * z[i]);
         Hyperparameters {
             terms: [OFFSET_SD, SHARE_SD, at(0, TREND), at(1, TREND)],
-            process: at(2, PROCESS).hypot(emulator),
+            process: libm::hypot(at(2, PROCESS), emulator),
             length: at(3, LENGTH),
             noise: at(4, NOISE),
         }
@@ -124,7 +124,7 @@ impl Conditioned {
     pub fn log_likelihood(&self) -> f64 {
         let bound = |(finger, bound): &(Finger, f64)| {
             let (mean, sd) = self.predict(finger);
-            log_normal_cdf((mean - bound) / sd.hypot(self.hyperparameters.noise))
+            log_normal_cdf((mean - bound) / libm::hypot(sd, self.hyperparameters.noise))
         };
         self.process.log_likelihood() + self.bounds.iter().map(bound).sum::<f64>()
     }

@@ -3,10 +3,10 @@
 use super::bench::{Bench, Effort, Observation, Settings, Simulator, sampled, share};
 use super::predict::{Of, Predicted, draws, predict};
 use super::process::{COORDINATES, Place};
+use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use insertion::trial::NEVER;
 use rand::{Rng, RngExt};
-use rand_distr::StandardNormal;
 
 const FINGERS: usize = 20;
 const SCALE_MM: f64 = 5.0;
@@ -75,7 +75,7 @@ fn calibrated(number: u64, discrepancy: f64, noise: f64) -> Outcome {
     let [a, b, c] = [normal(), normal(), 0.5 * normal()].map(|sd| SCALE_MM * discrepancy * sd);
     let all: Vec<usize> = (0..FINGERS).collect();
     let simulated = simulator.ranges_mm(&all, &hidden.map(share));
-    let beside = |[x, y]: &Place| a + b * x + c * (2.0 * y).sin();
+    let beside = |[x, y]: &Place| a + b * x + c * libm::sin(2.0 * y);
     let truth: Vec<f64> = simulated
         .iter()
         .zip(&simulator.places)

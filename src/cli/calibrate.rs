@@ -7,7 +7,8 @@ use crate::session::{CalibrateRequest, Calibrated};
 use crate::study::write_file;
 use clap::Args;
 use insertion::trial::NEVER;
-use std::path::PathBuf;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// Predict what every finger does on the bench, from simulation and few measurements.
 ///
@@ -29,23 +30,31 @@ pub struct Arguments {
     quiet: bool,
 }
 
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let quiet = arguments.quiet || arguments.json;
-    let mut progress = Progress::of_simulations(arguments.request.simulations(), quiet);
-    let see = &mut |event: crate::session::Event<'_>| progress.see(event);
-    let Calibrated { subjects, found } = arguments.request.run(&NEVER, see)?;
-    drop(progress);
-    if let Some(out) = &arguments.out {
+/// Output of `--json`; the tables are written to `out`.
+pub fn written(calibrated: &Calibrated, out: Option<&Path>) -> Result<Value, Failure> {
+    let Calibrated { subjects, found } = calibrated;
+    if let Some(out) = out {
         for (subject, result) in subjects.iter().zip(&found.tasks) {
             let name = format!("predictions_{}.csv", subject.task);
             write_file(&out.join(name), &table::predictions_csv(subject, result))?;
         }
-        write_file(&out.join("leave_one_out.csv"), &table::left_out_csv(&found, &subjects))?;
-        write_file(&out.join("parameters.csv"), &table::parameters_csv(&found))?;
+        write_file(&out.join("leave_one_out.csv"), &table::left_out_csv(found, subjects))?;
+        write_file(&out.join("parameters.csv"), &table::parameters_csv(found))?;
     }
+    Ok(table::json(found, subjects))
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let quiet = arguments.quiet || arguments.json;
+    let mut progress = Progress::of_simulations(arguments.request.simulations(), quiet);
+    let see = &mut |event: crate::session::Event<'_>| progress.see(event);
+    let calibrated = arguments.request.run(&NEVER, see)?;
+    drop(progress);
+    let json = written(&calibrated, arguments.out.as_deref())?;
     if arguments.json {
-        return print_json(&table::json(&found, &subjects));
+        return print_json(&json);
     }
+    let Calibrated { subjects, found } = calibrated;
     let tasks = subjects.iter().zip(&found.tasks);
     let mut text: Vec<String> =
         tasks.map(|(subject, result)| table::text(subject, result)).collect();

@@ -7,11 +7,22 @@ use crate::answer::Answer;
 use crate::session::{AnyStudy, Around, Ended};
 use crate::study::StudyRecord;
 use clap::{Args, Parser};
-use serde_json::Value;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::Path;
 
+pub use super::calibrate::written as calibration;
+pub use super::compare::compared;
+pub use super::export::finger as export_finger;
+pub use super::finger::drawn as finger;
+pub use super::measure::{add, check as measured};
+pub use super::next::json as advice;
+pub use super::robots::json as robots;
 pub use super::study::{Shown, warned};
+pub use super::task::{check as task_check, new as task_new, tune as task_tune};
+pub use super::tasks::listed as shipped;
+pub use crate::calibration::experiments::{COLUMNS, NOT_MEASURABLE};
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]
@@ -74,7 +85,10 @@ pub fn best(record: &StudyRecord) -> Value {
     let recommended = recommended::json(&Answer::of(record))["recommended"].take();
     match (recommended.is_null(), record.front().first()) {
         (true, Some(first)) if record.config.objective.single().is_none() => {
-            summary::recorded_json(record, first)
+            let score = first.score.iter().flat_map(|score| score.values.clone());
+            let objectives = record.config.objective.keys().into_iter().zip(score);
+            let objectives: BTreeMap<_, _> = objectives.collect();
+            json!({"values": first.design, "evaluation": first.index, "objectives": objectives})
         }
         _ => recommended,
     }

@@ -24,10 +24,15 @@ pub struct Arguments {
     json: bool,
 }
 
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+/// The studies of these folders side by side.
+pub fn compared(dirs: &[PathBuf]) -> Result<Comparison, Failure> {
     let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
-    let studies = arguments.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
-    let comparison = compare(&studies).map_err(Failure::usage)?;
+    let studies = dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
+    compare(&studies).map_err(Failure::usage)
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let comparison = compared(&arguments.dirs)?;
     if let Some(file) = &arguments.svg {
         write_file(file, &svg(&comparison)?)?;
     }

@@ -2,7 +2,7 @@
 
 use super::{Failure, print, print_json};
 use crate::answer::lines;
-use crate::session::RibsRequest;
+use crate::session::{Ribs, RibsRequest};
 use crate::study::write_file;
 use clap::Args;
 use finray::picture;
@@ -39,38 +39,37 @@ pub struct Arguments {
 fn load(text: &str) -> Result<[f64; 2], String> {
     let number = |part: &str| part.trim().parse::<f64>().ok();
     let force = text.split_once(',').and_then(|(y, z)| Some([number(y)?, number(z)?]));
-    let fits = |[y, z]: &[f64; 2]| (1e-3..=LARGEST_LOAD_N).contains(&y.hypot(*z));
-    force
-        .filter(fits)
-        .ok_or_else(|| format!("is no force y,z of 0.001 to {LARGEST_LOAD_N} N; as -5,0"))
+    fitting(force.unwrap_or_default())
+}
+
+fn fitting([y, z]: [f64; 2]) -> Result<[f64; 2], String> {
+    match (1e-3..=LARGEST_LOAD_N).contains(&libm::hypot(y, z)) {
+        true => Ok([y, z]),
+        false => Err(format!("is no force y,z of 0.001 to {LARGEST_LOAD_N} N; as -5,0")),
+    }
+}
+
+/// Output of `--json`, and the drawing under this force on the pad, N.
+pub fn drawn(request: &RibsRequest, load_n: [f64; 2]) -> Result<(Value, String), Failure> {
+    let load_n =
+        fitting(load_n).map_err(|problem| Failure::usage(format!("--load-n {problem}")))?;
+    let found = request.run()?;
+    let drawing = picture::svg(&found.0, load_n).map_err(Failure::input)?;
+    Ok((found_json(&found), drawing))
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (geometry, computed, measured) = arguments.request.run()?;
+    let found = arguments.request.run()?;
+    let (geometry, computed, measured) = &found;
     if let Some(file) = &arguments.svg {
-        write_file(file, &picture::svg(&geometry, arguments.load_n).map_err(Failure::input)?)?;
+        write_file(file, &picture::svg(geometry, arguments.load_n).map_err(Failure::input)?)?;
     }
     let (finger, design) = (&geometry.finger, &geometry.design);
     let phase_mm = design.phase_mm.unwrap_or(finger.ribs.phase / MM);
     let (area_mm2, mass_g) = (geometry.area() / (MM * MM), geometry.mass() / GRAM);
     let (depth, cross) = (computed.cross.in_depth / N_PER_MM, &computed.cross);
     if arguments.json {
-        return print_json(&json!({
-            "finger": finger.name,
-            "infill_density_percent": design.density_percent,
-            "infill_direction_deg": design.direction_deg,
-            "phase_mm": phase_mm,
-            "area_mm2": area_mm2,
-            "mass_g": mass_g,
-            "measured_model": measured,
-            "pad": planar_json(&computed.pad),
-            "pad_and_roof": planar_json(&computed.pad_and_roof),
-            "across": {
-                "depth_n_per_mm": depth,
-                "about_y_nm_per_rad": cross.about_y,
-                "about_z_nm_per_rad": cross.about_z,
-            },
-        }));
+        return print_json(&found_json(&found));
     }
     let model = measured.as_ref().map(|prediction| lines::stiffness(prediction)[0].1.clone());
     let model = model.unwrap_or_else(|| "no measured model of it".to_owned());
@@ -94,6 +93,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         cross.about_y,
         cross.about_z,
     ))
+}
+
+fn found_json((geometry, computed, measured): &Ribs) -> Value {
+    let (finger, design, cross) = (&geometry.finger, &geometry.design, &computed.cross);
+    json!({
+        "finger": finger.name,
+        "infill_density_percent": design.density_percent,
+        "infill_direction_deg": design.direction_deg,
+        "phase_mm": design.phase_mm.unwrap_or(finger.ribs.phase / MM),
+        "area_mm2": geometry.area() / (MM * MM),
+        "mass_g": geometry.mass() / GRAM,
+        "measured_model": measured,
+        "pad": planar_json(&computed.pad),
+        "pad_and_roof": planar_json(&computed.pad_and_roof),
+        "across": {
+            "depth_n_per_mm": cross.in_depth / N_PER_MM,
+            "about_y_nm_per_rad": cross.about_y,
+            "about_z_nm_per_rad": cross.about_z,
+        },
+    })
 }
 
 fn planar_json(found: &PlanarStiffness) -> Value {

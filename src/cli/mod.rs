@@ -31,7 +31,7 @@ pub mod trial;
 mod words;
 
 use crate::session::Failure;
-pub use manual::reference;
+pub use manual::{commands, reference};
 pub use task::import::json as imported_json;
 use terminal::{print, print_json, say};
 
@@ -50,6 +50,7 @@ use std::process::ExitCode;
 #[command(
     name = "optimize",
     version,
+    long_version = env!("FINGER_OPT_VERSION"),
     subcommand_negates_reqs = true,
     arg_required_else_help = true,
     args_conflicts_with_subcommands = true,

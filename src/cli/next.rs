@@ -30,12 +30,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = request.run(&NEVER, &mut |event| progress.see(event))?;
     drop(progress);
     if *json {
-        return print_json(&to_json(&found));
+        return print_json(&self::json(&found));
     }
     print(&text(&found, request))
 }
 
-fn to_json(Advised { subject, advice, missing }: &Advised) -> Value {
+/// Output of `--json`.
+pub fn json(Advised { subject, advice, missing }: &Advised) -> Value {
     let next = advice.next.iter().map(|print| {
         let mut fields = design_json(&subject.designs[print.finger]);
         fields.insert("expected_mm".into(), json!(print.expected_mm));

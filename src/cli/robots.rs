@@ -4,7 +4,7 @@ use super::words::{lines, wrapped};
 use super::{Failure, print, print_json};
 use crate::session::{ForCell, robots};
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// List robots by the cells that they stand for, and write one's own
 #[derive(Debug, Args)]
@@ -20,7 +20,7 @@ const OWN: &str = include_str!("robot.toml");
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let robots = robots()?;
     if arguments.json {
-        return print_json(&json!({ "robots": robots, "own_file": OWN }));
+        return print_json(&self::json(&robots));
     }
     let list: String = robots.iter().map(text).collect();
     print(&format!(
@@ -30,6 +30,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
          damping_nms_per_rad / stiffness_nm_per_rad, as robots/ur5e_position.toml says.\n",
         wrapped(&list)
     ))
+}
+
+/// Output of `--json`.
+pub fn json(robots: &[ForCell]) -> Value {
+    json!({ "robots": robots, "own_file": OWN })
 }
 
 fn text(found: &ForCell) -> String {

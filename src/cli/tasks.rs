@@ -3,7 +3,7 @@
 use super::{Failure, print, print_json};
 use clap::Args;
 use input::shipped::{SPACES, TASKS, UNCERTAINTIES};
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// List what is shipped.
 #[derive(Debug, Args)]
@@ -14,6 +14,12 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (json, text) = listed()?;
+    if arguments.json { print_json(&json) } else { print(&text) }
+}
+
+/// Output of `--json`, and without.
+pub fn listed() -> Result<(Value, String), Failure> {
     let mut text = String::new();
     let mut lists = serde_json::Map::new();
     for (kind, files) in [("tasks", TASKS), ("spaces", SPACES), ("uncertainties", UNCERTAINTIES)] {
@@ -28,5 +34,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         lists.insert(kind.to_owned(), list.into());
     }
-    if arguments.json { print_json(&lists.into()) } else { print(&text) }
+    Ok((lists.into(), text))
 }

@@ -193,8 +193,9 @@ mod tests {
     #[test]
     fn clipping_again_and_again_does_not_multiply_corners() {
         let ring = (0..64).map(|i| f64::from(i) * std::f64::consts::TAU / 64.0);
-        let ends =
-            ring.flat_map(|a| [-5.0, 5.0].map(|z| Point3::new(9.0 * a.cos(), 9.0 * a.sin(), z)));
+        let ends = ring.flat_map(|a| {
+            [-5.0, 5.0].map(|z| Point3::new(9.0 * libm::cos(a), 9.0 * libm::sin(a), z))
+        });
         let mut body: Vec<_> = ends.collect();
         for axis in [2, 0, 1, 0] {
             body = clipped(&body, axis, [-4.0, 3.0]);

@@ -2,6 +2,7 @@
 
 use super::plan::{self, PlanError};
 use input::units::MM;
+use input::{Place, Placed};
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
 use insertion::task::{
@@ -101,6 +102,15 @@ pub enum DraftError {
     /// No strategy can be derived.
     #[error(transparent)]
     Plan(#[from] PlanError),
+}
+
+impl Placed for DraftError {
+    fn place(&self) -> Place {
+        match self {
+            DraftError::TooShort(option, ..) => Place::option(option),
+            DraftError::Plan(_) => Place::default(),
+        }
+    }
 }
 
 /// Task without shapes: friction, grasp force and fingers as in the shipped tasks, or as in `like`.
@@ -263,7 +273,7 @@ mod tests {
             let (diameter, clearance) = (diameter_mm * MM, clearance_mm * MM);
             let hole = Hole::new(diameter, clearance);
             let radius = (diameter + clearance) / 2.0;
-            let corner = hole.flat / (PI / f64::from(hole.flats)).cos();
+            let corner = hole.flat / libm::cos(PI / f64::from(hole.flats));
             assert!((radius - hole.flat - hole.off).abs() < 1e-12);
             assert!((corner - radius - hole.off).abs() < 1e-12);
             assert!(hole.flats == FLATS[1] || 2.0 * hole.off <= OFF * clearance);

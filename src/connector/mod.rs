@@ -6,7 +6,7 @@ pub mod draft;
 pub(crate) mod hold;
 pub mod mesh;
 pub mod nominal;
-pub(crate) mod picture;
+pub mod picture;
 pub(crate) mod plan;
 pub(crate) mod rewrite;
 pub(crate) mod seat;

@@ -52,6 +52,7 @@ struct Drawing<'a> {
     tip: [[f64; 2]; 2],
 }
 
+/// The task drawn, as SVG.
 pub fn svg(task: &Task) -> String {
     let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
     let way = seat::waypoints(task, &plug);

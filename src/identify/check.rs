@@ -254,7 +254,7 @@ fn slope(
 /// Phases that the outcome asks for.
 fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     let log = remarks.log;
-    let depth = |moment: &Moment| task.grip.tcp_z * moment.tilt.cos() - moment.position.z;
+    let depth = |moment: &Moment| task.grip.tcp_z * libm::cos(moment.tilt) - moment.position.z;
     let deepest = log.moments.iter().map(depth).fold(f64::MIN, f64::max);
     let last = log.moments.len() - 1;
     if run.ended == Ended::Inserted && deepest < 0.5 * task.success.depth {

@@ -197,7 +197,7 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
     let both = angle(&forth).zip(angle(&back));
     let coefficient = both.map(|(a, b)| {
         let mean = libm::tan(0.5 * (a.mean + b.mean));
-        let sd = 0.5 * a.sd.hypot(b.sd);
+        let sd = 0.5 * libm::hypot(a.sd, b.sd);
         Estimate { mean, sd: sd.max(FRICTION_FLOOR * mean) }
     });
     let slides = [forth, back].concat();

@@ -1,6 +1,7 @@
 //! The log of one attempt: commanded and measured TCP, and the force on the tool.
 
 use input::units::{DEG, MM};
+use input::{Fault, Place};
 use insertion::outcome::FailureClass;
 use insertion::space::Design;
 use insertion::trial::Sample;
@@ -80,25 +81,14 @@ pub struct Run {
     pub line: usize,
 }
 
-/// Error of a log that cannot be used.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum LogError {
-    /// The file, and what is wrong with all of it and what would be right.
-    #[error("{0}: {1}")]
-    Whole(String, String),
-    /// The same of one of its lines.
-    #[error("{0}: line {1}: {2}")]
-    Line(String, usize, String),
-}
-
 impl Log {
     /// Checks the moments of a log; `file` is named in errors.
     ///
     /// # Errors
     /// If there are too few or too many, a number is not finite, time does not increase, or some
     /// moments have a target and others none.
-    pub fn new(file: &str, moments: Vec<Moment>) -> Result<Self, LogError> {
-        let whole = |problem: String| Err(LogError::Whole(file.to_owned(), problem));
+    pub fn new(file: &str, moments: Vec<Moment>) -> Result<Self, Fault> {
+        let whole = |problem: String| Err(Place::file(file).fault(problem));
         if !(FEWEST..=MOST).contains(&moments.len()) {
             let count = moments.len();
             return whole(format!("has {count} moments; it must have {FEWEST} to {MOST}"));
@@ -117,7 +107,7 @@ impl Log {
                 _ => None,
             };
             if let Some(problem) = wrong {
-                return Err(LogError::Line(file.to_owned(), moment.line, problem));
+                return Err(Place::file(file).line(moment.line).fault(problem));
             }
         }
         let lasts = moments[moments.len() - 1].time_s - moments[0].time_s;
@@ -168,7 +158,7 @@ impl Moment {
 ///
 /// # Errors
 /// As of [`Log::new`]: if the attempt ended before there was much to write.
-pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, LogError> {
+pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, Fault> {
     let start = samples.first().map_or(0.0, |sample| sample.time_s);
     let moment = |(i, sample): (usize, &Sample)| Moment {
         line: i + 2,

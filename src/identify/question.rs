@@ -17,7 +17,7 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Scale;
 use insertion::surrogate::Estimate;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Ten members to each unknown; four rounds; neighbours over 0.1 s err together.
 pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, alike: 10.0, seed: 0 };
@@ -224,7 +224,12 @@ impl Question<'_> {
             let mean = (n > 0.0).then(|| said.iter().map(|one| one.mean).sum::<f64>() / n)?;
             let scatter = said.iter().map(|one| (one.mean - mean).powi(2)).sum::<f64>() / n;
             let sd = said.iter().map(|one| one.sd).sum::<f64>() / n;
-            return Some(with(prior, mean, sd.hypot(scatter.sqrt()), "probe: slides both ways"));
+            return Some(with(
+                prior,
+                mean,
+                libm::hypot(sd, scatter.sqrt()),
+                "probe: slides both ways",
+            ));
         }
         None
     }
@@ -237,6 +242,10 @@ impl Question<'_> {
     ) -> Result<Smoothed, Impossible> {
         let data: Vec<Datum> = attempts.iter().flat_map(Logged::data).collect();
         let predict = |z: &[f64]| -> Result<Predicted, Impossible> {
+            if self.stop.load(Ordering::SeqCst) {
+                // Whoever has set it does not look at what comes of this.
+                return Ok(vec![None; data.len()]);
+            }
             let replayed = replay.curves(attempts, &values(rows, z))?;
             let each = attempts.iter().zip(&replayed);
             Ok(each.flat_map(|(logged, (curves, _))| logged.predicted(curves)).collect())

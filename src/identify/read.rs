@@ -1,10 +1,10 @@
 //! Logs from text: `t_s,x_mm,..` in the task's frame, or what an RTDE recorder writes in the base's.
 
 use super::frame::Frame;
-use super::log::{COLUMNS, Log, LogError, MOST, Moment, TARGETS, Target};
+use super::log::{COLUMNS, Log, MOST, Moment, TARGETS, Target};
 use input::files;
-use input::shown;
 use input::units::{DEG, MM};
+use input::{Fault, Place, shown};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -24,10 +24,10 @@ const SLOWEST_S: f64 = 0.5;
 ///
 /// # Errors
 /// If it cannot be read, is longer than [`LARGEST_LOG`], or [`parse`] refuses it.
-pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Log, LogError> {
+pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Log, Fault> {
     let file = path.display().to_string();
     let text = files::read_named(path, LARGEST_LOG)
-        .map_err(|error| LogError::Whole(file.clone(), format!("cannot be read: {error}")))?;
+        .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
     parse(&text, &file, frame)
 }
 
@@ -36,14 +36,14 @@ pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Log, LogError> {
 /// # Errors
 /// If it has no known header, a cell cannot be used or looks like one in another unit, or
 /// [`Log::new`] refuses it.
-pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, LogError> {
-    let whole = |problem: String| LogError::Whole(file.to_owned(), problem);
+pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Fault> {
+    let whole = |problem: String| Place::file(file).fault(problem);
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     let bare = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('#');
     let (at, header) = lines
         .find(|(_, line)| !bare(line))
         .ok_or_else(|| whole(format!("is empty; a log begins with {}", COLUMNS.join(","))))?;
-    let fault = |at: usize, problem| LogError::Line(file.to_owned(), at + 1, problem);
+    let fault = |at: usize, problem: String| Place::file(file).line(at + 1).fault(problem);
     let table = Table::new(header, frame).map_err(|problem| fault(at, problem))?;
     let mut moments: Vec<Moment> = Vec::new();
     for (at, line) in lines.filter(|(_, line)| !bare(line)) {

@@ -100,10 +100,10 @@ impl Logged {
         let off = off(&self.curves);
         let datum = |bin: Range<usize>| {
             let force = mean(&self.curves.force, &bin);
-            let sd = FORCE_N.hypot(FORCE_SHARE * force.norm());
+            let sd = libm::hypot(FORCE_N, FORCE_SHARE * force.norm());
             let forces = force.iter().map(|&value| Datum { value, sd }).collect::<Vec<_>>();
             let poses = off.iter().map(|off| mean(off, &bin)).flat_map(|off| {
-                let sd = POSE.hypot(POSE_SHARE * off.norm());
+                let sd = libm::hypot(POSE, POSE_SHARE * off.norm());
                 [0, 1, 2].map(|i| Datum { value: off[i], sd })
             });
             forces.into_iter().chain(poses).collect::<Vec<_>>()

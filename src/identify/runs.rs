@@ -1,10 +1,11 @@
 //! `runs.csv`: a line for each log, with the finger, the offset and how it ended.
 
 use super::frame::Frame;
-use super::log::{Ended, Log, LogError, Run};
+use super::log::{Ended, Log, Run};
 use super::read;
 use crate::calibration::experiments::line::{Cells, failure, length};
 use crate::calibration::experiments::{Columns, Problems, problem, rows};
+use input::Place;
 use input::files::{self, LARGEST_INPUT};
 use input::units::MM;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
@@ -15,20 +16,6 @@ pub const COLUMNS: [&str; 7] =
     ["log", DENSITY_KEY, DIRECTION_KEY, "offset_mm", "outcome", "date", "note"];
 /// Most moments of all logs together, 0.2 GB.
 const MOST: usize = 2_000_000;
-
-/// Error of a table of runs, or of one of its logs.
-#[derive(Debug, thiserror::Error)]
-pub enum RunsError {
-    /// The table, and why it cannot be read.
-    #[error("{0}: cannot be read: {1}")]
-    Unreadable(String, std::io::Error),
-    /// What is wrong with it, a line each.
-    #[error(transparent)]
-    Table(#[from] Problems),
-    /// A log of it.
-    #[error(transparent)]
-    Log(#[from] LogError),
-}
 
 /// A line of the table.
 struct Row {
@@ -73,15 +60,15 @@ fn ended(text: &str) -> Result<Ended, String> {
 ///
 /// # Errors
 /// If the table cannot be read or used, has no attempt, or a log cannot be used.
-pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Vec<Run>, RunsError> {
+pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Vec<Run>, Problems> {
     let file = path.display().to_string();
     let text = files::read_named(path, LARGEST_INPUT)
-        .map_err(|error| RunsError::Unreadable(file.clone(), error))?;
+        .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
     let why = "a line says of a log which finger it is of, where it started and how it ended";
     let table = rows(&text, &file, &Columns { all: &COLUMNS, needed: 5, why }, row)?;
     if table.iter().all(|row| row.ended == Ended::Probe) {
         let words = "has no attempt; give one line at least whose outcome is `inserted` or a class";
-        return Err(Problems::of(&file, vec![words.to_owned()]).into());
+        return Err(Place::file(file).fault(words).into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut runs, mut moments) = (Vec::new(), 0);
@@ -91,7 +78,7 @@ pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Vec<Run>, RunsError> {
         if moments > MOST {
             let words =
                 format!("the logs to here have over {MOST} moments; cut them to the attempts");
-            return Err(Problems::of(&file, vec![problem(line, "log", &words)]).into());
+            return Err(Problems::of(&file, vec![problem(line, "log", &words)]));
         }
         runs.push(Run { log, design, offset: offset_mm * MM, ended, line: line as usize });
     }

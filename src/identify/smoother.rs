@@ -5,10 +5,10 @@
 //! the data on the unknowns; what the line leaves over counts as an error of the data. So members that
 //! happen to fit do not make the spread collapse.
 
+use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
-use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
 /// Coordinates of the unknowns, standard normal before any data.

@@ -4,6 +4,7 @@ use super::frame::Frame;
 use super::log::{Ended, Log, Moment, Run, Target};
 use super::touch::{bias, touch};
 use super::{read, runs};
+use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use input::shipped::{ROBOTS, TASKS};
 use input::units::{DEG, MM, N_PER_MM};
@@ -15,7 +16,6 @@ use insertion::trial::engine::EngineKind;
 use insertion::trial::{Course, Grasp};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::RngExt;
-use rand_distr::StandardNormal;
 
 fn usb() -> Task {
     let file = TASKS.iter().find(|task| task.name == "usb").unwrap();

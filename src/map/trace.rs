@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn a_disc_and_a_slanted_strip_are_traced_to_the_last_place() {
-        let disc = |y: f64, x: f64| match (y - 1.0).hypot(x) < 3.0 {
+        let disc = |y: f64, x: f64| match libm::hypot(y - 1.0, x) < 3.0 {
             false if y > 2.0 => Failed(PlugMissed),
             inserts => inserted(inserts),
         };
@@ -297,8 +297,8 @@ mod tests {
     #[test]
     fn islands_are_found_by_probes_and_followed() {
         let islands = |y: f64, x: f64| {
-            let hole = (y - 2.5).hypot(x - 0.5) < 0.9;
-            let island = (y + 6.0).hypot(x + 1.5) < 0.8;
+            let hole = libm::hypot(y - 2.5, x - 0.5) < 0.9;
+            let island = libm::hypot(y + 6.0, x + 1.5) < 0.8;
             inserted((y.abs() < 5.0 && x.abs() < 2.2 && !hole) || island)
         };
         let (places, _, step, wrong) = traced(&islands);
@@ -312,7 +312,7 @@ mod tests {
         let (places, trials, ..) = traced(&|_, _| Failed(PlugMissed));
         assert_eq!((places, trials), (17 * 9, 15 + PROBES));
         let (_, trials, step, _) =
-            traced(&|y, x| inserted((3.1 * y).sin() + (2.7 * x).cos() > 0.2));
+            traced(&|y, x| inserted(libm::sin(3.1 * y) + libm::cos(2.7 * x) > 0.2));
         assert!(trials == MOST_TRIALS && step > 1, "{trials}, {step}");
     }
 }

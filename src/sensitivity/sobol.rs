@@ -108,7 +108,7 @@ mod tests {
         let (a, b) = (7.0, 0.1);
         let found = indices(3, 4096, |u| {
             let x: Vec<f64> = u.iter().map(|u| PI * (2.0 * u - 1.0)).collect();
-            x[0].sin() + a * x[1].sin().powi(2) + b * x[2].powi(4) * x[0].sin()
+            libm::sin(x[0]) + a * libm::sin(x[1]).powi(2) + b * x[2].powi(4) * libm::sin(x[0])
         });
         let v1 = 0.5 * (1.0 + b * PI.powi(4) / 5.0).powi(2);
         let v2 = a * a / 8.0;

@@ -59,13 +59,9 @@ impl EvaluateRequest {
     /// Measures the finger.
     pub fn run(&self, stop: &AtomicBool) -> Result<Evaluated, Failure> {
         self.repeat.map_or(Ok(()), RepeatRequest::check)?;
-        let mut setup = self.setup.setup()?;
-        if let Some(name) = &self.uncertainty {
-            setup = setup.under_named(name)?;
-        }
+        let (setup, plan) = self.prepared()?;
         let chosen = self.finger.choose(&setup)?;
         let clock = Instant::now();
-        let plan = setup.plan(self.seed, |_| setup.uncertainty.is_some())?;
         let evaluation = setup.evaluator.measure(&chosen.specimen, self.search(), &plan, stop);
         let evaluation = evaluation.map_err(Failure::input)?;
         not_stopped(stop)?;
@@ -81,7 +77,17 @@ impl EvaluateRequest {
         Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s })
     }
 
-    fn search(&self) -> Search {
+    /// All that is needed beside the finger.
+    pub(super) fn prepared(&self) -> Result<(Setup, Plan), Failure> {
+        let mut setup = self.setup.setup()?;
+        if let Some(name) = &self.uncertainty {
+            setup = setup.under_named(name)?;
+        }
+        let plan = setup.plan(self.seed, |_| setup.uncertainty.is_some())?;
+        Ok((setup, plan))
+    }
+
+    pub(super) fn search(&self) -> Search {
         if self.walk { Search::Walk } else { Search::Strides }
     }
 

@@ -1,7 +1,16 @@
 //! Why a request failed, and the exit code that says so.
 
+use crate::calibration::experiments::Problems;
+use crate::connector::draft::DraftError;
+use crate::connector::mesh::MeshError;
 use crate::report::ReportError;
 use crate::study::StudyError;
+use finray::FingerError;
+use input::shipped::ShippedError;
+use input::{Fault, InputError, Place, Placed};
+use insertion::evaluation::template::Impossible;
+use insertion::stiffness::SurrogateError;
+use std::error::Error;
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,17 +21,61 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub enum Failure {
     /// Bad usage or a bad input file: exit code 2.
     Input(anyhow::Error),
-    /// Something failed, or was interrupted, while running: exit code 1.
+    /// A bad task file, or a task that is none: exit code 2.
+    Task(anyhow::Error),
+    /// Something failed while running: exit code 1.
     Run(anyhow::Error),
+    /// It was asked to stop, and did; how to go on, if it can: exit code 1.
+    Interrupted(Option<String>),
 }
+
+/// Bad usage, described; it may begin with the option.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct Usage(String);
+
+impl Placed for Usage {
+    fn place(&self) -> Place {
+        Place::option(&self.0)
+    }
+}
+
+fn place<E: Placed + Error + 'static>(error: &(dyn Error + 'static)) -> Option<Place> {
+    error.downcast_ref::<E>().map(Placed::place)
+}
+
+/// The errors that know their place.
+const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 11] = [
+    place::<Usage>,
+    place::<Fault>,
+    place::<InputError>,
+    place::<ShippedError>,
+    place::<Problems>,
+    place::<SurrogateError>,
+    place::<FingerError>,
+    place::<Impossible>,
+    place::<DraftError>,
+    place::<MeshError>,
+    place::<StudyError>,
+];
 
 impl Failure {
     /// The process's exit code.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Failure::Run(_) => 1,
-            Failure::Input(_) => 2,
+            Failure::Run(_) | Failure::Interrupted(_) => 1,
+            Failure::Input(_) | Failure::Task(_) => 2,
         }
+    }
+
+    /// Where an input is wrong, as far as it is known.
+    pub fn place(&self) -> Place {
+        let error = match self {
+            Failure::Input(error) | Failure::Task(error) | Failure::Run(error) => error,
+            Failure::Interrupted(_) => return Place::default(),
+        };
+        let of = |error| PLACED.iter().find_map(|place| place(error));
+        error.chain().find_map(of).unwrap_or_default()
     }
 
     /// Bad input, for `map_err`.
@@ -32,7 +85,17 @@ impl Failure {
 
     /// Bad input, described.
     pub fn usage(message: impl Into<String>) -> Self {
-        Failure::Input(anyhow::Error::msg(message.into()))
+        Failure::input(Usage(message.into()))
+    }
+
+    /// Bad input in a file, described.
+    pub fn in_file(file: impl fmt::Display, problem: impl fmt::Display) -> Self {
+        Failure::input(Place::file(file.to_string()).fault(problem.to_string()))
+    }
+
+    /// A bad task file, for `map_err`.
+    pub fn task(error: impl Into<anyhow::Error>) -> Self {
+        Failure::Task(error.into())
     }
 
     /// Failed while running, described.
@@ -47,7 +110,7 @@ impl Failure {
 /// That it was interrupted, if `stop` is set: what was computed meanwhile is worthless.
 pub(super) fn not_stopped(stop: &AtomicBool) -> Result<(), Failure> {
     match stop.load(Ordering::SeqCst) {
-        true => Err(Failure::running("interrupted")),
+        true => Err(Failure::Interrupted(None)),
         false => Ok(()),
     }
 }
@@ -91,7 +154,11 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             // The errors' own texts already hold their causes, so not `{error:#}`.
-            Failure::Input(error) | Failure::Run(error) => f.write_str(&short(&error.to_string())),
+            Failure::Input(error) | Failure::Task(error) | Failure::Run(error) => {
+                f.write_str(&short(&error.to_string()))
+            }
+            Failure::Interrupted(None) => f.write_str("interrupted"),
+            Failure::Interrupted(Some(hint)) => write!(f, "interrupted; {hint}"),
         }
     }
 }

@@ -11,6 +11,7 @@ use insertion::stiffness;
 use insertion::stiffness::SurrogateError;
 use insertion::surrogate::{self, Model};
 use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A finger file, read once: of fingers that are computed.
 pub(super) struct Fingers {
@@ -58,11 +59,11 @@ pub fn stiffness_data(path: Option<&str>, finger: &PrintedFinger) -> Result<Sour
                 find(&beside.join(named).to_string_lossy())
             }
         },
-        (None, None) => Err(Failure::usage(format!(
-            "{}: no `measured` names a table of its measured fingers; give one there or by \
+        (None, None) => Err(Failure::in_file(
+            &finger.file,
+            "no `measured` names a table of its measured fingers; give one there or by \
              --stiffness-data: one finger is enough",
-            finger.file
-        ))),
+        )),
     }
 }
 
@@ -83,11 +84,26 @@ pub fn printed_finger(name: &str) -> Result<PrintedFinger, Failure> {
     PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
+/// A model and what it was fitted to.
+type Fit = (Source, PrintedFinger, Arc<Model>);
+
+/// The last fit, which the next evaluation mostly needs again.
+static LAST: Mutex<Option<Fit>> = Mutex::new(None);
+
 /// Fits the stiffness model to a CSV of measurements of such fingers.
-pub fn surrogate(data: &Source, finger: &PrintedFinger) -> Result<Model, Failure> {
+pub fn surrogate(data: &Source, finger: &PrintedFinger) -> Result<Arc<Model>, Failure> {
+    let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((known, of, model)) = &*last()
+        && (known, of) == (data, finger)
+    {
+        return Ok(Arc::clone(model));
+    }
     let measurements = stiffness::parse(&data.text, &data.file).map_err(Failure::input)?;
-    surrogate::fit(&measurements, finger).map_err(|error| match error {
+    let model = surrogate::fit(&measurements, finger).map_err(|error| match error {
         SurrogateError::Finger(error) => Failure::input(error),
-        error => Failure::usage(format!("{}: {error}", data.file)),
-    })
+        error => Failure::in_file(&data.file, error),
+    })?;
+    let model = Arc::new(model);
+    *last() = Some((data.clone(), finger.clone(), Arc::clone(&model)));
+    Ok(model)
 }

@@ -25,6 +25,9 @@ pub struct FilmRequest {
     /// Draw force against depth
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+    /// Keep the page that plays it.
+    #[arg(skip)]
+    pub page: bool,
 }
 
 impl FilmRequest {
@@ -34,15 +37,16 @@ impl FilmRequest {
         self.record.as_deref().map_or(Ok(()), problem)
     }
 
-    /// Records the trial at this offset and writes what was asked for; `None` if nothing was.
+    /// Records the trial at this offset and writes what was asked for; `None` if nothing was. The page
+    /// is there if it is to be kept.
     pub(super) fn record(
         &self,
         rig: &dyn Rig,
         specimen: &Specimen,
         offset_mm: f64,
         stop: &AtomicBool,
-    ) -> Result<Option<Recording>, Failure> {
-        if self.record.is_none() && self.plot.is_none() {
+    ) -> Result<Option<(Recording, Option<String>)>, Failure> {
+        if self.record.is_none() && self.plot.is_none() && !self.page {
             return Ok(None);
         }
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
@@ -52,17 +56,19 @@ impl FilmRequest {
         not_stopped(stop)?;
         let label = shifted(offset_mm);
         let film = film(&label, specimen, &recording);
+        let page = || replay::page(&format!("{}, {label}", specimen.task.name), &[film]);
         if let Some(file) = &self.record {
             let content = match extension(file).as_deref() {
                 Some("csv") => replay::csv(&recording),
-                _ => replay::page(&format!("{}, {label}", specimen.task.name), &[film]),
+                _ => page(),
             };
             write_file(file, &content)?;
         }
         if let Some(file) = &self.plot {
             write_file(file, &replay::curve_svg(&film)?)?;
         }
-        Ok(Some(recording))
+        let page = self.page.then(page);
+        Ok(Some((recording, page)))
     }
 
     pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {

@@ -1,6 +1,6 @@
 //! A task from meshes of a plug and its socket.
 
-use super::failure::not_stopped;
+use super::failure::{not_stopped, within};
 use super::{DEFAULT_ROBOT, Failure, TaskCheck, TaskFile, begun, read_task};
 use crate::connector::draft::DENSITY;
 use crate::connector::mesh::import::{Along, COARSEST, Imported, Jaws, Request, Unit, import};
@@ -120,6 +120,7 @@ impl ImportRequest {
 
     /// Imports the meshes, writes the task's file and checks it; `say` gets progress messages.
     pub fn run(&self, say: &dyn Fn(&str), stop: &AtomicBool) -> Result<ImportedTask, Failure> {
+        within("--resolution", self.resolution, &(COARSEST..=FINEST))?;
         let out = &self.out;
         if out.exists() {
             let file = out.display();
@@ -127,15 +128,14 @@ impl ImportRequest {
         }
         let mut found = self.found(say)?;
         not_stopped(stop)?;
-        let (task, tuned) = begun(found.imported.task, self.engine)?;
+        let (task, tuned) = begun(found.imported.task, self.engine, stop)?;
         found.imported.task = task;
-        not_stopped(stop)?;
         let written = TaskFile::parse(Source {
             file: out.display().to_string(),
             text: write::task(&found.imported.task, &self.notes(&found)),
         })?;
         write_file(out, &written.source.text)?;
-        let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine)?;
+        let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
         let Found { imported, unit, along, said, inward } = found;
         Ok(ImportedTask { imported, unit, along, said, inward, tuned, checked })
     }
@@ -242,7 +242,7 @@ impl ImportRequest {
 
 fn bodies(path: &Path, file: &str) -> Result<Vec<Body>, Failure> {
     let unreadable =
-        |error: std::io::Error| Failure::usage(format!("{file}: cannot read the mesh: {error}"));
+        |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
     read(&bytes, file).map_err(Failure::input)

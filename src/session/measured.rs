@@ -37,7 +37,7 @@ pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
 pub fn file(name: &str) -> Result<Source, Failure> {
     if Path::new(name).is_file() {
         let text = read_named(Path::new(name), LARGEST_INPUT);
-        let unreadable = |error| Failure::usage(format!("{name}: cannot read it: {error}"));
+        let unreadable = |error| Failure::in_file(name, format!("cannot read it: {error}"));
         return Ok(Source { file: name.to_owned(), text: text.map_err(unreadable)? });
     }
     find("measurement file", MEASUREMENTS, name)
@@ -56,9 +56,8 @@ fn own_task(source: &Source, task: &str) -> Result<Option<PathBuf>, Failure> {
     let Some(path) = experiments::own_tasks(text).remove(task) else { return Ok(None) };
     let path = Path::new(file).parent().unwrap_or(Path::new("")).join(path);
     let wrong = |problem: String| {
-        Failure::usage(format!(
-            "{file}: task `{task}`: {problem}; mend the line `# task {task}: ..`, or give --task"
-        ))
+        let task = format!("task `{task}`: {problem}; mend the line `# task {task}: ..`");
+        Failure::in_file(file, format!("{task}, or give --task"))
     };
     let found = read_task(&path.to_string_lossy()).map_err(|error| wrong(error.to_string()))?;
     match found.task.name == task {
@@ -85,7 +84,7 @@ fn of_study(file: &str, task: &str) -> Option<PathBuf> {
 /// from a study of these measurements.
 pub fn task(source: &Source) -> Result<TaskSource, Failure> {
     let Source { file, text } = source;
-    let wrong = |problem: String| Failure::usage(format!("{file}: {problem}; give --task"));
+    let wrong = |problem: String| Failure::in_file(file, format!("{problem}; give --task"));
     let found = experiments::parse(text, file).map_err(Failure::input)?;
     let mut tasks: Vec<&str> = found.iter().map(|line| &*line.task).collect();
     tasks.sort_unstable();
@@ -118,10 +117,11 @@ pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure>
         let fingers = of_task.chunk_by(|a, b| a.design == b.design).count();
         if fingers > MOST_FINGERS {
             let (file, task) = (&source.file, &of_task[0].task);
-            return Err(Failure::usage(format!(
-                "{file}: has {fingers} different fingers of the task `{task}`; at most \
-                 {MOST_FINGERS} are taken: keep those nearest to the best"
-            )));
+            let problem = format!(
+                "has {fingers} different fingers of the task `{task}`; at most {MOST_FINGERS} are \
+                 taken: keep those nearest to the best"
+            );
+            return Err(Failure::in_file(file, problem));
         }
     }
     Ok(found)
@@ -137,13 +137,14 @@ pub fn check(
     let task = &template.task.name;
     let own = || lines.iter().filter(|line| line.task == *task);
     if !own().any(|line| line.extent().is_some()) {
-        return Err(Failure::usage(format!(
-            "{file}: no line has a range of the task `{task}`; measure one finger at least \
-             (`optimize next` says which), or leave out --measurements"
-        )));
+        let problem = format!(
+            "no line has a range of the task `{task}`; measure one finger at least (`optimize next` \
+             says which), or leave out --measurements"
+        );
+        return Err(Failure::in_file(file, problem));
     }
     for line in own() {
-        whole(space, template, line).map_err(|error| Failure::usage(format!("{file}: {error}")))?;
+        whole(space, template, line).map_err(|error| Failure::in_file(file, error))?;
     }
     Ok(())
 }

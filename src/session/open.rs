@@ -18,6 +18,7 @@ use insertion::evaluation::tolerance::Search;
 use insertion::outcome::Outcome;
 use insertion::space::label;
 use insertion::task::StartRule;
+use insertion::trial::NEVER;
 use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -80,7 +81,7 @@ impl OpenStudy {
             let given = task.strategy.rule == StartRule::Given;
             if given
                 && record.evaluations.is_empty()
-                && let (_, trial) = nominal_start(task, robot, *engine)?
+                && let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?
                 && trial.outcome != Outcome::Inserted
             {
                 let (name, ends) = (&task.name, outcome(trial.outcome));
@@ -174,7 +175,7 @@ impl OpenStudy {
         };
         report::write(&dir, &record, &setup.evaluator.surrogate)?;
         if interrupted() {
-            return Err(Failure::running(format!("interrupted; {}", resume_hint(study))));
+            return Err(Failure::Interrupted(Some(resume_hint(study))));
         }
         Ok(Ended { dir, record, ending, known, unusable, how: how.clone() })
     }
@@ -233,7 +234,7 @@ fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
 }
 
 pub(super) fn bad_config(error: impl std::fmt::Display) -> Failure {
-    Failure::usage(format!("study.toml: {error}"))
+    Failure::in_file("study.toml", error)
 }
 
 /// The failure, and how to go on after it where the journal is as it was written.

@@ -3,7 +3,7 @@
 use super::files::{Fingers, find, stiffness_data};
 use super::{Failure, Setup};
 use input::files::{LARGEST_INPUT, read_named};
-use input::shipped::{FINGERS, ROBOTS, SPACES, Source, TASKS};
+use input::shipped::{FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
 use insertion::evaluation::cell::Priors;
 use insertion::finger::file::is_shape;
 use insertion::finger::model::{FingerModelKind, FingerSource};
@@ -42,7 +42,7 @@ impl TaskSource {
     /// Its file, unchecked.
     pub fn read(&self) -> Result<Source, Failure> {
         match self {
-            TaskSource::Named(name) => find("task", TASKS, name),
+            TaskSource::Named(name) => resolve("task", TASKS, name).map_err(Failure::task),
             TaskSource::Given(source) => Ok(source.clone()),
         }
     }
@@ -196,7 +196,7 @@ impl FingerModelRequest {
 /// The file of a cell, and what it says.
 fn cell(path: &str) -> Result<(Source, Priors), Failure> {
     let text = read_named(Path::new(path), LARGEST_INPUT)
-        .map_err(|error| Failure::usage(format!("{path}: cannot read the cell: {error}")))?;
+        .map_err(|error| Failure::in_file(path, format!("cannot read the cell: {error}")))?;
     let source = Source { file: path.to_owned(), text };
     let cell = super::setup::cell(&source)?;
     Ok((source, cell))

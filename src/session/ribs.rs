@@ -14,6 +14,7 @@ use insertion::finger::file::{FingerFile, is_shape};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::{Model, Prediction};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Which finger to compute.
 #[derive(Debug, Clone, clap::Args)]
@@ -35,10 +36,13 @@ pub struct RibsRequest {
     pub set: Vec<(String, f64)>,
 }
 
+/// The ribs, the stiffness that they give, and that of the model of measured fingers.
+pub type Ribs = (Geometry, FingerStiffness, Option<Prediction>);
+
 impl RibsRequest {
     /// The ribs, the stiffness that they give, and that of the model of measured fingers, if there is
     /// one for this infill and `set` changes no shape.
-    pub fn run(&self) -> Result<(Geometry, FingerStiffness, Option<Prediction>), Failure> {
+    pub fn run(&self) -> Result<Ribs, Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
                 "--set {key}: sets no number of a finger file, as finger.skin.thickness_mm does"
@@ -169,7 +173,7 @@ impl Default for StiffnessRequest {
 
 impl StiffnessRequest {
     /// Fits the model.
-    pub fn model(&self) -> Result<Model, Failure> {
+    pub fn model(&self) -> Result<Arc<Model>, Failure> {
         let finger = printed_finger(&self.finger)?;
         surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)
     }

@@ -10,7 +10,7 @@ use insertion::evaluation::objective::Measure;
 use insertion::evaluation::template::Impossible;
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 const SAMPLES: RangeInclusive<u32> = 4..=10_000;
 
@@ -57,6 +57,9 @@ impl SensitivityRequest {
         let sample = Sample::new(factors.0.len(), self.samples as usize, self.seed);
         // `None` where the nominal start diverged.
         let value = |unit: &Vec<f64>| {
+            if stop.load(Ordering::SeqCst) {
+                return Ok(None);
+            }
             let evaluation = factors.evaluate(&setup.evaluator, template, unit, stop)?;
             Ok(self.objective.value(&evaluation))
         };

@@ -3,8 +3,10 @@
 use super::Failure;
 use super::files::{Fingers, find, surrogate};
 use super::measured::{self, Measured};
+use super::open::bad_config;
 use super::request::DEFAULT_FINGER;
 use crate::study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};
+use input::Place;
 use input::shipped::{FINGERS, Source, UNCERTAINTIES};
 use insertion::evaluation::cell::{Priors, Target};
 use insertion::evaluation::evaluator::Evaluator;
@@ -53,7 +55,7 @@ impl Setup {
     /// From the copies kept in a study's folder.
     pub(super) fn from_inputs(inputs: &Inputs, engine: &str) -> Result<Self, Failure> {
         let engine = EngineKind::from_name(engine)
-            .ok_or_else(|| Failure::usage(format!("study.toml: no engine is called `{engine}`")))?;
+            .ok_or_else(|| bad_config(format!("no engine is called `{engine}`")))?;
         let roles = (1..).map(task_role).take_while(|role| inputs.contains_key(role));
         let tasks = roles.map(|role| input(inputs, &role)).collect::<Result<Vec<_>, _>>()?;
         let [space, robot, stiffness] =
@@ -88,7 +90,7 @@ impl Setup {
         let [robot_source, stiffness_source] = others;
         let robot = Robot::parse(&robot_source.text, &robot_source.file).map_err(Failure::input)?;
         let template =
-            |task: &Source| Template::parse(&task.text, &task.file).map_err(Failure::input);
+            |task: &Source| Template::parse(&task.text, &task.file).map_err(Failure::task);
         let templates = tasks.iter().map(template).collect::<Result<Vec<_>, Failure>>()?;
         different(&templates)?;
         let roles = (1..).map(task_role).zip(tasks);
@@ -97,7 +99,7 @@ impl Setup {
         let finger = fingers.source.iter().map(|source| (FINGER.to_owned(), source));
         let sources = roles.chain(others).chain(finger);
         let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
-        let surrogate = Arc::new(surrogate(stiffness_source, &fingers.measured_finger()?)?);
+        let surrogate = surrogate(stiffness_source, &fingers.measured_finger()?)?;
         let fingers = fingers.made();
         let evaluator = Evaluator { surrogate, fingers, templates, robot, engine, cell: None };
         fit_together(&evaluator, &space, &space_source.file)?;
@@ -147,10 +149,9 @@ impl Setup {
         let rows = uncertainty.cell.iter().filter(|cell| cell.robot.is_none());
         let mut rows = rows.flat_map(|cell| &cell.parameters);
         if let Some(row) = rows.find(|row| !row.fits(robot)) {
-            return Err(Failure::usage(format!(
-                "{}: {}: goes with a robot of kind = \"servo\", which `{}` is not",
-                errors.file, row.name, robot.name
-            )));
+            let problem =
+                format!("goes with a robot of kind = \"servo\", which `{}` is not", robot.name);
+            return Err(Failure::input(Place::file(&errors.file).key(&row.name).fault(problem)));
         }
         self.uncertainty = Some(uncertainty);
         self.inputs.insert(UNCERTAINTY.to_owned(), errors.text);
@@ -228,9 +229,9 @@ fn possible(evaluator: &Evaluator, cell: &Priors, file: &str) -> Result<(), Fail
             let Some(value) = value else { continue };
             let design = Design::infill(0.0, 0.0).with(key, value);
             let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };
-            template
-                .apply(&design, &FingerSource::Paper, at_pad)
-                .map_err(|error| Failure::usage(format!("{file}: {}: {error}", row.name)))?;
+            template.apply(&design, &FingerSource::Paper, at_pad).map_err(|error| {
+                Failure::input(Place::file(file).key(&row.name).fault(error.to_string()))
+            })?;
         }
     }
     Ok(())
@@ -252,14 +253,15 @@ pub(super) fn cell(Source { file, text }: &Source) -> Result<Priors, Failure> {
     let cell = Priors::parse(text, file).map_err(Failure::input)?;
     match cell.robot {
         Some(_) => Ok(cell),
-        None => Err(Failure::usage(format!(
-            "{file}: robot: is missing; a cell has its robot in [robot], as a robot file"
-        ))),
+        None => Err(Failure::in_file(
+            file,
+            "robot: is missing; a cell has its robot in [robot], as a robot file",
+        )),
     }
 }
 
 fn missing(role: &str) -> Failure {
-    Failure::usage(format!("study.toml: input_sha256 has no `{role}`"))
+    bad_config(format!("input_sha256 has no `{role}`"))
 }
 
 /// One of the inputs kept in a study's folder.
@@ -276,7 +278,7 @@ fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
 }
 
 /// The stiffness model of a study, from the copies in its folder.
-pub(super) fn surrogate_of(inputs: &Inputs) -> Result<Model, Failure> {
+pub(super) fn surrogate_of(inputs: &Inputs) -> Result<Arc<Model>, Failure> {
     let finger = Fingers::parse(finger_input(inputs)?)?.measured_finger()?;
     surrogate(&input(inputs, STIFFNESS_DATA)?, &finger)
 }

@@ -1,21 +1,24 @@
 //! Task and space files: read, checked, tried.
 
-use super::Failure;
+use super::failure::not_stopped;
 use super::files::{find, robot};
 use super::tune::mended;
+use super::{Failure, TaskSource};
 use crate::calibration::published::three;
 use crate::connector::check::{Problem, problems};
 use crate::connector::nominal;
 use crate::tune::{Stage, Tuned};
-use input::shipped::{SPACES, STIFFNESS, Source, TASKS};
+use input::Place;
+use input::shipped::{SPACES, STIFFNESS, Source};
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Space;
 use insertion::stiffness;
 use insertion::task::Task;
-use insertion::trial::Trial;
 use insertion::trial::engine::EngineKind;
+use insertion::trial::{Grasp, Trial};
+use std::sync::atomic::AtomicBool;
 
 /// A task file that was read.
 #[derive(Debug, Clone)]
@@ -29,7 +32,7 @@ pub struct TaskFile {
 impl TaskFile {
     /// Checks the text of a task file.
     pub fn parse(source: Source) -> Result<Self, Failure> {
-        let task = Task::parse(&source.text, &source.file).map_err(Failure::input)?;
+        let task = Task::parse(&source.text, &source.file).map_err(Failure::task)?;
         Ok(TaskFile { source, task })
     }
 
@@ -41,15 +44,15 @@ impl TaskFile {
 
     /// The task file with these fields, checked; `file` is what messages call it.
     pub fn of_fields(file: &str, fields: &serde_json::Value) -> Result<Self, Failure> {
-        let text =
-            toml::to_string(fields).map_err(|error| Failure::usage(format!("{file}: {error}")))?;
+        let text = toml::to_string(fields)
+            .map_err(|error| Failure::task(Place::file(file).fault(error.to_string())))?;
         TaskFile::parse(Source { file: file.to_owned(), text })
     }
 }
 
 /// The task of that name, or of the file at that path.
 pub fn read_task(name: &str) -> Result<TaskFile, Failure> {
-    TaskFile::parse(find("task", TASKS, name)?)
+    TaskFile::parse(TaskSource::Named(name.to_owned()).read()?)
 }
 
 /// The space of that name, or of the file at that path.
@@ -72,7 +75,12 @@ pub struct TaskCheck {
 
 impl TaskCheck {
     /// Checks a task file with the robot of that name.
-    pub fn of(source: Source, robot_name: &str, engine: EngineKind) -> Result<Self, Failure> {
+    pub fn of(
+        source: Source,
+        robot_name: &str,
+        engine: EngineKind,
+        stop: &AtomicBool,
+    ) -> Result<Self, Failure> {
         let task = match Task::parse(&source.text, &source.file) {
             Ok(task) => task,
             Err(error) => {
@@ -83,7 +91,7 @@ impl TaskCheck {
         let problems = problems(&task);
         let nominal = match problems.is_empty() {
             true => {
-                let (finger, trial) = nominal_start(&task, &robot(robot_name)?, engine)?;
+                let (finger, trial) = nominal_start(&task, &robot(robot_name)?, engine, stop)?;
                 let explanation = nominal::explain(&task, &trial);
                 Some((finger, trial, explanation))
             }
@@ -96,11 +104,16 @@ impl TaskCheck {
 impl TaskCheck {
     /// Stages of `task tune` until one mends a nominal start that fails; `None` if it inserts, or if
     /// problems come first.
-    pub fn mend(&self, robot_name: &str, engine: EngineKind) -> Result<Option<Tuned>, Failure> {
+    pub fn mend(
+        &self,
+        robot_name: &str,
+        engine: EngineKind,
+        stop: &AtomicBool,
+    ) -> Result<Option<Tuned>, Failure> {
         let fails = |(_, trial, _): &(Finger, Trial, String)| trial.outcome != Outcome::Inserted;
         match (&self.task, &self.nominal) {
             (Some(task), Some(nominal)) if fails(nominal) => {
-                mended(task, robot_name, engine, Stage::Search).map(Some)
+                mended(task, (robot_name, engine), Stage::Search, stop).map(Some)
             }
             _ => Ok(None),
         }
@@ -112,11 +125,14 @@ pub(super) fn nominal_start(
     task: &Task,
     robot: &Robot,
     engine: EngineKind,
+    stop: &AtomicBool,
 ) -> Result<(Finger, Trial), Failure> {
     let finger = medium()?;
     let shaped = finger.shaped(&task.finger, 0.0);
     let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
-    Ok((finger, rig.grasp(&shaped).trial(0.0)))
+    let trial = rig.hold(Grasp { stop, ..Grasp::of(&shaped) }).trial(0.0);
+    not_stopped(stop)?;
+    Ok((finger, trial))
 }
 
 /// The shipped measured finger of medium compliance stiffness.

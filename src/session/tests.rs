@@ -1,5 +1,7 @@
 use super::*;
 use crate::levers::Levers;
+use input::Place;
+use input::shipped::{self, Source};
 use insertion::evaluation::grid_mm;
 use insertion::task::StartRule;
 use insertion::trial::NEVER;
@@ -18,8 +20,8 @@ fn middle() -> FingerRequest {
 /// The text of a failure by bad input.
 fn refused<T>(done: Result<T, Failure>) -> String {
     match done {
-        Err(failure @ Failure::Input(_)) => failure.to_string(),
-        Err(Failure::Run(error)) => panic!("failed while running: {error}"),
+        Err(failure @ (Failure::Input(_) | Failure::Task(_))) => failure.to_string(),
+        Err(failure) => panic!("failed while running: {failure}"),
         Ok(_) => panic!("was not refused"),
     }
 }
@@ -64,9 +66,7 @@ fn what_no_command_line_has_checked_is_refused_by_its_option() {
 fn what_is_stopped_ends_as_interrupted() {
     let stop = AtomicBool::new(true);
     let interrupted = |failure: Option<Failure>| {
-        assert!(
-            matches!(&failure, Some(Failure::Run(error)) if error.to_string() == "interrupted")
-        );
+        assert!(matches!(&failure, Some(Failure::Interrupted(None))));
     };
     let (setup, finger) = (usb(), middle());
     let evaluate = EvaluateRequest { setup, finger, ..Default::default() };
@@ -117,4 +117,55 @@ fn levers_begin_at_the_taught_window_and_keep_to_what_can_be() {
     let clearance = named(&tight, "clearance");
     assert!((0.0..1e-3).contains(&clearance.low), "{clearance:?}");
     assert!((clearance.high - 0.07).abs() < 1e-9, "{clearance:?}");
+}
+
+#[test]
+fn failures_say_where() {
+    let evaluate = |setup: SetupRequest, finger: FingerRequest, repeat| {
+        let request = EvaluateRequest { setup, finger, repeat, ..Default::default() };
+        let failure = request.run(&NEVER).err().unwrap();
+        let Place { file, line, key } = failure.place();
+        (matches!(failure, Failure::Task(_)), file.unwrap_or_default(), line, key)
+    };
+    let task = |text: String| {
+        let tasks = vec![TaskSource::Given(Source { file: "mine.toml".to_owned(), text })];
+        evaluate(SetupRequest { tasks, ..usb() }, middle(), None)
+    };
+    let text = TaskSource::Named("usb".to_owned()).read().unwrap().text;
+    let mine = || "mine.toml".to_owned();
+    let force = text.replace("\nforce_n = ", "\nforce_n = -");
+    assert_eq!(task(force), (true, mine(), None, Some("grip.force_n".to_owned())));
+    assert_eq!(task("name = 1\nname = 2\n".to_owned()), (true, mine(), Some(2), None));
+    let dir = tempfile::tempdir().unwrap();
+    let table = dir.path().join("mine.csv").display().to_string();
+    let text = shipped::STIFFNESS[0].text.replacen("\n2,", "\n2,x", 1);
+    std::fs::write(&table, text).unwrap();
+    let setup = SetupRequest { stiffness_data: Some(table.clone()), ..usb() };
+    let column = Some("infill_density_percent".to_owned());
+    assert_eq!(evaluate(setup, middle(), None), (false, table, Some(3), column));
+    let once = Some(RepeatRequest { count: 1, seed: 0 });
+    let wrong = evaluate(usb(), middle(), once);
+    assert_eq!(wrong, (false, String::new(), None, Some("repeat".to_owned())));
+}
+
+#[test]
+fn a_sweep_measures_what_evaluate_does_in_its_order_and_keeps_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let cache = CacheRequest { dir: Some(dir.path().to_owned()), off: false };
+    let run = RunRequest { threads: Some(3), cache, ..RunRequest::default() };
+    let windows = EvaluateRequest { setup: usb(), walk: true, ..Default::default() };
+    let finger = |density| FingerRequest { density: Some(density), ..middle() };
+    let fingers = [12.0, 30.0, 17.0].map(finger);
+    let sweep = Sweep::new(&windows, &run).unwrap();
+    for _ in 0..2 {
+        let found = sweep.measure(&fingers, &NEVER).unwrap();
+        for (finger, found) in fingers.iter().zip(found) {
+            let alone = EvaluateRequest { finger: finger.clone(), ..windows.clone() };
+            assert_eq!(found.evaluation, alone.run(&NEVER).unwrap().evaluation);
+        }
+    }
+    assert_eq!(sweep.known(), 3);
+    let wrong = refused(sweep.measure(&[finger(20.0), finger(99.0)], &NEVER));
+    assert!(wrong.contains("--density 99"), "{wrong}");
+    assert!(sweep.measure(&fingers, &AtomicBool::new(true)).is_err());
 }

@@ -62,7 +62,7 @@ pub struct TrialRequest {
     #[arg(long, value_name = "FILE.csv")]
     pub log: Option<PathBuf>,
     /// In place of an insertion, slide the part on a flat plate: 8 mm along y and back at 5 N, for `identify`
-    #[arg(long, requires = "log", conflicts_with_all = ["repeats", "svg", "record", "plot"])]
+    #[arg(long, requires = "log", conflicts_with_all = ["repeat", "svg", "record", "plot"])]
     pub probe: bool,
     /// Draw plug, fingertips and socket at the end of each phase
     #[arg(long, value_name = "FILE.svg")]
@@ -83,6 +83,8 @@ pub struct TrialDone {
     pub samples: Vec<Sample>,
     /// How often each outcome was met in the repeats, if they were asked for.
     pub repeats: Option<BTreeMap<String, usize>>,
+    /// The page that plays it, if it is to be kept.
+    pub page: Option<String>,
     /// Files that were written.
     pub written: Vec<PathBuf>,
 }
@@ -105,6 +107,7 @@ impl TrialRequest {
         let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
         let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
         let filmed = self.film.record(&*rig, specimen, offset_mm, stop)?;
+        let (filmed, page) = filmed.map_or((None, None), |(filmed, page)| (Some(filmed), page));
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
@@ -141,7 +144,7 @@ impl TrialRequest {
             counts
         });
         let written = self.svg.iter().chain(&self.log).chain(self.film.files()).cloned().collect();
-        Ok(TrialDone { chosen, offset_mm, taught, trial, samples, repeats, written })
+        Ok(TrialDone { chosen, offset_mm, taught, trial, samples, repeats, page, written })
     }
 }
 

@@ -7,13 +7,14 @@ use crate::connector::check::problems;
 use crate::connector::{picture, rewrite};
 use crate::study::write_file;
 use crate::tune::{Bench, Effort, Stage, Tuned, tune};
+use input::Place;
 use input::shipped::Source;
 use insertion::evaluation::Window;
 use insertion::finger::Finger;
 use insertion::robot::Robot;
 use insertion::task::{Strategy, Task};
+use insertion::trial::Conditions;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Conditions, NEVER};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
@@ -66,7 +67,8 @@ impl TuneRequest {
         if let Some(problem) = problems(&file.task).first() {
             let (file, key, text) = (&file.source.file, &problem.key, &problem.problem);
             let more = "`optimize task check` says what would be right";
-            return Err(Failure::usage(format!("{file}: {key}: {text}; {more}")));
+            let problem = format!("{text}; {more}");
+            return Err(Failure::task(Place::file(file).key(key).fault(problem)));
         }
         let robot = robot(&self.robot)?;
         let bench = bench(&file.task, &robot, self.engine, stop)?;
@@ -82,7 +84,7 @@ impl TuneRequest {
         let mut done =
             TuneDone { task: file.task.clone(), tuned, fingers, after: None, written: None };
         if done.tuned.inserts() {
-            done.after = Some(self.write(&file, &done, &robot, target)?);
+            done.after = Some(self.write(&file, &done, &robot, (target, stop))?);
             done.written = target.filter(|_| !self.dry_run).map(Path::to_path_buf);
         }
         Ok(done)
@@ -111,12 +113,13 @@ impl TuneRequest {
         file: &TaskFile,
         done: &TuneDone,
         robot: &Robot,
-        target: Option<&Path>,
+        (target, stop): (Option<&Path>, &AtomicBool),
     ) -> Result<Vec<Window>, Failure> {
         let strategy = &done.tuned.best().tried.strategy;
         let after = TaskFile::parse(rewritten(&file.source, &file.task, strategy)?)?;
-        let bench = bench(&after.task, robot, self.engine, &NEVER)?;
+        let bench = bench(&after.task, robot, self.engine, stop)?;
         let found = bench.windows(&after.task.strategy, &bench.fingers, Conditions::NOMINAL);
+        not_stopped(stop)?;
         let windows =
             found.map_err(Failure::input)?.into_iter().map(|(window, _)| window).collect();
         if let Some(svg) = &self.svg {
@@ -146,11 +149,15 @@ fn bench<'a>(
 
 /// A new task with its start taught and, where that is not enough, the strategy of a family; nothing
 /// was tried of one that has problems.
-pub fn begun(task: Task, engine: EngineKind) -> Result<(Task, Option<Tuned>), Failure> {
+pub fn begun(
+    task: Task,
+    engine: EngineKind,
+    stop: &AtomicBool,
+) -> Result<(Task, Option<Tuned>), Failure> {
     if !problems(&task).is_empty() {
         return Ok((task, None));
     }
-    let tuned = mended(&task, DEFAULT_ROBOT, engine, Stage::Families)?;
+    let tuned = mended(&task, (DEFAULT_ROBOT, engine), Stage::Families, stop)?;
     let best = tuned.best();
     let strategy = if tuned.inserts() { best.tried.strategy.clone() } else { task.strategy };
     Ok((Task { strategy, ..task }, Some(tuned)))
@@ -159,11 +166,13 @@ pub fn begun(task: Task, engine: EngineKind) -> Result<(Task, Option<Tuned>), Fa
 /// Stages up to `last` until one of them is enough.
 pub(super) fn mended(
     task: &Task,
-    robot_name: &str,
-    engine: EngineKind,
+    (robot_name, engine): (&str, EngineKind),
     last: Stage,
+    stop: &AtomicBool,
 ) -> Result<Tuned, Failure> {
     let robot = robot(robot_name)?;
     let effort = Effort { last, until_enough: true, seed: 0, tell: &|_, _, _, _| () };
-    tune(&bench(task, &robot, engine, &NEVER)?, &effort).map_err(Failure::input)
+    let tuned = tune(&bench(task, &robot, engine, stop)?, &effort).map_err(Failure::input)?;
+    not_stopped(stop)?;
+    Ok(tuned)
 }

@@ -1,5 +1,6 @@
 //! Errors of a study's folder, said so that they can be mended.
 
+use input::{Place, Placed};
 use insertion::evaluation::template::Impossible;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -60,6 +61,18 @@ pub enum StudyError {
         /// Its wrong setting.
         source: Impossible,
     },
+}
+
+impl Placed for StudyError {
+    fn place(&self) -> Place {
+        match self {
+            StudyError::Io { path, .. }
+            | StudyError::Locked { dir: path, .. }
+            | StudyError::File { path, .. }
+            | StudyError::Interfered { path, .. } => Place::file(path.display().to_string()),
+            StudyError::Impossible { source, .. } => source.place(),
+        }
+    }
 }
 
 impl StudyError {

@@ -77,7 +77,11 @@ impl Simulated<'_> {
     }
 
     /// The evaluation, and whether it was in the cache.
-    fn measure(&self, specimen: &Specimen, plan: &Plan) -> Result<(Evaluation, bool), Impossible> {
+    pub fn measure(
+        &self,
+        specimen: &Specimen,
+        plan: &Plan,
+    ) -> Result<(Evaluation, bool), Impossible> {
         let keep = self.cache.map(|cache| (cache, self.key(cache, specimen, plan)));
         if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
             return Ok((found, true));

@@ -182,11 +182,12 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
 /// A round peg with a domed tip of so many rings, of so many flats, as a text STL.
 fn lathe(flats: usize, rings: usize) -> String {
     let dome = (0..=rings).map(|j| std::f64::consts::FRAC_PI_2 * j as f64 / rings as f64);
-    let mut profile: Vec<[f64; 2]> = dome.map(|a| [4.0 * a.sin(), 4.0 - 4.0 * a.cos()]).collect();
+    let mut profile: Vec<[f64; 2]> =
+        dome.map(|a| [4.0 * libm::sin(a), 4.0 - 4.0 * libm::cos(a)]).collect();
     profile.extend([[4.0, 12.0], [7.0, 12.0], [7.0, 30.0], [0.0, 30.0]]);
     let corner = |i: usize, k: usize| {
         let (a, [r, z]) = (std::f64::consts::TAU * (k % flats) as f64 / flats as f64, profile[i]);
-        format!("vertex {} {} {z}\n", r * a.cos(), r * a.sin())
+        format!("vertex {} {} {z}\n", r * libm::cos(a), r * libm::sin(a))
     };
     let mut text = "solid s\n".to_owned();
     for (i, k) in (1..profile.len()).flat_map(|i| (0..flats).map(move |k| (i, k))) {

@@ -11,6 +11,7 @@ mod informed;
 mod kind;
 mod lattice;
 mod nelder_mead;
+pub mod normal;
 pub mod pareto;
 mod polish;
 pub mod process;

@@ -283,7 +283,7 @@ impl Shape {
                 let corner = |i: u32| {
                     let angle = f64::from(i / 2) * std::f64::consts::TAU / 16.0;
                     let z = if i.is_multiple_of(2) { -half_height } else { *half_height };
-                    Point3::new(radius * angle.cos(), radius * angle.sin(), z)
+                    Point3::new(radius * libm::cos(angle), radius * libm::sin(angle), z)
                 };
                 (0..32).map(corner).collect()
             }

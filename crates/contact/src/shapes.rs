@@ -78,7 +78,7 @@ mod tests {
         assert_eq!((found.0.len(), found.1.len()), (8, 12));
         assert!((volume(&found) / MM.powi(3) - 48.0).abs() < 1e-9);
         let rod = surface(&Shape::Cylinder { half_height: MM, radius: 2.0 * MM });
-        let prism = 2.0 * 16.0 / 2.0 * 4.0 * (std::f64::consts::TAU / 16.0).sin();
+        let prism = 2.0 * 16.0 / 2.0 * 4.0 * libm::sin(std::f64::consts::TAU / 16.0);
         assert!((volume(&rod) / MM.powi(3) - prism).abs() < 1e-9);
         assert_eq!(surface(&Shape::Hull { points: Vec::new() }).1.len(), 0);
     }

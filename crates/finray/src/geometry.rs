@@ -131,9 +131,9 @@ fn check_outline(check: Check<'_>, outline: &Outline) -> Checked {
         );
         return check.fail("outline.back_radius_mm", problem);
     }
-    let to_side = tip / outline.pad_angle.sin();
+    let to_side = tip / libm::sin(outline.pad_angle);
     below(check, "notch.pad_mm", pad, to_side, "the pad ends behind the front")?;
-    let to_base = ribbed / outline.pad_angle.cos();
+    let to_base = ribbed / libm::cos(outline.pad_angle);
     below(check, "notch.pad_mm", pad, to_base, "the notch ends before the solid base")?;
     below(check, "notch.roof_mm", roof, outline.roof_length(), "the roof is no longer")
 }
@@ -206,7 +206,7 @@ impl Outline {
 
     /// Unit vector along the pad, from the tip to the notch's corner: the assembly direction z.
     pub fn along_pad(&self) -> Vector2<f64> {
-        Vector2::new(self.pad_angle.cos(), self.pad_angle.sin())
+        Vector2::new(libm::cos(self.pad_angle), libm::sin(self.pad_angle))
     }
 
     /// Unit vector out of the pad's face towards the part: the compliance direction y.
@@ -255,13 +255,13 @@ pub(super) fn ring(outline: &Outline, inset: f64, end: f64) -> Ring {
     let to_pad = pad - centre;
     let half = z.dot(&to_pad);
     let tip = pad - z * (half + (half * half - to_pad.norm_squared() + radius * radius).sqrt());
-    let start = (tip - centre).y.atan2((tip - centre).x).rem_euclid(360.0 * DEG);
+    let start = libm::atan2((tip - centre).y, (tip - centre).x).rem_euclid(360.0 * DEG);
     let sweep = 270.0 * DEG - start;
     let chords = (sweep / (8.0 * SAGITTA / radius).sqrt()).ceil().max(1.0);
     let mut ring: Ring = (0..=chords as usize)
         .map(|i| {
             let angle = start + sweep * i as f64 / chords;
-            centre + radius * Vector2::new(angle.cos(), angle.sin())
+            centre + radius * Vector2::new(libm::cos(angle), libm::sin(angle))
         })
         .collect();
     let corner = outline.corner() + (z - y) * inset;

@@ -119,11 +119,12 @@ impl Holes {
         let radius = self.diameter / 2.0;
         let [u, v] = self.axis.across().map(|direction| direction as usize);
         // Of a multiple of four, so that calipers meet corners on either axis.
-        let flats = 4 * (PI / (1.0 - FLAT / radius).acos() / 4.0).ceil() as u32;
+        let flats = 4 * (PI / libm::acos(1.0 - FLAT / radius) / 4.0).ceil() as u32;
         let angle = |i: u32| -TAU * f64::from(i) / f64::from(flats);
         let ring = |middle: [f64; 3]| {
-            let corner =
-                |a: f64| Point2::new(middle[u] + radius * a.cos(), middle[v] + radius * a.sin());
+            let corner = |a: f64| {
+                Point2::new(middle[u] + radius * libm::cos(a), middle[v] + radius * libm::sin(a))
+            };
             (0..flats).map(|i| corner(angle(i))).collect()
         };
         self.middles(outline).into_iter().map(ring).collect()

@@ -34,7 +34,7 @@ pub struct RibLines {
 impl RibLines {
     /// Centre lines by the rule of the finger file.
     pub fn new(finger: &PrintedFinger, design: &Design) -> Self {
-        let (sin, cos) = (design.direction_deg * DEG).sin_cos();
+        let (sin, cos) = libm::sincos(design.direction_deg * DEG);
         let across = Vector2::new(cos, -sin);
         let phase = design.phase_mm.map_or(finger.ribs.phase, |mm| mm * MM);
         let first = across.dot(&finger.ribs.origin.coords) + phase;

@@ -53,6 +53,16 @@ pub enum FingerError {
     },
 }
 
+impl input::Placed for FingerError {
+    fn place(&self) -> input::Place {
+        match self {
+            FingerError::Value(error) => error.place(),
+            FingerError::Unfit { file, .. } => input::Place::file(file),
+            FingerError::Coupled { .. } => input::Place::default().key("finger_model"),
+        }
+    }
+}
+
 impl FingerError {
     fn mesh(geometry: &geometry::Geometry, problem: mesh::MeshError) -> Self {
         let problem = format!("the profile cannot be meshed: {problem}");

@@ -104,7 +104,7 @@ fn round(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 0.0;
     }
-    let decade = 10f64.powf(value.log10().floor());
+    let decade = libm::pow(10.0, libm::log10(value).floor());
     [5.0, 2.0, 1.0].map(|step| step * decade).into_iter().find(|&n| n <= value).unwrap_or(decade)
 }
 

@@ -143,7 +143,7 @@ impl PrintedFinger {
     /// # Errors
     /// As of [`PrintedFinger::parse`].
     pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
-        PrintedFinger::checked(table.try_into().map_err(|error| syntax(file, &error))?, file)
+        PrintedFinger::checked(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
     }
 
     fn checked(raw: RawFinger, file: &str) -> Result<Self, InputError> {

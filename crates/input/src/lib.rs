@@ -9,9 +9,11 @@
 
 pub mod files;
 pub mod numbers;
+mod place;
 pub mod shipped;
 pub mod units;
 
+pub use place::{Fault, Place, Placed};
 use serde::de::DeserializeOwned;
 
 /// Error of an input file: not TOML of its shape, or a value that cannot be used.
@@ -22,6 +24,8 @@ pub enum InputError {
     Syntax {
         /// The file as given.
         file: String,
+        /// The line, if the parser knows it.
+        line: Option<usize>,
         /// The parser's message, with line and column.
         message: String,
     },
@@ -45,9 +49,25 @@ const SMALLEST: f64 = 1e-9;
 /// Longest length and largest coordinate, mm.
 const LONGEST_MM: f64 = 1000.0;
 
-/// The error of a file that is not TOML, or not of the shape asked for.
-pub fn syntax(file: &str, error: &toml::de::Error) -> InputError {
-    InputError::Syntax { file: file.to_owned(), message: error.to_string().trim_end().to_owned() }
+impl Placed for InputError {
+    fn place(&self) -> Place {
+        match self {
+            InputError::Syntax { file, line, .. } => {
+                Place { line: *line, ..Place::file(file.clone()) }
+            }
+            InputError::Value { file, key, .. } => Place::file(file.clone()).key(key),
+        }
+    }
+}
+
+/// The error of a file that is not TOML, or not of the shape asked for; `text` is where it was read.
+pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
+    let before = error.span().and_then(|span| text.get(..span.start));
+    InputError::Syntax {
+        file: file.to_owned(),
+        line: before.map(|before| 1 + before.matches('\n').count()),
+        message: error.to_string().trim_end().to_owned(),
+    }
 }
 
 /// Reads TOML; `file` is named in errors.
@@ -55,8 +75,8 @@ pub fn syntax(file: &str, error: &toml::de::Error) -> InputError {
 /// # Errors
 /// If the text is not TOML of this shape, or has a control character.
 pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError> {
-    let found = toml::from_str(text).map_err(|error| syntax(file, &error))?;
-    let table: toml::Table = toml::from_str(text).map_err(|error| syntax(file, &error))?;
+    let found = toml::from_str(text).map_err(|error| syntax(file, text, &error))?;
+    let table: toml::Table = toml::from_str(text).map_err(|error| syntax(file, text, &error))?;
     match control_character(&table) {
         Some(key) => Check { file }.fail(&key, "has a control character, such as \\u001b"),
         None => Ok(found),

@@ -1,6 +1,7 @@
 //! The files shipped within the program, so that it runs from any folder.
 
 use crate::files::{self, LARGEST_INPUT};
+use crate::place::{Place, Placed};
 use std::path::Path;
 use strsim::levenshtein;
 
@@ -81,8 +82,17 @@ pub struct Source {
 
 /// Error of a name or path that gives no text.
 #[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct ShippedError(String);
+#[error("{text}")]
+pub struct ShippedError {
+    place: Place,
+    text: String,
+}
+
+impl Placed for ShippedError {
+    fn place(&self) -> Place {
+        self.place.clone()
+    }
+}
 
 /// The shipped file of that name or, if `name` looks like a path (it has a
 /// separator or an extension), the file there.
@@ -96,16 +106,20 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Sh
     if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
         return match files::read_named(Path::new(name), LARGEST_INPUT) {
             Ok(text) => Ok(Source { file: name.to_owned(), text }),
-            Err(error) => Err(ShippedError(format!("{name}: cannot read the {kind}: {error}"))),
+            Err(error) => {
+                let text = format!("{name}: cannot read the {kind}: {error}");
+                Err(ShippedError { place: Place::file(name), text })
+            }
         };
     }
     let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
     let hint = nearest(name, &names).map(|name| format!(" (did you mean `{name}`?)"));
-    Err(ShippedError(format!(
+    let text = format!(
         "no {kind} is called `{name}`{}; there are {}, or give the path of a file",
         hint.unwrap_or_default(),
         names.join(", ")
-    )))
+    );
+    Err(ShippedError { place: Place::default().key(&kind.replace(' ', "_")), text })
 }
 
 /// The name that differs least from `name`, if less than half of it differs.

@@ -3,6 +3,7 @@
 use finray::FingerError;
 use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
+use input::{Fault, Place, Placed};
 
 /// A direction in which a finger yields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -87,13 +88,10 @@ impl Measurement {
 /// Error of measurements that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurrogateError {
-    /// Not a CSV table with the columns of [`HEADER`]: the file, and the reader's message.
-    #[error("{0}: {1}")]
-    Syntax(String, String),
-    /// A value, or a column in another unit, that cannot be used: the file with the line, or the
-    /// design; the column; the problem, and what would be right.
-    #[error("{0}: {1}: {2}")]
-    Value(String, &'static str, String),
+    /// Not a CSV table with the columns of [`HEADER`], or a value or a column in another unit that
+    /// cannot be used.
+    #[error(transparent)]
+    Fault(#[from] Fault),
     /// No design at all.
     #[error("no design is measured: give at least one")]
     None,
@@ -114,6 +112,16 @@ pub enum SurrogateError {
     Unfittable(&'static str),
 }
 
+impl Placed for SurrogateError {
+    fn place(&self) -> Place {
+        match self {
+            SurrogateError::Fault(fault) => fault.place(),
+            SurrogateError::Finger(error) => error.place(),
+            _ => Place::default(),
+        }
+    }
+}
+
 /// Reads and checks a measurement file; `file` is named in errors.
 ///
 /// # Errors
@@ -127,17 +135,20 @@ fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     // The reader counts a line of a "\r\n" file too few.
     let text = text.replace("\r\n", "\n");
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let message = |message| SurrogateError::Syntax(file.to_owned(), message);
-    let syntax = |error: csv::Error| message(error.to_string());
+    let at = |line: u64| Place::file(file).line(line as usize);
+    let syntax = |error: csv::Error| match error.position() {
+        Some(position) => at(position.line()).fault(error.to_string()),
+        None => Place::file(file).fault(error.to_string()),
+    };
     if reader.headers().map_err(syntax)?.iter().ne(HEADER) {
         let header = HEADER.join(",");
-        return Err(message(format!("line 1: the header must be exactly `{header}`")));
+        return Err(at(1).fault(format!("the header must be exactly `{header}`")).into());
     }
     let mut found: Vec<Measurement> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(syntax)?;
         let line = record.position().map_or(0, csv::Position::line);
-        let refused = refused(format!("{file}: line {line}"));
+        let refused = refused(at(line));
         let measurement = row(&record).map_err(&refused)?;
         check(&measurement, &found).map_err(&refused)?;
         found.push(measurement);
@@ -163,7 +174,7 @@ fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, Surroga
             "the middle value is {own} N/mm, that of the measured printed fingers is {usual}; \
              {question}"
         );
-        return Err(refused(file.to_owned())((column, problem)));
+        return Err(refused(Place::file(file))((column, problem)));
     }
     Ok(found)
 }
@@ -177,15 +188,15 @@ fn median(all: &[Measurement], axis: Axis) -> f64 {
 /// Checks measurements that were not read from a file.
 pub(crate) fn check_all(measurements: &[Measurement]) -> Result<(), SurrogateError> {
     for (i, measurement) in measurements.iter().enumerate() {
-        let refused = refused(format!("design {}", measurement.design));
+        let refused = refused(Place::file(format!("design {}", measurement.design)));
         check(measurement, &measurements[..i]).map_err(refused)?;
     }
     enough(measurements)
 }
 
 /// The error of a column at a place.
-fn refused(place: String) -> impl Fn((&'static str, String)) -> SurrogateError {
-    move |(column, problem)| SurrogateError::Value(place.clone(), column, problem)
+fn refused(place: Place) -> impl Fn((&'static str, String)) -> SurrogateError {
+    move |(column, problem)| place.clone().key(column).fault(problem).into()
 }
 
 fn enough(measurements: &[Measurement]) -> Result<(), SurrogateError> {

@@ -33,7 +33,7 @@ pub fn t6(engine: &dyn Engine) -> Vec<CheckRow> {
     let cut = [(45.0, "cut edge", cut_edge(-SIZE[1] / 2.0))];
     let rows = turned.into_iter().chain(cut).map(|(angle, name, socket)| {
         let quantity = format!("Fz/(K x) on a {name} of {angle} deg, mu {FRICTION}");
-        let expected = (angle * DEG + FRICTION.atan()).tan();
+        let expected = libm::tan(angle * DEG + libm::atan(FRICTION));
         let measured = socket.map_or(Err(Diverged), |socket| force_ratio(engine, socket));
         CheckRow::new("T6", quantity, expected, measured, "-", Tolerance::Relative(0.02))
     });

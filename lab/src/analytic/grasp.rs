@@ -74,7 +74,7 @@ fn friction(speed: f64, spin: f64, angle: f64) -> (f64, f64) {
     corners.into_iter().fold((0.0, 0.0), |(force, moment), (x, y)| {
         let r = Rotation2::new(angle) * Vector2::new(x * SIZE[0], y * SIZE[1]) / 2.0;
         let v = Vector2::new(speed - spin * r.y, spin * r.x);
-        let press = FRICTION * LOAD / 4.0 / v.norm().hypot(spin * PATCH);
+        let press = FRICTION * LOAD / 4.0 / libm::hypot(v.norm(), spin * PATCH);
         let turning = r.perp(&v) + PATCH * PATCH * spin;
         (force + press * v.x, moment + press * turning)
     })
@@ -106,7 +106,7 @@ fn mean_lever(sides: [f64; 2]) -> f64 {
     const CELLS: usize = 400;
     let at = |i: usize, side: f64| side * ((i as f64 + 0.5) / CELLS as f64 - 0.5);
     let cells = (0..CELLS).flat_map(|i| (0..CELLS).map(move |j| (i, j)));
-    let sum: f64 = cells.map(|(i, j)| at(i, sides[0]).hypot(at(j, sides[1]))).sum();
+    let sum: f64 = cells.map(|(i, j)| libm::hypot(at(i, sides[0]), at(j, sides[1]))).sum();
     sum / (CELLS * CELLS) as f64
 }
 

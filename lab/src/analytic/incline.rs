@@ -53,15 +53,15 @@ pub fn t2(engine: &dyn Engine) -> Vec<CheckRow> {
 
 /// The friction that explains the acceleration of a sliding block.
 fn sliding_friction(engine: &dyn Engine, friction: f64, heading: f64) -> Measured {
-    let slope = (SLIDING * friction).atan();
+    let slope = libm::atan(SLIDING * friction);
     let [first, second] = ways(engine, friction, slope, heading)?;
     let acceleration = (second - first) / (WATCHING * WATCHING);
-    Ok((GRAVITY * slope.sin() - acceleration) / (GRAVITY * slope.cos()))
+    Ok((GRAVITY * libm::sin(slope) - acceleration) / (GRAVITY * libm::cos(slope)))
 }
 
 /// Speed of a block on a slope whose tangent is a share of the friction, m/s.
 pub(super) fn creep(engine: &dyn Engine, friction: f64, heading: f64, share: f64) -> Measured {
-    let [first, second] = ways(engine, friction, (share * friction).atan(), heading)?;
+    let [first, second] = ways(engine, friction, libm::atan(share * friction), heading)?;
     Ok((first + second) / (2.0 * WATCHING))
 }
 
@@ -111,8 +111,8 @@ pub fn t14(engine: &dyn Engine) -> Vec<CheckRow> {
 }
 
 fn push_rows(engine: &dyn Engine, case: &str, share: f64) -> Vec<CheckRow> {
-    let angle = (share * PUSH_FRICTION).atan();
-    let normal = FORCE * angle.cos();
+    let angle = libm::atan(share * PUSH_FRICTION);
+    let normal = FORCE * libm::cos(angle);
     let along = normal * PUSH_FRICTION * share.min(1.0);
     let found = net_force(engine, angle);
     let parts = [("normal force", normal), ("friction", along), ("across", 0.0)];
@@ -140,7 +140,7 @@ fn net_force(engine: &dyn Engine, angle: f64) -> Measured<Vector3<f64>> {
     scene.contact(wall, block, Friction::hard(PUSH_FRICTION));
 
     let mut world = engine.world(&scene);
-    let force = (push * angle.sin() - normal * angle.cos()) * FORCE;
+    let force = (push * libm::sin(angle) - normal * libm::cos(angle)) * FORCE;
     world.push(block, force, Vector3::zeros());
     build::advance(world.as_mut(), PUSH_RESTING)?;
     let steps = build::steps(world.as_ref(), AVERAGING);

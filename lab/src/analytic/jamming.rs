@@ -58,7 +58,7 @@ fn threshold(peg: &Peg, side: f64) -> f64 {
 /// forces with the load (F_x, -F_z) gives N1 and N2, that of moments gives M.
 fn threshold_tilted(peg: &Peg, side: f64) -> f64 {
     let (half_width, friction) = (peg.width / 2.0, peg.friction);
-    let (sin, cos) = peg.tilt().sin_cos();
+    let (sin, cos) = libm::sincos(peg.tilt());
     let (across, along) = (Vector2::new(cos, sin), Vector2::new(-sin, cos));
     let rim = along * peg.inside - across * half_width;
     let corner = across * half_width;

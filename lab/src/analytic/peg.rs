@@ -39,8 +39,8 @@ pub(super) const REFERENCE: Peg =
 impl Peg {
     /// Tilt in two-point contact, rad: the formula above, solved for t.
     pub fn tilt(&self) -> f64 {
-        let diagonal = self.width.hypot(self.inside);
-        self.inside.atan2(self.width) - (self.hole / diagonal).acos()
+        let diagonal = libm::hypot(self.width, self.inside);
+        libm::atan2(self.inside, self.width) - libm::acos(self.hole / diagonal)
     }
 
     pub fn tilted(&self) -> Pose {

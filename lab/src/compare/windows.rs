@@ -107,7 +107,7 @@ pub fn csv(rows: &[Row]) -> String {
 /// # Errors
 /// If it is another.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Row>, InputError> {
-    let fail = |message: String| InputError::Syntax { file: file.to_owned(), message };
+    let fail = |message: String| InputError::Syntax { file: file.to_owned(), line: None, message };
     let mut lines = text.lines();
     if lines.next() != Some(HEADER) {
         return Err(fail(format!("the header must be '{HEADER}'")));

@@ -2,6 +2,7 @@
 
 use super::HiddenCell;
 use super::truth::Known;
+use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use finger_opt::identify::log::{Log, Moment, of_samples};
 use finger_opt::session::Failure;
@@ -14,7 +15,6 @@ use insertion::trial::engine::EngineKind;
 use insertion::trial::{Course, Grasp, Probe, Rig, Sample};
 use nalgebra::Vector3;
 use rand::RngExt;
-use rand_distr::StandardNormal;
 use std::path::Path;
 
 /// The fingers that are logged: percent, degrees.

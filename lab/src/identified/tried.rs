@@ -129,7 +129,8 @@ pub fn table(all: &[Tried]) -> String {
     });
     let told = || all.iter().flat_map(|one| &one.hidden).filter(|row| !row[2].is_nan());
     // Of numbers that are all above 0 and drawn over their logarithms.
-    let inside = told().filter(|[is, found, sd]| (is / found).ln().abs() <= EIGHTY * sd / found);
+    let inside =
+        told().filter(|[is, found, sd]| libm::log(is / found).abs() <= EIGHTY * sd / found);
     let errors = |way: usize| {
         let each: Vec<f64> = all.iter().map(|one| one.judged()[way].0).collect();
         mean(&each).unwrap_or(f64::NAN)

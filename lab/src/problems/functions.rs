@@ -31,7 +31,9 @@ impl Function {
             Self::Sphere => x.iter().map(|v| v * v).sum(),
             Self::Rosenbrock => rosenbrock(x),
             Self::Ellipsoid => ellipsoid(x),
-            Self::Rastrigin => x.iter().map(|v| v * v + 10.0 - 10.0 * (2.0 * PI * v).cos()).sum(),
+            Self::Rastrigin => {
+                x.iter().map(|v| v * v + 10.0 - 10.0 * libm::cos(2.0 * PI * v)).sum()
+            }
             Self::Branin => branin(x),
             Self::Hartmann6 => hartmann6(x),
         }
@@ -44,14 +46,14 @@ fn rosenbrock(x: &[f64]) -> f64 {
 
 fn ellipsoid(x: &[f64]) -> f64 {
     let last = (x.len() - 1) as f64;
-    x.iter().enumerate().map(|(i, v)| 1e6f64.powf(i as f64 / last) * v * v).sum()
+    x.iter().enumerate().map(|(i, v)| libm::pow(1e6, i as f64 / last) * v * v).sum()
 }
 
 /// Minimum 0.397887.
 fn branin(u: &[f64]) -> f64 {
     let (x, y) = (15.0 * u[0] - 5.0, 15.0 * u[1]);
     let a = y - 5.1 / (4.0 * PI * PI) * x * x + 5.0 / PI * x - 6.0;
-    a * a + 10.0 * (1.0 - 1.0 / (8.0 * PI)) * x.cos() + 10.0
+    a * a + 10.0 * (1.0 - 1.0 / (8.0 * PI)) * libm::cos(x) + 10.0
 }
 
 /// Minimum -3.32237.
@@ -71,7 +73,7 @@ fn hartmann6(u: &[f64]) -> f64 {
     ];
     let term = |i: usize| -> f64 {
         let e: f64 = (0..6).map(|j| A[i][j] * (u[j] - P[i][j]).powi(2)).sum();
-        ALPHA[i] * (-e).exp()
+        ALPHA[i] * libm::exp(-e)
     };
     -(0..4).map(term).sum::<f64>()
 }

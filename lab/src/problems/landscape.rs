@@ -25,7 +25,8 @@ type Row = (Vec<f64>, Option<f64>, Option<[f64; 2]>);
 impl Landscape {
     /// Landscape of a CSV: a header, the axes, then `range_mm` (empty for no value), then anything.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let fail = |message: String| InputError::Syntax { file: file.to_owned(), message };
+        let fail =
+            |message: String| InputError::Syntax { file: file.to_owned(), line: None, message };
         let mut lines = text.lines().filter(|line| !line.starts_with('#'));
         let header = lines.next().unwrap_or_default();
         let axes = header.split(',').position(|name| name == VALUE).filter(|&axes| axes > 0);

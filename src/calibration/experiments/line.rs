@@ -2,6 +2,7 @@
 
 use super::{Experiment, NOT_MEASURABLE, problem};
 use csv::StringRecord;
+use input::Fault;
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use jiff::civil::Date;
@@ -14,7 +15,7 @@ pub(crate) struct Cells<'a> {
     pub(super) header: &'a StringRecord,
     pub(super) record: &'a StringRecord,
     pub(crate) line: u64,
-    pub(super) problems: Vec<String>,
+    pub(super) problems: Vec<Fault>,
 }
 
 impl<'a> Cells<'a> {
@@ -121,7 +122,7 @@ fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
 }
 
 /// The same finger on the same task and day as on an earlier line.
-fn twice(new: &Experiment, before: &[Experiment]) -> Option<String> {
+fn twice(new: &Experiment, before: &[Experiment]) -> Option<Fault> {
     let same = |old: &&Experiment| {
         old.task == new.task && old.design == new.design && old.date == new.date
     };

@@ -9,6 +9,7 @@ mod tests;
 
 use csv::StringRecord;
 use input::shipped::nearest;
+use input::{Fault, Place, Placed};
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use line::{Cells, is_of_space};
@@ -69,19 +70,31 @@ fn reader() -> csv::ReaderBuilder {
 
 /// All that is wrong with one file, a line each.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}", self.0.join("\n"))]
-pub struct Problems(Vec<String>);
+#[error("{}", self.0.iter().map(Fault::to_string).collect::<Vec<_>>().join("\n"))]
+pub struct Problems(Vec<Fault>);
 
 impl Problems {
-    pub(crate) fn of(file: &str, problems: Vec<String>) -> Self {
-        Problems(problems.into_iter().map(|problem| format!("{file}: {problem}")).collect())
+    pub(crate) fn of(file: &str, mut problems: Vec<Fault>) -> Self {
+        problems.iter_mut().for_each(|fault| fault.place.file = Some(file.to_owned()));
+        Problems(problems)
+    }
+}
+
+impl From<Fault> for Problems {
+    fn from(fault: Fault) -> Self {
+        Problems(vec![fault])
+    }
+}
+
+impl Placed for Problems {
+    fn place(&self) -> Place {
+        self.0.first().map(Fault::place).unwrap_or_default()
     }
 }
 
 /// A fault of a line, in a column unless its name is empty.
-pub(crate) fn problem(line: u64, column: &str, words: &str) -> String {
-    let column = if column.is_empty() { String::new() } else { format!("{column}: ") };
-    format!("line {line}: {column}{words}")
+pub(crate) fn problem(line: u64, column: &str, words: &str) -> Fault {
+    Place::default().line(line as usize).key(column).fault(words)
 }
 
 /// One line of a measurement file: one finger on one task.
@@ -170,7 +183,7 @@ pub(crate) fn rows<T>(
         return Ok(Vec::new());
     }
     let mut reader = reader().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let fault = |problem: String| Problems::of(file, vec![problem]);
+    let fault = |problem: Fault| Problems::of(file, vec![problem]);
     let wrong = |error: csv::Error| fault(syntax(&text, &error));
     let header = reader.headers().map_err(wrong)?.clone();
     check_header(&header, columns, line_at(&text, header.position())).map_err(fault)?;
@@ -196,7 +209,7 @@ fn line_at(text: &str, position: Option<&csv::Position>) -> u64 {
     position.line() + rest.lines().take_while(bare).count() as u64
 }
 
-fn syntax(text: &str, error: &csv::Error) -> String {
+fn syntax(text: &str, error: &csv::Error) -> Fault {
     let words = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("has {len} cells where the header has {expected_len}")
@@ -207,7 +220,7 @@ fn syntax(text: &str, error: &csv::Error) -> String {
 }
 
 /// Checks that the columns are known, stand once, and say what is needed.
-fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result<(), String> {
+fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result<(), Fault> {
     let Columns { all, needed, why } = columns;
     for (i, name) in header.iter().enumerate() {
         if !is_of_space(name) && !all.contains(&name) {
@@ -243,7 +256,7 @@ pub fn check_tasks(experiments: &[Experiment], known: &[&str], file: &str) -> Re
         );
         problem(*line, "task", &words)
     };
-    let problems: Vec<String> = unknown.map(words).collect();
+    let problems: Vec<Fault> = unknown.map(words).collect();
     if problems.is_empty() { Ok(()) } else { Err(Problems::of(file, problems)) }
 }
 

@@ -53,8 +53,11 @@ fn what_looks_wrong_is_told_with_line_and_column() {
         let problems = of(line).unwrap_err();
         let at = 1 + line.lines().count() as u64;
         let [problem] = &problems.0[..] else { panic!("{problems}") };
-        assert!(problem.contains(words), "{problems}");
-        assert!(problem.starts_with(&format!("m.csv: line {at}: {column}")), "{problems}");
+        assert!(problem.problem.contains(words), "{problems}");
+        assert!(
+            problems.to_string().starts_with(&format!("m.csv: line {at}: {column}")),
+            "{problems}"
+        );
     }
     let both = of("ket8,0.2,0,,,7,,,,\nket8,20,x,,,7,,,,").unwrap_err();
     assert_eq!(both.0.len(), 2);

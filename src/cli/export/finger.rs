@@ -18,18 +18,20 @@ use std::path::{Path, PathBuf};
 /// fills with its own ribs.
 #[derive(Debug, Clone, Args)]
 pub struct Arguments {
+    /// Which finger.
     #[command(flatten)]
-    request: PrintRequest,
+    pub request: PrintRequest,
     /// What to write
     #[arg(long, value_enum)]
-    format: Format,
+    pub format: Format,
     /// File to write
     #[arg(long, value_name = "FILE")]
-    out: PathBuf,
+    pub out: PathBuf,
 }
 
+/// What to write of a finger.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
+pub enum Format {
     /// Closed surface, binary, mm
     Stl,
     /// Closed surface with its unit
@@ -47,7 +49,25 @@ enum Format {
     Prusaslicer,
 }
 
+/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (title, files) = written(arguments)?;
+    let [out, parts @ ..] = &files[..] else { return Ok(()) };
+    let [outline, base] = parts else {
+        return print(&format!("wrote {title}: {}\n", out.display()));
+    };
+    print(&format!(
+        "wrote settings for {title}: {}\n\
+         to be sliced with them: {}\n\
+         to be loaded as a modifier with 100 % infill: {}\n",
+        out.display(),
+        outline.display(),
+        base.display()
+    ))
+}
+
+/// Writes the finger; its title and the files: the one asked for, and for a slicer outline and base.
+pub fn written(arguments: &Arguments) -> Result<(String, Vec<PathBuf>), Failure> {
     let geometry = arguments.request.geometry()?;
     let (out, title) = (&arguments.out, export::title(&geometry));
     match arguments.format {
@@ -61,10 +81,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Svg => write_file(out, &profile::svg(&geometry, &title))?,
         Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
         Format::Sheet => write_file(out, &page(&arguments.request, &geometry, out)?)?,
-        Format::Cura => return settings(out, &geometry, &slicer::cura(&geometry)),
-        Format::Prusaslicer => return settings(out, &geometry, &slicer::prusaslicer(&geometry)),
+        Format::Cura | Format::Prusaslicer => {
+            let cura = arguments.format == Format::Cura;
+            let text = if cura { slicer::cura } else { slicer::prusaslicer };
+            let files = settings(out, &geometry, &text(&geometry))?;
+            return Ok((title, files));
+        }
     }
-    print(&format!("wrote {title}: {}\n", out.display()))
+    Ok((title, vec![out.clone()]))
 }
 
 fn closed(
@@ -90,7 +114,7 @@ fn page(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<Strin
 }
 
 /// Writes settings for a slicer, and beside them what they are for.
-fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<(), Failure> {
+fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<Vec<PathBuf>, Failure> {
     let title = export::title(geometry);
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let beside = |part: &str| out.with_file_name(format!("{stem}-{part}.stl"));
@@ -110,12 +134,5 @@ fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<(), Failure> 
     for (file, content) in &parts {
         write_file(file, content)?;
     }
-    print(&format!(
-        "wrote settings for {title}: {}\n\
-         to be sliced with them: {}\n\
-         to be loaded as a modifier with 100 % infill: {}\n",
-        out.display(),
-        outline.display(),
-        base.display()
-    ))
+    Ok(vec![out.to_owned(), outline, base])
 }

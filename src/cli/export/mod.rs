@@ -1,6 +1,6 @@
 //! `optimize export`: what other programs and printers read.
 
-mod finger;
+pub mod finger;
 mod mjcf;
 
 use super::Failure;

@@ -1,7 +1,7 @@
 //! `optimize measure add`.
 
 use crate::calibration::experiments::{
-    COLUMNS, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
+    COLUMNS, Experiment, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
 };
 use crate::cli::{Failure, print, say};
 use crate::session::{TaskFile, read_task};
@@ -75,15 +75,26 @@ fn setting(text: &str) -> Result<(String, String), String> {
     }
 }
 
+/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let file = &arguments.file;
-    if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
-        return Err(Failure::usage(format!("`{file}` is shipped; give a file of your own")));
-    }
-    let mut cells = arguments.cells();
+    let (file, mut cells) = (&arguments.file, arguments.cells());
+    not_shipped(file)?;
     if cells.is_empty() {
         cells = asked(&mut io::stdin().lock())?;
     }
+    print(&format!("{file}: {}\n", super::lines(&added(file, cells)?)))
+}
+
+fn not_shipped(file: &str) -> Result<(), Failure> {
+    if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
+        return Err(Failure::usage(format!("`{file}` is shipped; give a file of your own")));
+    }
+    Ok(())
+}
+
+/// Adds a line of these columns; all lines that are there then.
+pub fn added(file: &str, mut cells: Vec<(&str, String)>) -> Result<Vec<Experiment>, Failure> {
+    not_shipped(file)?;
     let mut own = None;
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
         let TaskFile { source, task } = read_task(name)?;
@@ -96,7 +107,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         *name = task.name;
     }
     // Read only now: others may have added lines meanwhile.
-    let unusable = |error| Failure::usage(format!("{file}: cannot add to it: {error}"));
+    let unusable = |error| Failure::in_file(file, format!("cannot add to it: {error}"));
     let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
     let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
@@ -106,7 +117,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let new = appended(table.text(), &comment, &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;
     table.replace(&new).map_err(full)?;
-    print(&format!("{file}: {}\n", super::lines(&found)))
+    Ok(found)
 }
 
 impl Arguments {

@@ -1,9 +1,12 @@
 //! `optimize measure check`.
 
+use crate::calibration::experiments::Experiment;
+use crate::cli::terminal::merge;
 use crate::cli::{Failure, print, print_json};
 use crate::session::{read_measurements, read_task};
 use clap::Args;
-use serde_json::json;
+use insertion::outcome::FailureClass;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// Check a measurement file: units that look wrong, windows without the start, lines given
@@ -30,11 +33,40 @@ struct Known {
     repeats: u32,
 }
 
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let own = arguments.task.iter().map(|name| Ok(read_task(name)?.task.name));
+/// The lines of a file with tasks of one's own.
+pub fn read(file: &str, tasks: &[String]) -> Result<Vec<Experiment>, Failure> {
+    let own = tasks.iter().map(|name| Ok(read_task(name)?.task.name));
     let own = own.collect::<Result<Vec<_>, Failure>>()?;
     let own: Vec<&str> = own.iter().map(String::as_str).collect();
-    let found = read_measurements(&arguments.file, &own)?;
+    read_measurements(file, &own)
+}
+
+/// The lines by the columns of the file; null where a column is empty.
+pub fn json(lines: &[Experiment]) -> Value {
+    let line = |line: &Experiment| {
+        let ends = line.failures.map(|failure| failure.map(FailureClass::number));
+        let mut fields = json!({
+            "line": line.line,
+            "task": line.task,
+            "negative_mm": line.negative_mm,
+            "positive_mm": line.positive_mm,
+            "range_mm": line.range_mm(),
+            "failure_negative": ends[0],
+            "failure_positive": ends[1],
+            "repeats": line.repeats,
+            "peak_force_n": line.peak_force_n,
+            "date": line.date,
+            "note": line.note,
+        });
+        merge(&mut fields, json!(line.design));
+        fields
+    };
+    lines.iter().map(line).collect()
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let found = read(&arguments.file, &arguments.task)?;
     let mut tasks: BTreeMap<&str, Known> = BTreeMap::new();
     for line in &found {
         let known = tasks.entry(&line.task).or_default();

@@ -1,7 +1,7 @@
 //! `optimize measure`: what was measured on the bench, into and out of a file.
 
-mod add;
-mod check;
+pub mod add;
+pub mod check;
 
 use super::{Failure, print};
 use crate::calibration::experiments::Experiment;

@@ -11,6 +11,7 @@ use crate::tune::Tuned;
 use clap::Args;
 use input::units::N_PER_MM;
 use insertion::outcome::Outcome;
+use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -35,9 +36,10 @@ pub struct Arguments {
     json: bool,
 }
 
+/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = TaskSource::Named(arguments.file.clone()).read()?;
-    let checked = TaskCheck::of(source, &arguments.robot, arguments.engine)?;
+    let checked = TaskCheck::of(source, &arguments.robot, arguments.engine, &NEVER)?;
     let drawn = match (&arguments.svg, &checked.task) {
         (Some(file), Some(task)) => {
             write_file(file, &picture::svg(task))?;
@@ -45,12 +47,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         _ => String::new(),
     };
-    let mended = checked.mend(&arguments.robot, arguments.engine)?;
+    let mended = checked.mend(&arguments.robot, arguments.engine, &NEVER)?;
     let file = &checked.source.file;
     if arguments.json {
-        let mut fields = json(&checked);
-        fields["mended_by"] = json!(mended.as_ref().map(tune::brief_json));
-        print_json(&fields)?;
+        print_json(&mended_json(&checked, mended.as_ref()))?;
     } else {
         let remedy = mended.as_ref().map_or(String::new(), |tuned| match tuned.inserts() {
             true => format!(
@@ -77,6 +77,13 @@ pub fn ended(checked: &TaskCheck, tuned: Option<&Tuned>) -> Result<(), Failure> 
         }
         (Err(problems), None) => Err(Failure::running(problems.to_string())),
     }
+}
+
+/// The same with `mended_by`: output of `--json`.
+pub fn mended_json(checked: &TaskCheck, mended: Option<&Tuned>) -> Value {
+    let mut fields = json(checked);
+    fields["mended_by"] = json!(mended.map(tune::brief_json));
+    fields
 }
 
 /// `valid`, `problems` and `nominal`.

@@ -1,9 +1,9 @@
 //! `optimize task`: one's own connector.
 
-mod check;
+pub mod check;
 pub mod import;
-mod new;
-mod tune;
+pub mod new;
+pub mod tune;
 
 use super::{Failure, print};
 use crate::session::TaskSource;

@@ -11,8 +11,11 @@ use crate::tune::Tuned;
 use clap::Args;
 use input::shipped::Source;
 use input::units::MM;
+use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
+use serde_json::{Value, json};
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 /// Dimensions of the example that is written if none are given: a USB-C plug.
 const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
@@ -26,45 +29,34 @@ const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
 pub struct Arguments {
     /// Name of the task: letters, digits, - and _
     #[arg(value_name = "NAME")]
-    name: String,
+    pub name: String,
     /// What goes in: width (y, between the jaws) x height (x) x length, mm
     #[arg(long, value_name = "WxHxL", requires = "clearance", group = "tip")]
-    plug: Option<Size>,
+    pub plug: Option<Size>,
     /// What goes in, if it is a cylinder: diameter x length, mm
     #[arg(long, value_name = "DxL", requires = "clearance", group = "tip", value_parser = Size::round)]
-    round: Option<Size>,
+    pub round: Option<Size>,
     /// Opening less plug in x and y, mm: both sides together
     #[arg(long, value_name = "C", requires = "tip", value_parser = clearance)]
-    clearance: Option<f64>,
+    pub clearance: Option<f64>,
     /// What the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
     #[arg(long, value_name = "WxHxL", requires = "tip")]
-    body: Option<Size>,
+    pub body: Option<Size>,
     /// Another task: ket8, ket12, rj45, usb, or the path of a task file
     #[arg(long, value_name = "T")]
-    like: Option<String>,
+    pub like: Option<String>,
     /// File to write [default: NAME.toml]
     #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
     /// Contact engine that tries the nominal start
     #[arg(long, value_enum, default_value_t)]
-    engine: EngineKind,
+    pub engine: EngineKind,
 }
 
+/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let like = arguments.like.as_deref().map(read_task).transpose()?;
-    let (text, tuned) = match (&like, arguments.plug.or(arguments.round)) {
-        (Some(like), None) => (copy(&arguments.name, like), None),
-        (like, _) => drafted(arguments, like.as_ref())?,
-    };
-    let out = arguments.out.clone().unwrap_or_else(|| format!("{}.toml", arguments.name).into());
-    let file = out.display().to_string();
-    // The name is checked here: what is written can be read.
-    let written = TaskFile::parse(Source { file: file.clone(), text })?;
-    if out.exists() {
-        return Err(Failure::usage(format!("{file} exists; name another file with --out")));
-    }
-    write_file(&out, &written.source.text)?;
-    let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, arguments.engine)?;
+    let (checked, tuned) = written(arguments, &NEVER)?;
+    let file = &checked.source.file;
     let strategy = tuned.iter().map(|tuned| tune::brief("strategy", tuned)).collect::<String>();
     print(&wrapped(&format!(
         "written       {file}\n{strategy}{}next          optimize task check {file} --svg {}.svg\n",
@@ -74,9 +66,38 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     check::ended(&checked, tuned.as_ref())
 }
 
+/// File, strategy and check of the new task.
+pub fn json(checked: &TaskCheck, tuned: Option<&Tuned>) -> Value {
+    let tuned = tuned.map(tune::brief_json);
+    json!({"out": checked.source.file, "tuned": tuned, "check": check::json(checked)})
+}
+
+/// Writes the task and checks it.
+pub fn written(
+    arguments: &Arguments,
+    stop: &AtomicBool,
+) -> Result<(TaskCheck, Option<Tuned>), Failure> {
+    let like = arguments.like.as_deref().map(read_task).transpose()?;
+    let (text, tuned) = match (&like, arguments.plug.or(arguments.round)) {
+        (Some(like), None) => (copy(&arguments.name, like), None),
+        (like, _) => drafted(arguments, like.as_ref(), stop)?,
+    };
+    let out = arguments.out.clone().unwrap_or_else(|| format!("{}.toml", arguments.name).into());
+    let file = out.display().to_string();
+    // The name is checked here: what is written can be read.
+    let written = TaskFile::parse(Source { file: file.clone(), text })?;
+    if out.exists() {
+        return Err(Failure::usage(format!("{file} exists; name another file with --out")));
+    }
+    write_file(&out, &written.source.text)?;
+    let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, arguments.engine, stop)?;
+    Ok((checked, tuned))
+}
+
 fn drafted(
     arguments: &Arguments,
     like: Option<&TaskFile>,
+    stop: &AtomicBool,
 ) -> Result<(String, Option<Tuned>), Failure> {
     let (size, example) = dimensions(arguments)?;
     let task =
@@ -101,7 +122,7 @@ fn drafted(
         head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
     }
     let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
-    let (task, tuned) = begun(task, arguments.engine)?;
+    let (task, tuned) = begun(task, arguments.engine, stop)?;
     Ok((write::task(&task, &Notes { head, mass }), tuned))
 }
 

@@ -31,6 +31,7 @@ pub struct Arguments {
     quiet: bool,
 }
 
+/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let quiet = arguments.quiet || arguments.json;
     let mut progress = Progress::of_windows(MOST_WINDOWS, quiet);
@@ -89,7 +90,8 @@ pub fn tried(tuned: &Tuned) -> String {
     all.join(", ")
 }
 
-fn json(done: &TuneDone) -> Value {
+/// Output of `--json`.
+pub fn json(done: &TuneDone) -> Value {
     let TuneDone { task, tuned, fingers, after, written } = done;
     let best = &tuned.best().tried;
     json!({

@@ -11,11 +11,21 @@ mod reduce;
 mod surface;
 
 use super::plan::PlanError;
+use input::{Place, Placed};
 pub use read::{Body, Triangle, pick, read};
 pub use surface::Surface;
 
 /// Names of the files of plug and socket, for messages.
 pub type Files<'a> = [&'a str; 2];
+
+impl Placed for MeshError {
+    fn place(&self) -> Place {
+        match self {
+            MeshError::File(file, _) => Place::file(file),
+            MeshError::Plan(_) => Place::default(),
+        }
+    }
+}
 
 /// Error of an import.
 #[derive(Debug, thiserror::Error, PartialEq)]

@@ -152,6 +152,6 @@ fn unmodelled(compared: &[Compared]) -> Vec<String> {
 
 /// Three digits.
 fn short(value: f64) -> String {
-    let digits = (2.0 - value.abs().max(1e-3).log10().floor()).clamp(0.0, 4.0);
+    let digits = (2.0 - libm::log10(value.abs().max(1e-3)).floor()).clamp(0.0, 4.0);
     format!("{value:.0$}", digits as usize)
 }

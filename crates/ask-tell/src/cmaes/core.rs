@@ -3,11 +3,11 @@
 use super::parameters::Parameters;
 use super::restarts::StartBox;
 use super::stop::History;
+use crate::normal::StandardNormal;
 use crate::stream::stream;
 use libm::{exp, pow, sqrt};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rand::RngExt;
-use rand_distr::StandardNormal;
 
 /// Largest condition number of C; above it a run ends.
 const CONDITION: f64 = 1e14;

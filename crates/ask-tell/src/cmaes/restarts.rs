@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn large_populations_double_and_share_the_budget_with_small_ones() {
-        let (_, runs) = minimise(|x| x[0].sin() + x[1].cos(), 2000);
+        let (_, runs) = minimise(|x| libm::sin(x[0]) + libm::cos(x[1]), 2000);
         let large: Vec<usize> = runs.iter().copied().filter(|l| *l >= 12).collect();
         assert!(large.len() >= 2 && runs.len() > large.len(), "{runs:?}");
         assert!(large.windows(2).any(|pair| pair[1] == 2 * pair[0]), "{runs:?}");

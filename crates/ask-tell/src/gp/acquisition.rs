@@ -90,10 +90,10 @@ pub(super) fn log_expected_volume(moments: &[(f64, f64)], cells: &[Cell]) -> f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::normal::StandardNormal;
     use crate::pareto::{hypervolume, undominated};
     use crate::stream::stream;
     use rand::RngExt;
-    use rand_distr::StandardNormal;
 
     /// `log(phi(z) + z Phi(z))` computed with 60 digits (mpmath), rounded to doubles.
     const LOG_H_REFERENCE: [(f64, f64); 14] = [
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn no_deviation_is_the_plain_improvement() {
-        assert!((log_expected_improvement(3.0, 0.0, 1.0) - 2f64.ln()).abs() < 1e-15);
+        assert!((log_expected_improvement(3.0, 0.0, 1.0) - libm::log(2.0)).abs() < 1e-15);
         assert_eq!(log_expected_improvement(0.0, 0.0, 1.0), f64::NEG_INFINITY);
         assert_eq!(log_expected_improvement(f64::NAN, 1.0, 1.0), f64::NEG_INFINITY);
         assert!(log_expected_improvement(-1e9, 1.0, 0.0).is_finite());

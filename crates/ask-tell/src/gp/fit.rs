@@ -41,6 +41,17 @@ pub fn fit(
     warm: Option<&Hyperparameters>,
     effort: FitEffort,
 ) -> Hyperparameters {
+    fit_until(x, y, noise_floor, warm, (effort, &|| false))
+}
+
+/// The same; soon after `stopped` says so it ends, with what is worthless.
+pub fn fit_until(
+    x: &[Vec<f64>],
+    y: &[f64],
+    noise_floor: f64,
+    warm: Option<&Hyperparameters>,
+    (effort, stopped): (FitEffort, &dyn Fn() -> bool),
+) -> Hyperparameters {
     let d = x.first().map_or(0, Vec::len);
     let mode: Vec<f64> = priors(d).into_iter().map(|(mean, _)| mean).collect();
     let bound = |pick: fn((f64, f64)) -> f64| {
@@ -61,6 +72,9 @@ pub fn fit(
         starts.extend([mode.clone(), shifted(-1.0, -5.0), shifted(1.0, -12.0)]);
     }
     let negated = |theta: &[f64]| {
+        if stopped() {
+            return None;
+        }
         let theta = Hyperparameters::from_slice(theta);
         let (value, gradient) = log_posterior(x, y, noise_floor, &theta)?;
         Some((-value, gradient.iter().map(|g| -g).collect()))
@@ -78,7 +92,7 @@ mod tests {
     fn the_axis_that_matters_gets_the_shorter_length() {
         let x: Vec<Vec<f64>> =
             (0..40).map(|i| vec![f64::from(i) / 39.0, f64::from(i * 17 % 40) / 39.0]).collect();
-        let y: Vec<f64> = x.iter().map(|p| (9.0 * p[0]).sin() * 1.4).collect();
+        let y: Vec<f64> = x.iter().map(|p| libm::sin(9.0 * p[0]) * 1.4).collect();
         let effort = FitEffort { evaluations: 60, restarts: true };
         let theta = fit(&x, &y, 1e-8, None, effort);
         assert!(theta.log_length[0] + 1.0 < theta.log_length[1], "{theta:?}");

@@ -82,7 +82,7 @@ mod tests {
         let x: Vec<Vec<f64>> = (0..14)
             .map(|i| vec![f64::from(i * 5 % 14) / 13.0, f64::from(i * 3 % 14) / 13.0])
             .collect();
-        let y = x.iter().map(|p| (5.0 * p[0]).sin() + p[1] * p[1] - 0.4).collect();
+        let y = x.iter().map(|p| libm::sin(5.0 * p[0]) + p[1] * p[1] - 0.4).collect();
         (x, y)
     }
 

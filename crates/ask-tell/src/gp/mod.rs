@@ -28,7 +28,7 @@ mod training;
 mod warp;
 
 pub use acquisition::log_normal_cdf;
-pub use fit::{FitEffort, fit};
+pub use fit::{FitEffort, fit, fit_until};
 pub use hyperparameters::Hyperparameters;
 pub use model::Gp;
 pub use optimizer::DEFAULT_NOISE_FLOOR;

@@ -2,12 +2,12 @@
 
 use super::lbfgs::{Limits, minimise};
 use super::trained::Trained;
+use crate::normal::StandardNormal;
 use crate::proposed::Proposed;
 use crate::sobol::SobolSequence;
 use crate::stream::stream;
 use crate::{Grid, GridPoint};
 use rand::RngExt;
-use rand_distr::StandardNormal;
 use std::collections::BTreeMap;
 
 /// Grids up to this size are searched completely.
@@ -193,7 +193,7 @@ mod tests {
         let x: Vec<Vec<f64>> = (0..40)
             .map(|i| vec![f64::from(i * 7 % 40) / 39.0, f64::from(i * 11 % 40) / 39.0])
             .collect();
-        let y: Vec<f64> = x.iter().map(|p| (7.0 * p[0]).sin() * (5.0 * p[1]).cos()).collect();
+        let y: Vec<f64> = x.iter().map(|p| libm::sin(7.0 * p[0]) * libm::cos(5.0 * p[1])).collect();
         let theta =
             Hyperparameters { log_length: vec![-1.2, -1.0], log_signal: 0.0, log_noise: -12.0 };
         let gp = Gp::new(&x, &y, 1e-6, &theta).unwrap();

@@ -128,8 +128,9 @@ mod tests {
     fn the_impulse_is_continuous_and_stays_in_the_cone() {
         for i in 0..2000 {
             let angle = f64::from(i) * 0.01;
-            let spin = 0.02 * (0.3 * angle).sin();
-            let u = Vector4::new(0.02 * angle.sin(), 0.01, 0.05 * (1.7 * angle).cos(), spin);
+            let spin = 0.02 * libm::sin(0.3 * angle);
+            let u =
+                Vector4::new(0.02 * libm::sin(angle), 0.01, 0.05 * libm::cos(1.7 * angle), spin);
             let l = impulse(u);
             let friction = Vector3::new(l.x, l.y, l.w).norm();
             assert!(l.z >= 0.0 && friction <= CONE.mu * l.z * (1.0 + 1e-12));

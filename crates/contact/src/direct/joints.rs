@@ -199,7 +199,7 @@ fn inverse_left_jacobian(turn: &Vector3<f64>) -> Matrix3<f64> {
         1.0 / 12.0 + angle * angle / 720.0
     } else {
         let half = 0.5 * angle;
-        (1.0 - half / half.tan()) / (angle * angle)
+        (1.0 - half / libm::tan(half)) / (angle * angle)
     };
     Matrix3::identity() - cross * 0.5 + cross * cross * second
 }

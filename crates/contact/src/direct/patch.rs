@@ -64,8 +64,8 @@ fn mean_lever(half: f64, other: f64) -> f64 {
     if short <= 0.0 {
         return long / 2.0;
     }
-    let towards = |a: f64, b: f64| a * a / (6.0 * b) * (b / a).asinh();
-    short.hypot(long) / 3.0 + towards(short, long) + towards(long, short)
+    let towards = |a: f64, b: f64| a * a / (6.0 * b) * libm::asinh(b / a);
+    libm::hypot(short, long) / 3.0 + towards(short, long) + towards(long, short)
 }
 
 #[cfg(test)]
@@ -76,7 +76,7 @@ mod tests {
     fn summed(half: f64, other: f64) -> f64 {
         let at = |i: usize, half: f64| half * ((2 * i + 1) as f64 / 800.0 - 1.0);
         let cells = (0..800).flat_map(|i| (0..800).map(move |j| (i, j)));
-        cells.map(|(i, j)| at(i, half).hypot(at(j, other))).sum::<f64>() / 640_000.0
+        cells.map(|(i, j)| libm::hypot(at(i, half), at(j, other))).sum::<f64>() / 640_000.0
     }
 
     #[test]

@@ -270,8 +270,8 @@ fn axis_place(model: &MjModel, joint: &Joint, axis: usize) -> AxisPlace {
 fn coordinates(pose: &Pose) -> [f64; 6] {
     let at = pose.translation.vector;
     let turn: Rotation3<f64> = pose.rotation.to_rotation_matrix();
-    let about_x = f64::atan2(-turn[(1, 2)], turn[(2, 2)]);
-    let about_y = turn[(0, 2)].clamp(-1.0, 1.0).asin();
-    let about_z = f64::atan2(-turn[(0, 1)], turn[(0, 0)]);
+    let about_x = libm::atan2(-turn[(1, 2)], turn[(2, 2)]);
+    let about_y = libm::asin(turn[(0, 2)].clamp(-1.0, 1.0));
+    let about_z = libm::atan2(-turn[(0, 1)], turn[(0, 0)]);
     [at.x, at.y, at.z, about_x, about_y, about_z]
 }

@@ -165,7 +165,7 @@ fn direction(geometry: &Geometry, view: View) -> Markup {
     let middle = (outline.arc_end() + outline.length - outline.solid) / 2.0;
     let foot = Point2::new(middle, -outline.width);
     let reach = outline.width / MM + 14.0 / view.scale;
-    let up = |angle: f64| Vector2::new((angle * DEG).sin(), (angle * DEG).cos());
+    let up = |angle: f64| Vector2::new(libm::sin(angle * DEG), libm::cos(angle * DEG));
     let end = |angle: f64| view.place(foot / MM + up(angle) * reach);
     let from = view.place(foot / MM);
     let label = |angle: f64| {
@@ -329,7 +329,7 @@ fn line(a: Point2<f64>, b: Point2<f64>) -> Markup {
 fn beside([a, b]: [Point2<f64>; 2], text: &str) -> Markup {
     let (at, along) = (nalgebra::center(&a, &b), b - a);
     let along = if along.x < -1e-9 || (along.x < 1e-9 && along.y > 0.0) { -along } else { along };
-    let degrees = along.y.atan2(along.x).to_degrees();
+    let degrees = libm::atan2(along.y, along.x).to_degrees();
     let turn = format!("translate({:.2},{:.2}) rotate({degrees:.2})", at.x, at.y);
     let size = fitting(along.norm(), text);
     html! { g transform=(turn) { text y="-1.2" text-anchor="middle" font-size=(size) { (text) } } }

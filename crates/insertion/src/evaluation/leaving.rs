@@ -41,7 +41,7 @@ pub fn predict(
     let scaled = |axis: usize, Estimate { mean, sd }: Estimate| {
         let factor = now[axis] / before[axis];
         let mean = mean * factor;
-        Estimate { mean, sd: (sd * factor).hypot(mean * scatter[axis]) }
+        Estimate { mean, sd: libm::hypot(sd * factor, mean * scatter[axis]) }
     };
     Ok(Prediction {
         compliance: scaled(0, plain.compliance),
@@ -129,9 +129,9 @@ mod tests {
         assert!(close(found.compliance.mean, 1.2 * N_PER_MM), "{found:?}");
         assert!(close(found.assembly.mean, 20.0 * N_PER_MM), "{found:?}");
         // ln 2 and -ln 2 scatter by sqrt(2) ln 2.
-        let sd = (0.05f64).hypot(1.2 * 2f64.sqrt() * 2f64.ln());
+        let sd = libm::hypot(0.05, 1.2 * 2f64.sqrt() * libm::log(2.0));
         assert!(close(found.compliance.sd, sd * N_PER_MM), "{found:?}");
         assert!(close(found.assembly.sd, 0.5 * N_PER_MM), "its ratio does not scatter: {found:?}");
-        assert!(close(found.hull_distance, 2f64.ln()), "{found:?}");
+        assert!(close(found.hull_distance, libm::log(2.0)), "{found:?}");
     }
 }

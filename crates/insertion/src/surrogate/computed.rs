@@ -46,10 +46,10 @@ impl Computed {
     pub fn stiffness(&self, axis: Axis, infill: Infill) -> Result<f64, FingerError> {
         let phases = self.phases(infill)?;
         let logs = phases.iter().map(|[pad, pad_and_roof]| match axis {
-            Axis::Compliance => pad.in_compliance().ln(),
-            Axis::Assembly => pad_and_roof.in_assembly().ln(),
+            Axis::Compliance => libm::log(pad.in_compliance()),
+            Axis::Assembly => libm::log(pad_and_roof.in_assembly()),
         });
-        Ok((logs.sum::<f64>() / phases.len() as f64).exp())
+        Ok(libm::exp(logs.sum::<f64>() / phases.len() as f64))
     }
 }
 
@@ -67,7 +67,7 @@ pub(super) struct Scale {
 
 /// Fits ratios of measured and computed stiffness; `None` without any.
 pub(super) fn fit(axis: Axis, ratios: &Measured) -> Option<Scale> {
-    let logs = ratios.targets().mapv(f64::ln);
+    let logs = ratios.targets().mapv(libm::log);
     let log = logs.mean()?;
     let (_, scatter) = SCATTER.into_iter().find(|(of, _)| *of == axis)?;
     let count = logs.len() as f64;
@@ -77,12 +77,12 @@ pub(super) fn fit(axis: Axis, ratios: &Measured) -> Option<Scale> {
 
 impl Fitted for Scale {
     fn predict(&self, _: Infill) -> Estimate {
-        let mean = self.log.exp();
+        let mean = libm::exp(self.log);
         Estimate { mean, sd: mean * self.sd * (1.0 + 1.0 / self.count).sqrt() }
     }
 
     fn describe(&self) -> String {
         let error_percent = 100.0 * self.sd / self.count.sqrt();
-        format!("computed stiffness x {:.3}, ± {error_percent:.0} %", self.log.exp())
+        format!("computed stiffness x {:.3}, ± {error_percent:.0} %", libm::exp(self.log))
     }
 }

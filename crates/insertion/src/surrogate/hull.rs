@@ -55,7 +55,7 @@ fn to_segment(a: Point2<f64>, b: Point2<f64>, p: Point2<f64>) -> f64 {
     } else {
         (((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / length2).clamp(0.0, 1.0)
     };
-    (p[0] - a[0] - t * along[0]).hypot(p[1] - a[1] - t * along[1])
+    libm::hypot(p[0] - a[0] - t * along[0], p[1] - a[1] - t * along[1])
 }
 
 #[cfg(test)]

@@ -103,7 +103,7 @@ impl Fitted for Ridge {
         let leverage = row.dot(&(&self.spread * &row));
         let (mean, slope) = self.link.backward(self.target.mean + self.target.sd * g);
         let link_sd = self.target.sd * self.residual_sd * (1.0 + leverage).sqrt();
-        Estimate { mean, sd: (slope * link_sd).hypot(super::gp::READING_SD * mean) }
+        Estimate { mean, sd: libm::hypot(slope * link_sd, super::gp::READING_SD * mean) }
     }
 
     fn describe(&self) -> String {

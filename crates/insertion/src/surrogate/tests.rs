@@ -233,7 +233,7 @@ fn the_shipped_fingers_scatter_about_the_computed_ones_as_said() {
     for (axis, said) in super::computed::SCATTER {
         let shipped = shipped();
         let log = |m: &Measurement| {
-            (m.stiffness(axis) / computed().stiffness(axis, m.infill()).unwrap()).ln()
+            libm::log(m.stiffness(axis) / computed().stiffness(axis, m.infill()).unwrap())
         };
         let logs: Vec<f64> = shipped.iter().map(log).collect();
         let mean = logs.iter().sum::<f64>() / logs.len() as f64;

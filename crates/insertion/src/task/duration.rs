@@ -17,7 +17,7 @@ impl Phase {
     /// Longest time of the phase with `lead` metres more, on a robot that needs `settling` seconds.
     fn longest_s(&self, lead: f64, settling: f64) -> f64 {
         let [x, y, z] = self.displacement;
-        let length = x.hypot(y).hypot(z) + lead;
+        let length = libm::hypot(libm::hypot(x, y), z) + lead;
         let after = match self.ending {
             Ending::Duration(rest) => rest.max(settling),
             Ending::Tolerance(_) => TOLERANCE_TIMEOUT_S,

@@ -264,7 +264,7 @@ mod tests {
         let taken = missing("+x+y", Cut::Radius(0.8 * MM));
         // Tangents leave a little more than the arc: tan t / t of it, t half the angle between two.
         let half = PI / 4.0 / (FLATS + 1) as f64;
-        let more = (half.tan() / half - 1.0) * PI / 4.0 * 0.8 * 0.8 * 10.0;
+        let more = (libm::tan(half) / half - 1.0) * PI / 4.0 * 0.8 * 0.8 * 10.0;
         assert!((taken - (exact - more)).abs() < 1e-9, "{taken}");
         assert!(more < 0.04 * exact);
     }

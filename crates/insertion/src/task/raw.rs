@@ -136,7 +136,7 @@ impl Task {
     /// # Errors
     /// As of [`Task::parse`].
     pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
-        check(table.try_into().map_err(|error| syntax(file, &error))?, file)
+        check(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
     }
 }
 

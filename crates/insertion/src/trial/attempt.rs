@@ -408,7 +408,7 @@ impl<'a> Attempt<'a> {
         let now = self.grasp_points();
         let along = |i: usize| {
             let moved = now[i] - self.grasp[i];
-            moved.x.hypot(moved.z)
+            libm::hypot(moved.x, moved.z)
         };
         along(0).min(along(1))
     }

@@ -26,7 +26,7 @@ pub(super) struct Placement {
 
 impl Placement {
     pub fn new(plug: &Pose) -> Self {
-        let tilt = (plug * Vector3::z()).z.clamp(-1.0, 1.0).acos();
+        let tilt = libm::acos((plug * Vector3::z()).z.clamp(-1.0, 1.0));
         Placement { tip: plug.translation.vector, tilt }
     }
 

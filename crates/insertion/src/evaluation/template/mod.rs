@@ -19,9 +19,9 @@ use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::task::Task;
 use crate::trial::run::RigError;
 use finray::FingerError;
-use input::InputError;
 use input::numbers::{DESIGN, NumberFile};
 use input::units::{GRAM, MM, N_PER_MM};
+use input::{InputError, Place, Placed};
 
 /// A task file, the numbers of which a design may set.
 #[derive(Debug, Clone)]
@@ -44,6 +44,16 @@ pub enum Impossible {
     /// The robot or the engine cannot do the task that it makes.
     #[error(transparent)]
     Rig(#[from] RigError),
+}
+
+impl Placed for Impossible {
+    fn place(&self) -> Place {
+        match self {
+            Impossible::Value(error) => error.place(),
+            Impossible::Finger(error) => error.place(),
+            Impossible::Rig(_) => Place::default(),
+        }
+    }
 }
 
 /// One number of a finger: its key, where it is, and the SI value of its unit.

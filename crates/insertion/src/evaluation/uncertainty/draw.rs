@@ -5,9 +5,9 @@ use crate::evaluation::cell::Priors;
 use crate::finger::Finger;
 use crate::surrogate::{Estimate, Prediction};
 use crate::trial::{Conditions, Grasp};
+use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use rand::RngExt;
-use rand_distr::StandardNormal;
 
 const PURPOSE: &str = "errors";
 /// A stream of its own: errors that came later leave those before as they were.

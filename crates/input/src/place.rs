@@ -1,0 +1,73 @@
+//! Where an input is wrong.
+
+use std::fmt;
+
+/// Where an input is wrong, as far as its error knows.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Place {
+    /// The file as given.
+    pub file: Option<String>,
+    /// Line of the file, counted from 1.
+    pub line: Option<usize>,
+    /// Path of the field in the file, its column, or the option as Python has it.
+    pub key: Option<String>,
+}
+
+/// Error that knows its place.
+pub trait Placed {
+    /// Its place.
+    fn place(&self) -> Place;
+}
+
+/// Fault at a place.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {problem}")]
+pub struct Fault {
+    /// Its place; something of it is known.
+    pub place: Place,
+    /// The problem, and what would be right.
+    pub problem: String,
+}
+
+impl Place {
+    /// A file.
+    pub fn file(file: impl Into<String>) -> Self {
+        Place { file: Some(file.into()), ..Place::default() }
+    }
+
+    /// The option of the command line that a text begins with, as Python has it; none if it does not.
+    pub fn option(text: &str) -> Self {
+        let name = text.strip_prefix("--").unwrap_or_default();
+        let end = name.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(name.len());
+        Place::default().key(&name[..end].replace('-', "_"))
+    }
+
+    /// A field or option; none if it is empty.
+    pub fn key(self, key: &str) -> Self {
+        Place { key: (!key.is_empty()).then(|| key.to_owned()), ..self }
+    }
+
+    /// A line, counted from 1.
+    pub fn line(self, line: usize) -> Self {
+        Place { line: Some(line), ..self }
+    }
+
+    /// This problem of it.
+    pub fn fault(self, problem: impl Into<String>) -> Fault {
+        Fault { place: self, problem: problem.into() }
+    }
+}
+
+impl Placed for Fault {
+    fn place(&self) -> Place {
+        self.place.clone()
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let line = self.line.map(|line| format!("line {line}"));
+        let parts = [&self.file, &line, &self.key].into_iter().flatten();
+        f.write_str(&parts.map(String::as_str).collect::<Vec<_>>().join(": "))
+    }
+}

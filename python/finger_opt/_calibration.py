@@ -1,0 +1,315 @@
+"""Measurements from the bench, and what follows from them."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from . import _native
+from ._call import checked, given
+from ._result import REST, Result
+from ._task import Given, sources
+from ._words import Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+
+@dataclass(frozen=True, repr=False)
+class Line(Result):
+    """A line of a measurement file: a finger, its ``values`` by key, and what was measured of it, mm and N."""
+
+    line: int
+    task: str
+    values: dict[str, float] = field(metadata=REST)
+    negative_mm: float | None
+    positive_mm: float | None
+    range_mm: float | None
+    failure_negative: int | None
+    failure_positive: int | None
+    repeats: int
+    peak_force_n: float | None
+    date: str | None
+    note: str | None
+
+
+class Measurements:
+    """A file of measurements from the bench, or ``"published"``: those of the publication.
+
+    >>> import finger_opt as fo
+    >>> len(fo.Measurements("published").check())
+    44
+    """
+
+    def __init__(self, file: StrPath = "measurements.csv", *, tasks: Iterable[StrPath] = ()) -> None:
+        """``tasks`` are files of one's own tasks that its lines name without a comment line."""
+        self.file: str = os.fspath(file)
+        self._tasks: list[StrPath] = [os.fspath(task) for task in tasks]
+
+    def check(self) -> tuple[Line, ...]:
+        """The lines, once nothing looks wrong: units, windows without the start, lines given twice, unknown tasks.
+
+        Raises:
+            InputError: What is wrong, with its line.
+        """
+        found = json.loads(_native.measurements(self.file, self._tasks))
+        return tuple(Line.from_json(line) for line in found["lines"])
+
+    def to_dataframe(self) -> DataFrame:
+        """A row for each line, checked, with the columns of the file."""
+        from ._frame import pandas
+
+        frame: DataFrame = pandas().DataFrame([line.to_dict() for line in self.check()])
+        return frame
+
+    @checked
+    def add(
+        self,
+        task: StrPath,
+        *,
+        density: float | None = None,
+        direction: float | None = None,
+        negative_mm: float | None = None,
+        positive_mm: float | None = None,
+        range_mm: float | None = None,
+        not_measurable: bool = False,
+        failure_negative: int | None = None,
+        failure_positive: int | None = None,
+        repeats: int | None = None,
+        peak_force_n: float | None = None,
+        date: str | None = None,
+        note: str | None = None,
+        set: Numbers | None = None,
+    ) -> int:
+        """Adds a line, as ``optimize measure add`` does; the file need not exist. Gives how many it has then.
+
+        Args:
+            task: A shipped name, or the path of a task file.
+            density: Infill density, percent.
+            direction: Infill direction, degrees.
+            negative_mm: Most negative start that inserted, mm.
+            positive_mm: Most positive start that inserted, mm.
+            range_mm: Width of the window, mm.
+            not_measurable: The finger was tried, but no range could be measured.
+            failure_negative: Failure class below the window, 1 to 4.
+            failure_positive: Failure class above the window, 1 to 4.
+            repeats: Measurements that the values are the mean of.
+            peak_force_n: Largest contact force, N.
+            date: Day, YYYY-MM-DD.
+            note: Anything.
+            set: Further design parameters.
+
+        Raises:
+            InputError: A line that looks wrong; nothing is added.
+        """
+        return _native.add_measurement(self.file, **given(locals()))
+
+    def __repr__(self) -> str:
+        return f"<Measurements {self.file}>"
+
+
+@checked
+def measuring_sheet(task: StrPath, fingers: Sequence[tuple[float, float]], out: StrPath) -> None:
+    """Writes a page to print and fill in, to measure windows by hand, as ``optimize measure sheet`` does.
+
+    Args:
+        task: A shipped name, or the path of a task file.
+        fingers: Infill density, percent, and direction, degrees, of each.
+        out: File to write, ``.html``.
+
+    Raises:
+        InputError: A value or a file that cannot be used.
+    """
+    _native.measuring_sheet(os.fspath(task), [(float(a), float(b)) for a, b in fingers], os.fspath(out))
+
+
+@dataclass(frozen=True, repr=False)
+class LeftOut(Result):
+    """A measured finger, predicted without it: 80 % of such ranges lie between low and high."""
+
+    values: dict[str, float] = field(metadata=REST)
+    measured_mm: float
+    range_mm: float
+    low_mm: float
+    high_mm: float
+
+
+@dataclass(frozen=True, repr=False)
+class Prediction(Result):
+    """What a finger is expected to do on the bench: 80 % of such ranges lie between low and high."""
+
+    values: dict[str, float] = field(metadata=REST)
+    range_mm: float
+    low_mm: float
+    high_mm: float
+    probability_best: float
+    #: By simulation alone.
+    simulated_mm: float | None
+    failure_negative: int | None
+    failure_positive: int | None
+
+
+@dataclass(frozen=True, repr=False)
+class Calibrated(Result):
+    """The predictions for a task, and how far they are to be trusted: fingers left out of the fit."""
+
+    task: str
+    designs: int
+    loo_mean_deviation_percent: float | None
+    loo_spearman: float | None
+    loo_coverage_80_percent: float | None
+    simulations: int
+    fresh_simulations: int
+    emulator_error_mm: float
+    warnings: tuple[str, ...]
+    leave_one_out: tuple[LeftOut, ...] = field(repr=False)
+    predictions: tuple[Prediction, ...] = field(repr=False)
+
+
+@dataclass(frozen=True, repr=False)
+class Parameter(Result):
+    """What nobody measured: 10, 50 and 90 % points before and after; ``moved``: the measurements say something."""
+
+    name: str
+    task: str | None
+    prior_low: float
+    prior_median: float
+    prior_high: float
+    posterior_low: float
+    posterior_median: float
+    posterior_high: float
+    moved: bool
+
+
+@dataclass(frozen=True, repr=False)
+class Together(Result):
+    """Two parameters that the measurements do not tell apart."""
+
+    parameters: tuple[str, str]
+    correlation: float
+
+
+@dataclass(frozen=True, repr=False)
+class Calibration(Result):
+    """What every finger does on the bench, from simulation and measurements."""
+
+    tasks: tuple[Calibrated, ...]
+    parameters: tuple[Parameter, ...]
+    not_told_apart: tuple[Together, ...]
+
+    def to_dataframe(self) -> DataFrame:
+        """A row for each finger and task, as ``predictions`` has it."""
+        from ._frame import pandas
+
+        rows = [{"task": one.task, **each.to_dict()} for one in self.tasks for each in one.predictions]
+        frame: DataFrame = pandas().DataFrame(rows)
+        return frame
+
+    def _repr_html_(self) -> str:
+        from ._drawn import calibration
+
+        return calibration(self)
+
+
+@checked
+def calibrate(
+    measurements: StrPath,
+    task: Given | Iterable[Given] | None = None,
+    *,
+    priors: StrPath = "bench",
+    simulations: int | None = None,
+    samples: int | None = None,
+    seed: int = 0,
+    cache: StrPath | None = None,
+    no_cache: bool = False,
+    out: StrPath | None = None,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+) -> Calibration:
+    """Predicts what every finger does on the bench, as ``optimize calibrate`` does. Takes minutes.
+
+    Args:
+        measurements: What was measured: a file, or ``"published"``.
+        task: That of the measurements unless given; or several.
+        priors: What nobody measured, and its bounds: ``"bench"``, a file, or a cell of :func:`identify`.
+        simulations: Simulations for each task; 200 unless given.
+        samples: Samples of the posterior; 300 unless given.
+        seed: The same seed gives the same answer.
+        cache: Folder of simulations shared with studies; ``results/.cache`` unless given.
+        no_cache: Simulate anew, and keep nothing.
+        out: Folder that tables are written to.
+
+    The rest, and what is raised, is as for :func:`evaluate`.
+    """
+    tasks = [] if task is None else sources(task)
+    return Calibration.from_json(json.loads(_native.calibrate(tasks, **given(locals(), "task", "tasks"))))
+
+
+@dataclass(frozen=True, repr=False)
+class Print(Result):
+    """A finger to print next: 80 % of such ranges lie between low and high."""
+
+    values: dict[str, float] = field(metadata=REST)
+    expected_mm: float
+    low_mm: float
+    high_mm: float
+    expected_gain_mm: float
+    reason: str
+
+
+@dataclass(frozen=True, repr=False)
+class Advice(Result):
+    """Which fingers to print next; ``stop``: none is worth its print."""
+
+    task: str
+    measured: int
+    measurements_missing: bool
+    best_known_mm: float | None
+    next: tuple[Print, ...]
+    stop: bool
+
+
+@checked
+def next_print(
+    measurements: StrPath,
+    task: Given | Iterable[Given] | None = None,
+    *,
+    count: int = 1,
+    among: Literal["space", "published"] = "space",
+    print_cost_mm: float = 0.1,
+    priors: StrPath = "bench",
+    simulations: int | None = None,
+    samples: int | None = None,
+    seed: int = 0,
+    cache: StrPath | None = None,
+    no_cache: bool = False,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+) -> Advice:
+    """Says which finger to print next, and when to stop printing, as ``optimize next`` does. Takes minutes.
+
+    Args:
+        measurements: What was measured: a file, which need not be there yet, or ``"published"``.
+        count: Fingers to print at a time.
+        among: The fingers of the space, or the 11 of the publication.
+        print_cost_mm: Gain of range that is worth the print and the measurement, mm.
+
+    The rest is as for :func:`calibrate`.
+    """
+    tasks = [] if task is None else sources(task)
+    return Advice.from_json(json.loads(_native.next_print(tasks, **given(locals(), "task", "tasks"))))

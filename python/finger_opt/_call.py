@@ -1,0 +1,132 @@
+"""What every call has in common: its keywords are checked, and those that were given go on to the library."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import inspect
+import os
+import types
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from numbers import Integral, Real
+from typing import Any, Literal, ParamSpec, TypeGuard, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from ._native import InputError
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def checked(call: Callable[P, R]) -> Callable[P, R]:
+    """Refuses keywords that there are not, with the one that was meant, and values of a wrong type by name."""
+    signature = inspect.signature(call)
+    hints: dict[str, Any] = {}
+
+    @functools.wraps(call)
+    def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
+        for name in kwargs:
+            if name not in signature.parameters:
+                raise TypeError(f"{call.__name__}() got an unexpected keyword argument '{name}'{_meant(name, signature)}")
+        try:
+            given = signature.bind(*args, **kwargs).arguments
+        except TypeError as error:
+            raise TypeError(f"{call.__name__}() {error}") from None
+        if not hints:
+            hints.update(_hints(call))
+        for name, value in given.items():
+            _check(name, value, hints.get(name, Any))
+        return call(*args, **kwargs)
+
+    return wrapper
+
+
+def given(words: Mapping[str, Any], *without: str) -> dict[str, Any]:
+    """The words of a call that say something: all but these, and those that are ``None`` or ``False``."""
+    left_out = {"self", "cls", *without}
+    return {name: value for name, value in words.items() if name not in left_out and value is not None and value is not False}
+
+
+def wrong(key: str, problem: str) -> InputError:
+    """The error of a wrong value."""
+    error = InputError(f"{key}: {problem}")
+    error.key = key
+    return error
+
+
+def _hints(call: Callable[..., Any]) -> dict[str, Any]:
+    """The types of its parameters. What it gives may be of a module that is not imported."""
+
+    def parameters() -> None: ...
+
+    parameters.__annotations__ = {name: hint for name, hint in call.__annotations__.items() if name != "return"}
+    return get_type_hints(parameters, call.__globals__)
+
+
+def _meant(name: str, signature: inspect.Signature) -> str:
+    names = [one for one in signature.parameters if one not in ("self", "cls")]
+    near = difflib.get_close_matches(name, names, 1)
+    return f"; did you mean `{near[0]}`?" if near else f"; there are {', '.join(names)}"
+
+
+def _check(name: str, value: object, hint: Any) -> None:
+    if not _fits(value, hint):
+        more = "; fo.sweep takes several" if name in ("density", "direction") and _several(value) else ""
+        raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {type(value).__name__}{more}")
+    words = _words(hint)
+    if isinstance(value, str) and words and value not in words:
+        near = difflib.get_close_matches(value, words, 1)
+        meant = f"; did you mean `{near[0]}`?" if near else ""
+        raise wrong(name, f"`{value}` is none of {', '.join(words)}{meant}")
+
+
+def _words(hint: Any) -> tuple[str, ...]:
+    """The words, if nothing but these and ``None`` is right."""
+    if get_origin(hint) in (Union, types.UnionType):
+        rest = [one for one in get_args(hint) if one is not type(None)]
+        return _words(rest[0]) if len(rest) == 1 else ()
+    return get_args(hint) if get_origin(hint) is Literal else ()
+
+
+def _several(value: object) -> TypeGuard[Collection[object]]:
+    return isinstance(value, (list, tuple, np.ndarray))
+
+
+def _fits(value: object, hint: Any) -> bool:
+    origin, args = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return any(_fits(value, one) for one in args)
+    if origin is Literal:
+        return isinstance(value, str)
+    if hint in (float, int):
+        number = isinstance(value, Real if hint is float else Integral)
+        return number and not isinstance(value, (bool, np.bool_))
+    if origin is tuple:
+        if not _several(value) or (args[-1] is not Ellipsis and len(value) != len(args)):
+            return False
+        return all(_fits(one, args[0]) for one in value)
+    kind = origin if isinstance(origin, type) else hint
+    if hint is Any or not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
+        return True
+    return isinstance(value, kind) and not (isinstance(value, str) and kind in _SEVERAL)
+
+
+#: What text is not, though it has letters one after the other.
+_SEVERAL = (Iterable, Sequence)
+
+
+def _named(hint: Any) -> list[str]:
+    """What is right, in words."""
+    origin, args = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return list(dict.fromkeys(name for one in args for name in _named(one)))
+    if origin is Literal:
+        return [", ".join(repr(word) for word in args)]
+    if origin is tuple and args[-1] is not Ellipsis:
+        return [f"{len(args)} of {_named(args[0])[0]}"]
+    known = {float: "a number", int: "a whole number", bool: "True or False", str: "text", os.PathLike: "a path",
+             type(None): "None"}
+    if origin is not None and origin is not os.PathLike:
+        return ["a mapping" if issubclass(origin, Mapping) else "several"]
+    return [known.get(origin or hint, getattr(hint, "__name__", str(hint)))]

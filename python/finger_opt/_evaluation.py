@@ -1,0 +1,189 @@
+"""The tolerance window of a finger."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, Union
+
+from . import _native
+from ._call import checked, given
+from ._result import Result
+from ._task import Given, sources
+from ._words import Engine, FingerModel, Numbers, Outcome, RobotName, SpaceName, Start, StrPath
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes as Drawing
+
+#: What ends a window: a failure class, 1 to 4, or a simulation that diverged.
+End = Union[int, Literal["diverged"]]
+
+
+@dataclass(frozen=True, repr=False)
+class Springs(Result):
+    """The stiffness of a finger, N/mm, with standard deviations; ``inside_hull``: within what was measured."""
+
+    compliance_n_per_mm: float
+    compliance_sd_n_per_mm: float
+    assembly_n_per_mm: float
+    assembly_sd_n_per_mm: float
+    #: Distance to what was measured, in units of its spread.
+    hull_distance: float
+    inside_hull: bool
+
+
+@dataclass(frozen=True, repr=False)
+class Window(Result):
+    """How far the start may be off along y, mm, before the insertion fails, and how it fails.
+
+    ``failure_negative`` and ``failure_positive`` say what ends it: class 1 contact loss before insertion, 2 plug
+    missed, 3 jammed, 4 contact loss in insertion. The fields from ``success_rate`` on are there with
+    ``uncertainty``: the share of drawn errors under which it inserts, and the range that holds under them.
+    """
+
+    range_mm: float
+    negative_mm: float
+    positive_mm: float
+    #: How the insertion from the nominal start ends.
+    nominal: Outcome
+    failure_negative: End | None
+    failure_positive: End | None
+    #: Trials that ended so, for classes 1 to 4.
+    failure_counts: tuple[int, int, int, int]
+    diverged: int
+    #: Largest force of the socket on the plug, N, and slip in the grasp, mm, from the nominal start.
+    peak_force_n: float | None
+    slip_mm: float | None
+    trials: int
+    simulated_s: float
+    #: Share of the jaws' contact that is left at the two ends.
+    end_shares: tuple[float, float]
+    #: Shift of the start in the middle of the window, if it was taught.
+    taught_start_mm: float | None = None
+    success_rate: float | None = None
+    success_low: float | None = None
+    success_high: float | None = None
+    success_at_most: float | None = None
+    raced_draws: int | None = None
+    success_confidence: float | None = None
+    success_inserted: int | None = None
+    success_failure_counts: tuple[int, int, int, int] | None = None
+    success_diverged: int | None = None
+    success_failed_draws: tuple[int, ...] | None = None
+    success_spared: int | None = None
+    robust_range_mm: float | None = None
+    robust_mean_mm: float | None = None
+    robust_sd_mm: float | None = None
+    robust_windows: int | None = None
+    robust_ranges_mm: tuple[float, ...] | None = None
+    robust_diverged: int | None = None
+    robust_trials: int | None = None
+
+
+@dataclass(frozen=True, repr=False)
+class Bands(Result):
+    """Where repeats end differently: the widths of the bands at both ends, mm (``None``: more than 2)."""
+
+    negative_band_mm: float | None
+    positive_band_mm: float | None
+    offsets_tried_inside: int
+    unsure_inside_mm: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Subject(Result):
+    """Which finger was simulated on which task."""
+
+    task: str
+    robot: str
+    #: Name of the cell, if one was given.
+    cell: str | None = None
+    infill_density_percent: float | None = None
+    infill_direction_deg: float | None = None
+    #: Numbers that were set, by their keys.
+    set: dict[str, float] = field(default_factory=dict[str, float])
+    finger_model: FingerModel
+    #: The remote centre of compliance above the tip of the fingers, mm, and what says so.
+    rcc_mm: float
+    rcc_from: str
+    tilting_nm_per_rad: float
+    stiffness: Springs
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Evaluation(Window, Subject):
+    """The tolerance window of one finger on one task; see :class:`Window`."""
+
+    wall_s: float
+    #: With ``repeat``: where repeats end differently.
+    bands: Bands | None = None
+
+    def plot(self, ax: Drawing | None = None) -> Drawing:
+        """Draws the window; gives the axes."""
+        from ._plot import window
+
+        return window(self, ax)
+
+    def _repr_html_(self) -> str:
+        from ._drawn import window
+
+        return window(self)
+
+
+@checked
+def evaluate(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    stiffness_compliance: float | None = None,
+    stiffness_assembly: float | None = None,
+    set: Numbers | None = None,
+    walk: bool = False,
+    uncertainty: StrPath | None = None,
+    seed: int | None = None,
+    repeat: int | None = None,
+    repeat_seed: int | None = None,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+) -> Evaluation:
+    """Measures the tolerance window of one finger by simulation, as ``optimize evaluate`` does.
+
+    Takes about a second, without the interpreter's lock; Ctrl-C ends it.
+
+    >>> import finger_opt as fo
+    >>> fo.evaluate("usb", density=20, direction=10).range_mm
+    7.2
+
+    Args:
+        task: A shipped name, the path of a task file, or a :class:`Task`.
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        stiffness_compliance: N/mm, with ``stiffness_assembly`` in place of an infill.
+        stiffness_assembly: N/mm.
+        set: Numbers of task and finger by their keys: ``{"task.strategy.tilt_deg": 8}``.
+        walk: Step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials.
+        uncertainty: Success rate and robust range under these errors, too: ``"typical"``, or a file.
+        seed: Seed of the drawn errors.
+        repeat: How often to repeat the ends of the window, with friction, start and time step varied.
+        repeat_seed: Seed of the repeats.
+        space: Search space, which says what may be set: a name or a file.
+        robot: Robot: a name (:func:`robots`) or a file; ``servo`` unless given.
+        cell: File of one's own cell, as :func:`identify` writes it.
+        stiffness_data: File of one's own stiffness measurements, in place of the shipped ones.
+        engine: Contact engine.
+        finger_model: Where springs come from that nobody measured.
+        finger: Finger file for ``finger_model="computed"``.
+        start: Where the nominal start is: ``given`` by the task file, or ``taught`` in the middle of the window.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        Interrupted: Ctrl-C.
+    """
+    return Evaluation.from_json(json.loads(_native.evaluate(sources(task), **given(locals(), "task"))))

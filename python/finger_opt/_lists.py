@@ -1,0 +1,63 @@
+"""What is shipped."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+from . import _native
+from ._result import Result
+
+
+@dataclass(frozen=True, repr=False)
+class Named(Result):
+    """What has a name."""
+
+    name: str
+    description: str
+
+
+@dataclass(frozen=True, repr=False)
+class Tasks(Result):
+    """Tasks, search spaces and sets of errors that are shipped."""
+
+    tasks: tuple[Named, ...]
+    spaces: tuple[Named, ...]
+    uncertainties: tuple[Named, ...]
+
+
+@dataclass(frozen=True, repr=False)
+class RobotModel(Result):
+    """A robot, and the cell that it stands for."""
+
+    cell: str
+    name: str
+    description: str
+    #: At the TCP along x, y, z.
+    stiffness_n_per_mm: tuple[float, float, float]
+    lag_s: float
+    stop_force_n: float
+    source: str
+
+
+@dataclass(frozen=True, repr=False)
+class Robots(Result):
+    """The robots that are shipped, and the text of a file for one's own."""
+
+    robots: tuple[RobotModel, ...]
+    own_file: str
+
+
+def tasks() -> Tasks:
+    """Tasks, search spaces and uncertainties, as ``optimize tasks`` lists them.
+
+    >>> import finger_opt as fo
+    >>> [task.name for task in fo.tasks().tasks]
+    ['ket8', 'ket12', 'rj45', 'usb']
+    """
+    return Tasks.from_json(json.loads(_native.tasks()))
+
+
+def robots() -> Robots:
+    """Robots by the cells that they stand for, as ``optimize robots`` lists them."""
+    return Robots.from_json(json.loads(_native.robots()))

@@ -1,0 +1,174 @@
+"""Capture maps and levers: what else moves the window."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._call import checked, given
+from ._evaluation import Subject
+from ._result import DRAWN, Result, save
+from ._task import Given, sources
+from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes as Drawing
+
+
+@dataclass(frozen=True, repr=False)
+class Axis(Result):
+    """An axis of a map: from ``low`` to ``high`` by ``step``, in ``unit``."""
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    step: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class CaptureMap(Subject):
+    """How insertions of one finger end over two errors of the start.
+
+    ``outcomes`` and ``simulated`` have a row for each value of the second axis, in it a column for each shift
+    along y. An outcome is 0 if inserted, 1 to 4 for the failure class, -1 if the simulation diverged; what was not
+    simulated is taken over from its neighbours.
+    """
+
+    design: dict[str, float]
+    axes: tuple[Axis, Axis]
+    outcomes: NDArray[np.int64] = field(repr=False)
+    simulated: NDArray[np.bool_] = field(repr=False)
+    trials: int
+    traced_step: float
+    #: Of what inserts.
+    area: float
+    area_unit: str
+    taught_start_mm: float | None = None
+    svg: str = field(repr=False, metadata=DRAWN)
+
+    def plot(self, ax: Drawing | None = None) -> Drawing:
+        """Draws the outcomes; gives the axes."""
+        from ._plot import outcomes
+
+        return outcomes(self, ax)
+
+    def _repr_html_(self) -> str:
+        return self.svg
+
+
+@checked
+def capture_map(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    axes: Axes = "y,x",
+    stiffness_compliance: float | None = None,
+    stiffness_assembly: float | None = None,
+    set: Numbers | None = None,
+    svg: StrPath | None = None,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+) -> CaptureMap:
+    """Traces the capture map of one finger, as ``optimize map`` does, with at most 300 trials (10 to 20 s).
+
+    Args:
+        axes: The two errors of the start: y in mm, x in mm, yaw or tilt in degrees.
+        svg: Write the picture.
+
+    The rest, and what is raised, is as for :func:`evaluate`.
+    """
+    text, picture = _native.capture_map(sources(task), **given(locals(), "task"))
+    return CaptureMap.from_json({**json.loads(text), "svg": picture})
+
+
+@dataclass(frozen=True, repr=False)
+class Taught(Result):
+    """The range, mm, from a start that was taught by this shift along y, mm."""
+
+    range_mm: float | None
+    taught_start_mm: float | None
+
+
+@dataclass(frozen=True, repr=False)
+class Lever(Result):
+    """One number of task or cell, moved to ``low`` and to ``high`` (in ``unit``), with the range at both, mm
+    (``None``: nothing inserts)."""
+
+    name: str
+    key: str
+    unit: str
+    #: Of the robot, its name.
+    value: float | str | None
+    low: float | str | None
+    high: float | str | None
+    #: Where the two come from.
+    source: str
+    range_mm: tuple[float | None, float | None]
+
+
+@dataclass(frozen=True, repr=False)
+class Levers(Result):
+    """What moves the range of one finger, the largest first; ``infill_range_mm`` is what its infill moves."""
+
+    sentence: str
+    task: str
+    design: dict[str, float]
+    base: Taught
+    infill_range_mm: tuple[float, float] | None
+    levers: tuple[Lever, ...]
+    #: What would leave the finger without a start that inserts.
+    left_out: tuple[str, ...]
+    #: Windows that were simulated.
+    windows: int
+    svg: str = field(default="", repr=False, metadata=DRAWN)
+
+    def plot(self, ax: Drawing | None = None) -> Drawing:
+        """Draws the ranges at both ends of each lever; gives the axes."""
+        from ._plot import tornado
+
+        return tornado(self, ax)
+
+    def _repr_html_(self) -> str:
+        return self.svg
+
+
+@checked
+def levers(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    stiffness_compliance: float | None = None,
+    stiffness_assembly: float | None = None,
+    set: Numbers | None = None,
+    svg: StrPath | None = None,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+) -> Levers:
+    """What would help a finger more than its infill, as ``optimize levers`` finds it: tilt, strokes, preload, speed,
+    grip, friction, clearance, chamfer, robot, one at a time, each from a start taught for it (3 to 8 s).
+
+    Words, numbers and what is raised are as for :func:`evaluate`.
+    """
+    text, picture = _native.levers(sources(task), **given(locals(), "task", "svg"))
+    save(picture, svg)
+    return Levers.from_json({**json.loads(text), "svg": picture})

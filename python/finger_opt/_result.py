@@ -1,0 +1,135 @@
+"""What is found: frozen dataclasses, made of the JSON that ``--json`` prints."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import html
+import os
+import types
+from collections.abc import Mapping
+from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from ._json import is_list, is_numpy, is_table, is_tuple
+
+T = TypeVar("T", bound="Result")
+
+#: Marks the field that takes all keys which are no fields: the parameters of a design, which the space names.
+REST: dict[str, bool] = {"rest": True}
+#: Marks what ``--json`` does not have: drawings, pages, arrays.
+DRAWN: dict[str, bool] = {"drawn": True}
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Result:
+    """Fields carry the names and units of ``--json``; a notebook shows them."""
+
+    @classmethod
+    def from_json(cls: type[T], fields: Mapping[str, Any]) -> T:
+        """The result of such fields of JSON."""
+        return _built(cls, fields)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields as plain lists, numbers and texts, without what there is not."""
+        return _plain_fields(self)
+
+    def __repr__(self) -> str:
+        shown = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self) if field.repr)
+        inner = ", ".join(f"{name}={value!r}" for name, value in shown if value is not None)
+        return f"{type(self).__name__}({inner})"
+
+    def _repr_html_(self) -> str:
+        return _table(self)
+
+
+def save(text: str, file: str | os.PathLike[str] | None) -> None:
+    """Writes a drawing, if a file is named."""
+    if file is not None:
+        with open(file, "w", encoding="utf-8") as written:
+            written.write(text)
+
+
+@functools.cache
+def _hints(cls: type[Any]) -> dict[str, Any]:
+    return get_type_hints(cls)
+
+
+def _built(cls: type[T], fields: Mapping[str, Any]) -> T:
+    kind: Any = cls
+    hints, names, values = _hints(kind), set[str](), dict[str, Any]()
+    rest = next((field.name for field in dataclasses.fields(cls) if field.metadata.get("rest")), None)
+    for field in dataclasses.fields(cls):
+        # A word of Python has a stroke behind it.
+        key = field.name.rstrip("_")
+        names.add(key)
+        if key in fields and field.name != rest:
+            values[field.name] = _value(hints[field.name], fields[key])
+    others = {key: value for key, value in fields.items() if key not in names or key == rest}
+    if rest is not None:
+        values[rest] = _value(hints[rest], others.pop(rest, others))
+    elif others:
+        raise TypeError(f"{cls.__name__} has no field {', '.join(others)}")
+    return cls(**values)
+
+
+def _value(hint: Any, value: Any) -> Any:
+    origin, args = get_origin(hint), get_args(hint)
+    if value is None:
+        return None
+    if origin in (Union, types.UnionType):
+        kinds = [one for one in args if one is not type(None)]
+        return _value(kinds[0], value) if len(kinds) == 1 else value
+    if origin is tuple:
+        each = args[:1] * len(value) if args[-1] is Ellipsis else args
+        return tuple(_value(kind, one) for kind, one in zip(each, value, strict=True))
+    if origin is dict:
+        return {key: _value(args[1], one) for key, one in value.items()}
+    if origin is np.ndarray:
+        return np.asarray(value)
+    if hint is float:
+        return float(value)
+    return _built(hint, value) if isinstance(hint, type) and issubclass(hint, Result) else value
+
+
+def _plain_fields(result: Result) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for field in dataclasses.fields(result):
+        value = getattr(result, field.name)
+        if field.metadata.get("rest"):
+            found.update(value)
+        elif value is not None and not field.metadata.get("drawn"):
+            found[field.name.rstrip("_")] = _plain(value)
+    return found
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Result):
+        return _plain_fields(value)
+    if is_list(value) or is_tuple(value):
+        return [_plain(one) for one in value]
+    if is_table(value):
+        return {key: _plain(one) for key, one in value.items()}
+    return value.tolist() if is_numpy(value) else value
+
+
+def _table(result: Result) -> str:
+    style = "text-align:left;vertical-align:top"
+    rows = "".join(
+        f"<tr><th style='{style}'>{html.escape(key)}</th><td style='{style}'>{_cell(value)}</td></tr>"
+        for key, value in result.to_dict().items()
+    )
+    return f"<table>{rows}</table>"
+
+
+def _cell(value: Any) -> str:
+    """A value in a table: what is long is counted."""
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if is_table(value):
+        return ", ".join(f"{html.escape(key)} {_cell(one)}" for key, one in value.items())
+    if is_list(value):
+        shown = ", ".join(_cell(one) for one in value[:8])
+        return f"{shown} .. {len(value)} in all" if len(value) > 8 else shown
+    return html.escape(str(value))

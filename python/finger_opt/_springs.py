@@ -1,0 +1,183 @@
+"""Stiffness: the model fitted to measurements, and the mechanics of a printed finger."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, overload
+
+from . import _native
+from ._call import checked, given
+from ._evaluation import Springs
+from ._result import DRAWN, Result, save
+from ._words import Numbers, StrPath
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes as Drawing
+
+
+@dataclass(frozen=True, repr=False)
+class Fit(Result):
+    """A model of the stiffness along one axis, and its errors for designs left out."""
+
+    axis: str
+    model: str
+    loo_rmse_n_per_mm: float
+    loo_mean_absolute_percent: float
+    loo_standardised_rms: float
+    used: bool
+
+
+@dataclass(frozen=True, repr=False)
+class Used(Result):
+    """The model that is used along one axis."""
+
+    model: str
+    parameters: str
+    sd_widening: float
+
+
+@dataclass(frozen=True, repr=False)
+class StiffnessModel(Result):
+    """How well models of the stiffness fit the measured designs."""
+
+    designs: int
+    models: tuple[Fit, ...]
+    used: dict[str, Used]
+    #: What it was fitted to, if not to the shipped measurements, and of which finger.
+    stiffness_data: str | None = field(default=None, metadata=DRAWN)
+    finger: str = field(default="finray9", metadata=DRAWN)
+    #: The measurements, and what the models make of them.
+    svg: str = field(default="", repr=False, metadata=DRAWN)
+
+    def plot(self, ax: Drawing | None = None) -> Drawing:
+        """Draws the stiffness in the compliance direction over density and direction; gives the axes."""
+        from ._plot import stiffness as drawn
+
+        return drawn(self, ax)
+
+    def _repr_html_(self) -> str:
+        return self.svg
+
+
+@overload
+def stiffness(
+    *, stiffness_data: StrPath | None = None, finger: StrPath = "finray9", svg: StrPath | None = None
+) -> StiffnessModel: ...
+@overload
+def stiffness(
+    density: float, direction: float, *, stiffness_data: StrPath | None = None, finger: StrPath = "finray9"
+) -> Springs: ...
+@checked
+def stiffness(
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    stiffness_data: StrPath | None = None,
+    finger: StrPath = "finray9",
+    svg: StrPath | None = None,
+) -> StiffnessModel | Springs:
+    """The stiffness predicted for an infill, or, without one, how well the models fit, as ``optimize stiffness``.
+
+    >>> import finger_opt as fo
+    >>> fo.stiffness(20, 10).inside_hull
+    True
+
+    Args:
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        stiffness_data: CSV file of one's own measurements, in place of the shipped ones.
+        finger: Finger file of the finger that was measured.
+        svg: Write the drawing, without an infill.
+
+    Raises:
+        InputError: A value or a file that cannot be used.
+    """
+    if density is None and direction is None:
+        text, picture = _native.stiffness(stiffness_data=stiffness_data, finger=finger)
+        save(picture, svg)
+        data = None if stiffness_data is None else str(stiffness_data)
+        found = {**json.loads(text), "stiffness_data": data, "finger": str(finger), "svg": picture}
+        return StiffnessModel.from_json(found)
+    if density is None or direction is None:
+        raise _native.InputError("give density and direction, or neither")
+    return Springs.from_json(json.loads(_native.predict(density, direction, stiffness_data=stiffness_data, finger=finger)))
+
+
+@dataclass(frozen=True, repr=False)
+class Pad(Result):
+    """What a force on the pad sees: in the plane of the finger, y towards the part, z up."""
+
+    compliance_n_per_mm: float
+    assembly_n_per_mm: float
+    tilting_nm_per_rad: float
+    #: Where the centre of compliance lies.
+    centre_below_pad_mm: float
+    centre_from_pad_mm: float
+    coupling_yz: float
+    #: (3, 3): y, z in N/mm, turn in N m/rad, and what couples them.
+    stiffness_matrix: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True, repr=False)
+class Across(Result):
+    """Stiffness out of the plane of the finger."""
+
+    depth_n_per_mm: float
+    about_y_nm_per_rad: float
+    about_z_nm_per_rad: float
+
+
+@dataclass(frozen=True, repr=False)
+class Finger(Result):
+    """A printed finger, computed from its ribs; a notebook draws it at rest and under a force on its pad."""
+
+    finger: str
+    infill_density_percent: float
+    infill_direction_deg: float
+    phase_mm: float
+    area_mm2: float
+    mass_g: float
+    #: What the model fitted to measurements says of it.
+    measured_model: Springs | None
+    pad: Pad
+    pad_and_roof: Pad
+    across: Across
+    svg: str = field(default="", repr=False, metadata=DRAWN)
+
+    def _repr_html_(self) -> str:
+        return self.svg
+
+
+@checked
+def finger(
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    finger: StrPath = "finray9",
+    phase_mm: float | None = None,
+    set: Numbers | None = None,
+    load_n: tuple[float, float] = (-5.0, 0.0),
+    svg: StrPath | None = None,
+) -> Finger:
+    """The mechanics of a printed finger, as ``optimize finger`` computes them from its ribs.
+
+    >>> import finger_opt as fo
+    >>> 4 < fo.finger(20, 20).mass_g < 6
+    True
+
+    Args:
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        finger: ``finray9``, or a finger file.
+        phase_mm: Where the first rib lies, mm.
+        set: Numbers of the finger file: ``{"finger.skin.thickness_mm": 0.8}``.
+        load_n: Force on its pad in the drawing, N: y towards the part, z up.
+        svg: Write the drawing.
+
+    Raises:
+        InputError: A value or a file that cannot be used.
+    """
+    text, picture = _native.finger(**given(locals(), "svg"))
+    save(picture, svg)
+    return Finger.from_json({**json.loads(text), "svg": picture})

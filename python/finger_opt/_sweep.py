@@ -1,0 +1,184 @@
+"""Many fingers at once."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._call import checked, given
+from ._run import workers_of
+from ._task import Given, sources
+from ._words import Engine, FingerModel, RobotName, SpaceName, Start, StrPath
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+#: A number or several.
+Several = Union[float, Sequence[float], NDArray[Any]]
+#: Columns by name.
+Columns = dict[str, NDArray[Any]]
+#: Rows that are measured, and written, at a time; of an executor, those of one piece of work.
+CHUNK, PART = 2000, 64
+#: What is counted, so no fraction: a class of 1 to 4, -1 for a simulation that diverged, none where none is met.
+COUNTED = ("failure_negative", "failure_positive", "trials")
+#: The first columns; the rest follows by name.
+FIRST = ("task", "infill_density_percent", "infill_direction_deg", "range_mm", "negative_mm", "positive_mm",
+         "failure_negative", "failure_positive", "peak_force_n", "slip_mm", "nominal")
+#: A task as the library takes it, and designs: a column for each number.
+Task = Union[str, os.PathLike[str], tuple[str, str]]
+Rows = dict[str, list[float]]
+
+
+@checked
+def sweep(
+    task: Given | Iterable[Given],
+    density: Several,
+    direction: Several,
+    *,
+    set: Mapping[str, Several] | None = None,
+    grid: bool = True,
+    out: StrPath | None = None,
+    executor: Executor | Any | None = None,
+    workers: int | None = None,
+    walk: bool = False,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    threads: int | None = None,
+    cache: StrPath | None = None,
+    no_cache: bool = False,
+) -> DataFrame:
+    """Measures the windows of many fingers in parallel: lists in, a table out with a row for each.
+
+    >>> import finger_opt as fo
+    >>> table = fo.sweep("usb", density=[10, 20], direction=[0, 10], no_cache=True)
+    >>> list(table["infill_density_percent"])
+    [10.0, 10.0, 20.0, 20.0]
+
+    Args:
+        task: One, or several: a row for each.
+        density: Infill densities, percent: one or several.
+        direction: Infill directions, degrees: one or several.
+        set: Further numbers by their keys, each one or several.
+        grid: All combinations, the last varying fastest; otherwise rows: the first of each, the second of each.
+        out: Write the table to this Parquet file as it comes, in place of giving it, so that it may be larger
+            than the memory; the columns are the same, and what is given is then empty.
+        executor: Any ``concurrent.futures.Executor``: rows are measured there, without the cache.
+        workers: Parts at a time; as many as the executor has unless given.
+        walk: Step by step to the first failure.
+        threads: Threads, which change no result.
+        cache: Folder of evaluations shared with studies; ``results/.cache`` unless given.
+        no_cache: Measure every finger anew, and keep nothing.
+
+    The rest, and what is raised, is as for :func:`evaluate`. Ctrl-C ends it; with a cache nothing is lost.
+    """
+    words = given(locals(), "task", "density", "direction", "set", "grid", "out", "executor", "workers")
+    rows = _rows({"density": density, "direction": direction, **(set or {})}, grid)
+    tasks = sources(task)
+    chunks: Iterator[Columns]
+    if executor is None:
+        chunks = (chunk for one in tasks for chunk in _measured(one, rows, words))
+    else:
+        chunks = _handed_out(executor, workers or workers_of(executor), tasks, rows, words)
+    frames = _written(chunks, out) if out is not None else [_frame(chunk) for chunk in chunks]
+    from ._frame import pandas
+
+    table: DataFrame = pandas().concat(frames, ignore_index=True)
+    return table
+
+
+def _rows(given: Mapping[str, Several], grid: bool) -> Rows:
+    """The designs, a column for each number."""
+    columns = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in given.items()}
+    for name, values in columns.items():
+        if values.ndim != 1 or not len(values) or not np.isfinite(values).all():
+            raise _native.InputError(f"{name}: has to be a number or a list of numbers, all finite, at least one")
+    if grid:
+        meshed = np.meshgrid(*columns.values(), indexing="ij")
+        return {name: values.ravel().tolist() for name, values in zip(columns, meshed, strict=True)}
+    length = max(len(values) for values in columns.values())
+    for name, values in columns.items():
+        if len(values) not in (1, length):
+            raise _native.InputError(f"{name}: has {len(values)} values where others have {length}; give one or all")
+    return {name: np.broadcast_to(values, length).tolist() for name, values in columns.items()}
+
+
+def _measured(task: Task, rows: Rows, words: Mapping[str, Any]) -> Iterator[Columns]:
+    """The rows with their windows, in their order."""
+    measuring = _native.Sweep([task], **words)
+    for at in range(0, len(rows["density"]), CHUNK):
+        numbers, texts = measuring.measure({name: values[at : at + CHUNK] for name, values in rows.items()})
+        found: Columns = {name: np.asarray(column, dtype=object) for name, column in texts.items()}
+        found |= {name: np.frombuffer(column, dtype="<f8") for name, column in numbers.items()}
+        # The clock is no result.
+        yield {name: found[name] for name in sorted(found, key=_place) if name != "wall_s"}
+
+
+def _place(name: str) -> tuple[int, str]:
+    """What a reader looks for stands first."""
+    return (FIRST.index(name) if name in FIRST else len(FIRST), name)
+
+
+def _part(task: Task, rows: Rows, words: dict[str, Any]) -> list[Columns]:
+    """The unit of work of an executor."""
+    return list(_measured(task, rows, {**words, "threads": 1, "no_cache": True}))
+
+
+def _handed_out(
+    executor: Executor | Any, workers: int, tasks: Iterable[Task], rows: Rows, words: dict[str, Any]
+) -> Iterator[Columns]:
+    """The same, measured elsewhere; twice as many pieces of work are out as there are workers."""
+    count = len(rows["density"])
+    parts = [(task, at) for task in tasks for at in range(0, count, PART)]
+    words = {name: value for name, value in words.items() if name not in ("threads", "cache", "no_cache")}
+    out: deque[Future[list[Columns]]] = deque()
+    try:
+        for task, at in parts:
+            if len(out) >= 2 * workers:
+                yield from out.popleft().result()
+            part = {name: values[at : at + PART] for name, values in rows.items()}
+            out.append(executor.submit(_part, task, part, words))
+        while out:
+            yield from out.popleft().result()
+    finally:
+        for future in out:
+            future.cancel()
+
+
+def _frame(chunk: Columns) -> DataFrame:
+    from ._frame import pandas
+
+    counted = {name: "Int64" for name in COUNTED if name in chunk}
+    frame: DataFrame = pandas().DataFrame(chunk).astype(counted)
+    return frame
+
+
+def _written(chunks: Iterator[Columns], file: StrPath) -> list[DataFrame]:
+    """Writes the rows as they come; gives the columns without rows."""
+    from ._frame import pyarrow
+
+    arrow, writer = pyarrow(), None
+    empty: list[DataFrame] = []
+    try:
+        for chunk in chunks:
+            table = arrow.Table.from_pandas(_frame(chunk), preserve_index=False)
+            if writer is None:
+                writer = arrow.parquet.ParquetWriter(str(file), table.schema)
+                empty = [_frame(chunk).iloc[:0]]
+            writer.write_table(table)
+    finally:
+        if writer is not None:
+            writer.close()
+    return empty

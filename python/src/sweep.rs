@@ -1,0 +1,115 @@
+//! Windows of many fingers, as columns.
+
+use crate::errors::raise;
+use crate::keywords::{Keywords, TaskWord, wrong};
+use crate::measure::{interruptible, released, windows};
+use finger_opt::cli;
+use finger_opt::session::{self, FingerRequest};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// The columns that are no numbers.
+const WORDS: [&str; 6] = ["task", "robot", "cell", "finger_model", "rcc_from", "nominal"];
+
+/// Measures fingers on a task, as many at a time as it is given.
+#[pyclass(frozen)]
+pub struct Sweep(session::Sweep);
+
+/// Numbers, little-endian float64 with NaN for none, and words, by their columns.
+type Columns<'py> = (Bound<'py, PyDict>, BTreeMap<&'static str, Vec<Option<String>>>);
+
+#[pymethods]
+impl Sweep {
+    #[new]
+    #[pyo3(signature = (tasks, /, **settings))]
+    fn new<'py>(
+        py: Python<'py>,
+        tasks: Vec<TaskWord>,
+        settings: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Self> {
+        let words = Keywords::new(py, settings)?;
+        let run = words.run()?;
+        let windows = windows(&words, tasks)?;
+        words.finish()?;
+        let sweep = released(py, || session::Sweep::new(&windows, &run))?;
+        Ok(Sweep(sweep.map_err(raise)?))
+    }
+
+    /// How many windows were in the cache.
+    #[getter]
+    fn known(&self) -> u64 {
+        self.0.known()
+    }
+
+    /// The windows of fingers, each of a row of these columns: `density`, `direction`, numbers of task
+    /// and finger by their keys.
+    fn measure<'py>(
+        &self,
+        py: Python<'py>,
+        columns: BTreeMap<String, Vec<f64>>,
+    ) -> PyResult<Columns<'py>> {
+        let fingers = fingers(&columns)?;
+        let done = interruptible(py, |stop| {
+            let found = self.0.measure(&fingers, stop)?;
+            Ok(found.iter().map(|found| flat(cli::evaluate::json(found))).collect::<Vec<_>>())
+        })?;
+        let rows: Vec<BTreeMap<String, Value>> = done.map_err(raise)?;
+        let numbers = PyDict::new(py);
+        let mut names: Vec<&String> = rows.iter().flat_map(BTreeMap::keys).collect();
+        names.sort_unstable();
+        names.dedup();
+        for name in names.into_iter().filter(|name| !WORDS.contains(&name.as_str())) {
+            let number = |row: &BTreeMap<String, Value>| match row.get(name) {
+                Some(Value::Bool(flag)) => f64::from(u8::from(*flag)),
+                // A simulation that diverged, as in a capture map.
+                Some(Value::String(_)) => -1.0,
+                value => value.and_then(Value::as_f64).unwrap_or(f64::NAN),
+            };
+            let bytes: Vec<u8> = rows.iter().map(number).flat_map(f64::to_le_bytes).collect();
+            numbers.set_item(name, PyBytes::new(py, &bytes))?;
+        }
+        let word = |row: &BTreeMap<String, Value>, name| Some(row.get(name)?.as_str()?.to_owned());
+        let column = |name| (name, rows.iter().map(|row| word(row, name)).collect());
+        Ok((numbers, WORDS.into_iter().map(column).collect()))
+    }
+}
+
+/// The fingers of the rows.
+fn fingers(columns: &BTreeMap<String, Vec<f64>>) -> PyResult<Vec<FingerRequest>> {
+    let rows = columns.values().next().map_or(0, Vec::len);
+    let mut fingers = vec![FingerRequest::default(); rows];
+    for (name, numbers) in columns {
+        if numbers.len() != rows {
+            return Err(wrong(name, format!("has {} rows, another column {rows}", numbers.len())));
+        }
+        for (finger, number) in fingers.iter_mut().zip(numbers) {
+            match name.as_str() {
+                "density" => finger.density = Some(*number),
+                "direction" => finger.direction = Some(*number),
+                "stiffness_compliance" => finger.stiffness_compliance = Some(*number),
+                "stiffness_assembly" => finger.stiffness_assembly = Some(*number),
+                key => finger.set.push((key.to_owned(), *number)),
+            }
+        }
+    }
+    Ok(fingers)
+}
+
+/// The fields of an object, those of objects within by their own names; of a list numbered from 1.
+fn flat(fields: Value) -> BTreeMap<String, Value> {
+    let mut found = BTreeMap::new();
+    let Value::Object(fields) = fields else { return found };
+    for (name, value) in fields {
+        match value {
+            Value::Object(_) => found.extend(flat(value)),
+            Value::Array(items) => {
+                let items = items.into_iter().enumerate();
+                found.extend(items.map(|(i, item)| (format!("{name}_{}", i + 1), item)));
+            }
+            value => drop(found.insert(name, value)),
+        }
+    }
+    found
+}

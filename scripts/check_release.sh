@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# Tries what scripts/release.sh has built as users do, without Rust:
+#
+#     scripts/check_release.sh [PROGRAM]
+#
+# The wheel in fresh environments of the oldest and the newest Python at hand: time of installation and import,
+# README's Python lines, the command `optimize`. The static program in an empty folder as its root: README's
+# first study prints README's block. The same study by PROGRAM, a build from the sources (that of `cargo build
+# --release` without it), by the wheels and by the static program: journals equal but for times of the clock.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+program=$(realpath "${1:-${CARGO_TARGET_DIR:-target}/release/optimize}")
+readme=$PWD/README.md
+wheel=$(realpath dist/*.whl)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failed() { echo "scripts/check_release.sh: $1" >&2; exit 1; }
+# within SECONDS WHAT COMMAND..: runs it, says what it took, and fails above the limit.
+within() {
+    local limit=$1 what=$2 began seconds
+    shift 2
+    began=$EPOCHREALTIME
+    "$@"
+    seconds=$(awk -v a="$began" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.2f", b - a }')
+    echo "$what: $seconds s (limit $limit s)"
+    awk -v s="$seconds" -v l="$limit" 'BEGIN { exit s > l }' || failed "$what takes too long"
+}
+# README's text between the fences of the first block that has this line.
+block() { awk -v line="$1" '/^```/ { if (found) exit; text = ""; next } { text = text $0 "\n" }
+    index($0, line) { found = 1 } END { printf "%s", text }' "$readme"; }
+# study NAME COMMAND..: a short study, its journal without times of the clock.
+study() {
+    local name=$1
+    shift
+    (cd "$scratch" && "$@" --task usb --budget 40 --seed 0 --no-cache --quiet --out "$name" > "$name.txt")
+    sed -E 's/"(datetime_start|datetime_complete|wall_s)":("[^"]*"|[0-9.e-]+),?//g' \
+        "$scratch/$name/journal.jsonl" > "$scratch/$name.jsonl"
+    if [ "$name" != sources ]; then
+        cmp "$scratch/sources.jsonl" "$scratch/$name.jsonl" || failed "the journal of $name is not that of $program"
+        echo "journal of $name: $(wc -l < "$scratch/$name.jsonl") lines as by the build from the sources"
+    fi
+}
+
+(cd dist && sha256sum --quiet -c SHA256SUMS)
+study sources "$program"
+
+# The static program, alone in the root of its file system.
+mkdir "$scratch/root"
+tar xzf dist/finger-opt-*-musl.tar.gz -C "$scratch" --wildcards '*/optimize' --strip-components 1
+mv "$scratch/optimize" "$scratch/root"
+root=("$(PATH=$PATH:/usr/sbin command -v chroot)")
+if [ "$(id -u)" -ne 0 ]; then root=("$(command -v unshare)" --map-root-user "${root[@]}"); fi
+alone() { env -i "${root[@]}" "$scratch/root" /optimize "$@"; }
+if "${root[@]}" "$scratch/root" /bin/true 2> /dev/null; then failed "the folder is not empty"; fi
+alone --version
+read -r _ first < <(block "optimize --task usb")
+# shellcheck disable=SC2086
+alone $first > "$scratch/first.txt" 2> "$scratch/first.log"
+diff <(block "Print the finger") "$scratch/first.txt" || failed "README's first study prints something else"
+echo "static program in an empty root: optimize $first prints README's block"
+static() { (cd "$scratch/root" && alone "$@") && mv "$scratch/root/static" "$scratch"; }
+study static static
+
+# Wheels. Nothing of Rust may be found.
+PATH=$(tr : '\n' <<< "$PATH" | grep -v cargo | paste -s -d :)
+if command -v cargo rustc; then failed "Rust is in PATH"; fi
+pythons=()
+for minor in 10 11 12 13 14 15; do
+    for python in "$(command -v "python3.$minor" || true)" "$HOME/.pyenv/versions/3.$minor".*/bin/python; do
+        if [ -x "$python" ] && "$python" -c 'import venv' 2> /dev/null; then pythons+=("$python"); break; fi
+    done
+done
+[ ${#pythons[@]} -gt 0 ] || failed "no CPython 3.10 or later"
+block "import finger_opt as fo" > "$scratch/readme.py"
+# Processor time of an import, s: other work on the machine does not count.
+imported() { TIMEFORMAT='%U %S'; { time "$1" -c 'import finger_opt'; } 2>&1 | awk '{ print $1 + $2 }'; }
+for python in $(printf '%s\n' "${pythons[0]}" "${pythons[-1]}" | uniq); do
+    name=wheel-$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+    venv=$scratch/venv-$name
+    "$python" -m venv "$venv"
+    within 20 "$name: pip install" "$venv/bin/pip" install -q "$wheel"
+    "$venv/bin/python" -c 'import finger_opt; print("finger_opt", finger_opt.__version__)'
+    seconds=$(imported "$venv/bin/python")
+    echo "$name: import: $seconds s (limit 0.3 s)"
+    if awk -v s="$seconds" 'BEGIN { exit s <= 0.3 }'; then failed "importing finger_opt takes too long"; fi
+    "$venv/bin/pip" install -q "$wheel[pandas]"
+    (cd "$scratch" && rm -rf rj45-study && within 300 "$name: README's Python lines" "$venv/bin/python" readme.py)
+    "$venv/bin/optimize" --version
+    study "$name" "$venv/bin/optimize"
+done

@@ -10,6 +10,7 @@ use ask_tell::stream::stream;
 use insertion::evaluation::cell::Parameter;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
+use std::slice;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Joint draws per sample of the posterior.
@@ -93,7 +94,11 @@ impl Calibration {
             let mut random = stream(settings.seed, i as u64, "draws");
             let fingers: Vec<usize> = (0..subject.of_space).collect();
             let ranges = predict(&benches[i], &posterior, &fingers, Of::Truth);
-            let drawn = draws(&benches[i], &posterior, &fingers, DRAWS, &mut random);
+            // Stopped, what follows is worthless.
+            let goes_on = |_: &&Vec<f64>| !settings.stop.load(Ordering::SeqCst);
+            let of =
+                |state| draws(&benches[i], slice::from_ref(state), &fingers, DRAWS, &mut random);
+            let drawn: Vec<Vec<f64>> = posterior.iter().take_while(goes_on).flat_map(of).collect();
             let each = ranges.into_iter().zip(shares_best(&drawn, fingers.len())).enumerate();
             TaskResult {
                 predictions: each

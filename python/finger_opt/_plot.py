@@ -41,8 +41,10 @@ def window(found: Evaluation, ax: Axes | None) -> Axes:
     ends: list[tuple[float, End | None, str]] = [
         (low, found.failure_negative, "right"), (high, found.failure_positive, "left"),
     ]
-    for at, end, side in ends:
+    inserts = found.nominal == "inserted"
+    for at, end, side in ends if inserts else ends[1:]:
         text = textwrap.fill(ending(end).replace("class ", "class\u00a0"), 20)
+        text = text if inserts else f"does not insert from its start:\n{ending(end)}"
         axes.annotate(text, (at, y), (4 if side == "left" else -4, 0), textcoords="offset points", ha=side, va="center",
                       fontsize=8, color=colour(end))
     axes.axvline(0.0, color="0.3", linewidth=0.8)

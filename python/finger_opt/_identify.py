@@ -64,7 +64,7 @@ class Unknown(Result):
     prior_low: float
     prior_high: float
     value: float
-    sd: float
+    sd: float | None
     #: ``formula`` or ``fit``; ``prior``: these logs cannot tell it; ``files``: not fitted.
     from_: Literal["formula", "fit", "prior", "files"]
     source: str

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from . import _native
 from ._call import checked, given
 from ._result import DRAWN, Result, save
 from ._task import Given, Task, sources
 from ._words import Engine, Outcome, RobotName, StrPath, TaskName
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes as Drawing
 
 
 @dataclass(frozen=True, repr=False)
@@ -204,6 +207,12 @@ class Tuned(Result):
     kept: tuple[Kept, ...]
     nearest: Nearest | None
     out: str | None
+
+    def plot(self, ax: Drawing | None = None) -> Drawing:
+        """Draws the strategies that were tried; gives the axes."""
+        from ._plot import strategies
+
+        return strategies(self, ax)
 
 
 @checked

@@ -13,6 +13,7 @@ from ._drawn import CLASSES, COLOURS, colour, ending, finger
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from ._connector import Tuned
     from ._evaluation import End, Evaluation
     from ._map import CaptureMap, Levers
     from ._springs import StiffnessModel
@@ -165,4 +166,23 @@ def stiffness(found: StiffnessModel, ax: Axes | None) -> Axes:
     filled = axes.contourf(density, direction, values, levels=14, cmap="viridis")
     axes.figure.colorbar(filled, ax=axes, label="stiffness in the compliance direction, N/mm")
     axes.set(xlabel="infill density, percent", ylabel="infill direction, degrees", title=f"fitted to {found.designs} designs")
+    return axes
+
+
+def strategies(found: Tuned, ax: Axes | None) -> Axes:
+    """The strategies that were tried; a cross fails once the socket is turned, a ring is what was taken."""
+    axes = _axes(ax, width=9.0)
+    names = {"as-it-is": "as it is", "start": "start taught", "families": "like a shipped task", "search": "searched"}
+    colours = dict(zip(names, ("black", *(COLOURS[number] for number in (2, 4, 0))), strict=True))
+    taken = next(at for at, step in enumerate(found.steps, 1) if (step.stage, step.what) == (found.by.stage, found.by.what))
+    for at, step in enumerate(found.steps, 1):
+        axes.plot(at, step.least_range_mm or 0.0, "x" if step.turned_least_range_mm == 0.0 else "o", color=colours[step.stage])
+    axes.plot(taken, found.steps[taken - 1].least_range_mm or 0.0, "o", markersize=13, markerfacecolor="none",
+              color=COLOURS[3], label="taken")
+    for stage in dict.fromkeys(step.stage for step in found.steps):
+        axes.plot([], [], "o", color=colours[stage], label=names[stage])
+    if any(step.turned_least_range_mm == 0.0 for step in found.steps):
+        axes.plot([], [], "x", color=colours["search"], label="fails with the socket\nturned by 1°")
+    axes.set(xlabel="strategy tried", ylabel="narrowest window of three fingers, mm", title=f"{found.task}: {found.by.what}")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return axes

@@ -43,6 +43,11 @@ def test_a_study_draws_its_course_and_its_designs(fake, tmp_path, axes):
     assert study.answer._repr_html_() == study._repr_html_()
 
 
+def test_tuning_draws_what_was_tried(fake, tmp_path, axes):
+    found = fo.tune_task("ket8", out=tmp_path / "mine.toml", **fake)
+    assert found.plot(axes) is axes and found.by.what in axes.get_title()
+
+
 def test_a_film_plays_by_itself(tmp_path):
     trial = fo.trial("usb", 20, 10, film=True)
     page = trial.replay()

@@ -135,7 +135,7 @@ def test_ctrl_c_ends_a_long_call():
         "fo.evaluate('usb', 20, 10, uncertainty='typical')\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=100)
-    assert "finger_opt.Interrupted" in done.stderr
+    assert "finger_opt.errors.Interrupted" in done.stderr
 
 
 def test_other_threads_go_on_during_a_long_call():

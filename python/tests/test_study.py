@@ -146,7 +146,7 @@ class Nobody(Executor):
 
 
 def test_what_the_cache_knows_is_not_given_out(create, expected, tmp_path):
-    kept = {"no_cache": None, "cache": tmp_path / "cache"}
+    kept = {"no_cache": False, "cache": tmp_path / "cache"}
     first = create("first", **kept).run(Shuffled(1), progress=False)
     second = create("second", **kept).run(Nobody(), progress=False)
     assert journal(first.path) == journal(second.path) == expected
@@ -339,7 +339,7 @@ def test_ctrl_c_leaves_a_journal_that_goes_on(create, expected, tmp_path):
     )
     slow = {**os.environ, "FINGER_OPT_FAKE_DELAY_US": "10000"}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=slow)
-    assert "finger_opt.Interrupted" in done.stderr or "KeyboardInterrupt" in done.stderr
+    assert "finger_opt.errors.Interrupted" in done.stderr or "KeyboardInterrupt" in done.stderr
     assert "evaluations are safe; continue with: optimize resume" in done.stderr
     fo.load_study(tmp_path / "stopped").run(progress=False)
     assert journal(tmp_path / "stopped") == expected

@@ -30,8 +30,10 @@ const FRICTION: [f64; 2] = [0.8, 1.2];
 /// Changes that are checked, no change among them, and those of them that turn the socket.
 const CHANGES: usize = 5;
 const TURNED: Range<usize> = 1..3;
-/// Most strategies that are checked with a turned socket and one finger.
+/// Most strategies that are checked with a turned socket and one finger, and those of one tilt that may keep
+/// nothing there before the others of that tilt are passed over: neighbours in a search fail alike.
 const FINALISTS: usize = 12;
+const ALIKE: usize = 2;
 
 /// How far to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -224,14 +226,23 @@ impl Tuned {
         let plain = order.iter().position(|&place| self.steps[place].stage < Stage::Search);
         plain.iter().for_each(|&at| order[..=at].rotate_right(1));
         let mut most = (self.best, f64::NEG_INFINITY);
-        for place in order.into_iter().take(FINALISTS) {
-            if score[place] <= most.1 + INDIFFERENCE_MM {
+        let (mut checked, mut failed) = (0, Vec::new());
+        for place in order {
+            let strategy = &self.steps[place].tried.strategy;
+            let alike = failed.iter().filter(|&&tilt| tilt == strategy.tilt).count();
+            if checked == FINALISTS || score[place] <= most.1 + INDIFFERENCE_MM {
+                break;
+            }
+            if alike == ALIKE {
                 continue;
             }
-            let strategy = &self.steps[place].tried.strategy;
+            checked += 1;
             let kept = self.kept(bench, strategy, &bench.others[1..2], TURNED)?;
             self.windows += kept.len();
             let turned = kept.iter().map(|kept| kept.least_range_mm).fold(f64::INFINITY, f64::min);
+            if turned <= 0.0 {
+                failed.push(strategy.tilt);
+            }
             self.steps[place].turned_mm = Some(turned);
             let least = turned.min(score[place]);
             if least > most.1 + INDIFFERENCE_MM {

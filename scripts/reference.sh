@@ -179,10 +179,12 @@ answers() {
     # Its start near the edge of its window.
     sed -i -E 's/^start_mm = \[([^,]*), [^,]*,/start_mm = [\1, 3.5,/' "$keyed"
     answer() {
-        "$optimize" "${@:2}" --no-cache --out "$work/$1" --quiet > "$folder/$1.txt" || true
-        "$optimize" resume "$work/$1" --quiet --json > "$folder/$1.json" || true
-        sed -i "s,$work,results,g" "$folder/$1".{txt,json}
-        python3 scripts/pictures.py "$work/$1/report.html" "$folder/$1.png"
+        # Not in the folders of `studies`, which would be gone on with.
+        local study="$work/answers/$1"
+        "$optimize" "${@:2}" --no-cache --out "$study" --quiet > "$folder/$1.txt" || true
+        "$optimize" resume "$study" --quiet --json > "$folder/$1.json" || true
+        sed -i -e "s,$work/answers,results,g" -e "s,$work,results,g" "$folder/$1".{txt,json}
+        python3 scripts/pictures.py "$study/report.html" "$folder/$1.png"
     }
     answer usb --task usb
     answer rj45 --task rj45

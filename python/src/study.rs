@@ -192,7 +192,7 @@ impl Recorded {
 
     /// The answer as a piece of HTML.
     fn card(&self) -> String {
-        report::card(&self.record)
+        report::card(&self.record, &self.folder)
     }
 }
 

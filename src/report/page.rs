@@ -4,11 +4,11 @@ use super::elements::{definitions, document, figure};
 use super::{
     ReportError, bench, convergence, explore, first, front, provenance, replay, set, shape,
 };
-use crate::answer::{Answer, UnderRobot, expectation, lines};
+use crate::answer::{Answer, UnderRobot, command, expectation, lines};
 use crate::study::StudyRecord;
 use insertion::surrogate::Model;
 use maud::{Markup, html};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Pixels of a plot in the page: narrow, so that its text stays readable when
 /// a phone shrinks it to fit.
@@ -74,15 +74,16 @@ pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<Stri
     Ok(document(&title(record), body))
 }
 
-/// The answer of a study as a piece of a page, for notebooks.
-pub fn card(record: &StudyRecord) -> String {
+/// The answer of the study in a folder as a piece of a page, for notebooks.
+pub fn card(record: &StudyRecord, dir: &Path) -> String {
     let answer = Answer::of(record);
+    let (command, why) = command::next(&answer, dir);
     let card = html! {
         div.finger-opt {
             h3 { (answer.verdict.headline()) }
             p { (expectation(&answer)) " (" (answer.trust.label()) ")" }
             (definitions(&lines::brief(&answer)))
-            p { (title(record)) }
+            p { code { (command) } br; (why) }
         }
     };
     card.into_string()

@@ -95,4 +95,8 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted(name for name in {*globals(), "gym", "robot"} if not name.startswith("_") and name != "TYPE_CHECKING")
+    from importlib.util import find_spec
+
+    # What cannot be imported would keep help() from its end.
+    lazy = {"robot"} if find_spec("gymnasium") is None else {"gym", "robot"}
+    return sorted(name for name in {*globals(), *lazy} if not name.startswith("_") and name != "TYPE_CHECKING")

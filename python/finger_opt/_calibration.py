@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from . import _native
-from ._call import checked, given
+from ._call import checked, given, without, wrong
 from ._result import REST, Result
 from ._task import Given, sources
 from ._words import Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
@@ -44,6 +44,7 @@ class Measurements:
     44
     """
 
+    @checked
     def __init__(self, file: StrPath = "measurements.csv", *, tasks: Iterable[StrPath] = ()) -> None:
         """``tasks`` are files of one's own tasks that its lines name without a comment line."""
         self.file: str = os.fspath(file)
@@ -56,7 +57,7 @@ class Measurements:
             InputError: What is wrong, with its line.
         """
         found = json.loads(_native.measurements(self.file, self._tasks))
-        return tuple(Line.from_json(line) for line in found["lines"])
+        return tuple(sorted((Line.from_json(line) for line in found["lines"]), key=lambda line: line.line))
 
     def to_dataframe(self) -> DataFrame:
         """A row for each line, checked, with the columns of the file."""
@@ -105,7 +106,12 @@ class Measurements:
         Raises:
             InputError: A line that looks wrong; nothing is added.
         """
+        if not_measurable:
+            without("not_measurable", "there is no range", range_mm=range_mm, negative_mm=negative_mm, positive_mm=positive_mm)
         return _native.add_measurement(self.file, **given(locals()))
+
+    def __fspath__(self) -> str:
+        return self.file
 
     def __repr__(self) -> str:
         return f"<Measurements {self.file}>"
@@ -123,7 +129,13 @@ def measuring_sheet(task: StrPath, fingers: Sequence[tuple[float, float]], out: 
     Raises:
         InputError: A value or a file that cannot be used.
     """
-    _native.measuring_sheet(os.fspath(task), [(float(a), float(b)) for a, b in fingers], os.fspath(out))
+    try:
+        pairs = [(float(density), float(direction)) for density, direction in fingers]
+    except (TypeError, ValueError):
+        raise wrong("fingers", "has to be pairs of density, percent, and direction, degrees: [(20, 10)]") from None
+    if not pairs:
+        raise wrong("fingers", "has to name one at least")
+    _native.measuring_sheet(os.fspath(task), pairs, os.fspath(out))
 
 
 @dataclass(frozen=True, repr=False)

@@ -6,6 +6,7 @@ import difflib
 import functools
 import inspect
 import os
+import re
 import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from numbers import Integral, Real
@@ -13,7 +14,9 @@ from typing import Any, Literal, ParamSpec, TypeGuard, TypeVar, Union, get_args,
 
 import numpy as np
 
+from ._json import is_tuple
 from ._native import InputError
+from ._result import plain
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -37,9 +40,36 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
             hints.update(_hints(call))
         for name, value in given.items():
             _check(name, value, hints.get(name, Any))
-        return call(*args, **kwargs)
+        try:
+            return call(*args, **kwargs)
+        except InputError as error:
+            _in_python(error, signature)
+            raise
 
     return wrapper
+
+
+def _in_python(error: InputError, signature: inspect.Signature) -> None:
+    """Calls what the text names as the command line does by the parameter that it is."""
+    named: list[str] = []
+
+    def parameter(found: re.Match[str]) -> str:
+        word = found[1].replace("-", "_")
+        name = next((name for name in (word, f"{word}_") if name in signature.parameters), None)
+        named.extend([] if name is None else [name])
+        return found[0] if name is None else name
+
+    text = re.sub(r"(?<![\w-])--([a-z][a-z-]*)", parameter, str(error))
+    if named:
+        error.args = (text,)
+        error.key = error.key or named[0]
+
+
+def without(key: str, reason: str, **others: object) -> None:
+    """Refuses the first of these words that is given, which ``key`` goes without."""
+    for name, value in others.items():
+        if value is not None and value is not False:
+            raise wrong(name, f"cannot be given with {key}: {reason}")
 
 
 def given(words: Mapping[str, Any], *without: str) -> dict[str, Any]:
@@ -73,12 +103,18 @@ def _meant(name: str, signature: inspect.Signature) -> str:
 def _check(name: str, value: object, hint: Any) -> None:
     if not _fits(value, hint):
         more = "; fo.sweep takes several" if name in ("density", "direction") and _several(value) else ""
-        raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {type(value).__name__}{more}")
+        raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {_kind(value)}{more}")
     words = _words(hint)
     if isinstance(value, str) and words and value not in words:
         near = difflib.get_close_matches(value, words, 1)
         meant = f"; did you mean `{near[0]}`?" if near else ""
-        raise wrong(name, f"`{value}` is none of {', '.join(words)}{meant}")
+        known = ", ".join(word for word in words if word != "fake")
+        raise wrong(name, f"`{value}` is none of {known}{meant}")
+
+
+def _kind(value: object) -> str:
+    """What it is, in words."""
+    return f"{len(value)}" if is_tuple(value) else type(value).__name__
 
 
 def _words(hint: Any) -> tuple[str, ...]:
@@ -94,11 +130,13 @@ def _several(value: object) -> TypeGuard[Collection[object]]:
 
 
 def _fits(value: object, hint: Any) -> bool:
-    origin, args = get_origin(hint), get_args(hint)
+    origin, args = plain(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         return any(_fits(value, one) for one in args)
     if origin is Literal:
         return isinstance(value, str)
+    if hint is bool:
+        return isinstance(value, (bool, np.bool_))
     if hint in (float, int):
         number = isinstance(value, Real if hint is float else Integral)
         return number and not isinstance(value, (bool, np.bool_))
@@ -118,13 +156,13 @@ _SEVERAL = (Iterable, Sequence)
 
 def _named(hint: Any) -> list[str]:
     """What is right, in words."""
-    origin, args = get_origin(hint), get_args(hint)
+    origin, args = plain(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         return list(dict.fromkeys(name for one in args for name in _named(one)))
     if origin is Literal:
         return [", ".join(repr(word) for word in args)]
     if origin is tuple and args[-1] is not Ellipsis:
-        return [f"{len(args)} of {_named(args[0])[0]}"]
+        return [f"{len(args)} numbers"]
     known = {float: "a number", int: "a whole number", bool: "True or False", str: "text", os.PathLike: "a path",
              type(None): "None"}
     if origin is not None and origin is not os.PathLike:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from . import _native
-from ._call import checked, given
+from ._call import checked, given, without, wrong
 from ._result import DRAWN, Result, save
 from ._task import Given, Task, sources
 from ._words import Engine, Outcome, RobotName, StrPath, TaskName
@@ -114,6 +114,12 @@ def new_task(
         InputError: Dimensions that cannot be, or a file that is there already.
         Interrupted: Ctrl-C.
     """
+    if plug is not None:
+        without("plug", "one of them goes in", round=round)
+    if plug is None and round is None:
+        without("no plug", "they go with plug or round", clearance=clearance, body=body)
+    elif clearance is None:
+        raise wrong("clearance", "is missing: opening less plug in x and y, mm, both sides together")
     words = given(locals(), "name", "plug", "round", "body")
     sizes = {"plug": plug, "round": round, "body": body}
     words |= {key: "x".join(f"{length:.10g}" for length in size) for key, size in sizes.items() if size is not None}

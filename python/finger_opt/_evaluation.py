@@ -114,7 +114,7 @@ class Subject(Result):
 class Evaluation(Window, Subject):
     """The tolerance window of one finger on one task; see :class:`Window`."""
 
-    wall_s: float
+    wall_s: float = field(compare=False)
     #: With ``repeat``: where repeats end differently.
     bands: Bands | None = None
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from . import _native
-from ._call import checked, given
+from ._call import checked, given, without
 from ._study import Study
 from ._task import Given, sources
 from ._words import FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
@@ -45,6 +45,8 @@ def export_finger(
     Raises:
         InputError: A value or a file that cannot be used.
     """
+    if study is not None:
+        without("study", "its best design is exported", density=density, direction=direction)
     words = given(locals(), "study")
     folder = study.path if isinstance(study, Study) else study
     found = json.loads(_native.export_finger(**words, **({} if folder is None else {"dir": folder})))

@@ -7,6 +7,8 @@ from typing import Any, Protocol, TypeGuard
 
 import numpy as np
 
+from ._native import InputError
+
 
 class Numbers(Protocol):
     """A number or an array of NumPy."""
@@ -16,7 +18,10 @@ class Numbers(Protocol):
 
 def dumps(value: object) -> str:
     """The text of a value, in which numbers and arrays of NumPy may be."""
-    return json.dumps(value, default=_plain)
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except ValueError:
+        raise InputError("a number is NaN or infinite; all have to be finite") from None
 
 
 def is_table(value: object) -> TypeGuard[dict[str, Any]]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._call import checked, given
 from ._evaluation import Subject
-from ._result import DRAWN, Result, save
+from ._result import DRAWN, Result, equal, save
 from ._task import Given, sources
 from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
 
@@ -51,6 +51,9 @@ class CaptureMap(Subject):
     area_unit: str
     taught_start_mm: float | None = None
     svg: str = field(repr=False, metadata=DRAWN)
+
+    def __eq__(self, other: object) -> bool:
+        return equal(self, other)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the outcomes; gives the axes."""

@@ -9,6 +9,7 @@ from numbers import Integral
 from typing import Any, Literal, TypeGuard
 
 from . import _native
+from ._call import checked, wrong
 from ._json import dumps
 from ._words import OptimizerName, SpaceName, StrPath
 
@@ -43,6 +44,7 @@ class Optimizer:
     ['id', 'value', 'values']
     """
 
+    @checked
     def __init__(
         self,
         space: SpaceName | StrPath | Mapping[str, Sequence[float]] | Iterable[Mapping[str, Any]],
@@ -56,6 +58,9 @@ class Optimizer:
             parameters = json.loads(_native.space(space))
         elif _by_name(space):
             keys = ("low", "high", "step")
+            for name, bounds in space.items():
+                if not isinstance(bounds, Sequence) or len(bounds) not in (2, 3):
+                    raise wrong(str(name), "has to be (low, high) or (low, high, step)")
             parameters = [{"name": name, **dict(zip(keys, bounds))} for name, bounds in space.items()]
         else:
             several: Any = space

@@ -72,34 +72,57 @@ def force(trial: Trial, ax: Axes | None) -> Axes:
                       fontsize=7, color="0.35")
     outcome = trial.outcome if trial.failure is None else CLASSES[trial.failure]
     axes.set(xlabel="time, s", ylabel="force of the socket on the plug, N",
-             title=f"{trial.task}, start {trial.offset_mm:+g} mm: {outcome}")
+             title=f"{_text(trial.task)}, start {trial.offset_mm:+g} mm: {outcome}")
     return axes
 
 
 def _named(study: Study) -> str:
     """The study's folder, without those that it is in."""
-    return os.path.basename(os.path.abspath(study.path))
+    return _text(os.path.basename(study.path))
+
+
+def _text(words: str) -> str:
+    """Words as they are: a dollar would begin a formula."""
+    return words.replace("$", r"\$")
+
+
+def _objective(study: Study) -> tuple[str, str, bool] | None:
+    """Column of the first objective, what it is in words with its unit, and whether less is better."""
+    columns = [str(column) for column in study.to_dataframe().columns]
+    column = next((column for column in columns if column.startswith("objective")), None)
+    if column is None:
+        return None
+    name = str(study.config["objective"]).split(",")[0].strip()
+    words = "tolerable range" if name == "range" else name.replace("-", " ")
+    unit = column.rpartition("_")[2] if column.count("_") > column.startswith("objective_1") else ""
+    return column, f"{words}, {unit}" if unit in ("mm", "n") else words, name in ("peak-force", "slip")
 
 
 def convergence(study: Study, ax: Axes | None) -> Axes:
     """Each evaluation, and the best so far."""
     axes = _axes(ax)
-    frame = study.to_dataframe()
-    values = frame["range_mm"].to_numpy(dtype=float)
-    axes.plot(np.arange(1, len(values) + 1), values, ".", color="0.6", label="evaluation")
-    axes.step(np.arange(1, len(values) + 1), np.fmax.accumulate(values), where="post", color=COLOURS[0], label="best so far")
-    axes.set(xlabel="evaluation", ylabel="tolerable range, mm", title=_named(study))
-    axes.legend(loc="lower right")
+    objective = _objective(study)
+    if objective is not None:
+        column, label, least = objective
+        values = study.to_dataframe()[column].to_numpy(dtype=float)
+        best = np.fmin.accumulate(values) if least else np.fmax.accumulate(values)
+        axes.plot(np.arange(1, len(values) + 1), values, ".", color="0.6", label="evaluation")
+        axes.step(np.arange(1, len(values) + 1), best, where="post", color=COLOURS[0], label="best so far")
+        axes.set_ylabel(label)
+        axes.legend(loc="lower right")
+    axes.set(xlabel="evaluation", title=_named(study))
     return axes
 
 
 def surface(study: Study, ax: Axes | None) -> Axes:
-    """The designs, coloured by their ranges, and the recommended one."""
+    """The designs, coloured by their objective, and the recommended one."""
     axes = _axes(ax, height=4.2)
-    frame = study.to_dataframe()
     keys = ("infill_density_percent", "infill_direction_deg")
-    dots = axes.scatter(frame[keys[0]], frame[keys[1]], c=frame["range_mm"], cmap="viridis", s=28)
-    axes.figure.colorbar(dots, ax=axes, label="tolerable range, mm")
+    objective, frame = _objective(study), study.to_dataframe()
+    if objective is not None:
+        column, label, _ = objective
+        dots = axes.scatter(frame[keys[0]], frame[keys[1]], c=frame[column], cmap="viridis", s=28)
+        axes.figure.colorbar(dots, ax=axes, label=label)
     best = study.best
     if best is not None and all(key in best.values for key in keys):
         axes.plot(*(best.values[key] for key in keys), "o", markersize=13, markerfacecolor="none", color=COLOURS[3],
@@ -112,10 +135,10 @@ def surface(study: Study, ax: Axes | None) -> Axes:
 
 def outcomes(found: CaptureMap, ax: Axes | None) -> Axes:
     """How insertions end over the two errors."""
+    axes = _axes(ax, height=4.2)
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
 
-    axes = _axes(ax, height=4.2)
     numbers = [-1, 0, 1, 2, 3, 4]
     colours = ListedColormap([COLOURS[number] for number in numbers])
     edges = [np.arange(axis.low - axis.step / 2, axis.high + axis.step, axis.step) for axis in found.axes]
@@ -183,6 +206,6 @@ def strategies(found: Tuned, ax: Axes | None) -> Axes:
         axes.plot([], [], "o", color=colours[stage], label=names[stage])
     if any(step.turned_least_range_mm == 0.0 for step in found.steps):
         axes.plot([], [], "x", color=colours["search"], label="fails with the socket\nturned by 1°")
-    axes.set(xlabel="strategy tried", ylabel="narrowest window of three fingers, mm", title=f"{found.task}: {found.by.what}")
+    axes.set(xlabel="strategy tried", ylabel="narrowest window of three fingers, mm", title=_text(f"{found.task}: {found.by.what}"))
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return axes

@@ -13,6 +13,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from ._json import is_list, is_numpy, is_table, is_tuple
+from ._native import InputError
 
 T = TypeVar("T", bound="Result")
 
@@ -44,11 +45,33 @@ class Result:
         return _table(self)
 
 
+def equal(one: Any, other: Any) -> bool:
+    """Whether two dataclasses with arrays hold the same."""
+    if type(one) is not type(other):
+        return False
+    names = [field.name for field in dataclasses.fields(one) if field.compare]
+    pairs: list[tuple[Any, Any]] = [(getattr(one, name), getattr(other, name)) for name in names]
+    arrays = [(np.asarray(a), np.asarray(b)) for a, b in pairs if is_numpy(a)]
+    return all(np.array_equal(a, b) for a, b in arrays) and all(bool(a == b) for a, b in pairs if not is_numpy(a))
+
+
+def plain(hint: Any) -> Any:
+    """The class of a generic type; of an alias, as newer versions of NumPy have, that of what it stands for."""
+    origin = get_origin(hint)
+    return get_origin(origin.__value__) if hasattr(origin, "__value__") else origin
+
+
 def save(text: str, file: str | os.PathLike[str] | None) -> None:
     """Writes a drawing, if a file is named."""
-    if file is not None:
+    if file is None:
+        return
+    try:
         with open(file, "w", encoding="utf-8") as written:
             written.write(text)
+    except OSError as failed:
+        error = InputError(f"{os.fspath(file)}: cannot be written: {failed.strerror}")
+        error.file = os.fspath(file)
+        raise error from None
 
 
 @functools.cache
@@ -64,8 +87,13 @@ def _built(cls: type[T], fields: Mapping[str, Any]) -> T:
         # A word of Python has a stroke behind it.
         key = field.name.rstrip("_")
         names.add(key)
-        if key in fields and field.name != rest:
+        if field.name == rest:
+            continue
+        if key in fields:
             values[field.name] = _value(hints[field.name], fields[key])
+        elif type(None) in get_args(hints[field.name]):
+            # What there is not `to_dict` leaves out.
+            values[field.name] = None
     others = {key: value for key, value in fields.items() if key not in names or key == rest}
     if rest is not None:
         values[rest] = _value(hints[rest], others.pop(rest, others))
@@ -75,7 +103,7 @@ def _built(cls: type[T], fields: Mapping[str, Any]) -> T:
 
 
 def _value(hint: Any, value: Any) -> Any:
-    origin, args = get_origin(hint), get_args(hint)
+    origin, args = plain(hint), get_args(hint)
     if value is None:
         return None
     if origin in (Union, types.UnionType):

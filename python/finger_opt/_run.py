@@ -112,7 +112,7 @@ def run_open(
         return study.finish(ending)
     except KeyboardInterrupt:
         say(f"\ninterrupted; {study.hint()}\n")
-        raise
+        raise _native.Interrupted(f"interrupted; {study.hint()}") from None
     finally:
         performer.stop.set()
         if own is not None:

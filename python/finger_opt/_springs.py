@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, overload
 
 from . import _native
-from ._call import checked, given
+from ._call import checked, given, without
 from ._evaluation import Springs
 from ._result import DRAWN, Result, save
 from ._words import Numbers, StrPath
@@ -99,6 +99,7 @@ def stiffness(
         data = None if stiffness_data is None else str(stiffness_data)
         found = {**json.loads(text), "stiffness_data": data, "finger": str(finger), "svg": picture}
         return StiffnessModel.from_json(found)
+    without("an infill", "the drawing is of all designs", svg=svg)
     if density is None or direction is None:
         raise _native.InputError("give density and direction, or neither")
     return Springs.from_json(json.loads(_native.predict(density, direction, stiffness_data=stiffness_data, finger=finger)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import io
 import json
 import os
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from . import _native
 from ._answer import Answer, Recommended
-from ._call import checked, given
+from ._call import checked, given, wrong
 from ._result import DRAWN, Result, save
 from ._run import run_open
 from ._task import Given, sources
@@ -38,7 +39,7 @@ class Study:
 
     def __init__(self, asked: _native.Asked) -> None:
         #: The folder.
-        self.path: str = os.fspath(asked.folder())
+        self.path: str = os.path.abspath(asked.folder())
         self._asked = asked
 
     @classmethod
@@ -193,7 +194,8 @@ class Study:
         """A row for each evaluation; the columns of ``evaluations.csv``, with their units."""
         from ._frame import pandas
 
-        frame: DataFrame = pandas().read_csv(io.StringIO(self._read().table()))
+        table = self._read().table()
+        frame: DataFrame = pandas().read_csv(io.StringIO(table)) if table.strip() else pandas().DataFrame()
         return frame
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
@@ -222,7 +224,7 @@ class Study:
 
     def _repr_html_(self) -> str:
         if not self._begun():
-            return f"<p>a study not begun yet: {self.path}</p>"
+            return f"<p>a study not begun yet: {html.escape(self.path)}</p>"
         return self._read().card()
 
     def __repr__(self) -> str:
@@ -248,6 +250,8 @@ def load_study(
     Raises:
         InputError: What is no study.
     """
+    if not os.path.isfile(os.path.join(folder, "study.toml")):
+        raise wrong("folder", f"{os.fspath(folder)} is not a study: it has no study.toml")
     _native.Recorded(os.fspath(folder))
     return Study(_native.resume(os.fspath(folder), **given(locals(), "folder")))
 

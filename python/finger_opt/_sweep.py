@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._call import checked, given
+from ._call import checked, given, wrong
 from ._run import workers_of
 from ._task import Given, sources
 from ._words import Engine, FingerModel, RobotName, SpaceName, Start, StrPath
@@ -85,39 +85,56 @@ def sweep(
     The rest, and what is raised, is as for :func:`evaluate`. Ctrl-C ends it; with a cache nothing is lost.
     """
     words = given(locals(), "task", "density", "direction", "set", "grid", "out", "executor", "workers")
+    for name in ("density", "direction"):
+        if name in (set or {}):
+            raise wrong("set", f"{name} has a parameter of its own")
     rows = _rows({"density": density, "direction": direction, **(set or {})}, grid)
-    tasks = sources(task)
-    chunks: Iterator[Columns]
-    if executor is None:
-        chunks = (chunk for one in tasks for chunk in _measured(one, rows, words))
-    else:
-        chunks = _handed_out(executor, workers or workers_of(executor), tasks, rows, words)
-    frames = _written(chunks, out) if out is not None else [_frame(chunk) for chunk in chunks]
+    # What is missing is said before anything is measured.
     from ._frame import pandas
 
-    table: DataFrame = pandas().concat(frames, ignore_index=True)
+    frames, tasks = pandas(), sources(task)
+    if not tasks:
+        raise wrong("task", "has to name one at least")
+    if out is not None and not os.path.isdir(os.path.dirname(os.path.abspath(out))):
+        raise wrong("out", f"there is no folder {os.path.dirname(os.path.abspath(out))}")
+    chunks: Iterator[Columns]
+    if executor is None:
+        measuring = [_native.Sweep([one], **words) for one in tasks]
+        chunks = (chunk for one in measuring for chunk in _measured(one, rows))
+    else:
+        if not callable(getattr(executor, "submit", None)):
+            raise wrong("executor", f"has to have a method submit, which {type(executor).__name__} has not")
+        if workers is not None and workers < 1:
+            raise wrong("workers", f"is {workers}; has to be at least 1")
+        chunks = _handed_out(executor, workers or workers_of(executor), tasks, rows, words)
+    found = _written(chunks, out) if out is not None else [_frame(chunk) for chunk in chunks]
+    table: DataFrame = frames.concat(found, ignore_index=True)
     return table
 
 
 def _rows(given: Mapping[str, Several], grid: bool) -> Rows:
     """The designs, a column for each number."""
-    columns = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in given.items()}
-    for name, values in columns.items():
-        if values.ndim != 1 or not len(values) or not np.isfinite(values).all():
-            raise _native.InputError(f"{name}: has to be a number or a list of numbers, all finite, at least one")
+    columns: Columns = {}
+    for name, several in given.items():
+        try:
+            values = np.atleast_1d(np.asarray(several, dtype=float))
+        except (TypeError, ValueError):
+            values = np.empty(0)
+        if isinstance(several, str) or values.ndim != 1 or not len(values) or not np.isfinite(values).all():
+            raise wrong(name, "has to be a number or a list of numbers, all finite, at least one")
+        columns[name] = values
     if grid:
         meshed = np.meshgrid(*columns.values(), indexing="ij")
         return {name: values.ravel().tolist() for name, values in zip(columns, meshed, strict=True)}
     length = max(len(values) for values in columns.values())
     for name, values in columns.items():
         if len(values) not in (1, length):
-            raise _native.InputError(f"{name}: has {len(values)} values where others have {length}; give one or all")
+            raise wrong(name, f"has {len(values)} values where others have {length}; give one or all")
     return {name: np.broadcast_to(values, length).tolist() for name, values in columns.items()}
 
 
-def _measured(task: Task, rows: Rows, words: Mapping[str, Any]) -> Iterator[Columns]:
+def _measured(measuring: _native.Sweep, rows: Rows) -> Iterator[Columns]:
     """The rows with their windows, in their order."""
-    measuring = _native.Sweep([task], **words)
     for at in range(0, len(rows["density"]), CHUNK):
         numbers, texts = measuring.measure({name: values[at : at + CHUNK] for name, values in rows.items()})
         found: Columns = {name: np.asarray(column, dtype=object) for name, column in texts.items()}
@@ -133,7 +150,7 @@ def _place(name: str) -> tuple[int, str]:
 
 def _part(task: Task, rows: Rows, words: dict[str, Any]) -> list[Columns]:
     """The unit of work of an executor."""
-    return list(_measured(task, rows, {**words, "threads": 1, "no_cache": True}))
+    return list(_measured(_native.Sweep([task], **words, threads=1, no_cache=True), rows))
 
 
 def _handed_out(
@@ -141,17 +158,21 @@ def _handed_out(
 ) -> Iterator[Columns]:
     """The same, measured elsewhere; twice as many pieces of work are out as there are workers."""
     count = len(rows["density"])
-    parts = [(task, at) for task in tasks for at in range(0, count, PART)]
+    # So that every worker has some.
+    size = max(1, min(PART, -(-count // (4 * workers))))
+    parts = [(task, at) for task in tasks for at in range(0, count, size)]
     words = {name: value for name, value in words.items() if name not in ("threads", "cache", "no_cache")}
     out: deque[Future[list[Columns]]] = deque()
     try:
         for task, at in parts:
             if len(out) >= 2 * workers:
                 yield from out.popleft().result()
-            part = {name: values[at : at + PART] for name, values in rows.items()}
+            part = {name: values[at : at + size] for name, values in rows.items()}
             out.append(executor.submit(_part, task, part, words))
         while out:
             yield from out.popleft().result()
+    except KeyboardInterrupt:
+        raise _native.Interrupted("interrupted") from None
     finally:
         for future in out:
             future.cancel()
@@ -171,14 +192,17 @@ def _written(chunks: Iterator[Columns], file: StrPath) -> list[DataFrame]:
 
     arrow, writer = pyarrow(), None
     empty: list[DataFrame] = []
+    # Under its name once it is whole.
+    partial = f"{os.fspath(file)}.part"
     try:
         for chunk in chunks:
             table = arrow.Table.from_pandas(_frame(chunk), preserve_index=False)
             if writer is None:
-                writer = arrow.parquet.ParquetWriter(str(file), table.schema)
+                writer = arrow.parquet.ParquetWriter(partial, table.schema)
                 empty = [_frame(chunk).iloc[:0]]
             writer.write_table(table)
     finally:
         if writer is not None:
             writer.close()
+    os.replace(partial, file)
     return empty

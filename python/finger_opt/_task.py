@@ -69,7 +69,8 @@ class Fields:
     def __getattr__(self, key: str) -> Any:
         if is_table(self._table) and key in self._table:
             return self[key]
-        raise AttributeError(f"no field is called `{key}`; there are {', '.join(self)}")
+        there = f"; there are {', '.join(self._table)}" if is_table(self._table) else ""
+        raise AttributeError(f"no field is called `{key}`{there}")
 
     def __setattr__(self, key: str, value: Any) -> None:
         self[key] = value

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._call import checked, given
+from ._call import checked, given, without, wrong
 from ._evaluation import Subject
-from ._result import DRAWN, Result
+from ._result import DRAWN, Result, equal
 from ._task import Given, sources
 from ._words import Engine, FingerModel, Numbers, Outcome, RobotName, SpaceName, Start, StrPath
 
@@ -54,6 +54,9 @@ class Series:
     #: (n), in the grasp, mm.
     slip_mm: Floats
 
+    def __eq__(self, other: object) -> bool:
+        return equal(self, other)
+
     @classmethod
     def of(cls, columns: dict[str, bytes]) -> Series:
         """Of columns of little-endian float64."""
@@ -85,6 +88,9 @@ class Trial(Subject):
     series: Series = field(repr=False, metadata=DRAWN)
     #: The film as HTML, if it was asked for.
     film: str | None = field(default=None, repr=False, metadata=DRAWN)
+
+    def __eq__(self, other: object) -> bool:
+        return equal(self, other)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the contact force over time, with the phases; gives the axes."""
@@ -168,5 +174,9 @@ def trial(
 
     The rest, and what is raised, is as for :func:`evaluate`.
     """
+    if probe:
+        if log is None:
+            raise wrong("probe", "needs log, the file to write")
+        without("probe", "it is no insertion", repeat=repeat, svg=svg, record=record, plot=plot, film=film)
     text, columns, drawn = _native.trial(sources(task), **given(locals(), "task"))
     return Trial.from_json({**json.loads(text), "series": Series.of(columns), "film": drawn})

@@ -43,6 +43,15 @@ def test_a_study_draws_its_course_and_its_designs(fake, tmp_path, axes):
     assert study.answer._repr_html_() == study._repr_html_()
 
 
+@pytest.mark.parametrize("settings", [{"objective": "slip"}, {"objective": ["range", "peak-force"]}, {"task": ["usb", "rj45"]}])
+def test_studies_of_other_goals_draw_them(settings, fake, tmp_path):
+    settings = {"task": "usb", "budget": 6, "no_cache": True, "out": tmp_path / "cost$^$2", **settings}
+    study = fo.Study.create(**settings, **fake).run(progress=False)
+    for axes in (study.plot(), study.plot_surface()):
+        axes.figure.canvas.draw()
+    assert ("slip, mm" in study.plot().get_ylabel()) == (settings["objective"] == "slip" if "objective" in settings else False)
+
+
 def test_tuning_draws_what_was_tried(fake, tmp_path, axes):
     found = fo.tune_task("ket8", out=tmp_path / "mine.toml", **fake)
     assert found.plot(axes) is axes and found.by.what in axes.get_title()

@@ -58,7 +58,7 @@ def test_the_lines_are_those_of_the_command(command):
 def test_shipped_spaces_and_errors():
     point = fo.Optimizer("infill", "sobol").ask(1)[0]
     assert set(point) == {"infill_density_percent", "infill_direction_deg"}
-    with pytest.raises(fo.InputError, match="unknown optimizer 'bayes'"):
+    with pytest.raises(fo.InputError, match="optimizer: `bayes` is none of gp"):
         fo.Optimizer(SPACE, "bayes")
     with pytest.raises(fo.InputError, match="low must not be above high"):
         fo.Optimizer({"x": (1, 0)})

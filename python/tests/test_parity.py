@@ -128,7 +128,7 @@ WRONG = [
     (lambda: fo.evaluate("usb", 20, 10, engine="direkt"), fo.InputError, "engine: `direkt` is none of .*did you mean `direct`"),
     (lambda: fo.evaluate(density=20), TypeError, r"evaluate\(\) missing a required argument: 'task'"),
     (lambda: fo.Study.create("usb", budget="12"), TypeError, "budget: has to be a whole number or None, not str"),
-    (lambda: fo.finger(20, 20, load_n=(1, 2, 3)), TypeError, "load_n: has to be 2 of a number, not tuple"),
+    (lambda: fo.finger(20, 20, load_n=(1, 2, 3)), TypeError, "load_n: has to be 2 numbers, not 3"),
 ]
 
 
@@ -136,6 +136,34 @@ WRONG = [
 def test_what_is_wrong_is_named_with_what_would_be_right(call, error, text):
     with pytest.raises(error, match=text):
         call()
+
+
+#: What does not go together, as on the command line.
+TOGETHER = [
+    (lambda: fo.new_task("x", plug=(8, 2.4, 25)), "clearance"),
+    (lambda: fo.new_task("x", plug=(8, 2.4, 25), round=(8, 25), clearance=0.1), "round"),
+    (lambda: fo.new_task("x", like="usb", clearance=0.1), "clearance"),
+    (lambda: fo.export_finger("study", format="stl", out="x.stl", density=12, direction=30), "density"),
+    (lambda: fo.Measurements("x.csv").add("usb", not_measurable=True, range_mm=3.0), "range_mm"),
+    (lambda: fo.trial("usb", 20, 10, probe=True), "probe"),
+    (lambda: fo.trial("usb", 20, 10, probe=True, log="x.csv", repeat=3), "repeat"),
+    (lambda: fo.stiffness(20, 10, svg="x.svg"), "svg"),
+    (lambda: fo.sweep("usb", 20, 10, set={"density": [25]}), "set"),
+    (lambda: fo.evaluate("usb", density=20), "density"),
+]
+
+
+@pytest.mark.parametrize(("call", "key"), TOGETHER)
+def test_what_does_not_go_together_is_refused(call, key):
+    with pytest.raises(fo.InputError) as raised:
+        call()
+    assert raised.value.key == key and "--" not in str(raised.value)
+
+
+def test_what_differs_is_not_equal(fake):
+    assert fo.evaluate("usb", 20, 10, **fake) == fo.evaluate("usb", 20, 10, **fake)
+    assert fo.trial("usb", 20, 10) == fo.trial("usb", 20, 10) != fo.trial("usb", 20, 10, offset_mm=9.0)
+    assert fo.capture_map("usb", 20, 10, **fake) != fo.capture_map("usb", 20, 10, axes="y,yaw", **fake)
 
 
 def test_an_error_says_where(tmp_path):

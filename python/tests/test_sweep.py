@@ -35,6 +35,9 @@ def test_rows_tasks_and_further_numbers(fake):
         fo.sweep("usb", [10, 20], [1, 2, 3], grid=False, **fake)
     with pytest.raises(fo.InputError, match="density: has to be a number or a list of numbers"):
         fo.sweep("usb", [float("nan")], 3, **fake)
+    for wrong in ([], ["a"], [[1.0], [2.0]], "20"):
+        with pytest.raises((fo.InputError, TypeError), match="density: has to be"):
+            fo.sweep("usb", wrong, 3, **fake)
 
 
 def test_threads_cache_and_executors_change_nothing(fake, tmp_path):

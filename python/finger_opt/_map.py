@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._call import checked, given
 from ._evaluation import Subject
-from ._result import DRAWN, Result, equal, save
+from ._result import DRAWN, Result, equal, save, suffixed
 from ._task import Given, sources
 from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
 
@@ -93,6 +93,7 @@ def capture_map(
 
     The rest, and what is raised, is as for :func:`evaluate`.
     """
+    suffixed(svg, ".svg")
     text, picture = _native.capture_map(sources(task), **given(locals(), "task"))
     return CaptureMap.from_json({**json.loads(text), "svg": picture})
 

@@ -61,10 +61,19 @@ def plain(hint: Any) -> Any:
     return get_origin(origin.__value__) if hasattr(origin, "__value__") else origin
 
 
+def suffixed(file: str | os.PathLike[str] | None, suffix: str) -> None:
+    """Refuses a file whose name promises something else than what is written."""
+    if file is not None and not os.fspath(file).lower().endswith(suffix):
+        error = InputError(f"{os.fspath(file)}: what is written is {suffix[1:].upper()}; let its name end in {suffix}")
+        error.file = os.fspath(file)
+        raise error
+
+
 def save(text: str, file: str | os.PathLike[str] | None) -> None:
     """Writes a drawing, if a file is named."""
     if file is None:
         return
+    suffixed(file, ".svg")
     try:
         with open(file, "w", encoding="utf-8") as written:
             written.write(text)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._call import checked, given, wrong
+from ._result import suffixed
 from ._run import workers_of
 from ._task import Given, sources
 from ._words import Engine, FingerModel, RobotName, SpaceName, Start, StrPath
@@ -97,6 +98,7 @@ def sweep(
         raise wrong("task", "has to name one at least")
     if out is not None and not os.path.isdir(os.path.dirname(os.path.abspath(out))):
         raise wrong("out", f"there is no folder {os.path.dirname(os.path.abspath(out))}")
+    suffixed(out, ".parquet")
     chunks: Iterator[Columns]
     if executor is None:
         measuring = [_native.Sweep([one], **words) for one in tasks]

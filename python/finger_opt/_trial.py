@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._call import checked, given, without, wrong
 from ._evaluation import Subject
-from ._result import DRAWN, Result, equal
+from ._result import DRAWN, Result, equal, suffixed
 from ._task import Given, sources
 from ._words import Engine, FingerModel, Numbers, Outcome, RobotName, SpaceName, Start, StrPath
 
@@ -178,5 +178,7 @@ def trial(
         if log is None:
             raise wrong("probe", "needs log, the file to write")
         without("probe", "it is no insertion", repeat=repeat, svg=svg, record=record, plot=plot, film=film)
+    suffixed(plot, ".svg")
+    suffixed(svg, ".svg")
     text, columns, drawn = _native.trial(sources(task), **given(locals(), "task"))
     return Trial.from_json({**json.loads(text), "series": Series.of(columns), "film": drawn})

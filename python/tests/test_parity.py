@@ -160,6 +160,18 @@ def test_what_does_not_go_together_is_refused(call, key):
     assert raised.value.key == key and "--" not in str(raised.value)
 
 
+def test_a_file_is_what_its_name_says(fake, tmp_path):
+    calls = [
+        lambda file: fo.trial("usb", 20, 10, plot=file), lambda file: fo.levers("usb", 20, 10, svg=file, **fake),
+        lambda file: fo.capture_map("usb", 20, 10, svg=file, **fake), lambda file: fo.sweep("usb", 20, 10, out=file, **fake),
+    ]
+    for call in calls:
+        with pytest.raises(fo.InputError, match="let its name end in") as raised:
+            call(tmp_path / "x.png")
+        assert raised.value.file == str(tmp_path / "x.png")
+    assert not list(tmp_path.iterdir())
+
+
 def test_what_differs_is_not_equal(fake):
     assert fo.evaluate("usb", 20, 10, **fake) == fo.evaluate("usb", 20, 10, **fake)
     assert fo.trial("usb", 20, 10) == fo.trial("usb", 20, 10) != fo.trial("usb", 20, 10, offset_mm=9.0)

@@ -46,20 +46,20 @@ study() {
 study sources "$program"
 
 # The static program, alone in the root of its file system.
-mkdir "$scratch/root"
+mkdir "$scratch/alone"
 tar xzf dist/finger-opt-*-musl.tar.gz -C "$scratch" --wildcards '*/optimize' --strip-components 1
-mv "$scratch/optimize" "$scratch/root"
+mv "$scratch/optimize" "$scratch/alone"
 root=("$(PATH=$PATH:/usr/sbin command -v chroot)")
 if [ "$(id -u)" -ne 0 ]; then root=("$(command -v unshare)" --map-root-user "${root[@]}"); fi
-alone() { env -i "${root[@]}" "$scratch/root" /optimize "$@"; }
-if "${root[@]}" "$scratch/root" /bin/true 2> /dev/null; then failed "the folder is not empty"; fi
+alone() { env -i "${root[@]}" "$scratch/alone" /optimize "$@"; }
+if "${root[@]}" "$scratch/alone" /bin/true 2> /dev/null; then failed "the folder is not empty"; fi
 alone --version
 read -r _ first < <(block "optimize --task usb")
 # shellcheck disable=SC2086
 alone $first > "$scratch/first.txt" 2> "$scratch/first.log"
 diff <(block "Print the finger") "$scratch/first.txt" || failed "README's first study prints something else"
 echo "static program in an empty root: optimize $first prints README's block"
-static() { (cd "$scratch/root" && alone "$@") && mv "$scratch/root/static" "$scratch"; }
+static() { (cd "$scratch/alone" && alone "$@") && mv "$scratch/alone/static" "$scratch"; }
 study static static
 
 # Wheels. Nothing of Rust may be found.

@@ -60,7 +60,7 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
     let found = json(&["tune", &own], 1);
     assert_eq!((&found["inserts"], &found["after"]), (&Value::Bool(false), &Value::Null));
     assert_eq!(found, json(&["tune", &own, "--dry-run"], 1), "a seeded search differs");
-    assert_eq!(found["nearest"]["outcome"], "contact loss before search");
+    assert_eq!(found["nearest"]["outcome"], "contact loss before insertion");
     assert!(found["nearest"]["phase"].is_string(), "{found}");
     assert_eq!(read_to_string(&own).unwrap(), weak, "a file is written");
     optimize(&["task", "tune", &own, "--out", &own]).fails(2, &["own.toml exists"]);

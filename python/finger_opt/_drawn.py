@@ -5,23 +5,22 @@ from __future__ import annotations
 import html
 from typing import TYPE_CHECKING
 
+from . import _native
+
 if TYPE_CHECKING:
     from ._calibration import Calibration
     from ._evaluation import End, Evaluation
 
-#: Names of the failure classes.
-CLASSES = {
-    1: "contact loss before insertion", 2: "plug missed", 3: "jammed", 4: "contact loss in insertion",
-}
-#: Colours: what inserts, then the classes; as on the pages.
-COLOURS = {0: "#2a6fb0", 1: "#8e6bbf", 2: "#c9a227", 3: "#c0504d", 4: "#5f8f4e", -1: "#9a9a9a"}
+#: Words and colours of outcomes by their numbers in a map, as on the pages.
+WORDS = {number: words for number, words, _ in _native.outcomes()}
+COLOURS = {number: colour for number, _, colour in _native.outcomes()}
 
 
 def ending(end: End | None) -> str:
     """What ends a window, in words."""
     if end is None:
         return "not met"
-    return "diverged" if isinstance(end, str) else f"{CLASSES[end]} (class {end})"
+    return "diverged" if isinstance(end, str) else f"{WORDS[end]} (class {end})"
 
 
 def colour(end: End | None) -> str:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import os
 import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ._drawn import CLASSES, COLOURS, colour, ending, finger
+from . import _native
+from ._drawn import COLOURS, WORDS, colour, ending, finger
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,7 +72,7 @@ def force(trial: Trial, ax: Axes | None) -> Axes:
             axes.axvline(phase.time_s, color="0.7", linewidth=0.6)
             axes.text(phase.time_s, 0.98, phase.name, transform=axes.get_xaxis_transform(), rotation=90, ha="right", va="top",
                       fontsize=7, color="0.35")
-    outcome = trial.outcome if trial.failure is None else CLASSES[trial.failure]
+    outcome = trial.outcome if trial.failure is None else WORDS[trial.failure]
     axes.set(xlabel="time, s", ylabel="force of the socket on the plug, N",
              title=f"{_text(trial.task)}, start {trial.offset_mm:+g} mm: {outcome}")
     return axes
@@ -145,9 +147,8 @@ def outcomes(found: CaptureMap, ax: Axes | None) -> Axes:
     shape = found.outcomes.shape
     axes.pcolormesh(edges[0][: shape[1] + 1], edges[1][: shape[0] + 1], found.outcomes, cmap=colours,
                     norm=BoundaryNorm(np.arange(-1.5, 5.0), colours.N), alpha=0.85)
-    names = {-1: "diverged", 0: "inserted", **CLASSES}
     met = [number for number in numbers if (found.outcomes == number).any()]
-    axes.legend(handles=[Patch(color=COLOURS[number], label=names[number]) for number in met], loc="upper left",
+    axes.legend(handles=[Patch(color=COLOURS[number], label=WORDS[number]) for number in met], loc="upper left",
                 bbox_to_anchor=(1.0, 1.0), frameon=False)
     axes.plot(0, 0, "+", color="white", markersize=10)
     labels = [f"error of the start in {axis.name}, {axis.unit}" for axis in found.axes]
@@ -181,7 +182,8 @@ def stiffness(found: StiffnessModel, ax: Axes | None) -> Axes:
     from ._springs import stiffness as predicted
 
     axes = _axes(ax, height=4.2)
-    density, direction = np.linspace(10.0, 30.0, 21), np.linspace(0.0, 40.0, 21)
+    infill: list[dict[str, float]] = json.loads(_native.space("infill"))
+    density, direction = (np.linspace(axis["low"], axis["high"], 21) for axis in infill)
     values = np.array([
         [predicted(float(x), float(y), stiffness_data=found.stiffness_data, finger=found.finger).compliance_n_per_mm for x in density]
         for y in direction

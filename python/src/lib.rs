@@ -42,6 +42,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(measure::levers, module)?)?;
     module.add_function(wrap_pyfunction!(measure::trial, module)?)?;
     module.add_function(wrap_pyfunction!(measure::capture_map, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::outcomes, module)?)?;
     module.add_function(wrap_pyfunction!(measure::stiffness, module)?)?;
     module.add_function(wrap_pyfunction!(measure::predict, module)?)?;
     module.add_function(wrap_pyfunction!(measure::space, module)?)?;

@@ -201,6 +201,12 @@ pub fn capture_map<'py>(
     Ok((cli::map::json(&chosen, &map).to_string(), picture))
 }
 
+/// Every outcome as a map has it: number, words, colour.
+#[pyfunction]
+pub fn outcomes() -> Vec<(i8, &'static str, String)> {
+    report::map::outcomes().into()
+}
+
 /// How well the stiffness model fits, as JSON and as a picture.
 #[pyfunction]
 #[pyo3(signature = (*, stiffness_data=None, finger=None))]

@@ -116,6 +116,15 @@ def test_the_names_in_signatures_are_those_that_are_shipped():
     assert {robot.name for robot in fo.robots().robots} == set(get_args(_words.RobotName))
 
 
+def test_the_words_of_a_study_are_those_that_the_library_takes():
+    for word, hint in (("optimizer", _words.OptimizerName), ("objective", _words.Objective)):
+        with pytest.raises(fo.InputError) as raised:
+            _native.study(["usb"], **{word: "nothing"})
+        assert all(name in str(raised.value) for name in get_args(hint)), raised.value
+        for name in get_args(hint):
+            _native.study(["usb"], **{word: name})
+
+
 WRONG = [
     (lambda: fo.evaluate("usb", 20, 10, walks=True), TypeError, r"keyword argument 'walks'; did you mean `walk`\?"),
     (lambda: fo.evaluate("usb", density=[10, 20]), TypeError, "density: has to be a number or None, not list; fo.sweep"),

@@ -21,6 +21,19 @@ const SIZE: (u32, u32) = (600, 430);
 /// Height of title and legend, pixels.
 const HEAD: u32 = 66;
 
+/// Every outcome as a map has it: its number (0 inserted, 1 to 4 the failure class, -1 diverged), its words, and
+/// its colour on a light page, `#RRGGBB`.
+pub fn outcomes() -> [(i8, &'static str, String); 6] {
+    COLOURS.map(|(outcome, colour)| {
+        let number = match outcome {
+            Outcome::Inserted => 0,
+            Outcome::Failed(class) => u8::from(class) as i8,
+            Outcome::Diverged => -1,
+        };
+        (number, outcome.label(), colour.hex())
+    })
+}
+
 /// The outcome at each place, a dot where it was simulated.
 ///
 /// # Errors

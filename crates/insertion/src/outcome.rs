@@ -33,7 +33,7 @@ impl FailureClass {
     /// Name for texts and tables.
     pub fn label(self) -> &'static str {
         let labels =
-            ["contact loss before search", "plug missed", "jammed", "contact loss in insertion"];
+            ["contact loss before insertion", "plug missed", "jammed", "contact loss in insertion"];
         labels[self as usize]
     }
 
